@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Contact mechanics: the force between an elastic tip and an elastic half-space at a given indentation.
+ *
+ * Every law returns {U, F, k, a} with F = dU/d(delta), k = dF/d(delta) (types.h). U is the energy relative to separated
+ * bodies at rest; for DMT, whose tail has no range, relative to first touch (delta = 0).
+ * Adhesive laws have branches: at one indentation there can be more than one equilibrium.
+ * All functions: thread-safe, real-time safe, no state. NaN in the indentation gives NaN out (or NT_E_NOT_FINITE where a
+ * status is returned). */
+#ifndef NANOTOUCH_CONTACT_H
+#define NANOTOUCH_CONTACT_H
+
+#include "nanotouch/types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A sphere (paraboloid) on a half-space. */
+typedef struct nt_contact {
+    double radius;            /* R of the tip [m], > 0; for sphere on sphere 1/R = 1/R1 + 1/R2 */
+    double effective_modulus; /* E* [Pa], > 0 */
+    double work_of_adhesion;  /* w [J/m^2], >= 0; 0 makes every law Hertz exactly */
+    double cohesive_stress;   /* sigma0 of the Dugdale zone [Pa], > 0 where w > 0; read by nt_maugis_* only */
+} nt_contact;
+
+/* R = 20 nm, E* = 76.9 GPa (silicon on silicon), w = 0.144 J/m^2 (water film), sigma0 of a 0.2 nm atomic range. */
+NT_API nt_contact nt_contact_defaults(void);
+/* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with the offending field in *problem (NULL allowed). */
+NT_API nt_status nt_contact_check(const nt_contact *contact, nt_problem *problem);
+
+/* Which equilibrium is meant where there are several. */
+typedef enum nt_branch {
+    NT_BRANCH_STABLE,   /* what retraction from contact meets under grips, down to its last fold; beyond it: apart (all 0) */
+    NT_BRANCH_APPROACH, /* what approach from far away meets: apart until the jump-in, then as STABLE */
+    NT_BRANCH_UNSTABLE  /* the equilibrium between the two folds that no grip can hold; NT_E_NO_SOLUTION where there is none */
+} nt_branch;
+
+/* --- Hertz, 1881 (paper, Eq. 4): F = 4/3 E* sqrt(R) delta^1.5, a = sqrt(R delta); all 0 for delta <= 0. --- */
+NT_API nt_law_value nt_hertz_eval(const nt_contact *contact, double indentation);
+NT_API double nt_hertz_force(const nt_contact *contact, double indentation);
+/* delta(F) for F >= 0; NaN for F < 0. */
+NT_API double nt_hertz_indentation(const nt_contact *contact, double force);
+
+/* --- DMT, Derjaguin, Muller, Toporov 1975 (paper, Eq. 9): Hertz - 2 pi R w; all 0 for delta < 0. --- */
+NT_API nt_law_value nt_dmt_eval(const nt_contact *contact, double indentation);
+NT_API double nt_dmt_force(const nt_contact *contact, double indentation);
+/* delta(F) for F >= -2 pi R w; NaN below. */
+NT_API double nt_dmt_indentation(const nt_contact *contact, double force);
+/* 2 pi R w, a positive magnitude [N]. */
+NT_API double nt_dmt_pull_off_force(const nt_contact *contact);
+
+/* --- JKR, Johnson, Kendall, Roberts 1971 (the paper's lost Eq. 10; erratum E11):
+ *     a^3 = (R/K)(F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)), delta = a^2/R - sqrt(8 pi w a/(3 K)), K = 4/3 E*.
+ * STABLE: a above the displacement fold a = (1/6)^(1/3) (reduced); APPROACH: apart for delta < 0. --- */
+NT_API nt_status nt_jkr_eval(const nt_contact *contact, double indentation, nt_branch branch, nt_law_value *value);
+/* delta(F); STABLE is the branch above the load fold F = -1.5 pi w R, UNSTABLE the one below it. */
+NT_API nt_status nt_jkr_indentation(const nt_contact *contact, double force, nt_branch branch, double *indentation);
+/* 1.5 pi R w, a positive magnitude [N] (load control). */
+NT_API double nt_jkr_pull_off_force(const nt_contact *contact);
+/* Indentation of the displacement fold, the last stable point under grips [m] (negative). */
+NT_API double nt_jkr_pull_off_indentation(const nt_contact *contact);
+
+/* --- Maugis-Dugdale, Maugis 1992 (paper, Eq. 11; errata E9, E10): every lambda between DMT and JKR, in the explicit
+ *     form of the branch parameter y = a/sqrt(c^2 - a^2). --- */
+
+/* Where a branch ends or turns, in Maugis' units: load in pi w R, radius in (pi w R^2/K)^(1/3),
+ * indentation in (pi^2 w^2 R/K^2)^(1/3). */
+typedef struct nt_maugis_folds {
+    double pull_off_load, pull_off_radius, pull_off_indentation; /* load fold: dead weight falls off */
+    double grip_load, grip_radius, grip_indentation;             /* displacement fold: grips let go */
+    int grip_in_contact; /* 1: the displacement fold lies on the contact branch (lambda > 0.9379); 0: on the non-contact one */
+    double zero_load_radius, zero_load_indentation;
+    double touch_load, touch_indentation; /* the a = 0 end of the contact branch */
+    double onset_indentation; /* where attraction starts on approach: -2/(pi lambda) (gap = h0) */
+} nt_maugis_folds;
+
+/* A Maugis-Dugdale contact made ready: scales and folds. Immutable after nt_maugis_init; may be shared and copied. */
+typedef struct nt_maugis {
+    double lambda;            /* Maugis' transition parameter = 1.157 Tabor's mu [-] */
+    double load_scale;        /* pi w R [N] */
+    double radius_scale;      /* (pi w R^2/K)^(1/3) [m] */
+    double indentation_scale; /* (pi^2 w^2 R/K^2)^(1/3) [m] */
+    nt_maugis_folds folds;    /* reduced */
+    double fold_y;            /* branch parameter y of the displacement fold, 0 if it is not in contact */
+    double load_fold_y;       /* branch parameter y of the load fold */
+    nt_contact contact;
+} nt_maugis;
+
+/* lambda = 2 sigma0 (R/(pi w K^2))^(1/3). NaN in, NaN out; +inf for w = 0. */
+NT_API double nt_maugis_lambda(const nt_contact *contact);
+/* Checks the contact, computes scales and folds. w = 0 is allowed and makes the law Hertz. */
+NT_API nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact);
+/* {U, F, k, a} at an indentation [m]. info may be NULL. Error < 1e-12 relative away from the folds; at a fold the result
+ * is square-root conditioned (1 ulp of the indentation is 1e-8 of the force). *value is untouched on failure. */
+NT_API nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch branch, nt_law_value *value,
+                                nt_solve_info *info);
+/* Indentation [m] at a force [N] >= minus the pull-off force: STABLE above the load fold, UNSTABLE below it. */
+NT_API nt_status nt_maugis_indentation(const nt_maugis *maugis, double force, nt_branch branch, double *indentation,
+                                       nt_solve_info *info);
+/* Pull-off force under load control, positive [N]: 2 pi w R (lambda -> 0) .. 1.5 pi w R (lambda -> infinity). */
+NT_API double nt_maugis_pull_off_force(const nt_maugis *maugis);
+/* Jump-in gap on approach [m]: attraction starts at gap h0 = w/sigma0. */
+NT_API double nt_maugis_onset_gap(const nt_maugis *maugis);
+
+/* The contact branch at its parameter y in (0, inf): reduced radius, load, indentation, energy, and the derivatives
+ * dP/dy, dd/dy. The basis of everything above; for fits and continuation. */
+typedef struct nt_maugis_point {
+    double a, P, d, U;   /* reduced */
+    double dP_dy, dd_dy; /* reduced */
+} nt_maugis_point;
+NT_API nt_status nt_maugis_at(double lambda, double y, nt_maugis_point *point);
+
+/* --- Sneddon 1965, non-adhesive --- */
+
+/* Rigid cone of half-angle psi [rad], 0 < psi < pi/2: F = 2/pi E* tan(psi) delta^2, a = 2 tan(psi) delta/pi
+ * (the paper's a is 2.467 times too large; erratum E6). All 0 for delta <= 0. */
+NT_API nt_law_value nt_cone_eval(double effective_modulus, double half_angle, double indentation);
+/* Rigid flat punch of radius a [m]: F = 2 E* a delta. All 0 for delta <= 0. */
+NT_API nt_law_value nt_punch_eval(double effective_modulus, double radius, double indentation);
+
+/* --- Arrays: out[i * out_stride] from in[i * in_stride], strides in elements; in and out may be the same array.
+ *     The first element that fails sets the returned status; its output and all that fail are NaN. --- */
+typedef enum nt_model { NT_HERTZ, NT_DMT, NT_JKR, NT_MAUGIS } nt_model;
+/* "hertz", "dmt", "jkr", "maugis". */
+NT_API const char *nt_model_name(nt_model model);
+
+/* A contact law chosen at run time, with whatever it needs prepared. Immutable after nt_contact_law_init. */
+typedef struct nt_contact_law {
+    nt_model model;
+    nt_maugis maugis; /* prepared for NT_MAUGIS; .contact holds the parameters for every model */
+} nt_contact_law;
+NT_API nt_status nt_contact_law_init(nt_contact_law *law, nt_model model, const nt_contact *contact);
+NT_API nt_status nt_contact_law_eval(const nt_contact_law *law, double indentation, nt_branch branch, nt_law_value *value);
+/* Pull-off force under load control, positive [N]; 0 for Hertz. */
+NT_API double nt_contact_law_pull_off_force(const nt_contact_law *law);
+/* The last indentation that the STABLE branch holds under grips [m]; below it the bodies are apart. */
+NT_API double nt_contact_law_grip_indentation(const nt_contact_law *law);
+
+typedef struct nt_strided {
+    const double *in;
+    double *U, *F, *k, *a;    /* any may be NULL */
+    long count;
+    long in_stride, out_stride; /* [elements] */
+} nt_strided;
+NT_API nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, const nt_strided *arrays);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The few types that every layer shares. Strict SI.
+ *
+ * Frames and signs (docs/frames.md): z away from the sample; gap h = z_t - z_s(x, y) of the undeformed bodies;
+ * indentation delta = -h; force F on the tip: + repulsive, - attractive; cantilever deflection zeta > 0 away from the
+ * sample, so that F = k_c zeta at rest; master position, operator and motor force + towards the sample. */
+#ifndef NANOTOUCH_TYPES_H
+#define NANOTOUCH_TYPES_H
+
+#include <stdint.h>
+
+#include "nanotouch/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What every law returns. U is a potential of the indentation: F = dU/d(delta), k = dF/d(delta). */
+typedef struct nt_law_value {
+    double U; /* energy [J] */
+    double F; /* force on the tip, + repulsive [N] */
+    double k; /* stiffness dF/d(delta) = -dF/dh [N/m]; negative where attraction grows on approach */
+    double a; /* contact radius [m]; 0 where the bodies do not touch */
+} nt_law_value;
+
+/* Measured error of a law or tier against its reference. */
+typedef struct nt_accuracy {
+    double force_error; /* max |dF| / max(|F|, |F_pull-off|) away from folds [-] */
+    double fold_shift;  /* max shift of a fold in indentation [m] */
+    double model_error; /* distance to the next better physical model, same norm as force_error, not part of it [-] */
+} nt_accuracy;
+
+/* What an iterative solver did; every solver takes an optional pointer to one. */
+typedef struct nt_solve_info {
+    int iterations;  /* function evaluations */
+    double residual; /* last residual, dimensionless */
+} nt_solve_info;
+
+/* A point in the world frame. */
+typedef struct nt_pose {
+    double x, y, z; /* [m] */
+} nt_pose;
+
+/* Flags of a sample. */
+enum {
+    NT_SAMPLE_EMERGENCY_STOP = 1u << 0, /* pressed, or its line is lost */
+    NT_SAMPLE_LIMIT_SWITCH = 1u << 1,   /* the stage stands at its end switch */
+    NT_SAMPLE_INVALID = 1u << 2         /* the backend itself knows that the frame is bad (CRC, short transfer) */
+};
+
+/* What the rig measured in one tick. */
+typedef struct nt_sample {
+    uint64_t tick;           /* counts control periods [-] */
+    double age;              /* time since the measurement [s] */
+    double master_position;  /* x_m, + towards the sample [m] */
+    double operator_force;   /* f_m, + towards the sample [N] */
+    double stage_position;   /* x_s, travel towards the sample [m] */
+    double deflection;       /* zeta, + away from the sample [m] */
+    double x, y;             /* lateral position of the tip [m] */
+    uint32_t flags;          /* NT_SAMPLE_* */
+} nt_sample;
+
+/* Safety state of the loop, in rising order of severity. */
+typedef enum nt_state { NT_RUN, NT_HOLD, NT_RETRACT, NT_LATCHED } nt_state;
+
+/* What the rig is told to do in one tick. */
+typedef struct nt_command {
+    double motor_force;    /* tau_m, + towards the sample [N] */
+    double stage_position; /* x_s command, travel towards the sample [m] */
+    double x, y;           /* lateral position command [m] */
+    uint32_t state;        /* nt_state after this tick */
+    uint32_t reasons;      /* NT_REASON_* bits (control.h) that explain the state */
+} nt_command;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
