@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The surface that is touched: a height field made C2 by cubic B-splines, so that curvature and force are continuous;
+ * contact is computed on the tip-dilated surface (apex positions of first touch), because a tip touches with its flank
+ * where the surface is steep. Row 0 lies at y = 0 (the lower edge of the picture), pixel (j, i) at x = i dx, y = j dy. */
+#ifndef NANOTOUCH_SURFACE_H
+#define NANOTOUCH_SURFACE_H
+
+#include <stdint.h>
+
+#include "nanotouch/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A grid of heights; the memory is the caller's. */
+typedef struct nt_height_map {
+    const double *heights; /* [m], row-major, heights[j * nx + i] */
+    long nx, ny;           /* pixels along x and y, 4 .. 32768 each */
+    double dx, dy;         /* pixel size [m], 1e-12 .. 1e-3 */
+} nt_height_map;
+
+/* Height and its derivatives at a point. */
+typedef struct nt_surface_value {
+    double z;             /* height [m] */
+    double zx, zy;        /* slopes [-] */
+    double zxx, zxy, zyy; /* curvatures [1/m] */
+} nt_surface_value;
+
+/* A touchable surface. Immutable after nt_surface_init; `coefficients` stays the caller's and must outlive it. */
+typedef struct nt_surface {
+    const double *coefficients; /* B-spline coefficients [m], nx * ny; NULL for a flat at z = 0 */
+    long nx, ny;
+    double dx, dy;                         /* [m] */
+    double height_minimum, height_maximum; /* of the heights it was made from [m] */
+} nt_surface;
+
+/* NT_OK, or NT_E_ARGUMENT / NT_E_RANGE / NT_E_NOT_FINITE (all heights must be finite) with the field in *problem. */
+NT_API nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem);
+
+/* Interpolating cubic B-spline with mirrored borders (Unser 1999): passes through every pixel, C2 everywhere inside.
+ * coefficients: nx * ny doubles of the caller's, may be the same memory as map->heights. Not real-time (O(nx ny)). */
+NT_API nt_status nt_surface_init(nt_surface *surface, const nt_height_map *map, double *coefficients);
+/* A flat at z = 0 without limits. */
+NT_API nt_surface nt_surface_flat(void);
+/* Value at a point. Outside the map the border continues level (slopes across it 0): nt_surface_contains() tells.
+ * NaN in, NaN out. Real-time safe. */
+NT_API NT_REALTIME nt_surface_value nt_surface_eval(const nt_surface *surface, double x, double y);
+/* 1 if (x, y) lies on the map (always for a flat). */
+NT_API int nt_surface_contains(const nt_surface *surface, double x, double y);
+
+/* The tip as a sphere of radius R that runs tangentially into a cone. */
+typedef struct nt_tip_shape {
+    double radius;     /* R [m], 1e-10 .. 1e-3 */
+    double half_angle; /* psi of the cone [rad], 0 .. 1.5 */
+} nt_tip_shape;
+/* Height of the tip's surface above its apex at a distance r >= 0 from its axis [m]. */
+NT_API double nt_tip_shape_height(const nt_tip_shape *tip, double r);
+/* Grey-scale dilation: dilated[j, i] = max over pixels p of heights[p] - tip(|p - (j, i)|): where the apex is at first
+ * touch. dilated: nx * ny doubles, not the memory of map->heights. Exact on the grid; O(nx ny k^2), k = the reach of the
+ * tip within the height range of the map. */
+NT_API nt_status nt_surface_dilate(const nt_height_map *map, const nt_tip_shape *tip, double *dilated);
+
+/* Built-in samples. */
+
+/* Square grating, lines along y, like TGZ-03: ridges of `height` on a floor at 0. */
+typedef struct nt_grating {
+    double period; /* [m] */
+    double height; /* step [m] */
+    double duty;   /* width of the ridge over the period, 0 .. 1 [-] */
+    double offset; /* x of the first rising edge [m] */
+} nt_grating;
+/* 3 um period, 480 nm, 0.5, 0.75 um. */
+NT_API nt_grating nt_grating_defaults(void);
+NT_API double nt_grating_height(const nt_grating *grating, double x, double y);
+
+/* Quantum dots: spherical caps on a flat (the paper's second sample: 10 .. 30 nm). */
+enum { NT_DOTS_MAX = 64 };
+typedef struct nt_dots {
+    int count;
+    struct {
+        double x, y;     /* centre [m] */
+        double diameter; /* of the base [m] */
+        double height;   /* [m] */
+    } dot[NT_DOTS_MAX];
+} nt_dots;
+/* `count` (1 .. NT_DOTS_MAX) dots of 10 .. 30 nm diameter, height a third of it, scattered without overlap over
+ * width x width, the same for the same seed. NT_E_CAPACITY if they do not fit. */
+NT_API nt_status nt_dots_scatter(nt_dots *dots, int count, double width, uint64_t seed);
+NT_API double nt_dots_height(const nt_dots *dots, double x, double y);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
