@@ -3,6 +3,7 @@
 #ifndef NANOTOUCH_RIG_H
 #define NANOTOUCH_RIG_H
 
+#include "nanotouch/field.h"
 #include "nanotouch/status.h"
 
 #ifdef __cplusplus
@@ -52,6 +53,8 @@ typedef struct nt_rig {
 NT_API nt_rig nt_rig_defaults(void);
 /* NT_OK, or the first offending field in *problem (NULL allowed). */
 NT_API nt_status nt_rig_check(const nt_rig *rig, nt_problem *problem);
+/* The table behind the check: every field of nt_rig with unit, range and meaning; *count (NULL allowed) its length. */
+NT_API const nt_field *nt_rig_fields(int *count);
 
 /* Largest deflection the probe can report, range x sensitivity [m]. */
 NT_API double nt_probe_deflection_range(const nt_probe *probe);

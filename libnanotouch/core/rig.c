@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The rig of the paper (Sec. II, IV and VI): default values, valid ranges, derived ranges of the probe. */
+#include "nanotouch/rig.h"
+
+#include <stddef.h>
+
+#define FIELD(path, unit, minimum, maximum, doc) {#path, unit, minimum, maximum, (unsigned)offsetof(nt_rig, path), doc}
+
+static const nt_field rig_fields[] = {
+    FIELD(probe.spring_constant, "N/m", 1e-4, 1e4, "spring constant k_c of the cantilever"),
+    FIELD(probe.tilt, "rad", 0.0, 0.7, "tilt alpha of the cantilever against the sample plane"),
+    FIELD(probe.sensitivity, "m/V", 1e-11, 1e-4, "deflection per volt S of the bridge"),
+    FIELD(probe.range, "V", 1e-3, 1e3, "the electronics saturate at +- this"),
+    FIELD(probe.noise, "V", 0.0, 1e2, "deflection noise, peak to peak (6 sigma)"),
+    FIELD(probe.resolution, "V", 0.0, 1e2, "step of the deflection converter, 0 for none"),
+    FIELD(stage.resonance, "Hz", 1.0, 1e6, "resonance f_n of the stage"),
+    FIELD(stage.quality, "", 0.05, 1e6, "quality factor Q of the stage"),
+    FIELD(stage.stiffness, "N/m", 1.0, 1e12, "stiffness k_stage of the stage against the tip force"),
+    FIELD(stage.travel, "m", 1e-8, 1e-1, "range of travel of the stage"),
+    FIELD(stage.resolution, "m", 0.0, 1e-5, "step of the stage's command and read-out, 0 for none"),
+    FIELD(stage.max_speed, "m/s", 1e-10, 1e1, "slew limit of the stage's command"),
+    FIELD(master.mass, "kg", 1e-4, 1e2, "moving mass m_m of the master"),
+    FIELD(master.damping, "N s/m", 0.0, 1e5, "damping b_m of the master"),
+    FIELD(master.travel, "m", 1e-5, 1e1, "travel of the master between its end stops"),
+    FIELD(master.resolution, "m", 0.0, 1e-2, "step of the master's position sensor, 0 for none"),
+    FIELD(master.max_force, "N", 1e-3, 1e3, "motor limit, +- this"),
+    FIELD(master.gauge_range, "N", 1e-3, 1e3, "the strain gauge saturates at +- this"),
+    FIELD(master.gauge_noise, "N", 0.0, 1e2, "standard deviation of the strain gauge"),
+    FIELD(master.gauge_resolution, "N", 0.0, 1e2, "step of the strain gauge, 0 for none"),
+};
+
+enum { RIG_FIELDS = (int)(sizeof rig_fields / sizeof rig_fields[0]) };
+
+nt_rig nt_rig_defaults(void)
+{
+    return (nt_rig){
+        .probe =
+            {
+                .spring_constant = 8.0,
+                .tilt = 0.0,
+                .sensitivity = 0.033e-6,
+                .range = 10.0,
+                .noise = 50e-3,
+                .resolution = 20.0 / 65536.0, /* a 16-bit converter over +-10 V: far below the noise */
+            },
+        .stage =
+            {
+                .resonance = 450.0,
+                .quality = 20.0,
+                .stiffness = 1e6, /* not in the paper; with f_n it stands for a moving mass of 0.125 kg */
+                .travel = 100e-6, /* not in the paper; its alpha_p = 4e-3 (Fig. 17) asks for 80 um from a 2 cm master */
+                .resolution = 1e-9, /* open loop; the closed loop's 10 nm is what the paper found insufficient */
+                .max_speed = 100e-6, /* not in the paper; 10 nm per tick at 10 kHz */
+            },
+        .master =
+            {
+                .mass = 0.1,
+                .damping = 100.0,
+                .travel = 0.02,
+                .resolution = 4e-5,
+                .max_force = 5.0,
+                .gauge_range = 5.0,
+                .gauge_noise = 0.02 / 6.0, /* the paper's 0.02 N include the noise: peak to peak within one step */
+                .gauge_resolution = 0.02,
+            },
+    };
+}
+
+nt_status nt_rig_check(const nt_rig *rig, nt_problem *problem)
+{
+    return nt_field_check(rig_fields, RIG_FIELDS, rig, problem);
+}
+
+const nt_field *nt_rig_fields(int *count)
+{
+    if (count != NULL)
+        *count = RIG_FIELDS;
+    return rig_fields;
+}
+
+double nt_probe_deflection_range(const nt_probe *probe)
+{
+    return probe->range * probe->sensitivity;
+}
+
+double nt_probe_force_noise(const nt_probe *probe)
+{
+    return probe->spring_constant * probe->sensitivity * probe->noise / 6.0;
+}
