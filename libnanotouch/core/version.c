@@ -1,0 +1,7 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "nanotouch/version.h"
+
+const char *nt_version(void)
+{
+    return NT_VERSION;
+}
