@@ -22,10 +22,11 @@ endif()
 # What every target of ours shares: flags, hidden symbols, code that a shared library or a Python extension can contain.
 function(nanotouch_target target)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:nanotouch_flags>)
-  target_compile_features(${target} PRIVATE c_std_11)
   set_target_properties(
     ${target}
-    PROPERTIES C_EXTENSIONS OFF
+    PROPERTIES C_STANDARD 11
+               C_STANDARD_REQUIRED ON
+               C_EXTENSIONS OFF
                CXX_STANDARD 17
                CXX_STANDARD_REQUIRED ON
                CXX_EXTENSIONS OFF

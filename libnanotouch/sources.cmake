@@ -6,5 +6,6 @@ foreach(layer core forces contact surface scene dynamics control hal/sim session
   set(nanotouch_sources_${name} ${found})
 endforeach()
 file(GLOB nanotouch_sources_hal CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/hal/*.c)
+file(GLOB nanotouch_sources_linux CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/hal/linux/*.c)
 set(nanotouch_sources_hosted hal/hal.c hal/loop.c)
 list(REMOVE_ITEM nanotouch_sources_hal ${nanotouch_sources_hosted})

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The two commands: `make demo` and `make test`. Each does all the set-up it needs (tools/setup.sh).
+
+OUT ?= nanotouch-out
+JOBS ?= $(shell nproc)
+VENV := .venv/bin
+
+.PHONY: help demo test bench docs fuzz lint clean
+
+help:  ## what there is to make
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+demo:  ## touch the built-in grating, or a file: make demo IMAGE=path
+	@tools/setup.sh demo
+	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") --out "$(OUT)"
+
+test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
+	@tools/setup.sh test
+	@cmake --preset dev --log-level WARNING
+	@cmake --build --preset dev
+	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
+
+lint:  ## format and types
+	@tools/setup.sh test
+	@$(VENV)/ruff check .
+	@$(VENV)/ruff format --check .
+	@$(VENV)/mypy
+
+clean:  ## forget everything that was built
+	@rm -rf build .venv nanotouch-out

@@ -1,0 +1,112 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|test
+set -eu
+cd "$(dirname "$0")/.."
+profile=${1:?usage: tools/setup.sh demo|test}
+say() { printf '\033[1m%s\033[0m\n' "-- $*" >&2; }
+
+packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libceres-dev libegl1 libgl1-mesa-dri"
+extras=all
+if [ "$profile" = test ]; then
+  packages="$packages libcmocka-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
+    gcc-mingw-w64-x86-64-posix"
+  extras=all,test
+fi
+
+# --- system packages -------------------------------------------------------------------------------------------------
+missing_packages() {
+  for package in $packages; do
+    dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || printf '%s ' "$package"
+  done
+}
+
+install_packages() {
+  if ! command -v apt-get >/dev/null; then
+    say "This system has no apt; what Debian calls these packages is needed:" $packages
+    return
+  fi
+  missing=$(missing_packages)
+  [ -n "$missing" ] || return 0
+  if [ "$(id -u)" = 0 ]; then
+    root=
+  elif command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
+    root="sudo -n"
+  else
+    say "System packages are missing and I may not install them. Run this, then try again:"
+    echo "sudo apt-get update && sudo apt-get install -y --no-install-recommends $missing" >&2
+    exit 1
+  fi
+  say "Installing system packages: $missing"
+  $root env DEBIAN_FRONTEND=noninteractive apt-get -qq update
+  $root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends $missing >/dev/null
+}
+
+# --- Python ----------------------------------------------------------------------------------------------------------
+# 3.11 or newer, with venv, pip and the headers: the one on the PATH may lack them where Debian's own does not.
+python_is_usable() {
+  "$1" - 2>/dev/null <<'PYTHON'
+import ensurepip, os, sys, sysconfig, venv
+headers = os.path.join(sysconfig.get_path("include"), "Python.h")
+sys.exit(not (sys.version_info >= (3, 11) and os.path.exists(headers)))
+PYTHON
+}
+
+make_venv() {
+  [ ! -x .venv/bin/python ] || ! .venv/bin/python -m pip --version >/dev/null 2>&1 || return 0
+  for python in "${PYTHON:-python3}" /usr/bin/python3; do
+    if python_is_usable "$python"; then
+      say "Making .venv with $("$python" --version)"
+      "$python" -m venv --clear .venv
+      return
+    fi
+  done
+  say "Python 3.11 or newer with venv and headers is needed (Debian: python3-venv python3-dev); set PYTHON=... to name one"
+  exit 1
+}
+
+pip() { .venv/bin/python -m pip --disable-pip-version-check --retries 5 --timeout 60 "$@"; }
+
+# --- libgpiod 2 ------------------------------------------------------------------------------------------------------
+# Where the system has 1.x only (Debian 12, Ubuntu 24.04) its C sources come with PyPI's gpiod; CMake builds them.
+fetch_libgpiod() {
+  ! pkg-config --exists 'libgpiod >= 2.1' || return 0
+  [ ! -f build/deps/gpiod/include/gpiod.h ] || return 0
+  say "Fetching the sources of libgpiod 2"
+  rm -rf build/deps/gpiod build/deps/gpiod.part
+  mkdir -p build/deps/gpiod.part
+  pip download -q --no-deps --no-binary :all: --require-hashes -r cmake/gpiod.txt -d build/deps/gpiod.part
+  tar -xzf build/deps/gpiod.part/gpiod-*.tar.gz -C build/deps/gpiod.part --strip-components 1
+  mv build/deps/gpiod.part build/deps/gpiod
+}
+
+# --- the package -----------------------------------------------------------------------------------------------------
+hash_of() { find "$@" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1; }
+
+# Runs the rest of the arguments unless the stamp file already holds the key.
+once_for() {
+  stamp=.venv/stamp-$1 key=$2
+  shift 2
+  [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$key" ] || return 0
+  "$@"
+  echo "$key" >"$stamp"
+}
+
+install_dependencies() {
+  say "Installing the Python packages (about 340 MB, once)"
+  .venv/bin/python tools/requirements.py "$extras" >build/requirements.txt
+  pip install -q -r build/requirements.txt
+}
+
+install_package() {
+  say "Building and installing nanotouch"
+  pip install -q --no-deps --no-build-isolation --force-reinstall .
+}
+
+install_packages
+make_venv
+mkdir -p build
+fetch_libgpiod
+once_for "dependencies-$profile" "$(hash_of pyproject.toml)" install_dependencies
+once_for package "$(hash_of CMakeLists.txt pyproject.toml cmake libnanotouch bindings apps/nanotouch_app)" install_package
