@@ -5,24 +5,13 @@
 #ifndef NANOTOUCH_DYNAMICS_H
 #define NANOTOUCH_DYNAMICS_H
 
-#include <stdint.h>
-
+#include "nanotouch/random.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/types.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* --- random numbers: small, seeded, the same on every machine --- */
-typedef struct nt_random {
-    uint64_t state[4]; /* xoshiro256++ */
-} nt_random;
-NT_API nt_random nt_random_seed(uint64_t seed);
-/* Uniform in [0, 1). */
-NT_API NT_REALTIME double nt_random_uniform(nt_random *random);
-/* Standard normal (polar method without a cached half, bounded: sum of table-free rejection, at most 32 tries). */
-NT_API NT_REALTIME double nt_random_normal(nt_random *random);
 
 /* --- probe: quasi-static cantilever (Eq. 2-3 at rest): k_c zeta = F(z_t), z_t = z_b + zeta cos(alpha) --- */
 
