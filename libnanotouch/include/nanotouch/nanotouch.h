@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The umbrella: everything but the optional parts (fit.h, hal_linux.h). */
+#ifndef NANOTOUCH_NANOTOUCH_H
+#define NANOTOUCH_NANOTOUCH_H
+
+#include "nanotouch/contact.h"
+#include "nanotouch/control.h"
+#include "nanotouch/dynamics.h"
+#include "nanotouch/field.h"
+#include "nanotouch/forces.h"
+#include "nanotouch/hal.h"
+#include "nanotouch/hal_backend.h"
+#include "nanotouch/material.h"
+#include "nanotouch/plan.h"
+#include "nanotouch/rig.h"
+#include "nanotouch/scene.h"
+#include "nanotouch/session.h"
+#include "nanotouch/sim.h"
+#include "nanotouch/status.h"
+#include "nanotouch/surface.h"
+#include "nanotouch/types.h"
+
+#endif

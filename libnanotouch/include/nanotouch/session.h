@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A whole touch: plan, simulated rig, touch step and ring, composed once, for C and for Python. Simulated time: it runs as
+ * fast as the machine allows and gives the same record for the same seed. */
+#ifndef NANOTOUCH_SESSION_H
+#define NANOTOUCH_SESSION_H
+
+#include "nanotouch/control.h"
+#include "nanotouch/plan.h"
+#include "nanotouch/sim.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct nt_session nt_session;
+
+/* What a session is made of; everything is copied but the surface. */
+typedef struct nt_session_setup {
+    nt_scene scene;
+    nt_rig rig;
+    nt_demand demand;
+    nt_settings settings;
+    nt_mode mode;
+    const nt_surface *surface; /* dilated by the tip; borrowed until nt_session_close; NULL: flat at z = 0 */
+    double x, y;               /* where it starts [m] */
+    double clearance;          /* L, height of the tip above the surface there [m] */
+    uint64_t seed;
+    long ring_capacity;        /* records held between two reads; rounded up to a power of two */
+    double minimum_margin;     /* refuse to open below this stability margin (R1) [-] */
+} nt_session_setup;
+
+/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5. */
+NT_API nt_session_setup nt_session_defaults(void);
+
+/* What the operator does next: hand force and tip position go there on a straight line, then stay. */
+typedef struct nt_input {
+    double operator_force; /* f_m, + towards the sample [N] */
+    double x, y;           /* [m] */
+    double duration;       /* [s], >= 0 */
+} nt_input;
+
+/* One tick as it is recorded: what was measured, what was commanded, and what was true. */
+typedef struct nt_record {
+    uint64_t tick;
+    double time;            /* [s] */
+    double x, y;            /* lateral position [m] */
+    double master_position; /* x_m measured [m] */
+    double operator_force;  /* f_m measured [N] */
+    double stage_position;  /* x_s measured, travel towards the sample [m] */
+    double stage_command;   /* [m] */
+    double deflection;      /* zeta measured [m] */
+    double slave_force;     /* f_s = k_c zeta [N] */
+    double motor_force;     /* tau_m commanded [N] */
+    double gap;             /* truth: h [m] */
+    double tip_force;       /* truth: F [N] */
+    double contact_radius;  /* truth: a [m] */
+    double surface_height;  /* truth: z_s under the tip, dilated [m] */
+    uint32_t state;         /* nt_state */
+    uint32_t reasons;       /* NT_REASON_* */
+} nt_record;
+
+/* Opens a session. NT_E_RANGE with problem->field "stability margin" if the loop would run closer to its stability limit
+ * than minimum_margin. The session belongs to the caller: nt_session_close. */
+NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
+/* Accepts NULL. */
+NT_API void nt_session_close(nt_session *session);
+
+/* Mailbox: the newest input counts from the next tick on. May be called from another thread than advance. */
+NT_API NT_REALTIME nt_status nt_session_aim(nt_session *session, const nt_input *input);
+/* Runs `ticks` periods. NT_E_CAPACITY, with nothing run, if the ring could not hold them: nothing is ever dropped. */
+NT_API NT_REALTIME nt_status nt_session_advance(nt_session *session, long ticks);
+/* Moves up to `count` records out of the ring; returns how many. */
+NT_API NT_REALTIME long nt_session_read(nt_session *session, nt_record *records, long count);
+/* Back to RUN after a stop (nt_touch_arm). */
+NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
+/* Presses or releases the simulated emergency stop. */
+NT_API void nt_session_emergency_stop(nt_session *session, int pressed);
+
+/* Read-only views, valid until close. */
+NT_API const nt_plan *nt_session_plan(const nt_session *session);
+NT_API const nt_touch *nt_session_touch(const nt_session *session);
+NT_API nt_margins nt_session_margins(const nt_session *session);
+/* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. */
+NT_API double nt_session_start_height(const nt_session *session);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
