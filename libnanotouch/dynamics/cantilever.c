@@ -66,7 +66,7 @@ static int is_resolved(const place *a, const place *b)
 /* Newton's distance along the way to the equilibrium; infinite where there is none ahead. */
 static double newton_distance(const place *p)
 {
-    return p->slope > 0.0 ? p->drive / p->slope : INFINITY;
+    return p->slope > 0.0 ? p->drive / p->slope : HUGE_VAL;
 }
 
 /* Between a (drive falling) and b (rising again), both driven: does the drive's minimum dip below 0, i.e. do an equilibrium

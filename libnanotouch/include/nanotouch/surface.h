@@ -35,7 +35,8 @@ typedef struct nt_surface {
     double height_minimum, height_maximum; /* of the heights it was made from [m] */
 } nt_surface;
 
-/* NT_OK, or NT_E_ARGUMENT / NT_E_RANGE / NT_E_NOT_FINITE (all heights must be finite) with the field in *problem. */
+/* NT_OK, or NT_E_ARGUMENT / NT_E_RANGE / NT_E_NOT_FINITE with the field in *problem (NULL allowed); heights: within
+ * +-1 m. */
 NT_API nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem);
 
 /* Interpolating cubic B-spline with mirrored borders (Unser 1999): passes through every pixel, C2 everywhere inside.

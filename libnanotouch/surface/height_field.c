@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A grid of heights as an interpolating cubic B-spline with mirrored borders (Unser, "Splines: a perfect fit", 1999):
+ *     z(x, y) = sum c[j][i] B(x/dx - i) B(y/dy - j).
+ * The coefficients c follow from the heights by a recursive filter with the pole sqrt(3) - 2, along rows, then columns.
+ * The mirror makes the slope across a border 0, so that the surface continues level outside. */
+#include "nanotouch/field.h"
+#include "nanotouch/surface.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#define HEIGHT_MAX 1.0 /* [m] */
+#define POLE (-0.26794919243112270647) /* sqrt(3) - 2 */
+enum {
+    PIXELS_MIN = 4,
+    PIXELS_MAX = 32768,
+    TAIL = 32 /* |POLE|^32 < 1e-18: what lies further off is below rounding */
+};
+
+/* Index mirrored at the first and the last pixel, without repeating them. */
+static long mirror(long i, long n)
+{
+    const long period = 2 * (n - 1);
+    i %= period;
+    if (i < 0)
+        i += period;
+    return i < n ? i : period - i;
+}
+
+/* Heights to coefficients along one line, in place: 6 / (z + 4 + 1/z) as a causal and an anticausal pass. */
+static void filter_line(double *c, long n, long stride)
+{
+    double first = 0.0, weight = 1.0;
+    for (long k = 0; k < TAIL; k++) {
+        first += weight * c[mirror(k, n) * stride];
+        weight *= POLE;
+    }
+    c[0] = first;
+    for (long k = 1; k < n; k++)
+        c[k * stride] += POLE * c[(k - 1) * stride];
+    const long last = n - 1;
+    c[last * stride] = 6.0 * POLE / (POLE * POLE - 1.0) * (c[last * stride] + POLE * c[(last - 1) * stride]);
+    for (long k = last - 1; k >= 0; k--)
+        c[k * stride] = POLE * (c[(k + 1) * stride] - 6.0 * c[k * stride]);
+}
+
+/* The four pixels whose splines reach a point, with their weights for value, slope and curvature. */
+typedef struct reach {
+    long index[4];
+    double value[4], slope[4], curvature[4];
+} reach;
+
+/* u in pixels, clamped to the map; beyond it the surface is level across the border. */
+static reach reach_of(double u, long n)
+{
+    const double inside = u < 0.0 ? 0.0 : u > (double)(n - 1) ? (double)(n - 1) : u;
+    long i = (long)inside;
+    if (i > n - 2)
+        i = n - 2;
+    const double t = inside - (double)i, s = 1.0 - t;
+    reach r = {
+        .index = {mirror(i - 1, n), i, i + 1, mirror(i + 2, n)},
+        .value = {s * s * s / 6.0, (4.0 - 3.0 * t * t * (2.0 - t)) / 6.0, (4.0 - 3.0 * s * s * (2.0 - s)) / 6.0,
+                  t * t * t / 6.0},
+    };
+    if (inside == u) {
+        const double slope[4] = {-0.5 * s * s, t * (1.5 * t - 2.0), s * (2.0 - 1.5 * s), 0.5 * t * t};
+        const double curvature[4] = {s, 3.0 * t - 2.0, 3.0 * s - 2.0, t};
+        for (int k = 0; k < 4; k++) {
+            r.slope[k] = slope[k];
+            r.curvature[k] = curvature[k];
+        }
+    }
+    return r;
+}
+
+nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem)
+{
+    static const nt_field fields[] = {
+        {"map.dx", "m", 1e-12, 1e-3, offsetof(nt_height_map, dx), "pixel size along x"},
+        {"map.dy", "m", 1e-12, 1e-3, offsetof(nt_height_map, dy), "pixel size along y"},
+    };
+    nt_problem ignored;
+    if (problem == NULL)
+        problem = &ignored;
+    if (map->heights == NULL) {
+        *problem = (nt_problem){"map.heights", "m", 0.0, -HEIGHT_MAX, HEIGHT_MAX};
+        return NT_E_ARGUMENT;
+    }
+    const long counts[2] = {map->nx, map->ny};
+    for (int k = 0; k < 2; k++)
+        if (counts[k] < PIXELS_MIN || counts[k] > PIXELS_MAX) {
+            *problem = (nt_problem){k == 0 ? "map.nx" : "map.ny", "", (double)counts[k], PIXELS_MIN, PIXELS_MAX};
+            return NT_E_RANGE;
+        }
+    const nt_status status = nt_field_check(fields, 2, map, problem);
+    if (status != NT_OK)
+        return status;
+    for (long p = 0; p < map->nx * map->ny; p++)
+        if (!(fabs(map->heights[p]) <= HEIGHT_MAX)) {
+            *problem = (nt_problem){"map.heights", "m", map->heights[p], -HEIGHT_MAX, HEIGHT_MAX};
+            return isfinite(map->heights[p]) ? NT_E_RANGE : NT_E_NOT_FINITE;
+        }
+    return NT_OK;
+}
+
+nt_status nt_surface_init(nt_surface *surface, const nt_height_map *map, double *coefficients)
+{
+    const nt_status status = nt_height_map_check(map, NULL);
+    if (status != NT_OK)
+        return status;
+    if (coefficients == NULL)
+        return NT_E_ARGUMENT;
+    const long nx = map->nx, ny = map->ny;
+    nt_surface made = {coefficients, nx, ny, map->dx, map->dy, map->heights[0], map->heights[0]};
+    for (long p = 0; p < nx * ny; p++) {
+        const double height = map->heights[p];
+        made.height_minimum = fmin(made.height_minimum, height);
+        made.height_maximum = fmax(made.height_maximum, height);
+        coefficients[p] = height;
+    }
+    for (long j = 0; j < ny; j++)
+        filter_line(coefficients + j * nx, nx, 1);
+    for (long i = 0; i < nx; i++)
+        filter_line(coefficients + i, ny, nx);
+    *surface = made;
+    return NT_OK;
+}
+
+nt_surface nt_surface_flat(void)
+{
+    return (nt_surface){.coefficients = NULL, .dx = 1.0, .dy = 1.0};
+}
+
+nt_surface_value nt_surface_eval(const nt_surface *surface, double x, double y)
+{
+    nt_surface_value v = {0};
+    if (isnan(x) || isnan(y)) {
+        const double nan = x + y;
+        return (nt_surface_value){nan, nan, nan, nan, nan, nan};
+    }
+    if (surface->coefficients == NULL)
+        return v;
+    const double dx = surface->dx, dy = surface->dy;
+    const reach rx = reach_of(x / dx, surface->nx), ry = reach_of(y / dy, surface->ny);
+    for (int j = 0; j < 4; j++) {
+        const double *row = surface->coefficients + ry.index[j] * surface->nx;
+        double value = 0.0, slope = 0.0, curvature = 0.0; /* along x, of this row */
+        for (int i = 0; i < 4; i++) {
+            const double c = row[rx.index[i]];
+            value += rx.value[i] * c;
+            slope += rx.slope[i] * c;
+            curvature += rx.curvature[i] * c;
+        }
+        v.z += ry.value[j] * value;
+        v.zx += ry.value[j] * slope / dx;
+        v.zy += ry.slope[j] * value / dy;
+        v.zxx += ry.value[j] * curvature / (dx * dx);
+        v.zxy += ry.slope[j] * slope / (dx * dy);
+        v.zyy += ry.curvature[j] * value / (dy * dy);
+    }
+    return v;
+}
+
+int nt_surface_contains(const nt_surface *surface, double x, double y)
+{
+    if (surface->coefficients == NULL)
+        return !isnan(x) && !isnan(y);
+    return x >= 0.0 && x <= (double)(surface->nx - 1) * surface->dx && //
+           y >= 0.0 && y <= (double)(surface->ny - 1) * surface->dy;
+}
