@@ -20,7 +20,7 @@ typedef struct nt_contact {
     double radius;            /* R of the tip [m], > 0; for sphere on sphere 1/R = 1/R1 + 1/R2 */
     double effective_modulus; /* E* [Pa], > 0 */
     double work_of_adhesion;  /* w [J/m^2], >= 0; 0 makes every law Hertz exactly */
-    double cohesive_stress;   /* sigma0 of the Dugdale zone [Pa], > 0 where w > 0; read by nt_maugis_* only */
+    double cohesive_stress;   /* sigma0 of the Dugdale zone [Pa]; read by nt_maugis_* only, > 0 there if w > 0 */
 } nt_contact;
 
 /* R = 20 nm, E* = 76.9 GPa (silicon on silicon), w = 0.144 J/m^2 (water film), sigma0 of a 0.2 nm atomic range. */
@@ -88,7 +88,11 @@ typedef struct nt_maugis {
 
 /* lambda = 2 sigma0 (R/(pi w K^2))^(1/3). NaN in, NaN out; +inf for w = 0. */
 NT_API double nt_maugis_lambda(const nt_contact *contact);
-/* Checks the contact, computes scales and folds. w = 0 is allowed and makes the law Hertz. */
+/* Valid lambda. */
+#define NT_MAUGIS_LAMBDA_MIN 1e-15
+#define NT_MAUGIS_LAMBDA_MAX 1e15
+/* Checks the contact, computes scales and folds. w = 0 is allowed and makes the law Hertz. NT_E_RANGE where lambda is
+ * outside its valid range. */
 NT_API nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact);
 /* {U, F, k, a} at an indentation [m]. info may be NULL. Error < 1e-12 relative away from the folds; at a fold the result
  * is square-root conditioned (1 ulp of the indentation is 1e-8 of the force). *value is untouched on failure. */

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Hertz 1881: a paraboloid of radius R on an elastic half-space without adhesion (paper, Eq. 4-6). Valid for a << R. */
+#include "nanotouch/contact.h"
+
+#include <math.h>
+
+nt_law_value nt_hertz_eval(const nt_contact *contact, double indentation)
+{
+    if (indentation <= 0.0)
+        return (nt_law_value){0};
+    const double a = sqrt(contact->radius) * sqrt(indentation);
+    const double k = 2.0 * contact->effective_modulus * a;
+    const double F = 2.0 / 3.0 * k * indentation;
+    return (nt_law_value){.U = 0.4 * F * indentation, .F = F, .k = k, .a = a};
+}
+
+double nt_hertz_force(const nt_contact *contact, double indentation)
+{
+    return nt_hertz_eval(contact, indentation).F;
+}
+
+double nt_hertz_indentation(const nt_contact *contact, double force)
+{
+    if (force < 0.0)
+        return NAN;
+    /* a^3 = R F/K, delta = a^2/R; cube roots taken one by one, so that no product leaves the range of a double */
+    const double scale = cbrt(force) / cbrt(4.0 / 3.0 * contact->effective_modulus);
+    return scale * scale / cbrt(contact->radius);
+}

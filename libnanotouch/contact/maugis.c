@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Maugis-Dugdale (Maugis, J. Colloid Interface Sci. 150 (1992) 243; paper, Eq. 11 with errata E9, E10): a paraboloid of
+ * radius R on an elastic half-space, attracted by a constant stress sigma0 wherever the gap is below h0 = w/sigma0. One
+ * parameter, lambda = 2 sigma0 (R/(pi w K^2))^(1/3), leads from DMT (0) to JKR (infinity). Valid for a << R.
+ *
+ * The contact branch is that of maugis_branch.c. At its end, a = 0, the surfaces part but remain inside the range of the
+ * stress over a disc of radius c; there, in reduced units,
+ *
+ *     d = c^2/2 - 8 lambda c/(3 pi) - 2/(pi lambda)       P = -pi/2 lambda c^2                     (non-contact)
+ *     U = -pi/8 lambda c^4 + 4/9 lambda^2 c^3
+ *
+ * down to c = 0, the onset of attraction at gap h0. Force, stiffness and energy are continuous across a = 0. The
+ * displacement fold lies on the contact branch for lambda > 0.9379 and at c* = 8 lambda/(3 pi) otherwise. */
+#include "nanotouch/contact.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "contact/maugis_solve.h"
+#include "contact/reduced.h"
+#include "nanotouch/material.h"
+
+static nt_reduced_units units_of(const nt_maugis *maugis)
+{
+    return (nt_reduced_units){maugis->load_scale, maugis->radius_scale, maugis->indentation_scale};
+}
+
+/* c at the displacement fold of the non-contact branch. */
+static double non_contact_fold(double lambda)
+{
+    return 8.0 / (3.0 * NT_PI) * lambda;
+}
+
+/* (non-contact) at d between the fold and the end of the branch; the larger c is the stable one. */
+static nt_law_value non_contact_eval(const nt_maugis *maugis, double d, int stable)
+{
+    const double lambda = maugis->lambda, c_fold = non_contact_fold(lambda);
+    const double beyond_onset = d - maugis->folds.onset_indentation;
+    const double root = sqrt(fmax(c_fold * c_fold + 2.0 * beyond_onset, 0.0));
+    const double c = stable ? c_fold + root : -2.0 * beyond_onset / (c_fold + root);
+    const double P = -0.5 * NT_PI * lambda * c * c;
+    return (nt_law_value){
+        .U = lambda * c * c * c * (4.0 / 9.0 * lambda - NT_PI / 8.0 * c),
+        .F = P,
+        .k = (stable ? -NT_PI : NT_PI) * lambda * c / root,
+    };
+}
+
+static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_law_value *reduced, nt_solve_info *info)
+{
+    nt_maugis_equilibrium fold, point;
+    nt_maugis_equilibrium_at(maugis->lambda, maugis->fold_y, &fold);
+    const nt_maugis_goal goal = {NT_GIVEN_INDENTATION, d, &fold, !stable};
+    const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
+    if (status != NT_OK)
+        return status;
+    const double k = point.P1 / point.d1;
+    *reduced = (nt_law_value){nt_maugis_equilibrium_energy(maugis->lambda, &point), point.P, k, point.a};
+    return NT_OK;
+}
+
+static nt_status zero_load_find(nt_maugis *maugis, const nt_maugis_equilibrium *load_fold)
+{
+    const nt_maugis_goal goal = {NT_GIVEN_LOAD, 0.0, load_fold, 0};
+    nt_maugis_equilibrium point;
+    const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, NULL);
+    if (status != NT_OK)
+        return status;
+    maugis->folds.zero_load_radius = point.a;
+    maugis->folds.zero_load_indentation = point.d;
+    return NT_OK;
+}
+
+/* Folds and ends of both branches; lambda is set. */
+static nt_status folds_find(nt_maugis *maugis)
+{
+    const double lambda = maugis->lambda;
+    nt_maugis_folds *folds = &maugis->folds;
+    nt_maugis_equilibrium touch, grip, pull_off;
+    nt_maugis_equilibrium_at(lambda, 0.0, &touch);
+    nt_status status = nt_maugis_fold_find(lambda, NT_GIVEN_INDENTATION, &grip);
+    if (status == NT_OK)
+        status = nt_maugis_fold_find(lambda, NT_GIVEN_LOAD, &pull_off);
+    if (status != NT_OK)
+        return status;
+    maugis->fold_y = grip.y;
+    maugis->load_fold_y = pull_off.y;
+    const double onset = -2.0 / (NT_PI * lambda), c = non_contact_fold(lambda);
+    *folds = (nt_maugis_folds){
+        .pull_off_load = pull_off.P,
+        .pull_off_radius = pull_off.a,
+        .pull_off_indentation = pull_off.d,
+        .grip_in_contact = grip.y > 0.0,
+        .grip_load = grip.y > 0.0 ? grip.P : -0.5 * NT_PI * lambda * c * c,
+        .grip_radius = grip.a,
+        .grip_indentation = grip.y > 0.0 ? grip.d : onset - 0.5 * c * c,
+        .touch_load = touch.P,
+        .touch_indentation = touch.d,
+        .onset_indentation = onset,
+    };
+    return zero_load_find(maugis, &pull_off);
+}
+
+double nt_maugis_lambda(const nt_contact *contact)
+{
+    if (contact->work_of_adhesion == 0.0)
+        return INFINITY;
+    const double K = 4.0 / 3.0 * contact->effective_modulus;
+    const double root_K = cbrt(K);
+    return 2.0 * contact->cohesive_stress / (root_K * root_K) * cbrt(contact->radius) /
+           cbrt(NT_PI * contact->work_of_adhesion);
+}
+
+nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact)
+{
+    nt_status status = nt_contact_check(contact, NULL);
+    if (status != NT_OK)
+        return status;
+    const nt_reduced_units units = nt_reduced_units_of(contact);
+    nt_maugis made = {
+        .lambda = nt_maugis_lambda(contact),
+        .load_scale = units.load,
+        .radius_scale = units.radius,
+        .indentation_scale = units.indentation,
+        .contact = *contact,
+    };
+    if (contact->work_of_adhesion > 0.0) {
+        if (!(made.lambda >= NT_MAUGIS_LAMBDA_MIN && made.lambda <= NT_MAUGIS_LAMBDA_MAX))
+            return NT_E_RANGE;
+        status = folds_find(&made);
+        if (status != NT_OK)
+            return status;
+    }
+    *maugis = made;
+    return NT_OK;
+}
+
+/* Hertz: w = 0, or so far in that adhesion is below the last bit. */
+static nt_status hertz_eval(const nt_maugis *maugis, double indentation, nt_branch branch, nt_law_value *value)
+{
+    if (branch == NT_BRANCH_UNSTABLE)
+        return NT_E_NO_SOLUTION;
+    *value = nt_hertz_eval(&maugis->contact, indentation);
+    return NT_OK;
+}
+
+nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch branch, nt_law_value *value,
+                         nt_solve_info *info)
+{
+    const nt_maugis_folds *folds = &maugis->folds;
+    const int stable = branch != NT_BRANCH_UNSTABLE;
+    if (info != NULL)
+        *info = (nt_solve_info){0};
+    if (!isfinite(indentation))
+        return NT_E_NOT_FINITE;
+    if (maugis->load_scale == 0.0 || indentation > NT_REDUCED_HERTZ * maugis->indentation_scale)
+        return hertz_eval(maugis, indentation, branch, value);
+
+    const int before_grip = indentation < folds->grip_indentation * maugis->indentation_scale;
+    const int before_onset = indentation < folds->onset_indentation * maugis->indentation_scale;
+    if (!stable && (before_grip || !before_onset))
+        return NT_E_NO_SOLUTION;
+    if (before_grip || (branch == NT_BRANCH_APPROACH && before_onset)) {
+        *value = (nt_law_value){0};
+        return NT_OK;
+    }
+    const double d = fmax(indentation / maugis->indentation_scale, folds->grip_indentation); /* rounding only */
+    nt_law_value reduced;
+    if (folds->grip_in_contact ? !stable && d >= folds->touch_indentation
+                               : !stable || d < folds->touch_indentation)
+        reduced = non_contact_eval(maugis, d, stable);
+    else {
+        const nt_status status = contact_eval(maugis, d, stable, &reduced, info);
+        if (status != NT_OK)
+            return status;
+    }
+    const nt_reduced_units units = units_of(maugis);
+    *value = nt_reduced_to_si(&reduced, &units);
+    return NT_OK;
+}
+
+nt_status nt_maugis_indentation(const nt_maugis *maugis, double force, nt_branch branch, double *indentation,
+                                nt_solve_info *info)
+{
+    const nt_maugis_folds *folds = &maugis->folds;
+    const int unstable = branch == NT_BRANCH_UNSTABLE;
+    if (info != NULL)
+        *info = (nt_solve_info){0};
+    if (!isfinite(force))
+        return NT_E_NOT_FINITE;
+    if (force < -nt_maugis_pull_off_force(maugis) || (unstable && force >= 0.0))
+        return NT_E_NO_SOLUTION;
+    if (maugis->load_scale == 0.0 || force / maugis->load_scale > NT_REDUCED_HERTZ * sqrt(NT_REDUCED_HERTZ)) {
+        *indentation = nt_hertz_indentation(&maugis->contact, force);
+        return NT_OK;
+    }
+    const double P = fmax(force / maugis->load_scale, folds->pull_off_load); /* rounding only */
+    if (unstable && P > folds->touch_load) {
+        const double c = sqrt(-P / (0.5 * NT_PI * maugis->lambda));
+        const double d = 0.5 * c * c - non_contact_fold(maugis->lambda) * c + folds->onset_indentation;
+        *indentation = d * maugis->indentation_scale;
+        return NT_OK;
+    }
+    nt_maugis_equilibrium fold, point;
+    nt_maugis_equilibrium_at(maugis->lambda, maugis->load_fold_y, &fold);
+    const nt_maugis_goal goal = {NT_GIVEN_LOAD, P, &fold, unstable};
+    const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
+    if (status != NT_OK)
+        return status;
+    *indentation = point.d * maugis->indentation_scale;
+    return NT_OK;
+}
+
+double nt_maugis_pull_off_force(const nt_maugis *maugis)
+{
+    return -maugis->folds.pull_off_load * maugis->load_scale;
+}
+
+double nt_maugis_onset_gap(const nt_maugis *maugis)
+{
+    return -maugis->folds.onset_indentation * maugis->indentation_scale;
+}

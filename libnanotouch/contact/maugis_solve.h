@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Inverting the contact branch of Maugis-Dugdale: its folds, and its point at an indentation or load; private to contact/. */
+#ifndef NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
+#define NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
+
+#include "contact/maugis_branch.h"
+
+/* What is given. */
+typedef enum nt_maugis_given { NT_GIVEN_INDENTATION, NT_GIVEN_LOAD } nt_maugis_given;
+
+/* The displacement fold (dd/dy = 0) or the load fold (dP/dy = 0); where there is no displacement fold in contact
+ * (lambda < 0.9379) the end of the branch at y = 0 takes its place. */
+nt_status nt_maugis_fold_find(double lambda, nt_maugis_given given, nt_maugis_equilibrium *fold);
+
+/* Which point of the branch is wanted. */
+typedef struct nt_maugis_goal {
+    nt_maugis_given given;
+    double target;                     /* reduced d or P, not below the fold's */
+    const nt_maugis_equilibrium *fold; /* of the same kind */
+    int below;                         /* 1: the part of the branch with y < y_fold; 0: y > y_fold */
+} nt_maugis_goal;
+
+nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_maugis_equilibrium *point,
+                               nt_solve_info *info);
+
+#endif

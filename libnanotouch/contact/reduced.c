@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Maugis' units of adhesive contact: see reduced.h. */
+#include "contact/reduced.h"
+
+#include <math.h>
+
+#include "nanotouch/material.h"
+
+nt_reduced_units nt_reduced_units_of(const nt_contact *contact)
+{
+    const double energy = NT_PI * contact->work_of_adhesion;
+    const double root_length = cbrt(energy / (4.0 / 3.0 * contact->effective_modulus)); /* (pi w/K)^(1/3) [m^(1/3)] */
+    const double root_radius = cbrt(contact->radius);
+    return (nt_reduced_units){
+        .load = energy * contact->radius,
+        .radius = root_length * root_radius * root_radius,
+        .indentation = root_length * root_length * root_radius,
+    };
+}
+
+nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units)
+{
+    return (nt_law_value){
+        .U = reduced->U * units->load * units->indentation,
+        .F = reduced->F * units->load,
+        .k = reduced->k * (units->load / units->indentation),
+        .a = reduced->a * units->radius,
+    };
+}

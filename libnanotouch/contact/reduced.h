@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Maugis' units of adhesive contact, private to contact/: with K = 4/3 E*, load is counted in pi w R, radius in
+ * (pi w R^2/K)^(1/3), indentation in (pi^2 w^2 R/K^2)^(1/3). */
+#ifndef NANOTOUCH_CONTACT_REDUCED_H
+#define NANOTOUCH_CONTACT_REDUCED_H
+
+#include "nanotouch/contact.h"
+
+/* Beyond this reduced indentation the adhesive correction to Hertz is below the last bit for every lambda: it is at most
+ * of the order d^(-3/4), JKR's. Never reached with w > 0 in practice; it is what makes w -> 0 Hertz exactly. */
+#define NT_REDUCED_HERTZ 1e26
+
+typedef struct nt_reduced_units {
+    double load, radius, indentation; /* [N], [m], [m] */
+} nt_reduced_units;
+
+/* Products of cube roots, so that no intermediate leaves the range of a double. */
+nt_reduced_units nt_reduced_units_of(const nt_contact *contact);
+
+/* Reduced {U, F, k, a} in SI. */
+nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units);
+
+#endif

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Messages of the statuses, and problems in words: see status.h. */
+#include "nanotouch/status.h"
+
+#include <stdio.h>
+
+const char *nt_status_message(nt_status status)
+{
+    switch (status) {
+#define NT_STATUS_CASE(code, message) \
+    case code:                        \
+        return message;
+        NT_STATUS_LIST(NT_STATUS_CASE)
+#undef NT_STATUS_CASE
+    }
+    return "unknown status";
+}
+
+const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size)
+{
+    if (problem == NULL || text == NULL || size == 0)
+        return text;
+    const char *unit = problem->unit == NULL ? "" : problem->unit;
+    const char *space = unit[0] == '\0' ? "" : " ";
+    (void)snprintf(text, size, "%s = %g%s%s: valid is %g .. %g%s%s", problem->field == NULL ? "?" : problem->field,
+                   problem->value, space, unit, problem->minimum, problem->maximum, space, unit);
+    return text;
+}
