@@ -22,7 +22,8 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     nt_margins margins = {
         .loop_stiffness = reflected * gains->alpha_p * k_eff,
         .loop_delay = 2.0 * (0.5 * T + gains->delay * T) + tau_stage,
-        .quantisation_step = reflected * k_eff * rig->stage.resolution,
+        .quantisation_step =
+            reflected * k_eff * fmax(rig->stage.command_resolution, gains->alpha_p * rig->master.resolution),
         .force_noise = hypot(slave_noise, gauge_noise),
     };
     margins.stability_limit = rig->master.damping / margins.loop_delay; /* R1 */

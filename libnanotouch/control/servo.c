@@ -2,7 +2,7 @@
  * Motor laws of the master (paper, Eq. 17). */
 #include <math.h>
 
-#include "servo.h"
+#include "control/servo.h"
 
 /* Share of the master's own damping that the motor adds while it fades out; well below the sampled limit 2 b. */
 #define FADE_DAMPING 0.5

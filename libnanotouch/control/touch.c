@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "nanotouch/material.h"
-#include "servo.h"
+#include "control/servo.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
 #define FADE_TIME 0.05       /* outside RUN the force is gone after this [s] */

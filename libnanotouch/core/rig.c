@@ -17,7 +17,8 @@ static const nt_field rig_fields[] = {
     FIELD(stage.quality, "", 0.05, 1e6, "quality factor Q of the stage"),
     FIELD(stage.stiffness, "N/m", 1.0, 1e12, "stiffness k_stage of the stage against the tip force"),
     FIELD(stage.travel, "m", 1e-8, 1e-1, "range of travel of the stage"),
-    FIELD(stage.resolution, "m", 0.0, 1e-5, "step of the stage's command and read-out, 0 for none"),
+    FIELD(stage.resolution, "m", 0.0, 1e-5, "step of the stage's read-out, 0 for none"),
+    FIELD(stage.command_resolution, "m", 0.0, 1e-5, "step of the stage's command, 0 for none"),
     FIELD(stage.max_speed, "m/s", 1e-10, 1e1, "slew limit of the stage's command"),
     FIELD(master.mass, "kg", 1e-4, 1e2, "moving mass m_m of the master"),
     FIELD(master.damping, "N s/m", 0.0, 1e5, "damping b_m of the master"),
@@ -50,6 +51,7 @@ nt_rig nt_rig_defaults(void)
                 .stiffness = 1e6, /* not in the paper; with f_n it stands for a moving mass of 0.125 kg */
                 .travel = 100e-6, /* not in the paper; its alpha_p = 4e-3 (Fig. 17) asks for 80 um from a 2 cm master */
                 .resolution = 1e-9, /* open loop; the closed loop's 10 nm is what the paper found insufficient */
+                .command_resolution = 1e-10, /* a 20-bit converter over the travel: 1 nm steps make the resonance ring */
                 .max_speed = 100e-6, /* not in the paper; 10 nm per tick at 10 kHz */
             },
         .master =

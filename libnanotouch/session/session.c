@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../core/ring.h"
+#include "core/ring.h"
 
 struct nt_session {
     nt_plan plan;
@@ -76,6 +76,7 @@ static nt_status make_sim(nt_session *session, const nt_session_setup *setup) {
 
 static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_problem *problem) {
     nt_demand demand = setup->demand;
+    demand.maximum_load = setup->settings.limits.force;
     nt_status status = nt_touch_make(&session->touch, &setup->rig, &setup->settings, setup->mode, problem);
     if (status == NT_OK) status = nt_plan_make(&session->plan, &setup->scene, &demand, setup->surface, problem);
     if (status != NT_OK) return status;

@@ -115,7 +115,7 @@ nt_status nt_sim_write(nt_sim *sim, const nt_command *command) {
     const int slots = sim->delay + 1;
     sim->pending[sim->tick % (uint64_t)slots] = *command;
     const nt_command *acting = &sim->pending[(sim->tick + 1u) % (uint64_t)slots]; /* the oldest; this one if delay is 0 */
-    const double step = sim->rig.stage.resolution;
+    const double step = sim->rig.stage.command_resolution;
     const double stage_command = step > 0.0 ? step * round(acting->stage_position / step) : acting->stage_position;
     nt_hand_step(&sim->hand, sim->period);
     nt_master_step(&sim->master_model, &sim->master, acting->motor_force + nt_hand_now(&sim->hand).force);

@@ -76,7 +76,7 @@ typedef struct nt_margins {
     double loop_delay;        /* D = 2 (T/2 + d T) + tau_stage [s] */
     double stability_limit;   /* R1: b_m/D [N/m] */
     double margin;            /* stability_limit/loop_stiffness [-]; 1 is the limit */
-    double quantisation_step; /* R4: motor force of one stage step [N] */
+    double quantisation_step; /* R4: motor force of one step of stage or scaled master [N] */
     double force_noise;       /* R5: motor noise that the sensors' noise makes, RMS [N] */
 } nt_margins;
 /* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). Thread-safe. */

@@ -26,7 +26,8 @@ typedef struct nt_stage {
     double quality;     /* Q [-] */
     double stiffness;   /* k_stage, of the stage against the tip force [N/m] */
     double travel;      /* range of travel [m] */
-    double resolution;  /* step of the position command and read-out [m] */
+    double resolution;  /* step of the position read-out [m] */
+    double command_resolution; /* step of the position command [m] */
     double max_speed;   /* slew limit of the command [m/s] */
 } nt_stage;
 

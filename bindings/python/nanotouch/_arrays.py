@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arrays at the edge of the C library: scalar in, scalar out; masks and units are refused, not stripped."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def as_floats(values: ArrayLike, name: str) -> Floats:
+    """A float64 array of real numbers."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array; fill or compress it first")
+    if hasattr(values, "units") or hasattr(values, "unit"):
+        raise TypeError(f"{name} carries a unit; convert it to SI and pass plain numbers")
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must be real numbers, not {array.dtype}")
+    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+
+
+class Law(NamedTuple):
+    """What every law returns; each an array of the input's shape, or a float for a scalar.
+
+    ``F = dU/d(indentation)``, ``k = dF/d(indentation)``; force + repulsive.
+    """
+
+    U: Any
+    """energy [J]"""
+    F: Any
+    """force on the tip [N]"""
+    k: Any
+    """stiffness [N/m]"""
+    a: Any
+    """contact radius [m]"""
+
+
+def as_law(columns: tuple[Floats, Floats, Floats, Floats]) -> Law:
+    """Arrays of the C library as a :class:`Law`; 0-d becomes float."""
+    return Law(*(column if column.ndim else float(column) for column in columns))
+
+
+def plain(values: Floats) -> Any:
+    """0-d arrays become floats."""
+    return values if values.ndim else float(values)

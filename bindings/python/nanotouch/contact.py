@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact mechanics: the force between an elastic tip and a half-space at a given indentation.
+
+Models: ``"hertz"``, ``"dmt"``, ``"jkr"``, ``"maugis"`` (Maugis-Dugdale, every case between DMT and JKR). Adhesive models
+have branches: ``"stable"`` is what retraction from contact meets under grips, ``"approach"`` what approach from far away
+meets, ``"unstable"`` the equilibrium between the folds that no grip can hold (NaN where there is none).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+from numpy.typing import ArrayLike
+
+from nanotouch import _core
+from nanotouch._arrays import Law, as_floats, as_law, plain
+from nanotouch.errors import InvalidValue
+
+Model = Literal["hertz", "dmt", "jkr", "maugis"]
+Branch = Literal["stable", "approach", "unstable"]
+MODELS: tuple[Model, ...] = get_args(Model)
+BRANCHES: tuple[Branch, ...] = get_args(Branch)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A sphere on a half-space.
+
+    Parameters
+    ----------
+    radius : float
+        R of the tip [m].
+    effective_modulus : float
+        E* [Pa], see :func:`effective_modulus`.
+    work_of_adhesion : float
+        w [J/m^2]; 0 makes every model Hertz.
+    cohesive_stress : float, optional
+        sigma0 of the Dugdale zone [Pa]; needed by ``"maugis"`` where w > 0.
+    range : float, optional
+        h0 = w/sigma0 [m], instead of the cohesive stress.
+    """
+
+    radius: float
+    effective_modulus: float
+    work_of_adhesion: float = 0.0
+    cohesive_stress: float | None = None
+    range: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.cohesive_stress is not None and self.range is not None:
+            raise InvalidValue("give cohesive_stress [Pa] or range [m], not both: range = work_of_adhesion/cohesive_stress")
+        if self.range is not None and not self.range > 0.0:
+            raise InvalidValue(f"range = {self.range} m: it must be above 0")
+        self.law("jkr")  # the C library checks the values
+
+    def law(self, model: Model) -> _core.ContactLaw:
+        """The prepared law of a model."""
+        if model not in MODELS:
+            raise InvalidValue(f"model {model!r}: valid are {', '.join(MODELS)}")
+        return _core.ContactLaw(
+            MODELS.index(model), self.radius, self.effective_modulus, self.work_of_adhesion, self._stress(model)
+        )
+
+    def _stress(self, model: Model) -> float:
+        if self.range is not None:
+            return self.work_of_adhesion / self.range
+        if self.cohesive_stress is not None:
+            return self.cohesive_stress
+        if model == "maugis" and self.work_of_adhesion > 0.0:
+            raise InvalidValue("the model 'maugis' needs cohesive_stress [Pa] or range [m] of the adhesion")
+        return 1.0  # read by no other model
+
+    @property
+    def maugis_lambda(self) -> float:
+        """Maugis' transition parameter lambda (1.157 times Tabor's mu)."""
+        return self.law("maugis").maugis_lambda
+
+
+def _branch(branch: Branch) -> int:
+    if branch not in BRANCHES:
+        raise InvalidValue(f"branch {branch!r}: valid are {', '.join(BRANCHES)}")
+    return BRANCHES.index(branch)
+
+
+def evaluate(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> Law:
+    """Energy [J], force [N], stiffness [N/m] and contact radius [m] at an indentation [m], broadcast over arrays."""
+    return as_law(contact.law(model).eval(as_floats(indentation, "indentation"), _branch(branch)))
+
+
+def force(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> Any:
+    """Force on the tip [N] at an indentation [m], + repulsive."""
+    return evaluate(model, indentation, contact, branch).F
+
+
+def indentation(model: Model, force: ArrayLike, contact: Contact, branch: Branch = "stable") -> Any:
+    """Indentation [m] at a force [N]; NaN where the branch does not reach it (below minus the pull-off force)."""
+    return plain(contact.law(model).indentation(as_floats(force, "force"), _branch(branch)))
+
+
+def pull_off_force(model: Model, contact: Contact) -> float:
+    """Pull-off force under load control, a positive magnitude [N]."""
+    return contact.law(model).pull_off_force
+
+
+def effective_modulus(
+    tip_youngs_modulus: float, tip_poisson_ratio: float, sample_youngs_modulus: float, sample_poisson_ratio: float
+) -> float:
+    """E* [Pa] of two bodies: 1/E* = (1 - nu_t^2)/E_t + (1 - nu_s^2)/E_s."""
+    return _core.effective_modulus(tip_youngs_modulus, tip_poisson_ratio, sample_youngs_modulus, sample_poisson_ratio)
+
+
+def cohesive_stress_atomic(work_of_adhesion: float, equilibrium_distance: float) -> float:
+    """sigma0 [Pa] of atoms against atoms: 16 w/(9 sqrt(3) z0) (the paper's 1.03 w/a0)."""
+    return _core.cohesive_stress_atomic(work_of_adhesion, equilibrium_distance)
+
+
+def cone(indentation: ArrayLike, effective_modulus: float, half_angle: float) -> Law:
+    """Sneddon's cone of half-angle psi [rad] at an indentation [m]: F = 2/pi E* tan(psi) delta^2."""
+    return as_law(_core.cone_eval(effective_modulus, half_angle, as_floats(indentation, "indentation")))
+
+
+def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> Law:
+    """Flat punch of a radius [m] at an indentation [m]: F = 2 E* a delta."""
+    return as_law(_core.punch_eval(effective_modulus, radius, as_floats(indentation, "indentation")))

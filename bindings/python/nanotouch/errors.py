@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The exceptions of nanotouch: one base, so that ``except nanotouch.Error`` catches everything we raise on purpose."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+
+
+class Error(Exception):
+    """Base of all nanotouch errors."""
+
+
+class InvalidValue(Error, ValueError):
+    """A value is missing, not finite or outside its valid range; the message names it, its unit and the range."""
+
+
+class ReadError(Error, OSError):
+    """A file cannot be read, or what it holds is not plausible; the message names the file, the reader and the reason."""
+
+
+class SolverError(Error, ArithmeticError):
+    """A solver has no solution there or did not converge."""
+
+
+class DeviceError(Error, OSError):
+    """A device is missing or failed."""
+
+
+class MissingExtra(Error, ImportError):
+    """An optional package is missing; the message names the extra that installs it."""
+
+
+def require(module: str, extra: str) -> ModuleType:
+    """Import an optional module, or raise :class:`MissingExtra` naming the extra that brings it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise MissingExtra(
+            f"{module} is not installed: pip install 'nanotouch[{extra}]'"
+        ) from error

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The surface that is touched: any Topography, dilated by the tip and made C2; and the built-in samples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nanotouch import _core
+from nanotouch._arrays import as_floats, plain
+from nanotouch.images import Topography
+
+
+class Surface:
+    """A touchable surface: where the apex of a tip stands at first touch, interpolated by cubic B-splines.
+
+    Parameters
+    ----------
+    topography : Topography
+        Heights (ny, nx) [m], row 0 at y = 0.
+    tip_radius : float, optional
+        R of the tip [m]; with ``tip_half_angle`` [rad] the heights are dilated by the tip (sphere into cone). Without it
+        the heights are taken as they are.
+    """
+
+    def __init__(self, topography: Topography, tip_radius: float | None = None, tip_half_angle: float = 0.3) -> None:
+        dy, dx = topography.pixel_size
+        heights = np.ascontiguousarray(topography.heights)
+        if tip_radius is not None:
+            heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
+        self.topography = topography
+        self.core = _core.Surface(heights, dy, dx)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Extent (x, y) that can be touched [m]: from the first pixel to the last."""
+        ny, nx = self.topography.heights.shape
+        dy, dx = self.topography.pixel_size
+        return (nx - 1) * dx, (ny - 1) * dy
+
+    def height(self, x: ArrayLike, y: ArrayLike) -> Any:
+        """Height [m] of the apex at first touch over (x, y) [m], broadcast."""
+        x_floats, y_floats = np.broadcast_arrays(as_floats(x, "x"), as_floats(y, "y"))
+        return plain(self.core.heights(np.ascontiguousarray(x_floats), np.ascontiguousarray(y_floats)).reshape(x_floats.shape))
+
+
+def grating(
+    size: float = 6e-6,
+    pixels: int = 512,
+    *,
+    period: float = 3e-6,
+    height: float = 480e-9,
+    duty: float = 0.5,
+    offset: float = 0.75e-6,
+) -> Topography:
+    """A square grating like TGZ-03 (lines along y, 3 um period, 480 nm), sampled on pixels x pixels of ``size`` [m]."""
+    pixel = size / pixels
+    heights = _core.grating(pixels, pixels, pixel, pixel, period, height, duty, offset)
+    return Topography(heights=heights, pixel_size=(pixel, pixel), name="grating")
+
+
+def dots(size: float = 500e-9, pixels: int = 512, *, count: int = 24, seed: int = 1) -> Topography:
+    """Quantum dots of 10 to 30 nm on a flat, as in the paper's second sample; the same for the same seed."""
+    pixel = size / pixels
+    heights = _core.dots(pixels, pixels, pixel, pixel, count, size, seed)
+    return Topography(heights=heights, pixel_size=(pixel, pixel), name="quantum dots")

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Units at the edge: quantities on a command line (``2.5um``) and keys of a TOML file (``radius_nm``). Inside: SI only."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from nanotouch.errors import InvalidValue
+
+_PREFIXES = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15, "a": 1e-18, "z": 1e-21}
+
+
+def _scaled(symbol: str, prefixes: str, rest: str = "") -> dict[str, float]:
+    return {f"{p}{symbol}{rest}": _PREFIXES[p] for p in ["", *prefixes]}
+
+
+#: spellings accepted for each SI unit of the field tables, with their factor
+UNITS: dict[str, dict[str, float]] = {
+    "": {"": 1.0, "%": 0.01, "percent": 0.01},
+    "m": _scaled("m", "munp"),
+    "Pa": _scaled("Pa", "kMG"),
+    "N": _scaled("N", "munp"),
+    "J": _scaled("J", "fpaz"),
+    "V": _scaled("V", "mu"),
+    "K": {"K": 1.0},
+    "s": _scaled("s", "mu"),
+    "Hz": _scaled("Hz", "kM"),
+    "kg": {"kg": 1.0, "g": 1e-3},
+    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
+    "N/m": _scaled("N", "mkun", "/m"),
+    "J/m^2": _scaled("J", "mu", "/m2"),
+    "m/V": _scaled("m", "un", "/V"),
+    "m/s": _scaled("m", "mun", "/s"),
+    "N/s": _scaled("N", "mk", "/s"),
+    "1/s": {"1/s": 1.0, "/s": 1.0},
+    "N s/m": {"Ns/m": 1.0},
+    "m^3/mol": {"m3/mol": 1.0, "cm3/mol": 1e-6},
+    "periods": {"periods": 1.0, "": 1.0},
+}
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+
+def parse_quantity(text: str, unit: str) -> float:
+    """``"2.5um"`` with unit ``"m"`` to 2.5e-6. The unit must be written; ``µ`` is read as ``u``."""
+    match = _QUANTITY.fullmatch(text.replace("µ", "u").replace("μ", "u").replace("²", "2"))  # noqa: RUF001
+    if not match:
+        raise InvalidValue(f"{text!r} is not a number with a unit such as {_example(unit)}")
+    factor = UNITS[unit].get(match[2].replace("^", ""))
+    if factor is None:
+        given = f"the unit {match[2]!r}" if match[2] else "no unit"
+        raise InvalidValue(f"{text!r} has {given}; write one of {', '.join(UNITS[unit])}, as in {_example(unit)}")
+    value = float(match[1]) * factor
+    if not math.isfinite(value):
+        raise InvalidValue(f"{text!r} is not a finite number")
+    return value
+
+
+def _example(unit: str) -> str:
+    spellings = [spelling for spelling in UNITS[unit] if spelling]
+    return f"20{spellings[len(spellings) // 2]}" if spellings else "0.4"
+
+
+def key_suffix(spelling: str) -> str:
+    """How a unit is written in a TOML key: ``N/m`` as ``N_per_m``."""
+    return spelling.replace("/", "_per_", 1).lstrip("_") if spelling != "%" else "percent"
+
+
+def key_spellings(name: str, unit: str) -> dict[str, float]:
+    """All TOML keys for a field and their factors: ``radius``, m: ``radius_m``, ``radius_nm``, ..."""
+    keys = {}
+    for spelling, factor in UNITS[unit].items():
+        suffix = key_suffix(spelling)
+        keys[f"{name}_{suffix}" if suffix else name] = factor
+    return keys

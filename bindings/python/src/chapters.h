@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the chapters share: arrays in, errors out.
+#pragma once
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+
+#include "nanotouch/nanotouch.h"
+
+namespace py = pybind11;
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+void bind_contact(py::module_ &module);
+void bind_forces(py::module_ &module);
+void bind_surface(py::module_ &module);
+void bind_descriptions(py::module_ &module);
+void bind_plan(py::module_ &module);
+void bind_session(py::module_ &module);
+void bind_linux(py::module_ &module);
+
+// Raises the Python exception of a status; `what` says what was attempted. Returns only for NT_OK.
+void raise_on(nt_status status, const std::string &what);
+// The same with the offending field, its value, unit and range.
+void raise_on(nt_status status, const nt_problem &problem, const std::string &what);
+
+// A law of one scalar applied to every element of an array: {U, F, k, a} of the same shape, without the GIL.
+template <class Law>
+py::tuple map_law(const Array &in, Law law) {
+    const std::vector<py::ssize_t> shape(in.shape(), in.shape() + in.ndim());
+    py::array_t<double> U(shape), F(shape), k(shape), a(shape);
+    const double *x = in.data();
+    double *out[4] = {U.mutable_data(), F.mutable_data(), k.mutable_data(), a.mutable_data()};
+    const py::ssize_t count = in.size();
+    {
+        py::gil_scoped_release release;
+        for (py::ssize_t i = 0; i < count; ++i) {
+            const nt_law_value value = law(x[i]);
+            out[0][i] = value.U;
+            out[1][i] = value.F;
+            out[2][i] = value.k;
+            out[3][i] = value.a;
+        }
+    }
+    return py::make_tuple(U, F, k, a);
+}

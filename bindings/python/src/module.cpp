@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The contents page of the extension: one chapter per public header.
+#include "chapters.h"
+#include "nanotouch/version.h"
+
+PYBIND11_MODULE(_core, module) {
+    module.doc() = "The C library of nanotouch. Use the Python modules of the package; this one has no promises.";
+    module.attr("version") = nt_version();
+    bind_contact(module);
+    bind_forces(module);
+    bind_surface(module);
+    bind_descriptions(module);
+    bind_plan(module);
+    bind_session(module);
+#ifdef NANOTOUCH_HAS_LINUX
+    bind_linux(module);
+#endif
+}
