@@ -14,8 +14,10 @@ target_compile_options(
             -Wshadow
             -Wconversion
             -Wdouble-promotion
-            $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>>)
-if(PROJECT_IS_TOP_LEVEL AND NANOTOUCH_WERROR)
+            $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
+            # isnan() and its like in mingw-w64's math.h are macros that cast to float.
+            $<$<PLATFORM_ID:Windows>:-Wno-float-conversion>>)
+if(NANOTOUCH_WERROR)
   target_compile_options(nanotouch_flags INTERFACE -Werror)
 endif()
 
@@ -34,4 +36,17 @@ function(nanotouch_target target)
                CXX_VISIBILITY_PRESET hidden
                VISIBILITY_INLINES_HIDDEN ON
                POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# A library that is installed: versioned, and exporting nt_* only, also where it contains a static library of others.
+set(nanotouch_exports ${CMAKE_CURRENT_LIST_DIR}/exports.map)
+function(nanotouch_library target)
+  nanotouch_target(${target})
+  set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
+                                             SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL SHARED_LIBRARY AND CMAKE_SYSTEM_NAME STREQUAL Linux)
+    target_link_options(${target} PRIVATE LINKER:--version-script=${nanotouch_exports})
+    set_target_properties(${target} PROPERTIES LINK_DEPENDS ${nanotouch_exports})
+  endif()
 endfunction()

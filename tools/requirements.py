@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Print what pyproject.toml asks for, one requirement per line: the build system's, ours, and those of the extras named.
+"""Print what pyproject.toml asks for, one requirement per line: to build, to run, and for the extras named.
 
 Usage: requirements.py all,test
 """

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# 64-bit Arm Linux (Raspberry Pi 4 and newer). Debian: gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)

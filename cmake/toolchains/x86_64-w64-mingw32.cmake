@@ -1,0 +1,5 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# 64-bit Windows. Debian: gcc-mingw-w64-x86-64-posix
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR AMD64)
+set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The example programs as a user's project builds them; each runs as a test.
+get_filename_component(programs_dir ${CMAKE_CURRENT_LIST_DIR}/../../apps/c ABSOLUTE)
+file(GLOB programs ${programs_dir}/*.c)
+enable_testing()
+foreach(source ${programs})
+  get_filename_component(name ${source} NAME_WE)
+  set(library nanotouch::nanotouch)
+  if(name MATCHES fit)
+    set(library nanotouch::fit)
+  endif()
+  if(TARGET ${library})
+    add_executable(${name} ${source})
+    target_link_libraries(${name} PRIVATE ${library})
+    add_test(NAME ${name} COMMAND ${name})
+  endif()
+endforeach()
