@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch info FILE``: what an image or a force curve file holds."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from nanotouch import curves, images
+from nanotouch.errors import MissingExtra, ReadError
+
+_META = (("instrument", ""), ("date", ""), ("spring constant", "N/m"), ("sensitivity", "m/V"), ("setpoint", "N"))
+_LISTED = 20  # curves of a map that are listed one by one
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add ``info`` to the command's sub-commands."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "info", help="what a file holds: channels, size, units; segments, points, spring constant"
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image or a force curve file")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is neither image nor curve."""
+    print("\n".join(describe(args.file)))
+    return 0
+
+
+def describe(file: Path) -> list[str]:
+    """The lines of the answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
+    problems: list[ReadError | MissingExtra] = []
+    for kind in (_describe_curves, _describe_image):
+        try:
+            return kind(file)
+        except (ReadError, MissingExtra) as error:
+            problems.append(error)
+    missing = [error for error in problems if isinstance(error, MissingExtra)]
+    if missing:
+        raise missing[0]
+    reasons = [str(error).removeprefix(f"{file}: ") for error in problems]
+    if reasons[0] == reasons[1]:
+        raise problems[0]
+    raise ReadError(f"{file}: as a force curve: {reasons[0]}; as an image: {reasons[1]}")
+
+
+def _describe_image(file: Path) -> list[str]:
+    listed = images.channels(file)
+    lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
+    for channel in listed:
+        shape = "? pixels" if channel.shape is None else f"{channel.shape[1]} x {channel.shape[0]} pixels"
+        size = "size not stated" if channel.size is None else f"{_um(channel.size[1])} x {_um(channel.size[0])} um"
+        unit = channel.unit or "not stated"
+        mark = "  <- read by default" if channel.default else ""
+        lines.append(f"  {channel.name:24} {channel.kind:11} {shape}, {size}, unit {unit}{mark}")
+    try:
+        topography = images.read(file)
+    except ReadError as error:
+        return [*lines, f"  cannot be touched as it is: {str(error).removeprefix(f'{file}: ')}"]
+    low, high = topography.heights.min() * 1e9, topography.heights.max() * 1e9
+    dy, dx = topography.pixel_size
+    lines.append(f"  heights {low:.4g} .. {high:.4g} nm, pixel {dx * 1e9:.4g} x {dy * 1e9:.4g} nm, {topography.source}")
+    if topography.masked_pixels:
+        lines.append(f"  {topography.masked_pixels} missing pixels, filled from their neighbours")
+    return lines
+
+
+def _describe_curves(file: Path) -> list[str]:
+    found = curves.read(file)
+    first = found[0]
+    lines = [f"{file.name}: {len(found)} force curve{'s' if len(found) > 1 else ''}, {first.meta.get('format', '')}"]
+    for key, unit in _META:
+        if key in first.meta:
+            value = first.meta[key]
+            lines.append(f"  {key}: {value:.4g} {unit}" if isinstance(value, float) else f"  {key}: {value}")
+    for curve in found[:_LISTED]:
+        lines.append(f"  curve {curve.meta.get('enum', 0)}: " + "; ".join(_segment(s) for s in curve.segments))
+    if len(found) > _LISTED:
+        lines.append(f"  and {len(found) - _LISTED} more")
+    return lines
+
+
+def _segment(segment: curves.Segment) -> str:
+    z = segment.z * 1e6
+    text = f"{segment.role} {len(segment)} points, {segment.z_channel} {z[0]:.4g} -> {z[-1]:.4g} um"
+    if segment.force is not None:
+        text += f", force {segment.force.min() * 1e9:.4g} .. {segment.force.max() * 1e9:.4g} nN"
+    return text
+
+
+def _um(metres: float) -> str:
+    return f"{metres * 1e6:.4g}"

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measured force curves: read them in SI with every segment, and see what they show before anything is fitted.
+
+>>> import nanotouch as nt
+>>> curve = nt.curves.read("curve.jpk-force")[0]                            # doctest: +SKIP
+>>> report = nt.curves.analyse(curve)                                       # doctest: +SKIP
+"""
+
+from .analysis import Baseline, CurveReport, analyse, force_gap
+from .curve import ForceCurve, Segment
+from .reading import read
+
+__all__ = ["Baseline", "CurveReport", "ForceCurve", "Segment", "analyse", "force_gap", "read"]

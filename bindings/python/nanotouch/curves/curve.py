@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A force curve as an ordered list of segments.
+
+Signs as everywhere: z is the height of the cantilever's base and grows away from the sample, the deflection is positive
+away from the sample, the force is positive where tip and sample repel. So z falls during the approach, and the tip is
+at z + deflection.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidValue
+
+Role = Literal["approach", "pause", "retract"]
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """One movement (or rest) of the base.
+
+    Attributes
+    ----------
+    role : {"approach", "pause", "retract"}
+        What the base does.
+    time : ndarray, shape (n,)
+        Time since the start of the curve [s]; NaN throughout where the file records none.
+    z : ndarray, shape (n,)
+        Height of the cantilever's base [m], growing away from the sample.
+    z_channel : str
+        The column z comes from, under afmformats' name: ``"height (measured)"`` or ``"height (piezo)"``.
+    force : ndarray, shape (n,), or None
+        Force on the tip [N], + repulsive; the offset of the detector is still in it. None without a spring constant.
+    deflection : ndarray, shape (n,), or None
+        Deflection of the cantilever [m], + away from the sample. None without a spring constant.
+    """
+
+    role: Role
+    time: NDArray[np.float64]
+    z: NDArray[np.float64]
+    z_channel: str
+    force: NDArray[np.float64] | None = None
+    deflection: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        if self.role not in get_args(Role):
+            raise InvalidValue(f"role: {self.role!r}, expected one of {', '.join(get_args(Role))}")
+        if self.force is None and self.deflection is None:
+            raise InvalidValue("segment: neither force nor deflection is given")
+        for key in ("time", "z", "force", "deflection"):
+            value = getattr(self, key)
+            if value is None:
+                continue
+            array = np.ascontiguousarray(value, dtype=np.float64).view()
+            if array.ndim != 1 or array.size != len(self.z):
+                raise InvalidValue(f"{key}: shape {array.shape}, expected that of z, ({len(self.z)},)")
+            array.flags.writeable = False
+            object.__setattr__(self, key, array)
+
+    def __len__(self) -> int:
+        return int(self.z.size)
+
+    def __repr__(self) -> str:
+        return f"Segment({self.role!r}, {len(self)} points, z from {self.z_channel!r})"
+
+
+@dataclass(frozen=True, eq=False)
+class ForceCurve:
+    """One force-distance curve.
+
+    Attributes
+    ----------
+    segments : tuple of Segment
+        In the order of time.
+    meta : mapping
+        What the file says, under afmformats' keys in SI: ``"spring constant"`` [N/m], ``"sensitivity"`` [m/V],
+        ``"setpoint"`` [N], ``"speed approach"`` [m/s], ``"instrument"``, ``"date"``, ``"enum"``, ...
+    name : str
+        The file's name without its folder.
+    """
+
+    segments: tuple[Segment, ...]
+    meta: Mapping[str, Any] = field(default_factory=dict)
+    name: str = ""
+
+    @property
+    def approach(self) -> Segment | None:
+        """The first approach; None if there is none."""
+        return next((s for s in self.segments if s.role == "approach"), None)
+
+    @property
+    def retract(self) -> Segment | None:
+        """The last retraction; None if there is none."""
+        return next((s for s in reversed(self.segments) if s.role == "retract"), None)
+
+    @property
+    def spring_constant(self) -> float | None:
+        """k_c of the cantilever [N/m]; None if unknown."""
+        value = self.meta.get("spring constant")
+        return None if value is None else float(value)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(f"{s.role} {len(s)}" for s in self.segments)
+        return f"ForceCurve({self.name!r} #{self.meta.get('enum', 0)}: {parts})"

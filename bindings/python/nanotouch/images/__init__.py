@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""AFM images: read them in SI the right way up, level them without harming their steps, remove speckles.
+
+>>> import nanotouch as nt
+>>> topography, report = nt.images.prepare(nt.images.read("scan.ibw"))      # doctest: +SKIP
+"""
+
+from .levelling import DespeckleReport, LevelReport, despeckle, level, prepare
+from .reading import Channel, channels, read
+from .topography import Topography
+
+__all__ = [
+    "Channel",
+    "DespeckleReport",
+    "LevelReport",
+    "Topography",
+    "channels",
+    "despeckle",
+    "level",
+    "prepare",
+    "read",
+]
