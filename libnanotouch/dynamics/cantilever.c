@@ -19,7 +19,7 @@
 
 #define LONGEST 64.0   /* longest step of the walk, in field lengths */
 #define SHORTEST 0.125 /* a jump of the force is crossed in a step of this many field lengths */
-#define UNRESOLVED 0.1 /* mismatch of N over a step, relative to the N at its ends */
+#define UNRESOLVED 0.05 /* mismatch of N over a step, relative to the N at its ends */
 #define CLOSE 1e-7     /* Newton steps below this many field lengths are exact to about its square */
 enum { EVALUATIONS_MAX = 400 };
 
@@ -61,6 +61,12 @@ static int is_resolved(const place *a, const place *b)
 {
     const double expected = a->drive - 0.5 * (a->slope + b->slope) * fabs(b->z - a->z);
     return fabs(b->drive - expected) <= UNRESOLVED * (fabs(a->drive) + fabs(b->drive));
+}
+
+/* Does the slope hardly change over the step? Only then may the next one be longer. */
+static int is_straight(const place *a, const place *b)
+{
+    return fabs(b->slope - a->slope) * fabs(b->z - a->z) <= UNRESOLVED * (fabs(a->drive) + fabs(b->drive));
 }
 
 /* Newton's distance along the way to the equilibrium; infinite where there is none ahead. */
@@ -148,7 +154,7 @@ static nt_status polish(walk *w, place *a, place b)
 static nt_status walk_downhill(walk *w, place *a)
 {
     const double length = w->field->length;
-    double step = length;
+    double step = 0.5 * length;
     while (!(newton_distance(a) <= CLOSE * length)) {
         place b;
         const nt_status status = step_downhill(w, a, &step, &b);
@@ -157,8 +163,9 @@ static nt_status walk_downhill(walk *w, place *a)
         if (b.drive <= 0.0)
             return polish(w, a, b);
         commit(w, b.z);
+        if (is_straight(a, &b))
+            step = fmin(2.0 * step, fmax(LONGEST * length, fabs(w->base - a->z) / 64.0));
         *a = b;
-        step = fmin(4.0 * step, fmax(LONGEST * length, fabs(w->base - a->z) / 64.0));
     }
     return NT_OK;
 }
