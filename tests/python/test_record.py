@@ -18,7 +18,7 @@ from nanotouch import record
 from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
 from nanotouch.record import COLUMNS, Recording, Writer
 
-METADATA: dict[str, object] = {"alpha_p": 4e-6, "alpha_f": 2e6, "start_height": 6e-7, "spring_constant": 8.0, "seed": 3}
+METADATA: dict[str, object] = {"alpha_p": 4e-6, "alpha_f": 2e6, "master_start": -0.01, "start_height": 6e-7, "seed": 3}
 METADATA["scene"] = {"tip": {"radius": 2e-8}}
 
 
@@ -44,7 +44,7 @@ def test_attributes_slices_and_scaling() -> None:
     assert len(recording[10:20]) == 10
     assert len(recording[recording.time < 0.005]) == 50
     np.testing.assert_array_equal(recording.scaled_slave_force, 2e6 * recording.slave_force)
-    np.testing.assert_array_equal(recording.scaled_stage_position, recording.stage_position / 4e-6)
+    np.testing.assert_array_equal(recording.scaled_stage_position, recording.stage_position / 4e-6 - 0.01)
     np.testing.assert_allclose(recording.tip_height, 6e-7 - recording.stage_position + recording.deflection)
     with pytest.raises(AttributeError, match="no column 'colour'"):
         recording.colour  # noqa: B018

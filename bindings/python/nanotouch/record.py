@@ -68,8 +68,8 @@ class Recording:
     columns : mapping of str to array, shape (n,)
         Any of ``COLUMNS`` (``time`` always), in SI units; kept in the order and type of that table.
     metadata : mapping, optional
-        JSON-able: ``alpha_p`` [m/m], ``alpha_f`` [N/N], ``spring_constant`` [N/m], ``start_height`` z_0 [m], scene,
-        rig, seed.
+        JSON-able: ``alpha_p`` [m/m], ``alpha_f`` [N/N], ``spring_constant`` [N/m], ``start_height`` z_0 [m],
+        ``master_start``, x_m where x_s = 0 [m], scene, rig, seed.
 
     Columns are attributes (``recording.time``). Indexing with a slice, mask or index array gives a Recording.
     """
@@ -120,8 +120,8 @@ class Recording:
 
     @property
     def scaled_stage_position(self) -> NDArray[np.float64]:
-        """x_s / alpha_p [m], shape (n,): the stage's travel at the operator's scale."""
-        return self.stage_position / self.parameter("alpha_p")
+        """x_s / alpha_p [m], shape (n,), from where the master started: the stage's travel at the operator's scale."""
+        return self.stage_position / self.parameter("alpha_p") + self.parameter("master_start")
 
     @property
     def tip_height(self) -> NDArray[np.float64]:
