@@ -30,7 +30,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
 }
 
 nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, double x, double y) {
-    nt_touch_state state = {.passivity = {.gain = 1.0, .last_position = master_position},
+    nt_touch_state state = {.passivity = {.gain = 1.0, .last_hand = {.position = master_position}},
                             .last_position = master_position,
                             .target_x = x,
                             .target_y = y,
@@ -45,8 +45,12 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     state->speed += touch->speed_filter * (speed - state->speed);
     state->last_position = sample->master_position;
     state->filtered_force += touch->force_filter * (sample->operator_force - state->filtered_force);
-    if (touch->mode == NT_MODE_TOUCH)
-        nt_passivity_step(&state->passivity, sample->operator_force, sample->master_position, touch->energy_dead_zone);
+    if (touch->mode != NT_MODE_TOUCH) return; /* the height servo is meant to move the hand */
+    const nt_gains *gains = &touch->settings.gains;
+    const double slave_force = touch->rig.probe.spring_constant * sample->deflection;
+    const nt_port hand = {sample->operator_force, sample->master_position};
+    const nt_port tip = {gains->alpha_f * slave_force, sample->stage_position / gains->alpha_p};
+    nt_passivity_step(&state->passivity, &hand, &tip, touch->energy_dead_zone);
 }
 
 /* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel. */

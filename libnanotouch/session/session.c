@@ -11,6 +11,7 @@ struct nt_session {
     nt_plan plan;
     nt_touch touch;
     nt_touch_state touch_state;
+    double master_start; /* [m] */
     nt_margins margins;
     nt_sim sim;
     nt_hal hal;
@@ -49,6 +50,9 @@ static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
         return refuse(problem, "clearance", "m", setup->clearance, 1e-9, 1e-3);
     if (setup->ring_capacity < 2 || setup->ring_capacity > 1L << 26)
         return refuse(problem, "ring_capacity", "", (double)setup->ring_capacity, 2.0, 67108864.0);
+    const double climb = setup->settings.gains.alpha_p * 0.8 * setup->rig.master.travel;
+    if (!(setup->rise >= 0.0 && setup->rise <= setup->clearance + climb))
+        return refuse(problem, "rise", "m", setup->rise, 0.0, setup->clearance + climb);
     if (!isfinite(setup->x)) return refuse(problem, "x", "m", setup->x, -1.0, 1.0);
     if (!isfinite(setup->y)) return refuse(problem, "y", "m", setup->y, -1.0, 1.0);
     if (setup->surface && !nt_surface_contains(setup->surface, setup->x, setup->y)) {
@@ -60,6 +64,12 @@ static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
     return NT_OK;
 }
 
+/* Room to press, and room to draw back: a margin, and what the surface rises above the clearance. */
+static double master_start(const nt_session_setup *setup) {
+    const double climb = fmax(0.0, setup->rise - setup->clearance) / setup->settings.gains.alpha_p;
+    return -0.4 * setup->rig.master.travel + climb;
+}
+
 static nt_status make_sim(nt_session *session, const nt_session_setup *setup) {
     const double delay = setup->settings.gains.delay;
     const nt_sim_setup sim = {.plan = &session->plan,
@@ -68,6 +78,7 @@ static nt_status make_sim(nt_session *session, const nt_session_setup *setup) {
                               .x = setup->x,
                               .y = setup->y,
                               .clearance = setup->clearance,
+                              .master_position = master_start(setup),
                               .seed = setup->seed,
                               .delay = (int)lround(delay)};
     const nt_status status = nt_sim_init(&session->sim, &sim);
@@ -85,7 +96,8 @@ static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_
         return refuse(problem, "stability margin", "", session->margins.margin, setup->minimum_margin, INFINITY);
     status = make_sim(session, setup);
     if (status != NT_OK) return status;
-    session->touch_state = nt_touch_start(&session->touch, 0.0, setup->x, setup->y);
+    session->touch_state = nt_touch_start(&session->touch, session->sim.master.position, setup->x, setup->y);
+    session->master_start = session->sim.master.position;
     nt_mailbox_init(&session->mailbox, session->mailbox_memory, sizeof(nt_input));
     return NT_OK;
 }
@@ -192,3 +204,4 @@ const nt_plan *nt_session_plan(const nt_session *session) { return &session->pla
 const nt_touch *nt_session_touch(const nt_session *session) { return &session->touch; }
 nt_margins nt_session_margins(const nt_session *session) { return session->margins; }
 double nt_session_start_height(const nt_session *session) { return session->sim.start_height; }
+double nt_session_master_start(const nt_session *session) { return session->master_start; }

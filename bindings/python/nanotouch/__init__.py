@@ -4,12 +4,41 @@
 from __future__ import annotations
 
 import importlib
-from types import ModuleType
+from typing import Any
 
-_CHAPTERS = {"contact", "curves", "errors", "fit", "forces", "images", "plots", "presets", "record", "scene", "session", "surface"}
+from nanotouch._core import version as __version__
+from nanotouch.errors import Error
+
+#: where each name of the package lives; modules load when they are first used
+_HOMES = {
+    "Contact": "contact",
+    "ForceCurve": "curves",
+    "FitResult": "fit",
+    "Topography": "images",
+    "Input": "operator",
+    "Recording": "record",
+    "Plan": "scene",
+    "Rig": "scene",
+    "Scene": "scene",
+    "Settings": "scene",
+    "Session": "session",
+    "Surface": "surface",
+}
+_MODULES = (
+    "contact", "curves", "errors", "fit", "forces", "images", "operator", "plots", "presets", "record", "scene",
+    "session", "surface", "units",
+)  # fmt: skip
+
+__all__ = ["Error", "__version__", *_HOMES, *_MODULES]  # noqa: PLE0604
 
 
-def __getattr__(name: str) -> ModuleType:
-    if name in _CHAPTERS:
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
         return importlib.import_module(f"{__name__}.{name}")
+    if name in _HOMES:
+        return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // contact.h, material.h
+#include <limits>
+
 #include "chapters.h"
 
 static nt_contact contact_of(double radius, double effective_modulus, double work_of_adhesion, double cohesive_stress) {
@@ -16,7 +18,8 @@ static nt_contact_law law_of(int model, const nt_contact &contact) {
 
 static py::tuple eval(const nt_contact_law &law, const Array &indentation, int branch) {
     return map_law(indentation, [&law, branch](double delta) {
-        nt_law_value value{NAN, NAN, NAN, NAN};
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        nt_law_value value{nan, nan, nan, nan};
         (void)nt_contact_law_eval(&law, delta, static_cast<nt_branch>(branch), &value); // no solution there: NaN
         return value;
     });
@@ -24,17 +27,16 @@ static py::tuple eval(const nt_contact_law &law, const Array &indentation, int b
 
 static double indentation_at(const nt_contact_law &law, double force, int branch) {
     const nt_contact *contact = &law.maugis.contact;
-    double delta = NAN;
-    nt_status status = NT_OK;
+    double delta = std::numeric_limits<double>::quiet_NaN();
     switch (law.model) {
         case NT_HERTZ: return nt_hertz_indentation(contact, force);
         case NT_DMT: return nt_dmt_indentation(contact, force);
-        case NT_JKR: status = nt_jkr_indentation(contact, force, static_cast<nt_branch>(branch), &delta); break;
+        case NT_JKR: (void)nt_jkr_indentation(contact, force, static_cast<nt_branch>(branch), &delta); break;
         case NT_MAUGIS:
-            status = nt_maugis_indentation(&law.maugis, force, static_cast<nt_branch>(branch), &delta, nullptr);
+            (void)nt_maugis_indentation(&law.maugis, force, static_cast<nt_branch>(branch), &delta, nullptr);
             break;
     }
-    return status == NT_OK ? delta : NAN;
+    return delta; // untouched, so NaN, on failure
 }
 
 void bind_contact(py::module_ &module) {

@@ -35,7 +35,7 @@ constexpr Column columns[] = {
     {"surface_height", &nt_record::surface_height},
 };
 
-std::unique_ptr<Session> open(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
+std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
                               const Described<nt_settings> &settings, std::shared_ptr<Surface> surface, py::dict options) {
     nt_session_setup setup = nt_session_defaults();
     setup.scene = scene.value;
@@ -46,6 +46,7 @@ std::unique_ptr<Session> open(const Described<nt_scene> &scene, const Described<
     setup.x = options["x"].cast<double>();
     setup.y = options["y"].cast<double>();
     setup.clearance = options["clearance"].cast<double>();
+    setup.rise = options["rise"].cast<double>();
     setup.seed = options["seed"].cast<uint64_t>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();
     setup.demand.relative_accuracy = options["relative_accuracy"].cast<double>();
@@ -56,7 +57,7 @@ std::unique_ptr<Session> open(const Described<nt_scene> &scene, const Described<
     return made;
 }
 
-void advance(Session &self, long ticks) {
+void advance_session(Session &self, long ticks) {
     nt_status status;
     {
         py::gil_scoped_release release;
@@ -65,7 +66,7 @@ void advance(Session &self, long ticks) {
     raise_on(status, "advance");
 }
 
-py::dict read(Session &self, long count) {
+py::dict read_records(Session &self, long count) {
     std::vector<nt_record> records(static_cast<size_t>(count));
     const long got = nt_session_read(self.handle, records.data(), count);
     py::dict out;
@@ -89,17 +90,18 @@ py::dict read(Session &self, long count) {
 
 void bind_session(py::module_ &module) {
     py::class_<Session>(module, "Session")
-        .def(py::init(&open), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"), py::arg("options"))
+        .def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"), py::arg("options"))
         .def("aim", [](Session &self, double force, double x, double y, double duration) {
             const nt_input input = {force, x, y, duration};
             raise_on(nt_session_aim(self.handle, &input), "operator input");
         })
-        .def("advance", &advance)
-        .def("read", &read)
+        .def("advance", &advance_session)
+        .def("read", &read_records)
         .def("arm", [](Session &self, bool confirmed) { raise_on(nt_session_arm(self.handle, confirmed), "arm"); })
         .def("emergency_stop", [](Session &self, bool pressed) { nt_session_emergency_stop(self.handle, pressed); })
         .def_property_readonly("plan", [](const Session &self) { return nt_plan(*nt_session_plan(self.handle)); })
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
+        .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
         .def_property_readonly("start_height", [](const Session &self) { return nt_session_start_height(self.handle); });
     py::list reasons;
     for (uint32_t bit = 1; nt_reason_name(bit)[0] != 0; bit <<= 1) reasons.append(nt_reason_name(bit));

@@ -70,15 +70,18 @@ static void init_sensors(nt_sim *sim) {
 
 nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup) {
     if (!setup->plan || !setup->rig || setup->delay < 0 || setup->delay > NT_SIM_DELAY_MAX) return NT_E_ARGUMENT;
-    if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance)) return NT_E_NOT_FINITE;
+    if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance) || !isfinite(setup->master_position))
+        return NT_E_NOT_FINITE;
     if (setup->clearance < FIRST_CLEAR_DISTANCE) return NT_E_RANGE;
+    if (fabs(setup->master_position) > 0.5 * setup->rig->master.travel) return NT_E_RANGE;
     nt_sim made = {.plan = setup->plan,
                    .rig = *setup->rig,
                    .period = setup->period,
                    .delay = setup->delay,
                    .random = nt_random_seed(setup->seed),
                    .x = setup->x,
-                   .y = setup->y};
+                   .y = setup->y,
+                   .master = {.position = setup->master_position}};
     nt_status status = nt_stage_model_init(&made.stage_model, &made.rig.stage, setup->period);
     if (status == NT_OK) status = nt_master_model_init(&made.master_model, &made.rig.master, setup->period);
     if (status != NT_OK) return status;

@@ -98,17 +98,25 @@ NT_API nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *g
 NT_API NT_REALTIME double nt_stage_loop_step(const nt_stage_loop *loop, nt_stage_loop_state *state, double reference,
                                              double measured);
 
-/* --- passivity: energy that flows in at the operator's port; the force gain backs off when it would flow out --- */
+/* --- passivity: master, controller and stage between hand and tip may swallow energy, not make it; when they would, the
+ *     force gain backs off --- */
 
+/* One side, at the operator's scale. */
+typedef struct nt_port {
+    double force;    /* [N] */
+    double position; /* [m] */
+} nt_port;
 typedef struct nt_passivity_state {
-    double energy;        /* E_op since the last event [J] */
-    double gain;          /* factor on K_f, 1 .. 0 [-] */
-    double last_force;    /* [N] */
-    double last_position; /* [m] */
+    double energy;          /* swallowed since the last event, at most NT_PASSIVITY_STORE dead zones [J] */
+    double gain;            /* factor on K_f, 1 .. 0 [-] */
+    nt_port last_hand, last_tip;
     uint32_t trips;
 } nt_passivity_state;
-/* dead_zone: energy that noise and quantisation may seem to release [J]. Returns the gain factor. */
-NT_API NT_REALTIME double nt_passivity_step(nt_passivity_state *state, double force, double position, double dead_zone);
+#define NT_PASSIVITY_STORE 50.0
+/* hand: (f_m, x_m), in; tip: (alpha_f f_s, x_s/alpha_p), out. dead_zone: energy that noise and quantisation may seem to
+ * release [J]. Returns the gain factor. */
+NT_API NT_REALTIME double nt_passivity_step(nt_passivity_state *state, const nt_port *hand, const nt_port *tip,
+                                            double dead_zone);
 
 /* --- supervisor: a pure function of sample, command and limits (the table in docs/safety.md) --- */
 

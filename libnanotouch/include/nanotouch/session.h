@@ -24,6 +24,7 @@ typedef struct nt_session_setup {
     const nt_surface *surface; /* dilated by the tip; borrowed until nt_session_close; NULL: flat at z = 0 */
     double x, y;               /* where it starts [m] */
     double clearance;          /* L, height of the tip above the surface there [m] */
+    double rise;               /* how far the surface rises above the start along the path [m], >= 0 */
     uint64_t seed;
     long ring_capacity;        /* records held between two reads; rounded up to a power of two */
     double minimum_margin;     /* refuse to open below this stability margin (R1) [-] */
@@ -82,6 +83,8 @@ NT_API const nt_touch *nt_session_touch(const nt_session *session);
 NT_API nt_margins nt_session_margins(const nt_session *session);
 /* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. */
 NT_API double nt_session_start_height(const nt_session *session);
+/* x_m at the start [m]: the stage shall be at alpha_p (x_m - master_start). */
+NT_API double nt_session_master_start(const nt_session *session);
 
 #ifdef __cplusplus
 }

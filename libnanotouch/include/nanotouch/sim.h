@@ -18,6 +18,7 @@ typedef struct nt_sim_setup {
     double period;       /* T [s] */
     double x, y;         /* where it starts [m] */
     double clearance;    /* L, height of the tip above the surface there [m] */
+    double master_position; /* x_m at the start [m] */
     uint64_t seed;       /* of the sensors' noise */
     int delay;           /* periods between write and effect, 0 .. NT_SIM_DELAY_MAX */
 } nt_sim_setup;

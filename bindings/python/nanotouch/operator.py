@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The simulated operator: what hand and tip do, one step after another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from nanotouch.session import Session
+
+APPROACH_FORCE = 0.2  # [N]
+PRESS_FORCE = 2.0  # [N]
+SCAN_FORCE = 0.4  # [N]
+RETRACT_FORCE = 0.3  # [N]
+LIMIT_SHARE = 0.6  # of the force limit, at the hand
+SCAN_TIMES = (5.0, 60.0)  # shortest and longest default scan [s]
+
+
+class Input(NamedTuple):
+    """Hand and tip go there on a straight line, then stay.
+
+    ``operator_force`` f_m [N], + towards the sample; ``x``, ``y`` [m]; ``duration`` [s].
+    """
+
+    operator_force: float
+    x: float
+    y: float
+    duration: float
+
+
+def script_for(session: Session) -> list[Input]:
+    """Approach, press and retract at a point; or approach, follow the path and retract; or follow it at constant force."""
+    if session.mode == "topography":
+        return _follow(session)
+    if session.mode == "scan":
+        return _scan(session)
+    return _press(session)
+
+
+def _slave_speed(session: Session, force: float) -> float:
+    """Speed of the stage [m/s] when the hand pushes with a force [N] in free air: alpha_p (1 + K_f) f_m/b_m."""
+    gains = session.settings.gains
+    return gains.alpha_p * (1.0 + gains.force_gain) * force / session.rig.master.damping
+
+
+def _contact_force(session: Session, wanted: float) -> float:
+    """No more than a share of what the force limit lets through to the hand."""
+    return min(wanted, LIMIT_SHARE * session.settings.gains.alpha_f * session.settings.limits.force)
+
+
+def _approach(session: Session) -> list[Input]:
+    x, y = session.path[0]
+    travel_time = 1.3 * session.clearance / _slave_speed(session, APPROACH_FORCE)
+    return [Input(APPROACH_FORCE, x, y, 0.5), Input(APPROACH_FORCE, x, y, travel_time + 0.5)]
+
+
+def _retract(session: Session) -> list[Input]:
+    """Pull with more than the adhesion at the operator's scale, but not with more than the gauge can read."""
+    x, y = session.path[-1]
+    adhesion = session.settings.gains.alpha_f * session.plan.pull_off_force
+    force = -min(max(RETRACT_FORCE, 2.0 * adhesion), 0.9 * session.rig.master.gauge_range)
+    stretch = session.plan.pull_off_force / session.rig.probe.spring_constant
+    travel_time = (session.clearance + stretch) / _slave_speed(session, -force)
+    return [Input(force, x, y, 3.0), Input(force, x, y, travel_time), Input(0.0, x, y, 0.2), Input(0.0, x, y, 0.3)]
+
+
+def _press(session: Session) -> list[Input]:
+    x, y = session.path[0]
+    force = _contact_force(session, PRESS_FORCE)
+    return [*_approach(session), Input(force, x, y, 1.5), Input(force, x, y, 1.5), *_retract(session)]
+
+
+def _along_path(session: Session, force: float, slave_speed: float) -> list[Input]:
+    """The path's legs, slow enough for the stage to climb the slopes that make up 95 % of it at ``slave_speed`` [m/s]."""
+    distance, height = session.path_heights()
+    slope = np.quantile(np.abs(np.gradient(height, distance)), 0.95) if distance[-1] > 0.0 else 0.0
+    shortest, longest = SCAN_TIMES
+    time = float(np.clip(distance[-1] * slope / slave_speed, shortest, longest))
+    corners = np.asarray(session.path)
+    legs = np.hypot(*np.diff(corners, axis=0).T)
+    shares = legs / legs.sum() if legs.sum() > 0.0 else np.full(len(legs), 1.0 / len(legs))
+    return [Input(force, x, y, time * share) for (x, y), share in zip(session.path[1:], shares, strict=True)]
+
+
+def _scan(session: Session) -> list[Input]:
+    """Half the contact force may be spent on moving the master."""
+    x, y = session.path[0]
+    force = _contact_force(session, SCAN_FORCE)
+    settle = [Input(force, x, y, 0.5), Input(force, x, y, 0.5)]
+    return [
+        *_approach(session), *settle, *_along_path(session, force, _slave_speed(session, 0.5 * force)), *_retract(session),
+    ]  # fmt: skip
+
+
+def _follow(session: Session) -> list[Input]:
+    """No hand force; the height servo climbs at its gain times a third of the set-point's deflection."""
+    gains = session.settings.gains
+    x, y = session.path[0]
+    speed = gains.height_gain * gains.set_point / session.rig.probe.spring_constant
+    settle = 2.0 * session.clearance / speed + 0.5
+    return [Input(0.0, x, y, settle), *_along_path(session, 0.0, speed / 3.0), Input(0.0, *session.path[-1], 0.3)]
