@@ -23,11 +23,11 @@ PARAMETERS = 5
 
 
 def long_c_functions(lines: list[str]) -> Iterator[tuple[int, int]]:
-    """Yield line and length of the C functions that are too long: their braces stand alone in the first column."""
+    """Yield line and length of the C functions that are too long: their last brace stands alone in the first column."""
     start = 0
     for number, line in enumerate(lines, 1):
-        if line.rstrip() == "{":
-            start = number
+        if line.rstrip() == "{" or re.match(r"[a-z ].*\) (noexcept )?\{$", line):
+            start = start or number
         elif line.rstrip() == "}" and start:
             if number - start - 1 > FUNCTION_LINES:
                 yield start, number - start - 1

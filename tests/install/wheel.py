@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Check an installed nanotouch, with numpy and nothing else of its extras imported.
+
+Run by any interpreter that has the package: `python tests/install/wheel.py`.
+"""
+
+import sys
+from importlib import metadata
+
+
+def foreign_modules(before: set[str]) -> set[str]:
+    """Return the top-level modules imported since `before` that are neither ours nor of the standard library."""
+    new = {name.split(".")[0] for name in sys.modules.keys() - before}
+    return {name for name in new - sys.stdlib_module_names - {"nanotouch"} if not name.startswith("__")}
+
+
+def main() -> None:
+    """Import, look, and complain by assertion."""
+    before = set(sys.modules)
+    import nanotouch
+
+    foreign = foreign_modules(before)
+    assert foreign <= {"numpy"}, f"import nanotouch also imports {sorted(foreign - {'numpy'})}"
+    assert nanotouch.__version__ == metadata.version("nanotouch"), "the package and its metadata differ in version"
+    assert nanotouch._core.__file__, "the extension is not a file of the package"
+
+    files = {str(file) for file in metadata.files("nanotouch") or []}
+    for wanted in ("nanotouch/py.typed", "nanotouch/_core.pyi", "nanotouch_app/main.py"):
+        assert wanted in files, f"{wanted} is not in the wheel"
+    strays = sorted(f for f in files if f.endswith((".a", ".h", ".cmake", ".cpp")))
+    assert not strays, f"the wheel contains {strays}"
+    (script,) = metadata.entry_points(group="console_scripts", name="nanotouch")
+    assert callable(script.load()), "the command cannot be loaded"
+    print(f"nanotouch {nanotouch.__version__} is well installed")
+
+
+if __name__ == "__main__":
+    main()
