@@ -160,8 +160,8 @@ def test_force_gap_marks_what_adhesion_found(tmp_path: Path) -> None:
     figure = plots.force_gap(touch(), save=tmp_path / "force_gap.png")
     whole, magnified = figure.axes
     assert whole.get_xlabel() == "gap $h$ (nm)"
-    assert whole.get_ylabel() == "slave force $f_s$ (µN)"
-    assert magnified.get_ylabel() == "slave force $f_s$ (nN)"
+    assert whole.get_ylabel() == "slave force $f_s$, + repulsive (µN)"
+    assert magnified.get_ylabel() == "slave force $f_s$, + repulsive (nN)"
     assert magnified.get_ylim()[1] < 50
     texts = [text.get_text() for text in magnified.texts]
     assert texts[0].startswith("snap-in −5.8")

@@ -138,7 +138,7 @@ def force_gap(recording: Recording, save: StrPath | None = None, seen: Adhesion 
     windows = [np.ones(len(recording), bool)]
     if magnified:
         windows.append(_adhesion_window(recording, seen, gap))
-    for panel, window, title in zip(panels, windows, ("Force on the tip, + repulsive", "Magnified"), strict=False):
+    for panel, window, title in zip(panels, windows, ("Force on the tip", "Magnified"), strict=False):
         _force_panel(panel, (gap, force), window, phases(recording))
         panel.set_xlabel(f"{quantity} ({engineering('m', gap[window])[0]})")
         _dress(panel, title)
@@ -308,13 +308,14 @@ def _force_panel(panel: Any, data: tuple[Floats, Floats], window: NDArray[np.boo
         (slice(start, None), VERMILION, "retraction"),
     ]
     for rows, colour, label in parts:
-        inside = window[rows]
-        if inside.any():
-            x, y = np.where(inside, gap[rows], np.nan) * wide, np.where(inside, force[rows], np.nan) * scale
+        inside = np.flatnonzero(window[rows])
+        if inside.size:
+            x, y = gap[rows][inside] * wide, force[rows][inside] * scale
+            y[:-1][np.diff(inside) > 1] = np.nan  # no line where the curve leaves the window
             kept = envelope(x, y)
-            panel.plot(x[kept], y[kept], color=colour, lw=0.8, label=label)
+            panel.plot(x[kept], y[kept], color=colour, lw=0.7, alpha=0.8, label=label)
     panel.axhline(0, color="0.4", lw=0.8)
-    panel.set_ylabel(f"slave force $f_s$ ({strong})")
+    panel.set_ylabel(f"slave force $f_s$, + repulsive ({strong})")
 
 
 def _mark_adhesion(panel: Any, data: tuple[Floats, Floats], window: NDArray[np.bool_], seen: Adhesion) -> None:
