@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Exact zero-order-hold discretisation: with u constant, (x, u)' = [[A, B], [0, 0]] (x, u), so that one matrix exponential
- * gives phi and gamma (Van Loan 1978). The exponential is scaled to |M| < 1/2, where 17 terms of Taylor's series are exact
- * to rounding, and squared back. It is kept as X = exp(M) - 1, (1 + X)^2 - 1 = 2 X + X^2, so that the small entries of a
- * short period keep their relative accuracy. */
+ * Exact zero-order-hold discretisation: with u constant, (x, u)' = [[A, B], [0, 0]] (x, u), so that one matrix
+ * exponential gives phi and gamma (Van Loan 1978). The exponential is scaled to |M| < 1/2, where 17 terms of Taylor's
+ * series are exact to rounding, and squared back. It is kept as X = exp(M) - 1, (1 + X)^2 - 1 = 2 X + X^2, so that the
+ * small entries of a short period keep their relative accuracy. */
 #include "lti.h"
 
 #include <math.h>

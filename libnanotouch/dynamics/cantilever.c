@@ -4,23 +4,24 @@
  * and the balance is stable where S = -dN/dz = K + k > 0. With its inertia neglected the tip follows the sign of N: it
  * comes to rest at the first stable equilibrium downhill from where it stands. That is jump-in, and snap-off.
  *
- * So this is not root finding but a walk: from the last position along the sign of N, in steps over which N is resolved
- * (its change agrees with the mean of its slopes), until N changes sign; there the root is enclosed and polished. In a
- * tick in which the base moves little the first step is Newton's and the walk is over. History (contact branch, meniscus)
- * is committed at each position the tip passes.
+ * So this is not root finding but a walk: from the last position along the sign of N, in steps over which N is
+ * resolved (its change agrees with the mean of its slopes), until N changes sign; there the root is enclosed and
+ * polished. In a tick in which the base moves little the first step is Newton's and the walk is over. History (contact
+ * branch, meniscus) is committed at each position the tip passes.
  *
- * A step is at most LONGEST field lengths or 1/64 of the way to the base, so only structure narrower than that, without
- * any precursor in N or S, could be stepped over. */
+ * A step grows only while S hardly changes, to LONGEST field lengths or 1/64 of the way to the base: only a well narrower
+ * than the step, without a precursor in N or S, could be stepped over. Fields are conservative in z_t, so the walk ends
+ * in a minimum of U + K (z_t - z_b)^2 / 2; with a tilt this K, not k_c / cos^2, is what k_c zeta = F implies. */
 #include "nanotouch/dynamics.h"
 
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 
-#define LONGEST 64.0   /* longest step of the walk, in field lengths */
-#define SHORTEST 0.125 /* a jump of the force is crossed in a step of this many field lengths */
+#define LONGEST 64.0    /* longest step of the walk, in field lengths */
+#define SHORTEST 0.125  /* a jump of the force is crossed in a step of this many field lengths */
 #define UNRESOLVED 0.05 /* mismatch of N over a step, relative to the N at its ends */
-#define CLOSE 1e-7     /* Newton steps below this many field lengths are exact to about its square */
+#define CLOSE 1e-7      /* Newton steps below this many field lengths are exact to about its square */
 enum { EVALUATIONS_MAX = 400 };
 
 typedef struct walk {
@@ -75,8 +76,8 @@ static double newton_distance(const place *p)
     return p->slope > 0.0 ? p->drive / p->slope : HUGE_VAL;
 }
 
-/* Between a (drive falling) and b (rising again), both driven: does the drive's minimum dip below 0, i.e. do an equilibrium
- * and its fold hide in between? Then b becomes a place beyond that equilibrium. */
+/* Between a (drive falling) and b (rising again), both driven: does the drive's minimum dip below 0, i.e. do an
+ * equilibrium and its fold hide in between? Then b becomes a place beyond that equilibrium. */
 static nt_status search_dip(walk *w, place a, place *b)
 {
     place right = *b;
@@ -123,8 +124,8 @@ static nt_status step_downhill(walk *w, const place *a, double *step, place *b)
     return NT_E_NO_CONVERGENCE;
 }
 
-/* Newton within the bracket (drive > 0 at a, <= 0 at b), else bisection. Where the force jumps through 0 the tip sticks at
- * the jump: the bracket closes on it. *a becomes the equilibrium. */
+/* Newton within the bracket (drive > 0 at a, <= 0 at b), else bisection. Where the force jumps through 0 the tip
+ * sticks at the jump: the bracket closes on it. *a becomes the equilibrium. */
 static nt_status polish(walk *w, place *a, place b)
 {
     place last = b;

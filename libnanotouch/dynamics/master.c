@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Haptic master, Eq. 12: m x'' + b x' = f with f = tau_m + f_m, between hard end stops. A stop takes all of the momentum
- * (inelastic): the arm stands there until it is driven back. */
+ * Haptic master, Eq. 12: m x'' + b x' = f with f = tau_m + f_m, between hard end stops. A stop takes all of the
+ * momentum (inelastic): the arm stands there until it is driven back. */
 #include "nanotouch/dynamics.h"
 
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Grey-scale dilation by the tip: the apex heights at which tip and surface touch first (Villarrubia, J. Res. NIST 102,
- * 425, 1997), exact on the grid. Row by row and block by block; a row of the surface is compared with a block only as far
- * as its highest pixel can still lift the block's lowest, so that flat regions cost little. */
+ * Grey-scale dilation by the tip: the apex heights at which tip and surface touch first (Villarrubia, J. Res. NIST
+ * 102, 425, 1997), exact on the grid. Row by row and block by block; a row of the surface is compared with a block
+ * only as far as its highest pixel can still lift the block's lowest, so that flat regions cost little. */
 #include "nanotouch/field.h"
 #include "nanotouch/surface.h"
 

@@ -33,8 +33,8 @@ static void integrators_give_taylor_powers(void **state)
     }
 }
 
-/* A rotation with decay: exp(-s T) (cos, sin; -sin, cos), from 1e-6 to 1000 rad. The error of the phase grows as omega T
- * in any method, because omega T itself is rounded. */
+/* A rotation with decay: exp(-s T) (cos, sin; -sin, cos), from 1e-6 to 1000 rad. The error of the phase grows as
+ * omega T in any method, because omega T itself is rounded. */
 static void rotation_keeps_its_phase(void **state)
 {
     (void)state;

@@ -49,7 +49,8 @@ static void each_field_is_refused_by_name(void **state)
     int count = 0;
     const nt_field *fields = nt_rig_fields(&count);
     for (int i = 0; i < count; i++) {
-        const double bad[] = {nextafter(fields[i].minimum, -HUGE_VAL), nextafter(fields[i].maximum, HUGE_VAL), (double)NAN};
+        const double below = nextafter(fields[i].minimum, -HUGE_VAL), above = nextafter(fields[i].maximum, HUGE_VAL);
+        const double bad[] = {below, above, (double)NAN};
         for (int k = 0; k < 3; k++) {
             nt_rig rig = nt_rig_defaults();
             nt_problem problem = {0};

@@ -9,8 +9,8 @@
 
 #include "nanotouch/dynamics.h"
 
-/* From rest under a constant force: v = f/b (1 - e^-x), position = f m/b^2 (x - 1 + e^-x), x = b t/m. The factor in x is
- * taken from its series below 0.1, where the closed form cancels. */
+/* From rest under a constant force: v = f/b (1 - e^-x), position = f m/b^2 (x - 1 + e^-x), x = b t/m. The factor in x
+ * is taken from its series below 0.1, where the closed form cancels. */
 static double ramp_factor(double x)
 {
     if (x > 0.1)

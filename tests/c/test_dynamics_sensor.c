@@ -59,7 +59,7 @@ static void noise_dithers_the_steps(void **state)
 static void saturates_at_its_range(void **state)
 {
     (void)state;
-    const nt_sensor sensor = {.noise = 0.0, .resolution = 0.3, .range = 1.0}; /* the range is not a multiple of the step */
+    const nt_sensor sensor = {.noise = 0.0, .resolution = 0.3, .range = 1.0}; /* not a multiple of the step */
     assert_true(nt_sensor_read(&sensor, 7.0, NULL) == 1.0 && nt_sensor_read(&sensor, -7.0, NULL) == -1.0);
     assert_true(nt_sensor_read(&sensor, 1.06, NULL) == 1.0);
     assert_true(nt_sensor_read(&sensor, (double)INFINITY, NULL) == 1.0);

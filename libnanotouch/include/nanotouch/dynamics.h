@@ -29,7 +29,9 @@ typedef struct nt_cantilever_state {
 } nt_cantilever_state;
 NT_API nt_cantilever_state nt_cantilever_at(double base_height);
 /* Moves the base to base_height [m] and lets the tip settle: downhill from where it is to the next stable equilibrium,
- * through jump-in and snap-off. Returns NT_OK, or NT_E_NO_CONVERGENCE with the state left at the best point found. */
+ * through jump-in and snap-off. At most about 400 evaluations, usually 2 to 4. NT_OK; NT_E_ARGUMENT (spring constant or
+ * field length not positive, state untouched); NT_E_NO_CONVERGENCE, or NT_E_NOT_FINITE where the field is, with the
+ * state left at the last place the tip passed. Residual in info: the force out of balance, over K length. */
 NT_API NT_REALTIME nt_status nt_cantilever_settle(nt_cantilever_state *state, const nt_probe *probe,
                                                   const nt_force_field *field, double base_height, nt_solve_info *info);
 
@@ -79,6 +81,7 @@ typedef struct nt_sensor {
     double resolution; /* step, 0 for none */
     double range;      /* saturates at +- this */
 } nt_sensor;
+/* Noise, then steps, then saturation. NaN in, NaN out. random may be NULL where noise is 0. */
 NT_API NT_REALTIME double nt_sensor_read(const nt_sensor *sensor, double value, nt_random *random);
 
 #ifdef __cplusplus

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <time.h>
+
+#include "nanotouch/random.h"
+#include "nanotouch/surface.h"
+
+enum { NX = 150, NY = 61 };
+#define DX 2e-9
+#define DY 3e-9
+static double heights[NX * NY], dilated[NX * NY], again[NX * NY];
+static const nt_tip_shape tip = {20e-9, 0.35};
+
+static void dilate(const double *from, const nt_tip_shape *shape, double *to)
+{
+    const nt_height_map map = {from, NX, NY, DX, DY};
+    assert_int_equal(nt_surface_dilate(&map, shape, to), NT_OK);
+}
+
+/* The tip as a set of points: on the sphere up to the tangent, on the cone beyond. Written apart from the library. */
+static double shape_height(const nt_tip_shape *shape, double r)
+{
+    const double contact = shape->radius * cos(shape->half_angle);
+    if (r <= contact)
+        return shape->radius - sqrt(shape->radius * shape->radius - r * r);
+    return shape->radius * (1.0 - 1.0 / sin(shape->half_angle)) + r / tan(shape->half_angle); /* apex of the cone */
+}
+
+static void tip_is_a_sphere_that_runs_into_a_cone(void **state)
+{
+    (void)state;
+    for (double psi = 0.05; psi < 1.5; psi += 0.1) {
+        const nt_tip_shape shape = {20e-9, psi};
+        for (double r = 0.0; r < 100e-9; r += 0.7e-9)
+            assert_true(fabs(nt_tip_shape_height(&shape, r) - shape_height(&shape, r)) < 1e-15 * 100e-9 / tan(psi));
+        const double tangent = 20e-9 * cos(psi), h = 1e-14; /* value and slope agree at the tangent */
+        const double below = nt_tip_shape_height(&shape, tangent) - nt_tip_shape_height(&shape, tangent - h);
+        const double above = nt_tip_shape_height(&shape, tangent + h) - nt_tip_shape_height(&shape, tangent);
+        assert_true(fabs(above / below - 1.0) < 1e-3);
+    }
+    const nt_tip_shape rod = {20e-9, 0.0};
+    assert_true(nt_tip_shape_height(&rod, 20e-9) == 20e-9 && isinf(nt_tip_shape_height(&rod, 20.1e-9)));
+    assert_true(isnan(nt_tip_shape_height(&tip, (double)NAN)));
+    assert_true(fabs(nt_tip_shape_height(&tip, 1e-15) / 2.5e-23 - 1.0) < 1e-12); /* r^2/2R, no cancellation */
+}
+
+/* The definition, without any pruning; to the rounding of the tip's heights. */
+static void agrees_with_brute_force(void **state)
+{
+    (void)state;
+    static const nt_tip_shape shapes[] = {{20e-9, 0.35}, {2e-9, 0.1}, {100e-9, 0.8}, {20e-9, 0.0}, {10e-9, 1.4}};
+    nt_random random = nt_random_seed(4);
+    for (int n = 0; n < 5; n++) {
+        for (int p = 0; p < NX * NY; p++) /* spikes, a step, and a rough floor */
+            heights[p] = (p % NX > 70 ? 60e-9 : 0.0) + 2e-9 * nt_random_uniform(&random) +
+                         (nt_random_uniform(&random) < 0.002 ? 200e-9 * nt_random_uniform(&random) : 0.0);
+        dilate(heights, &shapes[n], dilated);
+        for (int j = 0; j < NY; j += 10)
+            for (int i = 0; i < NX; i++) {
+                double apex = -1.0;
+                for (int q = 0; q < NY; q++)
+                    for (int p = 0; p < NX; p++) {
+                        const double away = hypot((p - i) * DX, (q - j) * DY);
+                        const double lift = heights[q * NX + p] - nt_tip_shape_height(&shapes[n], away);
+                        apex = lift > apex ? lift : apex;
+                    }
+                assert_true(dilated[j * NX + i] == apex);
+            }
+    }
+}
+
+/* A spike on the floor shows the tip, upside down. */
+static void spike_gives_the_reflected_tip(void **state)
+{
+    (void)state;
+    for (int p = 0; p < NX * NY; p++)
+        heights[p] = 0.0;
+    heights[20 * NX + 100] = 90e-9;
+    dilate(heights, &tip, dilated);
+    int seen = 0;
+    for (int j = 0; j < NY; j++)
+        for (int i = 0; i < NX; i++) {
+            const double expected = 90e-9 - shape_height(&tip, hypot((i - 100) * DX, (j - 20) * DY));
+            seen += expected > 0.0;
+            assert_true(fabs(dilated[j * NX + i] - (expected > 0.0 ? expected : 0.0)) < 1e-21);
+        }
+    assert_true(seen > 400);
+}
+
+/* Over a step the apex follows the tip's profile down to the floor, where the flank lets go of the edge. */
+static void step_gives_the_profile_of_the_tip(void **state)
+{
+    (void)state;
+    for (int p = 0; p < NX * NY; p++)
+        heights[p] = p % NX >= 80 ? 40e-9 : 0.0;
+    dilate(heights, &tip, dilated);
+    for (int j = 0; j < NY; j++)
+        for (int i = 0; i < NX; i++) {
+            const double profile = i >= 80 ? 40e-9 : fmax(0.0, 40e-9 - shape_height(&tip, (80 - i) * DX));
+            assert_true(fabs(dilated[j * NX + i] - profile) < 1e-21);
+        }
+}
+
+static void flat_stays_flat(void **state)
+{
+    (void)state;
+    for (int p = 0; p < NX * NY; p++)
+        heights[p] = 3e-9;
+    dilate(heights, &tip, dilated);
+    for (int p = 0; p < NX * NY; p++)
+        assert_true(dilated[p] == 3e-9);
+}
+
+/* Never below the surface, never above its top; and eroding the dilated map (by duality, dilating its negative) gives a
+ * closing: never below the surface, and dilating that again changes nothing. */
+static void is_bounded_and_closes(void **state)
+{
+    (void)state;
+    nt_random random = nt_random_seed(9);
+    static double closed[NX * NY];
+    for (int p = 0; p < NX * NY; p++)
+        heights[p] = 30e-9 * pow(nt_random_uniform(&random), 4);
+    dilate(heights, &tip, dilated);
+    for (int p = 0; p < NX * NY; p++) {
+        assert_true(dilated[p] >= heights[p] && dilated[p] <= 30e-9);
+        again[p] = -dilated[p];
+    }
+    dilate(again, &tip, closed);
+    for (int p = 0; p < NX * NY; p++) {
+        closed[p] = -closed[p];
+        assert_true(closed[p] >= heights[p] - 1e-22 && closed[p] <= dilated[p]);
+    }
+    dilate(closed, &tip, again);
+    for (int p = 0; p < NX * NY; p++)
+        assert_true(fabs(again[p] - dilated[p]) < 1e-22);
+}
+
+static void refuses_bad_tips_and_maps(void **state)
+{
+    (void)state;
+    nt_height_map map = {heights, NX, NY, DX, DY};
+    assert_int_equal(nt_surface_dilate(&map, &(nt_tip_shape){20.0, 0.3}, dilated), NT_E_RANGE);
+    assert_int_equal(nt_surface_dilate(&map, &(nt_tip_shape){20e-9, 1.6}, dilated), NT_E_RANGE);
+    assert_int_equal(nt_surface_dilate(&map, &(nt_tip_shape){20e-9, (double)NAN}, dilated), NT_E_NOT_FINITE);
+    assert_int_equal(nt_surface_dilate(&map, &tip, NULL), NT_E_ARGUMENT);
+    map.dx = 0.0;
+    assert_int_equal(nt_surface_dilate(&map, &tip, dilated), NT_E_RANGE);
+}
+
+/* A grating of 480 nm over 512 x 512 pixels, the tip reaching 15 pixels (31 x 31): well below 1 s even unoptimised. */
+static void large_maps_are_quick(void **state)
+{
+    (void)state;
+    enum { N = 512 };
+    static double big[N * N], out[N * N];
+    const nt_grating grating = nt_grating_defaults();
+    const double pixel = 6e-6 / N;
+    for (int p = 0; p < N * N; p++)
+        big[p] = nt_grating_height(&grating, (p % N) * pixel, 0.0);
+    const nt_height_map map = {big, N, N, pixel, pixel};
+    const clock_t start = clock();
+    assert_int_equal(nt_surface_dilate(&map, &(nt_tip_shape){20e-9, 0.35}, out), NT_OK);
+    const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    print_message("512 x 512, grating: %.3f s\n", seconds);
+    assert_true(seconds < 1.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tip_is_a_sphere_that_runs_into_a_cone),
+        cmocka_unit_test(agrees_with_brute_force),
+        cmocka_unit_test(spike_gives_the_reflected_tip),
+        cmocka_unit_test(step_gives_the_profile_of_the_tip),
+        cmocka_unit_test(flat_stays_flat),
+        cmocka_unit_test(is_bounded_and_closes),
+        cmocka_unit_test(refuses_bad_tips_and_maps),
+        cmocka_unit_test(large_maps_are_quick),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
