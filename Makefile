@@ -5,7 +5,7 @@ OUT ?= nanotouch-out
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test bench docs fuzz lint clean
+.PHONY: help demo test lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -20,11 +20,20 @@ test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@cmake --build --preset dev
 	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
 
-lint:  ## format and types
-	@tools/setup.sh test
+C_FILES = $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
+
+lint:  ## format, style and types, without changing anything
+	@tools/setup.sh lint
+	@$(VENV)/clang-format --dry-run --Werror $(C_FILES)
 	@$(VENV)/ruff check .
 	@$(VENV)/ruff format --check .
 	@$(VENV)/mypy
+
+format:  ## format all sources
+	@tools/setup.sh lint
+	@$(VENV)/clang-format -i $(C_FILES)
+	@$(VENV)/ruff check --fix-only .
+	@$(VENV)/ruff format .
 
 clean:  ## forget everything that was built
 	@rm -rf build .venv nanotouch-out

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|test
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|test|lint
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|test}
+profile=${1:?usage: tools/setup.sh demo|test|lint}
 say() { printf '\033[1m%s\033[0m\n' "-- $*" >&2; }
 
 packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libceres-dev libegl1 libgl1-mesa-dri"
@@ -13,6 +13,8 @@ if [ "$profile" = test ]; then
   packages="$packages libcmocka-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
     gcc-mingw-w64-x86-64-posix"
   extras=all,test
+elif [ "$profile" = lint ]; then
+  extras=all,test,lint
 fi
 
 # --- system packages -------------------------------------------------------------------------------------------------

@@ -10,15 +10,37 @@
 fake_chip fake_chips[2];
 int fake_handles;
 
-struct gpiod_chip { fake_chip *chip; };
-struct gpiod_chip_info { fake_chip *chip; char name[32]; };
-struct gpiod_line_info { fake_line *line; };
-struct gpiod_line_settings { int is_output, pulled_down, value; };
-struct gpiod_line_config { unsigned offset; struct gpiod_line_settings settings; };
-struct gpiod_request_config { size_t buffer_size; };
-struct gpiod_line_request { fake_line *line; unsigned offset; };
-struct gpiod_edge_event { int falling; unsigned long seqno; };
-struct gpiod_edge_event_buffer { struct gpiod_edge_event events[FAKE_EVENTS_MAX]; };
+struct gpiod_chip {
+    fake_chip *chip;
+};
+struct gpiod_chip_info {
+    fake_chip *chip;
+    char name[32];
+};
+struct gpiod_line_info {
+    fake_line *line;
+};
+struct gpiod_line_settings {
+    int is_output, pulled_down, value;
+};
+struct gpiod_line_config {
+    unsigned offset;
+    struct gpiod_line_settings settings;
+};
+struct gpiod_request_config {
+    size_t buffer_size;
+};
+struct gpiod_line_request {
+    fake_line *line;
+    unsigned offset;
+};
+struct gpiod_edge_event {
+    int falling;
+    unsigned long seqno;
+};
+struct gpiod_edge_event_buffer {
+    struct gpiod_edge_event events[FAKE_EVENTS_MAX];
+};
 
 void fake_edge(fake_line *line, int level, int dropped)
 {
@@ -71,7 +93,10 @@ struct gpiod_chip *gpiod_chip_open(const char *path)
     return handle;
 }
 
-void gpiod_chip_close(struct gpiod_chip *chip) { fake_free(chip); }
+void gpiod_chip_close(struct gpiod_chip *chip)
+{
+    fake_free(chip);
+}
 
 struct gpiod_chip_info *gpiod_chip_get_info(struct gpiod_chip *chip)
 {
@@ -81,9 +106,18 @@ struct gpiod_chip_info *gpiod_chip_get_info(struct gpiod_chip *chip)
     return info;
 }
 
-void gpiod_chip_info_free(struct gpiod_chip_info *info) { fake_free(info); }
-const char *gpiod_chip_info_get_name(struct gpiod_chip_info *info) { return info->name; }
-size_t gpiod_chip_info_get_num_lines(struct gpiod_chip_info *info) { return (size_t)info->chip->line_count; }
+void gpiod_chip_info_free(struct gpiod_chip_info *info)
+{
+    fake_free(info);
+}
+const char *gpiod_chip_info_get_name(struct gpiod_chip_info *info)
+{
+    return info->name;
+}
+size_t gpiod_chip_info_get_num_lines(struct gpiod_chip_info *info)
+{
+    return (size_t)info->chip->line_count;
+}
 
 struct gpiod_line_info *gpiod_chip_get_line_info(struct gpiod_chip *chip, unsigned offset)
 {
@@ -92,14 +126,32 @@ struct gpiod_line_info *gpiod_chip_get_line_info(struct gpiod_chip *chip, unsign
     return info;
 }
 
-void gpiod_line_info_free(struct gpiod_line_info *info) { fake_free(info); }
-const char *gpiod_line_info_get_name(struct gpiod_line_info *info) { return info->line->name; }
-bool gpiod_line_info_is_used(struct gpiod_line_info *info) { return info->line->consumer || info->line->requested; }
-const char *gpiod_line_info_get_consumer(struct gpiod_line_info *info) { return info->line->consumer; }
+void gpiod_line_info_free(struct gpiod_line_info *info)
+{
+    fake_free(info);
+}
+const char *gpiod_line_info_get_name(struct gpiod_line_info *info)
+{
+    return info->line->name;
+}
+bool gpiod_line_info_is_used(struct gpiod_line_info *info)
+{
+    return info->line->consumer || info->line->requested;
+}
+const char *gpiod_line_info_get_consumer(struct gpiod_line_info *info)
+{
+    return info->line->consumer;
+}
 
 /* --- requests --- */
-struct gpiod_line_settings *gpiod_line_settings_new(void) { return fake_new(sizeof(struct gpiod_line_settings)); }
-void gpiod_line_settings_free(struct gpiod_line_settings *settings) { fake_free(settings); }
+struct gpiod_line_settings *gpiod_line_settings_new(void)
+{
+    return fake_new(sizeof(struct gpiod_line_settings));
+}
+void gpiod_line_settings_free(struct gpiod_line_settings *settings)
+{
+    fake_free(settings);
+}
 
 int gpiod_line_settings_set_direction(struct gpiod_line_settings *settings, enum gpiod_line_direction direction)
 {
@@ -125,8 +177,14 @@ int gpiod_line_settings_set_output_value(struct gpiod_line_settings *settings, e
     return 0;
 }
 
-struct gpiod_line_config *gpiod_line_config_new(void) { return fake_new(sizeof(struct gpiod_line_config)); }
-void gpiod_line_config_free(struct gpiod_line_config *config) { fake_free(config); }
+struct gpiod_line_config *gpiod_line_config_new(void)
+{
+    return fake_new(sizeof(struct gpiod_line_config));
+}
+void gpiod_line_config_free(struct gpiod_line_config *config)
+{
+    fake_free(config);
+}
 
 int gpiod_line_config_add_line_settings(struct gpiod_line_config *config, const unsigned *offsets, size_t count,
                                         struct gpiod_line_settings *settings)
@@ -136,10 +194,22 @@ int gpiod_line_config_add_line_settings(struct gpiod_line_config *config, const 
     return count == 1 ? 0 : -1;
 }
 
-struct gpiod_request_config *gpiod_request_config_new(void) { return fake_new(sizeof(struct gpiod_request_config)); }
-void gpiod_request_config_free(struct gpiod_request_config *config) { fake_free(config); }
-void gpiod_request_config_set_consumer(struct gpiod_request_config *c, const char *name) { (void)c, (void)name; }
-void gpiod_request_config_set_event_buffer_size(struct gpiod_request_config *c, size_t size) { c->buffer_size = size; }
+struct gpiod_request_config *gpiod_request_config_new(void)
+{
+    return fake_new(sizeof(struct gpiod_request_config));
+}
+void gpiod_request_config_free(struct gpiod_request_config *config)
+{
+    fake_free(config);
+}
+void gpiod_request_config_set_consumer(struct gpiod_request_config *c, const char *name)
+{
+    (void)c, (void)name;
+}
+void gpiod_request_config_set_event_buffer_size(struct gpiod_request_config *c, size_t size)
+{
+    c->buffer_size = size;
+}
 
 struct gpiod_line_request *gpiod_chip_request_lines(struct gpiod_chip *chip, struct gpiod_request_config *config,
                                                     struct gpiod_line_config *lines)
@@ -208,14 +278,20 @@ struct gpiod_edge_event_buffer *gpiod_edge_event_buffer_new(size_t capacity)
     return fake_new(sizeof(struct gpiod_edge_event_buffer));
 }
 
-void gpiod_edge_event_buffer_free(struct gpiod_edge_event_buffer *buffer) { fake_free(buffer); }
+void gpiod_edge_event_buffer_free(struct gpiod_edge_event_buffer *buffer)
+{
+    fake_free(buffer);
+}
 
 struct gpiod_edge_event *gpiod_edge_event_buffer_get_event(struct gpiod_edge_event_buffer *buffer, unsigned long index)
 {
     return &buffer->events[index];
 }
 
-unsigned long gpiod_edge_event_get_line_seqno(struct gpiod_edge_event *event) { return event->seqno; }
+unsigned long gpiod_edge_event_get_line_seqno(struct gpiod_edge_event *event)
+{
+    return event->seqno;
+}
 
 enum gpiod_edge_event_type gpiod_edge_event_get_event_type(struct gpiod_edge_event *event)
 {

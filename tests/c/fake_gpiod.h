@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A machine with GPIO chips, behind the functions of libgpiod that the library calls: what a kernel would do with chips,
- * lines, edges with sequence numbers and a chip that is pulled out. */
+ * A machine with GPIO chips, behind the functions of libgpiod that the library calls: what a kernel would do with
+ * chips, lines, edges with sequence numbers and a chip that is pulled out. */
 #ifndef FAKE_GPIOD_H
 #define FAKE_GPIOD_H
 

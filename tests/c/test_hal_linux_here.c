@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * With the real libgpiod on the machine that runs the test: it needs no chip, and touches no line where there is one. */
+ * With the real libgpiod on the machine that runs the test: it needs no chip, and touches no line where there is one.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

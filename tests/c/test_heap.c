@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The malloc trap: the heap is touched in open and close only. The program brings its own malloc and its family, which the
- * C library calls too, and counts the calls while the trap is armed. */
+ * The malloc trap: the heap is touched in open and close only. The program brings its own malloc and its family, which
+ * the C library calls too, and counts the calls while the trap is armed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

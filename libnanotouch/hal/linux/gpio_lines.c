@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which GPIO lines this machine has. Chips are /dev/gpiochip0, 1, ...; numbers may have gaps, a chip may vanish while we
- * look, and a chip that we may not open counts as absent: the list is for people and for finding lines by name. */
+ * Which GPIO lines this machine has. Chips are /dev/gpiochip0, 1, ...; numbers may have gaps, a chip may vanish while
+ * we look, and a chip that we may not open counts as absent: the list is for people and for finding lines by name. */
 #include "nanotouch/hal_linux.h"
 
 #include <gpiod.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The safety lines on libgpiod 2 (kernel uAPI v2: edges carry sequence numbers, so that lost ones are noticed; version 1
- * loses them silently). Each line is a request of its own: lines may sit on different chips, and one may be lost alone. */
+ * The safety lines on libgpiod 2 (kernel uAPI v2: edges carry sequence numbers, so that lost ones are noticed; version
+ * 1 loses them silently). Each line is a request of its own: lines may sit on different chips, and one may be lost
+ * alone. */
 #include <errno.h>
 #include <gpiod.h>
 #include <stdarg.h>
@@ -17,9 +18,9 @@ enum { EVENTS_MAX = 64 }; /* the kernel's own limit for a request is 16 a line u
 typedef struct input {
     struct gpiod_line_request *request; /* NULL: not wired */
     unsigned offset;
-    unsigned long seqno;  /* of the last edge seen; the kernel counts from 1 */
+    unsigned long seqno; /* of the last edge seen; the kernel counts from 1 */
     uint64_t lost_events;
-    int gone;             /* could not be read once: pressed for good */
+    int gone; /* could not be read once: pressed for good */
 } input;
 
 struct nt_gpio {
@@ -130,7 +131,8 @@ static nt_status take_lines(nt_gpio *gpio, const nt_gpio_wiring *wiring, const r
 
 /* --- inputs --- */
 
-/* Takes the edges that wait. Returns 1 if the input was pressed meanwhile (an edge down, or lost ones), -1 if it is gone. */
+/* Takes the edges that wait. Returns 1 if the input was pressed meanwhile (an edge down, or lost ones), -1 if it is
+ * gone. */
 static int take_edges(input *in, struct gpiod_edge_event_buffer *events)
 {
     int pressed = 0;
@@ -208,7 +210,8 @@ nt_status nt_gpio_read(nt_gpio *gpio, nt_gpio_state *state)
     input *stop = &gpio->emergency_stop, *limit = &gpio->limit_switch;
     const int stopped = read_input(stop, gpio->events);
     const int limited = read_input(limit, gpio->events);
-    state->flags = (stopped ? (uint32_t)NT_SAMPLE_EMERGENCY_STOP : 0u) | (limited ? (uint32_t)NT_SAMPLE_LIMIT_SWITCH : 0u);
+    state->flags =
+        (stopped ? (uint32_t)NT_SAMPLE_EMERGENCY_STOP : 0u) | (limited ? (uint32_t)NT_SAMPLE_LIMIT_SWITCH : 0u);
     state->lost_events = stop->lost_events + limit->lost_events;
     return stop->gone || limit->gone ? NT_E_DEVICE : NT_OK;
 }

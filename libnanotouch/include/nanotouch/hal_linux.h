@@ -43,7 +43,8 @@ NT_API nt_gpio_wiring nt_gpio_wiring_defaults(void);
 typedef struct nt_gpio nt_gpio;
 
 /* Takes the lines: inputs with pull-down and edge detection, the laser off. On failure (NT_E_ARGUMENT, NT_E_DEVICE,
- * NT_E_NO_MEMORY) nothing is held, and the reason is in `reason` (size bytes, always ended by 0; NULL with 0 allowed). */
+ * NT_E_NO_MEMORY) nothing is held, and the reason is in `reason` (size bytes, always ended by 0; NULL with 0 allowed).
+ */
 NT_API nt_status nt_gpio_open(const nt_gpio_wiring *wiring, char *reason, unsigned size, nt_gpio **gpio);
 /* Switches the laser off and gives the lines back. NULL is allowed. */
 NT_API void nt_gpio_close(nt_gpio *gpio);
@@ -53,8 +54,8 @@ typedef struct nt_gpio_state {
     uint32_t flags;       /* NT_SAMPLE_EMERGENCY_STOP, NT_SAMPLE_LIMIT_SWITCH (types.h) */
     uint64_t lost_events; /* edges that the kernel dropped since open [-]; each counts as pressed when it is seen */
 } nt_gpio_state;
-/* A press shorter than the time between two calls is seen. Unlike elsewhere *state is written on failure too: when a line
- * cannot be read (NT_E_DEVICE: chip gone) its flag is set, now and for good. */
+/* A press shorter than the time between two calls is seen. Unlike elsewhere *state is written on failure too: when a
+ * line cannot be read (NT_E_DEVICE: chip gone) its flag is set, now and for good. */
 NT_API nt_status nt_gpio_read(nt_gpio *gpio, nt_gpio_state *state);
 /* Switches the laser. NT_E_STATE if no laser line was wired, NT_E_DEVICE if the line is gone. */
 NT_API nt_status nt_gpio_laser(nt_gpio *gpio, int on);
