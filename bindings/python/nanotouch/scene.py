@@ -22,7 +22,7 @@ class Scene(Description, core_type=_core.Scene):
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Self:
         """The scene of a TOML file; see :func:`read_toml`."""
-        return cls.from_tables(_tables(path))
+        return cls.from_tables(read_tables(path))
 
     def plan(self, rtol: float = 0.01, atol: float = 0.0, maximum_load: float = 2.2e-6) -> Plan:
         """Decide what has to be computed.
@@ -45,7 +45,7 @@ class Rig(Description, core_type=_core.Rig):
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Self:
         """The rig of a TOML file; see :func:`read_toml`."""
-        return cls.from_tables(_tables(path))
+        return cls.from_tables(read_tables(path))
 
 
 class Settings(Description, core_type=_core.Settings):
@@ -62,20 +62,21 @@ class Settings(Description, core_type=_core.Settings):
     def from_toml(cls, path: str | os.PathLike[str], rig: Rig) -> Self:
         """The settings of a TOML file over those that follow the rig; see :func:`read_toml`."""
         made = cls.for_rig(rig)
-        made.update_from_tables(_tables(path))
+        made.update_from_tables(read_tables(path))
         return made
 
 
 def read_toml(path: str | os.PathLike[str]) -> tuple[Scene, Rig, Settings]:
     """Scene, rig and settings of one TOML file; what it does not name keeps its default."""
-    tables = _tables(path)
+    tables = read_tables(path)
     rig = Rig.from_tables(tables)
     settings = Settings.for_rig(rig)
     settings.update_from_tables(tables)
     return Scene.from_tables(tables), rig, settings
 
 
-def _tables(path: str | os.PathLike[str]) -> dict[str, Any]:
+def read_tables(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The tables of a TOML file for scene, rig and settings; an unknown section is refused."""
     try:
         with open(path, "rb") as file:
             tables = tomllib.load(file)

@@ -100,7 +100,8 @@ class Session:
         self.clearance = clearance
         self.path = _checked_path(mode, path, surface)
         heights = self.path_heights()[1]
-        self.settings = settings or settings_for_path(self.rig, float(np.ptp(heights)), clearance)
+        self.relief = float(np.ptp(heights))
+        self.settings = settings or settings_for_path(self.rig, self.relief, clearance)
         options = {
             "topography": mode == "topography", "x": self.path[0][0], "y": self.path[0][1], "clearance": clearance,
             "rise": float(heights.max() - heights[0]), "seed": seed, "minimum_margin": minimum_margin, "relative_accuracy": rtol,

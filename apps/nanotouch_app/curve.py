@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch curve``: compute and plot a force-distance curve for Hertz, DMT, JKR and Maugis-Dugdale."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+import numpy as np
+
+import nanotouch as nt
+from nanotouch import plots
+from nanotouch.contact import MODELS, Contact, evaluate, pull_off_force
+from nanotouch.record import write_csv
+from nanotouch_app import output
+
+TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale"}
+POINTS = 2001
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser("curve", help="compute a force-distance curve", description=__doc__)
+    parser.add_argument("--scene", metavar="FILE", help="TOML file with the scene (default: silicon in humid air)")
+    parser.add_argument("--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    scene = nt.Scene.from_toml(args.scene) if args.scene else nt.Scene()
+    plan = scene.plan()
+    print(plan)
+    facts = plan.explain()
+    contact = Contact(
+        facts["radius"], facts["effective_modulus"], facts["work_of_adhesion"], facts["cohesive_stress"] or None
+    )
+    gap = _gaps(contact, facts)
+    curves = {TITLES[model]: (gap, evaluate(model, -gap, contact).F) for model in MODELS}
+    for model in MODELS:
+        print(f"{TITLES[model]:15} pull-off {pull_off_force(model, contact) * 1e9:.3f} nN")
+    out = output.folder(args.out)
+    columns = {"gap [m]": gap} | {f"{model} force [N]": curves[TITLES[model]][1] for model in MODELS}
+    write_csv(out / "curve.csv", columns, {"scene": str(scene)})
+    plots.force_curves(curves, save=out / "curve.png")
+    print(f"written to {out}/: curve.csv, curve.png")
+    return 0
+
+
+def _gaps(contact: Contact, facts: dict[str, Any]) -> Any:
+    """From beyond the last attraction to where the load is some times the pull-off force."""
+    far = 1.5 * max(facts["release_gap"], facts["capture_gap"])
+    load = 3.0 * pull_off_force("dmt", contact) or 1e-9
+    deep = float(nt.contact.indentation("dmt", load, contact))
+    return np.linspace(max(far, 0.3 * deep), -deep, POINTS)

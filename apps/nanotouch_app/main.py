@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ``nanotouch`` command: one file per sub-command. Errors end with one sentence and exit status 2."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+import nanotouch as nt
+
+COMMANDS = ("touch", "info", "curve", "fit", "export", "doctor")
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser with every sub-command."""
+    parser = argparse.ArgumentParser(
+        prog="nanotouch", description="Touch nanoscale surfaces: feel, model and measure the forces at an AFM tip."
+    )
+    parser.add_argument("--version", action="version", version=f"nanotouch {nt.__version__}")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command in COMMANDS:
+        importlib.import_module(f"nanotouch_app.{command}").add_parser(subparsers)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit status."""
+    args = build_parser().parse_args(arguments)
+    try:
+        return int(importlib.import_module(f"nanotouch_app.{args.command}").run(args))
+    except nt.Error as error:
+        print(f"nanotouch {args.command}: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        return 0
+    except KeyboardInterrupt:
+        print("nanotouch: stopped", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())
