@@ -46,9 +46,10 @@ static place place_at(walk *w, double z)
     return (place){z, w->way * (value.F - w->stiffness * (z - w->base)), w->stiffness + value.k};
 }
 
+/* A slope of minus infinity is allowed: the end of JKR's branch at fixed displacement. */
 static int place_is_finite(const place *p)
 {
-    return isfinite(p->drive) && isfinite(p->slope);
+    return isfinite(p->drive) && p->slope < HUGE_VAL;
 }
 
 static void commit(const walk *w, double z)

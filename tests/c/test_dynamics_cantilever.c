@@ -327,6 +327,31 @@ static void usual_tick_takes_few_evaluations(void **state)
     }
 }
 
+/* A branch that ends with a vertical tangent, k = -infinity, as JKR's does; the tip starts exactly on its end. */
+static nt_law_value branch_eval(void *context, double z)
+{
+    const double end = *(const double *)context, depth = end - z;
+    if (depth < 0.0)
+        return (nt_law_value){.F = 0.0};
+    return (nt_law_value){.F = -1e-4 * sqrt(depth) + 100.0 * depth, .k = -0.5e-4 / sqrt(depth) + 100.0};
+}
+
+static void branch_may_end_with_a_vertical_tangent(void **state)
+{
+    (void)state;
+    double end = 1e-9;
+    const nt_probe probe = probe_of(8.0);
+    const nt_force_field field = {branch_eval, NULL, &end, 1e-10};
+    nt_cantilever_state now = nt_cantilever_at(end);
+    assert_int_equal(nt_cantilever_settle(&now, &probe, &field, end - 1e-12, NULL), NT_OK);
+    /* 108 d - 1e-4 sqrt(d) - 8e-12 = 0 in d = end - z: a quadratic in its root. */
+    const double root = (1e-4 + sqrt(1e-8 + 4.0 * 108.0 * 8e-12)) / 216.0;
+    assert_true(fabs((end - now.tip_height) / (root * root) - 1.0) < 1e-9);
+    now = nt_cantilever_at(end);
+    assert_int_equal(nt_cantilever_settle(&now, &probe, &field, end + 1e-9, NULL), NT_OK);
+    assert_true(fabs(now.tip_height - (end + 1e-9)) < 1e-21);
+}
+
 static nt_law_value nan_eval(void *context, double z)
 {
     (void)context;
@@ -389,6 +414,7 @@ int main(void)
         cmocka_unit_test(long_way_equals_many_steps),
         cmocka_unit_test(random_moves_land_at_the_first_equilibrium),
         cmocka_unit_test(usual_tick_takes_few_evaluations),
+        cmocka_unit_test(branch_may_end_with_a_vertical_tangent),
         cmocka_unit_test(nan_is_reported),
         cmocka_unit_test(work_is_bounded),
         cmocka_unit_test(refuses_nonsense),
