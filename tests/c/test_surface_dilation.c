@@ -63,7 +63,7 @@ static void agrees_with_brute_force(void **state)
                          (nt_random_uniform(&random) < 0.002 ? 200e-9 * nt_random_uniform(&random) : 0.0);
         dilate(heights, &shapes[n], dilated);
         for (int j = 0; j < NY; j += 10)
-            for (int i = 0; i < NX; i++) {
+            for (int i = j % 3; i < NX; i += 3) {
                 double apex = -1.0;
                 for (int q = 0; q < NY; q++)
                     for (int p = 0; p < NX; p++) {
