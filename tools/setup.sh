@@ -86,17 +86,18 @@ fetch_libgpiod() {
 # --- the package -----------------------------------------------------------------------------------------------------
 hash_of() { find "$@" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1; }
 
-# Runs the rest of the arguments unless the stamp file already holds the key.
-once_for() {
-  stamp=.venv/stamp-$1 key=$2
-  shift 2
-  [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$key" ] || return 0
-  "$@"
-  echo "$key" >"$stamp"
+# has_stamp KEY NAME...: one of these stamp files holds the key.
+has_stamp() {
+  wanted=$1
+  shift
+  for name in "$@"; do
+    [ ! -f ".venv/stamp-$name" ] || [ "$(cat ".venv/stamp-$name")" != "$wanted" ] || return 0
+  done
+  return 1
 }
 
 install_dependencies() {
-  say "Installing the Python packages (about 340 MB, once)"
+  say "Installing the Python packages that are missing (about 340 MB at first)"
   .venv/bin/python tools/requirements.py "$extras" >build/requirements.txt
   pip install -q -r build/requirements.txt
 }
@@ -110,5 +111,16 @@ install_packages
 make_venv
 mkdir -p build
 fetch_libgpiod
-once_for "dependencies-$profile" "$(hash_of pyproject.toml)" install_dependencies
-once_for package "$(hash_of CMakeLists.txt pyproject.toml cmake libnanotouch bindings apps/nanotouch_app)" install_package
+
+# lint's packages include test's, and test's include demo's.
+key=$(hash_of pyproject.toml)
+case $profile in demo) stamps="demo test lint" ;; test) stamps="test lint" ;; *) stamps=$profile ;; esac
+if ! has_stamp "$key" $stamps; then
+  install_dependencies
+  echo "$key" >".venv/stamp-$profile"
+fi
+key=$(hash_of CMakeLists.txt pyproject.toml cmake libnanotouch bindings apps/nanotouch_app)
+if ! has_stamp "$key" package; then
+  install_package
+  echo "$key" >.venv/stamp-package
+fi
