@@ -8,8 +8,8 @@
  *
  *     d - d_f = v^2 (v^2 + 4 s_f v + 6 s_f^2)                                                       (fold)
  *
- * exactly, so that Z = sqrt(d - d_f) is found from v without cancellation and v from Z by Newton's method, on the stable
- * branch (v > 0) and on the unstable one (-s_f < v < 0) alike. */
+ * exactly, so that Z = sqrt(d - d_f) is found from v without cancellation and v from Z by Newton's method, on the
+ * stable branch (v > 0) and on the unstable one (-s_f < v < 0) alike. */
 #include "nanotouch/contact.h"
 
 #include <float.h>
@@ -24,8 +24,8 @@
 
 enum { MAX_ITERATIONS = 60 };
 
-/* v at a reduced indentation d >= d_f: v sqrt(v^2 + 4 s_f v + 6 s_f^2) = +-Z (fold). The left side is concave-convex but
- * monotone on both branches; Newton starts from the root of its tangent at the fold, corrected for large Z. */
+/* v at a reduced indentation d >= d_f: v sqrt(v^2 + 4 s_f v + 6 s_f^2) = +-Z (fold). The left side is monotone on both
+ * branches; Newton starts from the root of its tangent at the fold, corrected for large Z. */
 static double solve_v(double d, int stable)
 {
     const double Z = sqrt(fmax(d - FOLD_D, 0.0)), target = stable ? Z : -Z;
@@ -46,7 +46,8 @@ static nt_law_value eval_reduced(double d, int stable)
 {
     const double v = solve_v(d, stable), s = FOLD_S + v;
     const double a = s * s, s3 = a * s, a3 = s3 * s3;
-    const double slope_d = 4.0 * v * (a + s * FOLD_S + FOLD_S * FOLD_S); /* d(d)/ds */
+    const double off_fold = copysign(fmax(fabs(v), NT_FOLD_RESOLUTION * FOLD_S), stable ? 1.0 : -1.0);
+    const double slope_d = 4.0 * off_fold * (a + s * FOLD_S + FOLD_S * FOLD_S); /* d(d)/ds */
     return (nt_law_value){
         .U = 0.75 * (d * d * a - 2.0 / 3.0 * d * a3 + 0.2 * a3 * a * a) - a * a,
         .F = a3 - SQRT_6 * s3,
@@ -57,6 +58,8 @@ static nt_law_value eval_reduced(double d, int stable)
 
 nt_status nt_jkr_eval(const nt_contact *contact, double indentation, nt_branch branch, nt_law_value *value)
 {
+    if (!nt_branch_is_known(branch))
+        return NT_E_ARGUMENT;
     if (!isfinite(indentation))
         return NT_E_NOT_FINITE;
     const int unstable = branch == NT_BRANCH_UNSTABLE;
@@ -79,6 +82,8 @@ nt_status nt_jkr_eval(const nt_contact *contact, double indentation, nt_branch b
 
 nt_status nt_jkr_indentation(const nt_contact *contact, double force, nt_branch branch, double *indentation)
 {
+    if (!nt_branch_is_known(branch))
+        return NT_E_ARGUMENT;
     if (!isfinite(force))
         return NT_E_NOT_FINITE;
     const int unstable = branch == NT_BRANCH_UNSTABLE;

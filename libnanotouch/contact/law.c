@@ -3,11 +3,12 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "nanotouch/contact.h"
+#include "contact/reduced.h"
 #include "nanotouch/field.h"
 #include "nanotouch/material.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) {#path, unit, minimum, maximum, (unsigned)offsetof(nt_contact, path), doc}
+#define FIELD(path, unit, minimum, maximum, doc) \
+    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_contact, path), doc}
 
 static const nt_field contact_fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),
@@ -72,6 +73,8 @@ nt_status nt_contact_law_init(nt_contact_law *law, nt_model model, const nt_cont
 nt_status nt_contact_law_eval(const nt_contact_law *law, double indentation, nt_branch branch, nt_law_value *value)
 {
     const nt_contact *contact = &law->maugis.contact;
+    if (!nt_branch_is_known(branch))
+        return NT_E_ARGUMENT;
     if (!isfinite(indentation))
         return NT_E_NOT_FINITE;
     switch (law->model) {

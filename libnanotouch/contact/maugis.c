@@ -3,8 +3,8 @@
  * radius R on an elastic half-space, attracted by a constant stress sigma0 wherever the gap is below h0 = w/sigma0. One
  * parameter, lambda = 2 sigma0 (R/(pi w K^2))^(1/3), leads from DMT (0) to JKR (infinity). Valid for a << R.
  *
- * The contact branch is that of maugis_branch.c. At its end, a = 0, the surfaces part but remain inside the range of the
- * stress over a disc of radius c; there, in reduced units,
+ * The contact branch is that of maugis_branch.c. At its end, a = 0, the surfaces part but remain inside the range of
+ * the stress over a disc of radius c; there, in reduced units,
  *
  *     d = c^2/2 - 8 lambda c/(3 pi) - 2/(pi lambda)       P = -pi/2 lambda c^2                     (non-contact)
  *     U = -pi/8 lambda c^4 + 4/9 lambda^2 c^3
@@ -42,7 +42,7 @@ static nt_law_value non_contact_eval(const nt_maugis *maugis, double d, int stab
     return (nt_law_value){
         .U = lambda * c * c * c * (4.0 / 9.0 * lambda - NT_PI / 8.0 * c),
         .F = P,
-        .k = (stable ? -NT_PI : NT_PI) * lambda * c / root,
+        .k = (stable ? -NT_PI : NT_PI) * lambda * c / fmax(root, NT_FOLD_RESOLUTION * sqrt(fabs(d))),
     };
 }
 
@@ -54,8 +54,16 @@ static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_
     const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
     if (status != NT_OK)
         return status;
-    const double k = point.P1 / point.d1;
-    *reduced = (nt_law_value){nt_maugis_equilibrium_energy(maugis->lambda, &point), point.P, k, point.a};
+    nt_maugis_equilibrium slope = point;
+    const double resolution = (stable ? NT_FOLD_RESOLUTION : -NT_FOLD_RESOLUTION) * fold.y;
+    if (fabs(point.y - fold.y) < fabs(resolution))
+        nt_maugis_equilibrium_at(maugis->lambda, fold.y + resolution, &slope);
+    *reduced = (nt_law_value){
+        .U = nt_maugis_equilibrium_energy(maugis->lambda, &point),
+        .F = point.P,
+        .k = slope.P1 / slope.d1,
+        .a = point.a,
+    };
     return NT_OK;
 }
 
@@ -151,6 +159,8 @@ nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch 
     const int stable = branch != NT_BRANCH_UNSTABLE;
     if (info != NULL)
         *info = (nt_solve_info){0};
+    if (!nt_branch_is_known(branch))
+        return NT_E_ARGUMENT;
     if (!isfinite(indentation))
         return NT_E_NOT_FINITE;
     if (maugis->load_scale == 0.0 || indentation > NT_REDUCED_HERTZ * maugis->indentation_scale)
@@ -186,6 +196,8 @@ nt_status nt_maugis_indentation(const nt_maugis *maugis, double force, nt_branch
     const int unstable = branch == NT_BRANCH_UNSTABLE;
     if (info != NULL)
         *info = (nt_solve_info){0};
+    if (!nt_branch_is_known(branch))
+        return NT_E_ARGUMENT;
     if (!isfinite(force))
         return NT_E_NOT_FINITE;
     if (force < -nt_maugis_pull_off_force(maugis) || (unstable && force >= 0.0))

@@ -3,8 +3,8 @@
  *
  * Load and indentation turn round at their folds, where dP/dy or dd/dy vanishes and Newton's method on P or d crawls.
  * Z = sqrt(d - d_fold) goes straight through the fold, and above it d(y) is convex: Newton on Z needs about five
- * evaluations anywhere. On the part below the fold Z is smooth in y^2, because d and P are even in y to leading order at
- * y = 0. A bracket is kept throughout, so that convergence does not rest on convexity, which is measured, not proved. */
+ * evaluations anywhere. On the part below the fold Z is smooth in y^2, because d and P are even in y to leading order
+ * at y = 0. A bracket is kept throughout: convergence does not rest on convexity, which is measured, not proved. */
 #include "contact/maugis_solve.h"
 
 #include <float.h>
@@ -14,6 +14,9 @@
 #include "core/roots.h"
 
 enum { MAX_ITERATIONS = 100 };
+
+/* Residuals below this, relative to the larger term of d or P, are rounding: no improvement there ends it. */
+#define FLOOR (64.0 * DBL_EPSILON)
 
 typedef struct {
     double lambda;
@@ -52,13 +55,25 @@ static double guess_above(double lambda, const nt_maugis_goal *goal, double Z)
     return nt_maugis_parameter_guess(lambda, goal->given == NT_GIVEN_LOAD ? radius * radius : a_fold + Z);
 }
 
-/* The next y: Newton on Z, in y above and in y^2 below the fold; bisection where that leaves the bracket. */
-static double next_y(const nt_maugis_goal *goal, const nt_maugis_equilibrium *point, const double bracket[2], double dZ2)
+/* Start below the fold: Z falls about linearly in y^2 from the end of the branch at y = 0 to the fold. */
+static double guess_below(double lambda, const nt_maugis_goal *goal, double Z)
+{
+    nt_maugis_equilibrium end;
+    nt_maugis_equilibrium_at(lambda, 0.0, &end);
+    const double reach = goal->given == NT_GIVEN_LOAD ? end.P - goal->fold->P : end.d - goal->fold->d;
+    return goal->fold->y * sqrt(fmax(1.0 - Z / sqrt(fmax(reach, 0.0)), 0.0));
+}
+
+/* Newton's next y for a change of Z^2: in y above the fold, in y^2 below it. */
+static double newton_y(const nt_maugis_goal *goal, const nt_maugis_equilibrium *point, double dZ2)
 {
     const double y = point->y, slope = goal->given == NT_GIVEN_LOAD ? point->P1 : point->d1;
-    const double next = goal->below ? sqrt(y * y + 2.0 * dZ2 / slope) : y + dZ2 / (slope * y);
-    if (next > bracket[0] && next < bracket[1])
-        return next;
+    return goal->below ? sqrt(y * y + 2.0 * dZ2 / slope) : y + dZ2 / (slope * y);
+}
+
+/* Where Newton leaves the bracket: its geometric middle. */
+static double bisected_y(double y, const double bracket[2])
+{
     if (isinf(bracket[1]))
         return 4.0 * y;
     return bracket[0] > 0.0 ? sqrt(bracket[0]) * sqrt(bracket[1]) : 0.5 * bracket[1];
@@ -71,25 +86,30 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
     const double fold = load ? goal->fold->P : goal->fold->d, y_fold = goal->fold->y;
     const double Z = sqrt(fmax(goal->target - fold, 0.0));
     double bracket[2] = {goal->below ? 0.0 : y_fold, goal->below ? y_fold : HUGE_VAL};
-    double y = Z == 0.0 ? y_fold : goal->below ? 0.5 * y_fold : fmax(guess_above(lambda, goal, Z), y_fold * 1.000001);
-    double best = INFINITY;
+    double y = y_fold;
+    if (Z > 0.0)
+        y = goal->below ? guess_below(lambda, goal, Z) : fmax(guess_above(lambda, goal, Z), 1.000001 * y_fold);
+    double best = HUGE_VAL, scale = 1.0;
     for (int i = 1; i <= MAX_ITERATIONS; i++) {
         nt_maugis_equilibrium here;
         nt_maugis_equilibrium_at(lambda, y, &here);
         const double value = load ? here.P : here.d, residual = value - goal->target;
-        const double scale = load ? 2.0 * here.a * here.a * here.a - here.P : 2.0 * here.a * here.a - here.d;
-        const int stalled = fabs(residual) >= best && best <= 64.0 * DBL_EPSILON * scale;
+        const int stalled = fabs(residual) >= best && best <= FLOOR * scale;
         if (fabs(residual) < best) {
             best = fabs(residual);
+            scale = load ? 2.0 * here.a * here.a * here.a - here.P : 2.0 * here.a * here.a - here.d;
             *point = here;
         }
-        const double Z_here = sqrt(fmax(value - fold, 0.0));
         bracket[(residual > 0.0) != goal->below] = y;
-        const double next = next_y(goal, &here, bracket, -residual / (Z_here + Z) * 2.0 * Z_here);
+        const double Z_here = sqrt(fmax(value - fold, 0.0));
+        double next = newton_y(goal, &here, -residual / (Z_here + Z) * 2.0 * Z_here);
+        const int resolved = best <= FLOOR * scale && fabs(next - y) <= DBL_EPSILON * y;
         if (info != NULL)
             *info = (nt_solve_info){i, best / scale};
-        if (best <= 0.5 * DBL_EPSILON * scale || stalled || next == y || Z == 0.0)
+        if (best <= 0.5 * DBL_EPSILON * scale || stalled || resolved || Z == 0.0)
             return NT_OK;
+        if (!(next > bracket[0] && next < bracket[1]))
+            next = bisected_y(y, bracket);
         y = next;
     }
     return NT_E_NO_CONVERGENCE;

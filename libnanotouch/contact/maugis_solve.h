@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Inverting the contact branch of Maugis-Dugdale: its folds, and its point at an indentation or load; private to contact/. */
+ * Inverting the contact branch of Maugis-Dugdale: its folds, its point at an indentation or load; private. */
 #ifndef NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 #define NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 

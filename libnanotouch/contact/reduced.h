@@ -6,9 +6,19 @@
 
 #include "nanotouch/contact.h"
 
-/* Beyond this reduced indentation the adhesive correction to Hertz is below the last bit for every lambda: it is at most
- * of the order d^(-3/4), JKR's. Never reached with w > 0 in practice; it is what makes w -> 0 Hertz exactly. */
+/* Beyond this reduced indentation the adhesive correction to Hertz is below the last bit for every lambda, at most of
+ * the order d^(-3/4), JKR's. Hardly reached with w > 0; it is what makes w -> 0 Hertz exactly. */
 #define NT_REDUCED_HERTZ 1e26
+
+/* At a displacement fold the stiffness is infinite. It is reported at the distance from it that a double can still
+ * tell, sqrt(2^-52) relative in the branch parameter, and so is finite and of the right sign. */
+#define NT_FOLD_RESOLUTION 1.5e-8
+
+/* 0 for what is no nt_branch. */
+static inline int nt_branch_is_known(nt_branch branch)
+{
+    return branch == NT_BRANCH_STABLE || branch == NT_BRANCH_APPROACH || branch == NT_BRANCH_UNSTABLE;
+}
 
 typedef struct nt_reduced_units {
     double load, radius, indentation; /* [N], [m], [m] */

@@ -7,8 +7,8 @@
 
 typedef double nt_scalar_function(double x, const void *context);
 
-/* The root of f between lo and hi, where f changes sign, to the last bits of x (Chandrupatla 1997: inverse quadratic steps
- * where they are safe, bisection where not). f must be finite at both ends. NT_E_RANGE if the signs agree,
+/* The root of f in a bracket where f changes sign, to the last bits of x (Chandrupatla 1997: inverse quadratic steps
+ * where they are safe, bisection where not). NT_E_NOT_FINITE if f is not finite there, NT_E_RANGE if the signs agree,
  * NT_E_NO_CONVERGENCE after 200 evaluations. info may be NULL. Real-time safe. */
 nt_status nt_root_find(nt_scalar_function *f, const void *context, const double bracket[2], double *root,
                        nt_solve_info *info);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Van der Waals attraction of a sphere and a half-space (Hamaker 1937; paper, Eq. 1), pairwise additive and not retarded.
+ * Van der Waals attraction of a sphere and a half-space (Hamaker 1937; paper, Eq. 1): pairwise additive, not retarded.
  * The paper's H R/(6 s^2) is its limit for s << R (erratum E1); its roughness factor (s0/(s0 + b/2))^2 with s0 the gap
  * is the shift s = s0 + b/2, which stays finite at contact (erratum E2). */
 #include <math.h>

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/status.h"
+
+static void every_status_has_its_own_message(void **state)
+{
+    (void)state;
+    for (int i = NT_OK; i <= NT_E_UNSUPPORTED; i++)
+        for (int j = NT_OK; j < i; j++)
+            assert_string_not_equal(nt_status_message((nt_status)i), nt_status_message((nt_status)j));
+    assert_string_equal(nt_status_message(NT_OK), "no error");
+}
+
+static void unknown_status_has_a_message(void **state)
+{
+    (void)state;
+    assert_string_equal(nt_status_message((nt_status)(NT_E_UNSUPPORTED + 1)), "unknown status");
+    assert_string_equal(nt_status_message((nt_status)(-1)), "unknown status");
+}
+
+static void problem_reads_as_a_sentence(void **state)
+{
+    (void)state;
+    const nt_problem problem = {"tip.radius", "m", 20.0, 1e-10, 1e-3};
+    char text[100];
+    assert_ptr_equal(nt_problem_print(&problem, text, sizeof text), text);
+    assert_string_equal(text, "tip.radius = 20 m: valid is 1e-10 .. 0.001 m");
+}
+
+static void problem_without_unit(void **state)
+{
+    (void)state;
+    const nt_problem problem = {"quality", "", -1.0, 0.05, 1e6}, bare = {.value = 1.0, .maximum = 2.0};
+    char text[100];
+    assert_string_equal(nt_problem_print(&problem, text, sizeof text), "quality = -1: valid is 0.05 .. 1e+06");
+    assert_string_equal(nt_problem_print(&bare, text, sizeof text), "? = 1: valid is 0 .. 2");
+}
+
+static void short_text_is_cut_and_ended(void **state)
+{
+    (void)state;
+    const nt_problem problem = {"tip.radius", "m", 20.0, 1e-10, 1e-3};
+    char text[12];
+    memset(text, 'x', sizeof text);
+    nt_problem_print(&problem, text, 6);
+    assert_string_equal(text, "tip.r");
+    assert_int_equal(text[6], 'x'); /* nothing beyond the size */
+    nt_problem_print(&problem, text, 0);
+    assert_string_equal(text, "tip.r");
+    assert_null(nt_problem_print(&problem, NULL, 0));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_status_has_its_own_message), cmocka_unit_test(unknown_status_has_a_message),
+        cmocka_unit_test(problem_reads_as_a_sentence),      cmocka_unit_test(problem_without_unit),
+        cmocka_unit_test(short_text_is_cut_and_ended),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
