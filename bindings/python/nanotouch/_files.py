@@ -51,4 +51,6 @@ def guarded(file: Path, reader: str) -> Iterator[None]:
         raise
     except BaseException as error:
         said = " ".join(str(error).split()) or type(error).__name__
+        if isinstance(error, KeyError):  # which says no more than the key
+            said = f"it lacks {said}"
         raise ReadError(f"{file}: {reader} cannot read it: {said[:200]}") from error

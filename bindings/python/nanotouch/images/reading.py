@@ -35,6 +35,8 @@ _LENGTHS = {
 _HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
 _OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "lateral", "potential", "current")
 _BACKWARD_NAMES = ("retrace", "backward", "reverse")
+#: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
+_CREDULOUS = ("hgt", "nms")
 
 
 @dataclass(frozen=True)
@@ -145,9 +147,12 @@ def _opened(file: Path) -> Any:
     with guarded(file, "SurfaceTopography"):
         io: ModuleType = require("SurfaceTopography.IO", "images")
         try:
-            return io.open_topography(str(file))
+            reader = io.open_topography(str(file))
         except io.CannotDetectFileFormat:
-            raise ReadError(f"{file}: not an AFM image in any format that SurfaceTopography reads") from None
+            reader = None
+        if reader is None or reader.format() in _CREDULOUS:
+            raise ReadError(f"{file}: not an AFM image in any format that SurfaceTopography recognises by content")
+        return reader
 
 
 def _images_in(reader: Any, file: Path) -> list[Any]:
