@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The least-squares problem as Ceres sees it; private to fit/.
+#pragma once
+
+#include <ceres/ceres.h>
+
+#include <deque>
+#include <vector>
+
+#include "model.hpp"
+
+namespace nanotouch {
+
+// Free parameters as numbers of order one, all 0 at the start: value = start exp(x), or start + scale x.
+class Coordinates {
+public:
+    Coordinates(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start);
+    int size() const { return static_cast<int>(free_.size()); }
+    int parameter(int i) const { return free_[static_cast<std::size_t>(i)]; }
+    Parameters values(const double *x) const;
+    double inverse(int i, double value) const;
+    double slope(int i, const Parameters &value) const;  // d value/d x
+    double gradient_scale(int i) const;                  // what Model's gradient is multiplied by
+
+private:
+    std::vector<int> free_;
+    Parameters start_, scale_;
+};
+
+// Evaluates all residuals and derivatives together, once per point of the search: preparing a law costs more than using it.
+class Residuals : public ceres::EvaluationCallback {
+public:
+    Residuals(const nt_fit_options &options, const nt_fit_data &data, const Coordinates &coordinates);
+    void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+
+    double *x() { return x_.data(); }
+    bool valid() const { return valid_; }
+    long count() const { return count_; }       // of residuals
+    long data_count() const { return data_.count; }  // the first of them; the rest are measured pull-off and calibration
+    double unit() const { return unit_; }       // of the data's residuals [N]
+    double residual(long i) const { return residual_[static_cast<std::size_t>(i)]; }
+    const double *gradient(long i) const { return &gradient_[static_cast<std::size_t>(i * coordinates_.size())]; }
+    const Model &model() const { return model_; }
+    Parameters values() const { return coordinates_.values(x_.data()); }
+
+private:
+    bool evaluate();
+    void store(long i, double residual, const Point &point, double unit);
+
+    const nt_fit_options &options_;
+    const nt_fit_data &data_;
+    const Coordinates &coordinates_;
+    const double unit_;
+    const bool has_pull_off_, has_compliance_;
+    const long count_;
+    std::vector<double> x_, residual_, gradient_;
+    Model model_;
+    bool valid_ = false;
+};
+
+// One residual out of Residuals, so that the loss acts on each point.
+class Residual : public ceres::CostFunction {
+public:
+    Residual(const Residuals &all, long index, int parameters);
+    bool Evaluate(double const *const *, double *residuals, double **jacobians) const override;
+
+private:
+    const Residuals &all_;
+    const long index_;
+};
+
+}  // namespace nanotouch
