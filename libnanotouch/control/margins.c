@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How far the loop is from its stability limit (docs/control.md, rules R1, R4, R5).
  *
- * Loop gain kappa C(s)/(s (m s + b)), kappa = (1 + K_f) alpha_f alpha_p k_eff: two sampled hops (stage command and motor
- * force), each half a period of hold and d periods of delay, and the damped stage's lag 2 zeta/wn. */
+ * Loop gain kappa C(s)/(s (m s + b)), kappa = (1 + K_f) alpha_f alpha_p k_eff: two sampled hops (stage command and
+ * motor force), each half a period of hold and d periods of delay, and the damped stage's lag 2 zeta/wn. */
 #include <math.h>
 
 #include "nanotouch/control.h"
 #include "nanotouch/material.h"
 
-nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness) {
+nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+{
     const double k_c = rig->probe.spring_constant;
     const double k_eff = contact_stiffness * k_c / (contact_stiffness + k_c);
     const double T = 1.0 / gains->rate;
@@ -17,8 +18,8 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     const double slave_noise = reflected * nt_probe_force_noise(&rig->probe);
     /* the gauge's noise passes the low-pass, whose noise bandwidth is pi/2 times its cut-off */
     const double pass = fmin(1.0, NT_PI * gains->force_filter * T);
-    const double gauge_noise = gains->force_gain * sqrt(pass) *
-                               hypot(rig->master.gauge_noise, rig->master.gauge_resolution / sqrt(12.0));
+    const double gauge_noise =
+        gains->force_gain * sqrt(pass) * hypot(rig->master.gauge_noise, rig->master.gauge_resolution / sqrt(12.0));
     nt_margins margins = {
         .loop_stiffness = reflected * gains->alpha_p * k_eff,
         .loop_delay = 2.0 * (0.5 * T + gains->delay * T) + tau_stage,
@@ -31,7 +32,8 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     return margins;
 }
 
-double nt_margins_jury_limit(const nt_master *master, double period) {
+double nt_margins_jury_limit(const nt_master *master, double period)
+{
     const double m = master->mass;
     const double b = master->damping;
     const double x = b * period / m;

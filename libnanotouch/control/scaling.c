@@ -2,7 +2,8 @@
  * Scaling factors between hand and tip (paper, Sec. IV-C). */
 #include "nanotouch/control.h"
 
-nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction) {
+nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction)
+{
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
     nt_scaling scaling = {
         .alpha_p = slave_path / rig->master.travel,
@@ -11,12 +12,14 @@ nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double att
     return scaling;
 }
 
-nt_scaling nt_scaling_structure(double alpha_p) {
+nt_scaling nt_scaling_structure(double alpha_p)
+{
     nt_scaling scaling = {alpha_p, 1.0 / alpha_p};
     return scaling;
 }
 
-nt_scaling nt_scaling_surface(double alpha_p) {
+nt_scaling nt_scaling_surface(double alpha_p)
+{
     nt_scaling scaling = {alpha_p, 1.0 / (alpha_p * alpha_p)};
     return scaling;
 }

@@ -5,8 +5,8 @@
 
 #include "nanotouch/control.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) \
-    { #path, unit, minimum, maximum, (unsigned)offsetof(nt_settings, path), doc }
+#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
+    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_settings, path), doc}
 
 static const nt_field settings_fields[] = {
     FIELD(gains.rate, "Hz", 10.0, 1e6, "rate of the force loop"),
@@ -32,7 +32,8 @@ static const nt_field settings_fields[] = {
     FIELD(limits.follow_time, "s", 1e-4, 10.0, "the stage may be off for this long"),
 };
 
-nt_settings nt_settings_defaults(const nt_rig *rig) {
+nt_settings nt_settings_defaults(const nt_rig *rig)
+{
     const nt_scaling scaling = nt_scaling_heuristic(rig, 0.4e-6, 0.6e-6); /* L = 0.1 um, delta_max = 0.3 um; Eq. 21 */
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
     nt_settings settings = {
@@ -61,12 +62,14 @@ nt_settings nt_settings_defaults(const nt_rig *rig) {
     return settings;
 }
 
-const nt_field *nt_settings_fields(int *count) {
+const nt_field *nt_settings_fields(int *count)
+{
     *count = (int)(sizeof settings_fields / sizeof settings_fields[0]);
     return settings_fields;
 }
 
-nt_status nt_settings_check(const nt_settings *settings, nt_problem *problem) {
+nt_status nt_settings_check(const nt_settings *settings, nt_problem *problem)
+{
     int count = 0;
     const nt_field *fields = nt_settings_fields(&count);
     return nt_field_check(fields, count, settings, problem);

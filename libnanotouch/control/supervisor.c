@@ -9,32 +9,51 @@
 #define STALE_RETRACT_PERIODS 5.0
 #define STUCK_SAMPLES 200u
 
-const char *nt_reason_name(uint32_t reason) {
+const char *nt_reason_name(uint32_t reason)
+{
     switch (reason) {
-        case NT_REASON_INVALID: return "invalid sample";
-        case NT_REASON_SATURATED: return "deflection saturated";
-        case NT_REASON_FORCE_LIMIT: return "force limit";
-        case NT_REASON_STALE: return "stale sample";
-        case NT_REASON_STUCK: return "sensor stuck";
-        case NT_REASON_FOLLOW: return "stage does not follow";
-        case NT_REASON_UNSTABLE: return "loop unstable";
-        case NT_REASON_EMERGENCY_STOP: return "emergency stop";
-        case NT_REASON_LIMIT_SWITCH: return "limit switch";
-        case NT_REASON_OPERATOR_CLIPPED: return "operator force clipped";
-        case NT_REASON_COMMAND_LIMITED: return "command limited";
-        default: return "";
+    case NT_REASON_INVALID:
+        return "invalid sample";
+    case NT_REASON_SATURATED:
+        return "deflection saturated";
+    case NT_REASON_FORCE_LIMIT:
+        return "force limit";
+    case NT_REASON_STALE:
+        return "stale sample";
+    case NT_REASON_STUCK:
+        return "sensor stuck";
+    case NT_REASON_FOLLOW:
+        return "stage does not follow";
+    case NT_REASON_UNSTABLE:
+        return "loop unstable";
+    case NT_REASON_EMERGENCY_STOP:
+        return "emergency stop";
+    case NT_REASON_LIMIT_SWITCH:
+        return "limit switch";
+    case NT_REASON_OPERATOR_CLIPPED:
+        return "operator force clipped";
+    case NT_REASON_COMMAND_LIMITED:
+        return "command limited";
+    default:
+        return "";
     }
 }
 
-static nt_state worse(nt_state a, nt_state b) { return a > b ? a : b; }
+static nt_state worse(nt_state a, nt_state b)
+{
+    return a > b ? a : b;
+}
 
-static int is_valid(const nt_sample *sample) {
-    return !(sample->flags & NT_SAMPLE_INVALID) && isfinite(sample->master_position) && isfinite(sample->operator_force) &&
-           isfinite(sample->stage_position) && isfinite(sample->deflection) && isfinite(sample->age);
+static int is_valid(const nt_sample *sample)
+{
+    return !(sample->flags & NT_SAMPLE_INVALID) && isfinite(sample->master_position) &&
+           isfinite(sample->operator_force) && isfinite(sample->stage_position) && isfinite(sample->deflection) &&
+           isfinite(sample->age);
 }
 
 /* One bad sample: hold, reuse nothing; the second in a row: retract. Never "zero force". */
-static nt_state judge_validity(nt_supervisor_state *state, const nt_sample *sample) {
+static nt_state judge_validity(nt_supervisor_state *state, const nt_sample *sample)
+{
     if (is_valid(sample)) {
         state->invalid_run = 0;
         return NT_RUN;
@@ -43,7 +62,8 @@ static nt_state judge_validity(nt_supervisor_state *state, const nt_sample *samp
     return ++state->invalid_run > 1 ? NT_RETRACT : NT_HOLD;
 }
 
-static nt_state judge_force(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample) {
+static nt_state judge_force(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+{
     nt_state verdict = NT_RUN;
     if (fabs(sample->deflection) >= nt_probe_deflection_range(&touch->rig.probe)) {
         state->reasons |= NT_REASON_SATURATED;
@@ -53,47 +73,58 @@ static nt_state judge_force(const nt_touch *touch, nt_supervisor_state *state, c
         state->reasons |= NT_REASON_FORCE_LIMIT;
         verdict = NT_RETRACT;
     }
-    if (fabs(sample->operator_force) >= touch->rig.master.gauge_range) state->reasons |= NT_REASON_OPERATOR_CLIPPED;
+    if (fabs(sample->operator_force) >= touch->rig.master.gauge_range)
+        state->reasons |= NT_REASON_OPERATOR_CLIPPED;
     return verdict;
 }
 
-static nt_state judge_age(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample) {
-    if (sample->age <= STALE_HOLD_PERIODS * touch->period) return NT_RUN;
+static nt_state judge_age(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+{
+    if (sample->age <= STALE_HOLD_PERIODS * touch->period)
+        return NT_RUN;
     state->reasons |= NT_REASON_STALE;
     return sample->age > STALE_RETRACT_PERIODS * touch->period ? NT_RETRACT : NT_HOLD;
 }
 
 /* A live sensor shows its noise: identical codes while z moves mean that it is dead. Needs noise above one step. */
-static nt_state judge_stuck(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample) {
+static nt_state judge_stuck(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+{
     const nt_probe *probe = &touch->rig.probe;
-    if (!(probe->noise > 6.0 * probe->resolution)) return NT_RUN;
+    if (!(probe->noise > 6.0 * probe->resolution))
+        return NT_RUN;
     if (sample->deflection != state->stuck_deflection) {
         state->stuck_deflection = sample->deflection;
         state->stuck_position = sample->stage_position;
         state->stuck_run = 0;
         return NT_RUN;
     }
-    if (state->stuck_run <= 2u * STUCK_SAMPLES) ++state->stuck_run;
+    if (state->stuck_run <= 2u * STUCK_SAMPLES)
+        ++state->stuck_run;
     const double moved = fabs(sample->stage_position - state->stuck_position);
-    if (state->stuck_run < STUCK_SAMPLES || moved <= 5.0 * touch->rig.stage.resolution) return NT_RUN;
+    if (state->stuck_run < STUCK_SAMPLES || moved <= 5.0 * touch->rig.stage.resolution)
+        return NT_RUN;
     state->reasons |= NT_REASON_STUCK;
     return state->stuck_run > 2u * STUCK_SAMPLES ? NT_LATCHED : NT_HOLD;
 }
 
 /* Off its command for half the allowed time: hold; for all of it: latched. */
-static nt_state judge_follow(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample, double reference) {
+static nt_state judge_follow(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample,
+                             double reference)
+{
     const nt_limits *limits = &touch->settings.limits;
     if (fabs(sample->stage_position - reference) <= limits->follow_error) {
         state->follow_time = 0.0;
         return NT_RUN;
     }
     state->follow_time += touch->period;
-    if (state->follow_time <= 0.5 * limits->follow_time) return NT_RUN;
+    if (state->follow_time <= 0.5 * limits->follow_time)
+        return NT_RUN;
     state->reasons |= NT_REASON_FOLLOW;
     return state->follow_time > limits->follow_time ? NT_LATCHED : NT_HOLD;
 }
 
-static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample) {
+static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample)
+{
     nt_state verdict = NT_RUN;
     if (sample->flags & NT_SAMPLE_LIMIT_SWITCH) {
         state->reasons |= NT_REASON_LIMIT_SWITCH;
@@ -106,10 +137,12 @@ static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample)
     return verdict;
 }
 
-nt_state nt_supervisor_step(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample, double reference,
-                            int unstable) {
+nt_state nt_supervisor_step(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample,
+                            double reference, int unstable)
+{
     /* RETRACT and LATCHED keep the reason that led there */
-    if (state->state < NT_RETRACT) state->reasons = 0;
+    if (state->state < NT_RETRACT)
+        state->reasons = 0;
     nt_state verdict = judge_stops(state, sample);
     const nt_state validity = judge_validity(state, sample);
     verdict = worse(verdict, validity);

@@ -2,19 +2,25 @@
  * One control period: supervisor, passivity, motor law, stage reference, stage loop. */
 #include <math.h>
 
-#include "nanotouch/material.h"
 #include "control/servo.h"
+#include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
 #define FADE_TIME 0.05       /* outside RUN the force is gone after this [s] */
 
-static double low_pass_factor(double bandwidth, double period) { return -expm1(-2.0 * NT_PI * bandwidth * period); }
+static double low_pass_factor(double bandwidth, double period)
+{
+    return -expm1(-2.0 * NT_PI * bandwidth * period);
+}
 
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
-                        nt_problem *problem) {
+                        nt_problem *problem)
+{
     nt_status status = nt_rig_check(rig, problem);
-    if (status == NT_OK) status = nt_settings_check(settings, problem);
-    if (status != NT_OK) return status;
+    if (status == NT_OK)
+        status = nt_settings_check(settings, problem);
+    if (status != NT_OK)
+        return status;
     const double period = 1.0 / settings->gains.rate;
     nt_touch made = {.rig = *rig,
                      .settings = *settings,
@@ -29,7 +35,8 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
     return NT_OK;
 }
 
-nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, double x, double y) {
+nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, double x, double y)
+{
     nt_touch_state state = {.passivity = {.gain = 1.0, .last_hand = {.position = master_position}},
                             .last_position = master_position,
                             .target_x = x,
@@ -40,12 +47,14 @@ nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, dou
     return state;
 }
 
-static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample) {
+static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
+{
     const double speed = (sample->master_position - state->last_position) / touch->period;
     state->speed += touch->speed_filter * (speed - state->speed);
     state->last_position = sample->master_position;
     state->filtered_force += touch->force_filter * (sample->operator_force - state->filtered_force);
-    if (touch->mode != NT_MODE_TOUCH) return; /* the height servo is meant to move the hand */
+    if (touch->mode != NT_MODE_TOUCH)
+        return; /* the height servo is meant to move the hand */
     const nt_gains *gains = &touch->settings.gains;
     const double slave_force = touch->rig.probe.spring_constant * sample->deflection;
     const nt_port hand = {sample->operator_force, sample->master_position};
@@ -54,17 +63,20 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
 }
 
 /* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel. */
-static void move_reference(const nt_touch *touch, nt_touch_state *state, double wanted) {
+static void move_reference(const nt_touch *touch, nt_touch_state *state, double wanted)
+{
     const double step = touch->settings.limits.stage_speed * touch->period;
     const double end = 0.5 * touch->rig.stage.travel;
     double reference = fmin(fmax(wanted, state->reference - step), state->reference + step);
     reference = fmin(fmax(reference, -end), end);
-    if (reference != wanted) state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
+    if (reference != wanted)
+        state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
     state->reference = reference;
 }
 
 /* RUN: the operator moves the stage, or the height servo does; returns the motor force that is wanted. */
-static double run(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample) {
+static double run(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
+{
     const nt_gains *gains = &touch->settings.gains;
     const double slave_force = touch->rig.probe.spring_constant * sample->deflection;
     const double ramp = gains->ramp_time > 0.0 ? touch->period / gains->ramp_time : 1.0;
@@ -80,7 +92,8 @@ static double run(const nt_touch *touch, nt_touch_state *state, const nt_sample 
 }
 
 /* Not RUN: nothing of the sample is used but what the supervisor found valid; the master is uncoupled. */
-static double stop(const nt_touch *touch, nt_touch_state *state, int lift) {
+static double stop(const nt_touch *touch, nt_touch_state *state, int lift)
+{
     const nt_limits *limits = &touch->settings.limits;
     if (lift && state->retracted < limits->retract_distance) {
         const double step = fmin(limits->retract_speed * touch->period, limits->retract_distance - state->retracted);
@@ -89,13 +102,15 @@ static double stop(const nt_touch *touch, nt_touch_state *state, int lift) {
     }
     state->offset = state->reference - touch->settings.gains.alpha_p * state->last_position;
     const double engaged = fmax(0.0, state->engaged - touch->period / FADE_TIME);
-    if (!(engaged > 0.0)) return state->engaged = state->coupled_force = 0.0;
+    if (!(engaged > 0.0))
+        return state->engaged = state->coupled_force = 0.0;
     state->coupled_force *= engaged / state->engaged; /* linear in time */
     state->engaged = engaged;
     return nt_servo_fade(&touch->rig.master, state->coupled_force, state->speed);
 }
 
-static void move_lateral(const nt_touch *touch, nt_touch_state *state) {
+static void move_lateral(const nt_touch *touch, nt_touch_state *state)
+{
     const double left = state->target_time;
     const double share = left > touch->period ? touch->period / left : 1.0;
     state->command.x += share * (state->target_x - state->command.x);
@@ -103,11 +118,13 @@ static void move_lateral(const nt_touch *touch, nt_touch_state *state) {
     state->target_time = fmax(0.0, left - touch->period);
 }
 
-void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, nt_command *command) {
+void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, nt_command *command)
+{
     const int unstable = touch->mode == NT_MODE_TOUCH && state->passivity.gain < 0.05;
     const nt_state verdict = nt_supervisor_step(touch, &state->supervisor, sample, state->reference, unstable);
     const int valid = state->supervisor.invalid_run == 0;
-    if (valid) observe(touch, state, sample);
+    if (valid)
+        observe(touch, state, sample);
     double motor_force;
     if (verdict == NT_RUN) {
         motor_force = run(touch, state, sample);
@@ -116,10 +133,12 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
         motor_force = stop(touch, state, verdict >= NT_RETRACT);
     }
     state->motor_force = nt_servo_limit(&touch->settings.limits, touch->period, state->motor_force, motor_force);
-    if (verdict == NT_RUN) state->coupled_force = state->motor_force;
+    if (verdict == NT_RUN)
+        state->coupled_force = state->motor_force;
     /* a sensor that cannot be trusted takes no part: the integral stands still */
     const double measured = verdict == NT_RUN ? sample->stage_position : state->reference;
-    state->command.stage_position = nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
+    state->command.stage_position =
+        nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
     state->command.motor_force = state->motor_force;
     state->command.state = (uint32_t)verdict;
     state->command.reasons = state->supervisor.reasons;
@@ -127,15 +146,18 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     *command = state->command;
 }
 
-void nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration) {
+void nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)
+{
     const double distance = hypot(x - state->command.x, y - state->command.y);
     state->target_x = x;
     state->target_y = y;
     state->target_time = fmax(duration, distance / touch->settings.limits.lateral_speed);
 }
 
-nt_status nt_touch_arm(nt_touch_state *state, int confirmed) {
-    if (state->supervisor.state == NT_LATCHED && !confirmed) return NT_E_STATE;
+nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
+{
+    if (state->supervisor.state == NT_LATCHED && !confirmed)
+        return NT_E_STATE;
     const double stuck_deflection = state->supervisor.stuck_deflection;
     const nt_supervisor_state fresh = {.state = NT_RUN, .stuck_deflection = stuck_deflection};
     state->supervisor = fresh;

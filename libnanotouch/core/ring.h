@@ -12,8 +12,8 @@
 /* First in, first out; a full ring refuses, it never overwrites. */
 typedef struct nt_ring {
     unsigned char *memory;
-    size_t element;  /* [byte] */
-    size_t capacity; /* elements, a power of two */
+    size_t element;     /* [byte] */
+    size_t capacity;    /* elements, a power of two */
     atomic_size_t head; /* next to write; producer's */
     atomic_size_t tail; /* next to read; consumer's */
 } nt_ring;
@@ -30,8 +30,8 @@ size_t nt_ring_pop(nt_ring *ring, void *elements, size_t count);
 typedef struct nt_mailbox {
     unsigned char *memory;
     size_t element;
-    atomic_uint middle;    /* slot between the two sides, and whether it is fresh */
-    unsigned write, read;  /* slots owned by either side */
+    atomic_uint middle;   /* slot between the two sides, and whether it is fresh */
+    unsigned write, read; /* slots owned by either side */
 } nt_mailbox;
 
 /* memory: 3 * element bytes. */

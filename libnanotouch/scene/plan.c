@@ -15,8 +15,8 @@
 #define JKR_ERROR_COEFFICIENT 0.09
 #define JKR_MINIMUM_LAMBDA 0.5
 
-#define FIELD(member, unit, minimum, maximum, doc) \
-    { "demand." #member, unit, minimum, maximum, (unsigned)offsetof(nt_demand, member), doc }
+#define FIELD(member, unit, minimum, maximum, doc)                                                                     \
+    {"demand." #member, unit, minimum, maximum, (unsigned)offsetof(nt_demand, member), doc}
 
 static const nt_field demand_fields[] = {
     FIELD(relative_accuracy, "", 1e-6, 0.5, "largest |dF| / max(|F|, |F_pull-off|)"),
@@ -24,17 +24,20 @@ static const nt_field demand_fields[] = {
     FIELD(maximum_load, "N", 1e-15, 1.0, "the largest load that will be visited"),
 };
 
-nt_demand nt_demand_defaults(void) {
+nt_demand nt_demand_defaults(void)
+{
     nt_demand demand = {.relative_accuracy = 0.01, .force_floor = 0.0, .maximum_load = 2.2e-6};
     return demand;
 }
 
-nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem) {
+nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem)
+{
     return nt_field_check(demand_fields, (int)(sizeof demand_fields / sizeof demand_fields[0]), demand, problem);
 }
 
 /* w and sigma0 of the scene's adhesion source. */
-static nt_contact contact_of(const nt_scene *scene, nt_adhesion_source source) {
+static nt_contact contact_of(const nt_scene *scene, nt_adhesion_source source)
+{
     const nt_material tip = {scene->tip.youngs_modulus, scene->tip.poisson_ratio};
     const nt_material sample = {scene->sample.youngs_modulus, scene->sample.poisson_ratio};
     nt_contact contact = {.radius = scene->tip.radius, .effective_modulus = nt_effective_modulus(tip, sample)};
@@ -49,9 +52,10 @@ static nt_contact contact_of(const nt_scene *scene, nt_adhesion_source source) {
     return contact;
 }
 
-/* The gap is measured between atoms in contact, z0 apart, and between the means of rough surfaces; inside `saturation` the
- * tail keeps its value. */
-static nt_vdw tail_of(const nt_scene *scene, double saturation) {
+/* The gap is measured between atoms in contact, z0 apart, and between the means of rough surfaces; inside `saturation`
+ * the tail keeps its value. */
+static nt_vdw tail_of(const nt_scene *scene, double saturation)
+{
     const double distance = scene->adhesion.equilibrium_distance;
     nt_vdw vdw = {.radius = scene->tip.radius,
                   .hamaker_constant = scene->adhesion.hamaker_constant,
@@ -60,7 +64,8 @@ static nt_vdw tail_of(const nt_scene *scene, double saturation) {
     return vdw;
 }
 
-static nt_electrostatic electrostatic_of(const nt_scene *scene) {
+static nt_electrostatic electrostatic_of(const nt_scene *scene)
+{
     nt_electrostatic electrostatic = {.radius = scene->tip.radius,
                                       .potential = scene->adhesion.contact_potential,
                                       .minimum_gap = scene->adhesion.equilibrium_distance};
@@ -68,10 +73,12 @@ static nt_electrostatic electrostatic_of(const nt_scene *scene) {
 }
 
 /* The law of least cost whose error the demand allows, and that error. */
-static nt_model choose_contact(const nt_contact *contact, const nt_demand *demand, double *error) {
+static nt_model choose_contact(const nt_contact *contact, const nt_demand *demand, double *error)
+{
     const double adhesion = nt_dmt_pull_off_force(contact); /* the most that any theory lets it pull */
     *error = 0.0;
-    if (!(adhesion > 0.0)) return NT_HERTZ;
+    if (!(adhesion > 0.0))
+        return NT_HERTZ;
     if (adhesion <= demand->force_floor) {
         *error = 1.0; /* of a pull-off that cannot be felt */
         return NT_HERTZ;
@@ -87,26 +94,32 @@ static nt_model choose_contact(const nt_contact *contact, const nt_demand *deman
 }
 
 /* Stiffness and radius of the stable branch where it carries `load`, by bisection in the indentation. */
-static nt_law_value law_at_load(const nt_contact_law *law, double load) {
+static nt_law_value law_at_load(const nt_contact_law *law, double load)
+{
     const nt_contact *contact = &law->maugis.contact;
     nt_contact adhesionless = *contact;
     adhesionless.work_of_adhesion = 0.0;
     double low = 0.0;
-    /* adhesion lowers F(delta) by no more than 3 pi w R of load at equal delta (JKR at high load: sqrt, bounded here) */
+    /* adhesion lowers F(delta) by no more than 3 pi w R of load at equal delta (JKR at high load: sqrt, bounded here)
+     */
     double high = 2.0 * nt_hertz_indentation(&adhesionless, load + 2.0 * nt_dmt_pull_off_force(contact)) + 1e-12;
     nt_law_value value = {0.0, 0.0, 0.0, 0.0};
     for (int i = 0; i < 64 && nt_contact_law_eval(law, high, NT_BRANCH_STABLE, &value) == NT_OK && value.F < load; ++i)
         high *= 2.0;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        if (nt_contact_law_eval(law, middle, NT_BRANCH_STABLE, &value) != NT_OK) break;
-        if (value.F < load) low = middle;
-        else high = middle;
+        if (nt_contact_law_eval(law, middle, NT_BRANCH_STABLE, &value) != NT_OK)
+            break;
+        if (value.F < load)
+            low = middle;
+        else
+            high = middle;
     }
     return value;
 }
 
-static nt_status refuse(nt_problem *problem, const char *field, const char *unit, double value, double maximum) {
+static nt_status refuse(nt_problem *problem, const char *field, const char *unit, double value, double maximum)
+{
     if (problem) {
         nt_problem found = {.field = field, .unit = unit, .value = value, .minimum = 0.0, .maximum = maximum};
         *problem = found;
@@ -114,10 +127,12 @@ static nt_status refuse(nt_problem *problem, const char *field, const char *unit
     return NT_E_RANGE;
 }
 
-/* The tail and its share of the adhesion. Solid: what the tail pulls at contact is taken out of w (E5b), so that the two
- * together pull 2 pi R w in the rigid limit; a tail that alone pulls more than w is refused. */
-static nt_status plan_tail(nt_plan *plan, nt_contact *contact, const nt_scene *scene, double felt, nt_problem *problem) {
-    const double solid_range = contact->work_of_adhesion > 0.0 ? contact->work_of_adhesion / contact->cohesive_stress : 0.0;
+/* The tail and its share of the adhesion. Solid: what the tail pulls at contact is taken out of w (E5b), so that the
+ * two together pull 2 pi R w in the rigid limit; a tail that alone pulls more than w is refused. */
+static nt_status plan_tail(nt_plan *plan, nt_contact *contact, const nt_scene *scene, double felt, nt_problem *problem)
+{
+    const double solid_range =
+        contact->work_of_adhesion > 0.0 ? contact->work_of_adhesion / contact->cohesive_stress : 0.0;
     const double bridge_gap = fmin(2.0 * scene->medium.film_thickness, solid_range);
     plan->vdw = tail_of(scene, plan->source == NT_ADHESION_MENISCUS ? bridge_gap : solid_range);
     plan->capture_gap = plan->source == NT_ADHESION_MENISCUS ? bridge_gap : solid_range;
@@ -125,7 +140,8 @@ static nt_status plan_tail(nt_plan *plan, nt_contact *contact, const nt_scene *s
     plan->terms[NT_PLAN_VDW].name = "vdw";
     plan->terms[NT_PLAN_VDW].included = pull > felt;
     plan->terms[NT_PLAN_VDW].bound = pull;
-    if (plan->source != NT_ADHESION_SOLID || pull <= felt) return NT_OK;
+    if (plan->source != NT_ADHESION_SOLID || pull <= felt)
+        return NT_OK;
     const double share = pull / (2.0 * NT_PI * contact->radius);
     if (share >= contact->work_of_adhesion)
         return refuse(problem, "adhesion.hamaker_constant", "J", plan->vdw.hamaker_constant,
@@ -135,7 +151,8 @@ static nt_status plan_tail(nt_plan *plan, nt_contact *contact, const nt_scene *s
     return NT_OK;
 }
 
-static void plan_electrostatic(nt_plan *plan, const nt_scene *scene, double felt) {
+static void plan_electrostatic(nt_plan *plan, const nt_scene *scene, double felt)
+{
     plan->electrostatic = electrostatic_of(scene);
     const double pull = -nt_electrostatic_eval(&plan->electrostatic, 0.0).F;
     plan->terms[NT_PLAN_ELECTROSTATIC].name = "electrostatic";
@@ -143,32 +160,40 @@ static void plan_electrostatic(nt_plan *plan, const nt_scene *scene, double felt
     plan->terms[NT_PLAN_ELECTROSTATIC].bound = pull;
 }
 
-static nt_status plan_contact(nt_plan *plan, const nt_contact *contact, const nt_demand *demand) {
+static nt_status plan_contact(nt_plan *plan, const nt_contact *contact, const nt_demand *demand)
+{
     double error = 0.0;
     const nt_model model = choose_contact(contact, demand, &error);
     const nt_status status = nt_contact_law_init(&plan->contact, model, contact);
-    if (status != NT_OK) return status;
+    if (status != NT_OK)
+        return status;
     plan->terms[NT_PLAN_CONTACT].name = nt_model_name(model);
     plan->terms[NT_PLAN_CONTACT].included = 1;
     plan->terms[NT_PLAN_CONTACT].bound = error;
     plan->lambda = nt_maugis_lambda(contact);
     plan->release_gap = -nt_contact_law_grip_indentation(&plan->contact);
-    if (model != NT_MAUGIS) plan->capture_gap = fmin(plan->capture_gap, 0.0);
+    if (model != NT_MAUGIS)
+        plan->capture_gap = fmin(plan->capture_gap, 0.0);
     return NT_OK;
 }
 
 nt_status nt_plan_make(nt_plan *plan, const nt_scene *scene, const nt_demand *demand, const nt_surface *surface,
-                       nt_problem *problem) {
+                       nt_problem *problem)
+{
     nt_status status = nt_scene_check(scene, problem);
-    if (status == NT_OK) status = nt_demand_check(demand, problem);
-    if (status != NT_OK) return status;
+    if (status == NT_OK)
+        status = nt_demand_check(demand, problem);
+    if (status != NT_OK)
+        return status;
     nt_plan made = {.source = nt_scene_adhesion_source(scene), .surface = surface};
     nt_contact contact = contact_of(scene, made.source);
     const double felt = fmax(demand->force_floor, demand->relative_accuracy * nt_dmt_pull_off_force(&contact));
     plan_electrostatic(&made, scene, felt);
     status = plan_tail(&made, &contact, scene, felt, problem);
-    if (status == NT_OK) status = plan_contact(&made, &contact, demand);
-    if (status != NT_OK) return status;
+    if (status == NT_OK)
+        status = plan_contact(&made, &contact, demand);
+    if (status != NT_OK)
+        return status;
     const int tail_in_contact = made.terms[NT_PLAN_VDW].included && made.source != NT_ADHESION_MENISCUS;
     made.pull_off_force = nt_contact_law_pull_off_force(&made.contact) +
                           (tail_in_contact ? made.terms[NT_PLAN_VDW].bound : 0.0) +

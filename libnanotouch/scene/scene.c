@@ -6,8 +6,8 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/scene.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) \
-    { #path, unit, minimum, maximum, (unsigned)offsetof(nt_scene, path), doc }
+#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
+    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_scene, path), doc}
 
 static const nt_field scene_fields[] = {
     FIELD(tip.radius, "m", 1e-10, 1e-3, "apex radius R"),
@@ -29,7 +29,8 @@ static const nt_field scene_fields[] = {
     FIELD(adhesion.contact_potential, "V", -100.0, 100.0, "potential difference U of tip and sample"),
 };
 
-nt_scene nt_scene_defaults(void) {
+nt_scene nt_scene_defaults(void)
+{
     /* Fig. 9 and 17: Si on Si, 40 % humidity, gamma_L = 72 mJ/m^2. e: van der Waals film of water at 40 % (erratum E4).
      * w, z0, H are those of dry silicon; they matter outside the meniscus. Same material on both sides: U = 0. */
     nt_scene scene = {
@@ -49,26 +50,32 @@ nt_scene nt_scene_defaults(void) {
     return scene;
 }
 
-const nt_field *nt_scene_fields(int *count) {
+const nt_field *nt_scene_fields(int *count)
+{
     *count = (int)(sizeof scene_fields / sizeof scene_fields[0]);
     return scene_fields;
 }
 
-nt_status nt_scene_check(const nt_scene *scene, nt_problem *problem) {
+nt_status nt_scene_check(const nt_scene *scene, nt_problem *problem)
+{
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
     return nt_field_check(fields, count, scene, problem);
 }
 
-nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene) {
+nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene)
+{
     const nt_medium *medium = &scene->medium;
-    if (medium->relative_humidity > 0.0 && medium->surface_tension > 0.0) return NT_ADHESION_MENISCUS;
+    if (medium->relative_humidity > 0.0 && medium->surface_tension > 0.0)
+        return NT_ADHESION_MENISCUS;
     return scene->adhesion.work_of_adhesion > 0.0 ? NT_ADHESION_SOLID : NT_ADHESION_NONE;
 }
 
-double nt_scene_meniscus_radius(const nt_scene *scene) {
+double nt_scene_meniscus_radius(const nt_scene *scene)
+{
     const nt_medium *medium = &scene->medium;
-    if (medium->meniscus_radius > 0.0) return medium->meniscus_radius;
+    if (medium->meniscus_radius > 0.0)
+        return medium->meniscus_radius;
     return nt_kelvin_radius(medium->surface_tension, medium->molar_volume, medium->temperature,
                             medium->relative_humidity);
 }

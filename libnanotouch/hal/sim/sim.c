@@ -15,28 +15,34 @@ typedef struct probe_context {
     double surface_height;
 } probe_context;
 
-static nt_law_value force_at(void *context, double z_t) {
+static nt_law_value force_at(void *context, double z_t)
+{
     const probe_context *probe = context;
     return nt_interaction_eval_gap(probe->plan, probe->interaction, z_t - probe->surface_height);
 }
 
-static void moved_to(void *context, double z_t) {
+static void moved_to(void *context, double z_t)
+{
     probe_context *probe = context;
     nt_interaction_advance(probe->plan, probe->interaction, z_t - probe->surface_height);
 }
 
-static double surface_height(const nt_sim *sim) {
+static double surface_height(const nt_sim *sim)
+{
     return sim->plan->surface ? nt_surface_eval(sim->plan->surface, sim->x, sim->y).z : 0.0;
 }
 
 /* The shortest distance over which the force changes shape: the range of adhesion, or a thousandth of the tip. */
-static double force_length(const nt_plan *plan) {
+static double force_length(const nt_plan *plan)
+{
     const nt_contact *contact = &plan->contact.maugis.contact;
-    if (contact->work_of_adhesion > 0.0) return contact->work_of_adhesion / contact->cohesive_stress;
+    if (contact->work_of_adhesion > 0.0)
+        return contact->work_of_adhesion / contact->cohesive_stress;
     return 1e-3 * contact->radius;
 }
 
-static nt_status settle(nt_sim *sim) {
+static nt_status settle(nt_sim *sim)
+{
     probe_context context = {sim->plan, &sim->interaction, surface_height(sim)};
     const nt_force_field field = {force_at, moved_to, &context, force_length(sim->plan)};
     const double base = sim->start_height - sim->stage.position;
@@ -53,7 +59,8 @@ static nt_status settle(nt_sim *sim) {
     return status;
 }
 
-static void init_sensors(nt_sim *sim) {
+static void init_sensors(nt_sim *sim)
+{
     const nt_probe *probe = &sim->rig.probe;
     const nt_master *master = &sim->rig.master;
     const double metres_per_volt = probe->sensitivity;
@@ -68,12 +75,16 @@ static void init_sensors(nt_sim *sim) {
     sim->gauge = gauge;
 }
 
-nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup) {
-    if (!setup->plan || !setup->rig || setup->delay < 0 || setup->delay > NT_SIM_DELAY_MAX) return NT_E_ARGUMENT;
+nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup)
+{
+    if (!setup->plan || !setup->rig || setup->delay < 0 || setup->delay > NT_SIM_DELAY_MAX)
+        return NT_E_ARGUMENT;
     if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance) || !isfinite(setup->master_position))
         return NT_E_NOT_FINITE;
-    if (setup->clearance < FIRST_CLEAR_DISTANCE) return NT_E_RANGE;
-    if (fabs(setup->master_position) > 0.5 * setup->rig->master.travel) return NT_E_RANGE;
+    if (setup->clearance < FIRST_CLEAR_DISTANCE)
+        return NT_E_RANGE;
+    if (fabs(setup->master_position) > 0.5 * setup->rig->master.travel)
+        return NT_E_RANGE;
     nt_sim made = {.plan = setup->plan,
                    .rig = *setup->rig,
                    .period = setup->period,
@@ -83,8 +94,10 @@ nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup) {
                    .y = setup->y,
                    .master = {.position = setup->master_position}};
     nt_status status = nt_stage_model_init(&made.stage_model, &made.rig.stage, setup->period);
-    if (status == NT_OK) status = nt_master_model_init(&made.master_model, &made.rig.master, setup->period);
-    if (status != NT_OK) return status;
+    if (status == NT_OK)
+        status = nt_master_model_init(&made.master_model, &made.rig.master, setup->period);
+    if (status != NT_OK)
+        return status;
     init_sensors(&made);
     made.start_height = surface_height(&made) + setup->clearance;
     made.cantilever = nt_cantilever_at(made.start_height);
@@ -93,12 +106,14 @@ nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup) {
         made.pending[i].y = setup->y;
     }
     status = settle(&made);
-    if (status != NT_OK) return status;
+    if (status != NT_OK)
+        return status;
     *sim = made;
     return NT_OK;
 }
 
-nt_status nt_sim_read(nt_sim *sim, nt_sample *sample) {
+nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
+{
     nt_sample found = {
         .tick = sim->tick,
         .age = 0.0,
@@ -114,10 +129,12 @@ nt_status nt_sim_read(nt_sim *sim, nt_sample *sample) {
     return NT_OK;
 }
 
-nt_status nt_sim_write(nt_sim *sim, const nt_command *command) {
+nt_status nt_sim_write(nt_sim *sim, const nt_command *command)
+{
     const int slots = sim->delay + 1;
     sim->pending[sim->tick % (uint64_t)slots] = *command;
-    const nt_command *acting = &sim->pending[(sim->tick + 1u) % (uint64_t)slots]; /* the oldest; this one if delay is 0 */
+    const nt_command *acting =
+        &sim->pending[(sim->tick + 1u) % (uint64_t)slots]; /* the oldest; this one if delay is 0 */
     const double step = sim->rig.stage.command_resolution;
     const double stage_command = step > 0.0 ? step * round(acting->stage_position / step) : acting->stage_position;
     nt_hand_step(&sim->hand, sim->period);
@@ -129,12 +146,22 @@ nt_status nt_sim_write(nt_sim *sim, const nt_command *command) {
     return settle(sim);
 }
 
-void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target) { nt_hand_aim(&sim->hand, target); }
+void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target)
+{
+    nt_hand_aim(&sim->hand, target);
+}
 
-static nt_status read_operation(void *context, nt_sample *sample) { return nt_sim_read(context, sample); }
-static nt_status write_operation(void *context, const nt_command *command) { return nt_sim_write(context, command); }
+static nt_status read_operation(void *context, nt_sample *sample)
+{
+    return nt_sim_read(context, sample);
+}
+static nt_status write_operation(void *context, const nt_command *command)
+{
+    return nt_sim_write(context, command);
+}
 
-const nt_hal_backend *nt_sim_backend(void) {
+const nt_hal_backend *nt_sim_backend(void)
+{
     static const nt_hal_backend backend = {"sim", NT_HAL_API_VERSION, read_operation, write_operation, NULL};
     return &backend;
 }

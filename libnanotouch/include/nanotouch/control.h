@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Scaled bilateral teleoperation (paper, Sec. IV): numbers in, numbers out. The touch step sees neither device nor clock
- * nor scene; it may be called from any loop at a fixed rate. Derivations: docs/control.md. */
+ * Scaled bilateral teleoperation (paper, Sec. IV): numbers in, numbers out. The touch step sees neither device nor
+ * clock nor scene; it may be called from any loop at a fixed rate. Derivations: docs/control.md. */
 #ifndef NANOTOUCH_CONTROL_H
 #define NANOTOUCH_CONTROL_H
 
@@ -19,8 +19,9 @@ typedef struct nt_scaling {
     double alpha_p; /* stage metres per master metre [m/m] */
     double alpha_f; /* operator newtons per tip newton [N/N] */
 } nt_scaling;
-/* The paper's heuristic rule (Eq. 19, 21 in SI; errata E17): the slave's path (clearance L + indentation and relief) over
- * the master's travel; the gauge's range over the probe's, from -attraction to the saturation of the electronics. */
+/* The paper's heuristic rule (Eq. 19, 21 in SI; errata E17): the slave's path (clearance L + indentation and relief)
+ * over the master's travel; the gauge's range over the probe's, from -attraction to the saturation of the electronics.
+ */
 NT_API nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction);
 /* Goldfarb's rules for l = alpha_p << 1: structure dominated 1/l, surface dominated 1/l^2 (Sec. IV-C). */
 NT_API nt_scaling nt_scaling_structure(double alpha_p);
@@ -34,18 +35,18 @@ typedef enum nt_mode {
 } nt_mode;
 
 typedef struct nt_gains {
-    double rate;           /* force loop, 1/T [Hz] */
-    double alpha_p;        /* [m/m] */
-    double alpha_f;        /* [N/N] */
-    double force_gain;     /* K_f of Eq. 17 [-] */
-    double force_filter;   /* low-pass of f_m [Hz] */
-    double stage_damping;  /* zeta that the notch leaves to the stage's resonance [-] */
-    double stage_integral; /* integral gain of the stage loop [1/s] */
-    double ramp_time;      /* force fades in over this on engagement [s] */
-    double set_point;      /* force held in topography mode [N] */
-    double height_gain;    /* integral gain of the height servo [1/s] */
+    double rate;             /* force loop, 1/T [Hz] */
+    double alpha_p;          /* [m/m] */
+    double alpha_f;          /* [N/N] */
+    double force_gain;       /* K_f of Eq. 17 [-] */
+    double force_filter;     /* low-pass of f_m [Hz] */
+    double stage_damping;    /* zeta that the notch leaves to the stage's resonance [-] */
+    double stage_integral;   /* integral gain of the stage loop [1/s] */
+    double ramp_time;        /* force fades in over this on engagement [s] */
+    double set_point;        /* force held in topography mode [N] */
+    double height_gain;      /* integral gain of the height servo [1/s] */
     double height_stiffness; /* how hard the master is drawn to the height [N/m] */
-    double delay;          /* conversion and computing delay of the rig [periods] */
+    double delay;            /* conversion and computing delay of the rig [periods] */
 } nt_gains;
 
 typedef struct nt_limits {
@@ -98,8 +99,8 @@ NT_API nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *g
 NT_API NT_REALTIME double nt_stage_loop_step(const nt_stage_loop *loop, nt_stage_loop_state *state, double reference,
                                              double measured);
 
-/* --- passivity: master, controller and stage between hand and tip may swallow energy, not make it; when they would, the
- *     force gain backs off --- */
+/* --- passivity: master, controller and stage between hand and tip may swallow energy, not make it; when they would,
+ * the force gain backs off --- */
 
 /* One side, at the operator's scale. */
 typedef struct nt_port {
@@ -107,8 +108,8 @@ typedef struct nt_port {
     double position; /* [m] */
 } nt_port;
 typedef struct nt_passivity_state {
-    double energy;          /* swallowed since the last event, at most NT_PASSIVITY_STORE dead zones [J] */
-    double gain;            /* factor on K_f, 1 .. 0 [-] */
+    double energy; /* swallowed since the last event, at most NT_PASSIVITY_STORE dead zones [J] */
+    double gain;   /* factor on K_f, 1 .. 0 [-] */
     nt_port last_hand, last_tip;
     uint32_t trips;
 } nt_passivity_state;
@@ -121,13 +122,13 @@ NT_API NT_REALTIME double nt_passivity_step(nt_passivity_state *state, const nt_
 /* --- supervisor: a pure function of sample, command and limits (the table in docs/safety.md) --- */
 
 enum {
-    NT_REASON_INVALID = 1u << 0,          /* NaN, infinite or bad frame */
-    NT_REASON_SATURATED = 1u << 1,        /* deflection at the end of its range */
+    NT_REASON_INVALID = 1u << 0,   /* NaN, infinite or bad frame */
+    NT_REASON_SATURATED = 1u << 1, /* deflection at the end of its range */
     NT_REASON_FORCE_LIMIT = 1u << 2,
-    NT_REASON_STALE = 1u << 3,            /* sample older than 2 T */
-    NT_REASON_STUCK = 1u << 4,            /* the deflection does not change while z moves */
-    NT_REASON_FOLLOW = 1u << 5,           /* the stage does not follow */
-    NT_REASON_UNSTABLE = 1u << 6,         /* the passivity observer has taken all force gain away */
+    NT_REASON_STALE = 1u << 3,    /* sample older than 2 T */
+    NT_REASON_STUCK = 1u << 4,    /* the deflection does not change while z moves */
+    NT_REASON_FOLLOW = 1u << 5,   /* the stage does not follow */
+    NT_REASON_UNSTABLE = 1u << 6, /* the passivity observer has taken all force gain away */
     NT_REASON_EMERGENCY_STOP = 1u << 7,
     NT_REASON_LIMIT_SWITCH = 1u << 8,
     NT_REASON_OPERATOR_CLIPPED = 1u << 9, /* the gauge is at its range: a flag, the state stays RUN */
@@ -161,25 +162,25 @@ typedef struct nt_touch {
     nt_mode mode;
     double period; /* T [s] */
     nt_stage_loop stage_loop;
-    double force_filter;   /* of the low-pass, per period [-] */
-    double speed_filter;   /* of the master's speed estimate, per period [-] */
+    double force_filter;     /* of the low-pass, per period [-] */
+    double speed_filter;     /* of the master's speed estimate, per period [-] */
     double energy_dead_zone; /* [J] */
 } nt_touch;
 typedef struct nt_touch_state {
     nt_supervisor_state supervisor;
     nt_passivity_state passivity;
     nt_stage_loop_state stage_loop;
-    double reference;      /* where the stage shall be [m] */
-    double offset;         /* reference = alpha_p x_m + offset: re-indexed after every stop [m] */
-    double engaged;        /* 0 .. 1, fades the force in and out [-] */
-    double filtered_force; /* f_m behind its low-pass [N] */
-    double speed;          /* estimate of the master's speed [m/s] */
-    double last_position;  /* x_m of the last valid sample [m] */
-    double motor_force;    /* last command [N] */
-    double coupled_force;  /* what is left of the last command given in RUN [N] */
-    double retracted;      /* lifted so far [m] */
+    double reference;                       /* where the stage shall be [m] */
+    double offset;                          /* reference = alpha_p x_m + offset: re-indexed after every stop [m] */
+    double engaged;                         /* 0 .. 1, fades the force in and out [-] */
+    double filtered_force;                  /* f_m behind its low-pass [N] */
+    double speed;                           /* estimate of the master's speed [m/s] */
+    double last_position;                   /* x_m of the last valid sample [m] */
+    double motor_force;                     /* last command [N] */
+    double coupled_force;                   /* what is left of the last command given in RUN [N] */
+    double retracted;                       /* lifted so far [m] */
     double target_x, target_y, target_time; /* lateral set-point [m], time left to get there [s] */
-    nt_command command;    /* last command */
+    nt_command command;                     /* last command */
     uint64_t ticks;
 } nt_touch_state;
 

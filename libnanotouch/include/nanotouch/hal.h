@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The rig as the loop sees it: read a sample, write a command. The simulated rig (sim.h) keeps the same contract as real
- * devices and ships with the library. */
+ * The rig as the loop sees it: read a sample, write a command. The simulated rig (sim.h) keeps the same contract as
+ * real devices and ships with the library. */
 #ifndef NANOTOUCH_HAL_H
 #define NANOTOUCH_HAL_H
 

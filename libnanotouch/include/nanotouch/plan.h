@@ -27,7 +27,7 @@ NT_API nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem);
 typedef struct nt_plan_term {
     const char *name; /* "maugis", "vdw", "electrostatic"; static storage */
     int included;
-    double bound;     /* included contact law: its relative error; left out: the largest force it could add [N] */
+    double bound; /* included contact law: its relative error; left out: the largest force it could add [N] */
 } nt_plan_term;
 
 enum { NT_PLAN_CONTACT, NT_PLAN_VDW, NT_PLAN_ELECTROSTATIC, NT_PLAN_TERMS };
@@ -36,11 +36,11 @@ typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
     nt_adhesion_source source;
     nt_contact_law contact;
-    double lambda;             /* Maugis' parameter of the contact [-] */
-    nt_vdw vdw;                /* tail: before the meniscus forms, or outside the range of the solid's own adhesion */
+    double lambda; /* Maugis' parameter of the contact [-] */
+    nt_vdw vdw;    /* tail: before the meniscus forms, or outside the range of the solid's own adhesion */
     nt_electrostatic electrostatic;
-    double capture_gap;        /* on approach adhesion takes hold here: meniscus formed, or onset of the Dugdale stress [m] */
-    double release_gap;        /* on retraction under grips it lets go here [m] */
+    double capture_gap; /* on approach adhesion takes hold here: meniscus formed, or onset of the Dugdale stress [m] */
+    double release_gap; /* on retraction under grips it lets go here [m] */
     double pull_off_force;     /* load control, tails included, positive [N] */
     double maximum_stiffness;  /* k of the contact at the maximum load [N/m] */
     double contact_strain;     /* a/R at the maximum load: above 0.3 the paraboloid is outside its validity [-] */

@@ -73,22 +73,24 @@ typedef struct nt_interaction_state {
 
 /* Force on the tip at a pose. */
 typedef struct nt_interaction_value {
-    double U;             /* energy [J] */
-    double Fx, Fy, Fz;    /* force on the tip [N] */
-    double k;             /* dFz/d(delta) [N/m] */
-    double a;             /* contact radius [m] */
-    double gap;           /* h of the undeformed bodies [m] */
+    double U;          /* energy [J] */
+    double Fx, Fy, Fz; /* force on the tip [N] */
+    double k;          /* dFz/d(delta) [N/m] */
+    double a;          /* contact radius [m] */
+    double gap;        /* h of the undeformed bodies [m] */
 } nt_interaction_value;
 
 struct nt_plan;
 
-/* The vertical law at a gap [m]: pure, may be called at trial gaps. A gap inside the capture range counts as captured. */
+/* The vertical law at a gap [m]: pure, may be called at trial gaps. A gap inside the capture range counts as captured.
+ */
 NT_API NT_REALTIME nt_law_value nt_interaction_eval_gap(const struct nt_plan *plan, const nt_interaction_state *state,
                                                         double gap);
 /* The same at a pose over the plan's surface, with lateral forces: F = -grad U. */
-NT_API NT_REALTIME nt_interaction_value nt_interaction_eval(const struct nt_plan *plan, const nt_interaction_state *state,
-                                                            const nt_pose *pose);
-/* Commits history once per accepted step: captured (contact, meniscus formed) or let go (pull-off, meniscus ruptured). */
+NT_API NT_REALTIME nt_interaction_value nt_interaction_eval(const struct nt_plan *plan,
+                                                            const nt_interaction_state *state, const nt_pose *pose);
+/* Commits history once per accepted step: captured (contact, meniscus formed) or let go (pull-off, meniscus ruptured).
+ */
 NT_API NT_REALTIME void nt_interaction_advance(const struct nt_plan *plan, nt_interaction_state *state, double gap);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A whole touch: plan, simulated rig, touch step and ring, composed once, for C and for Python. Simulated time: it runs as
- * fast as the machine allows and gives the same record for the same seed. */
+ * A whole touch: plan, simulated rig, touch step and ring, composed once, for C and for Python. Simulated time: it runs
+ * as fast as the machine allows and gives the same record for the same seed. */
 #ifndef NANOTOUCH_SESSION_H
 #define NANOTOUCH_SESSION_H
 
@@ -26,8 +26,8 @@ typedef struct nt_session_setup {
     double clearance;          /* L, height of the tip above the surface there [m] */
     double rise;               /* how far the surface rises above the start along the path [m], >= 0 */
     uint64_t seed;
-    long ring_capacity;        /* records held between two reads; rounded up to a power of two */
-    double minimum_margin;     /* refuse to open below this stability margin (R1) [-] */
+    long ring_capacity;    /* records held between two reads; rounded up to a power of two */
+    double minimum_margin; /* refuse to open below this stability margin (R1) [-] */
 } nt_session_setup;
 
 /* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5. */
@@ -60,8 +60,8 @@ typedef struct nt_record {
     uint32_t reasons;       /* NT_REASON_* */
 } nt_record;
 
-/* Opens a session. NT_E_RANGE with problem->field "stability margin" if the loop would run closer to its stability limit
- * than minimum_margin. The session belongs to the caller: nt_session_close. */
+/* Opens a session. NT_E_RANGE with problem->field "stability margin" if the loop would run closer to its stability
+ * limit than minimum_margin. The session belongs to the caller: nt_session_close. */
 NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
 /* Accepts NULL. */
 NT_API void nt_session_close(nt_session *session);

@@ -13,14 +13,14 @@ extern "C" {
 
 /* What is simulated. */
 typedef struct nt_sim_setup {
-    const nt_plan *plan; /* borrowed, must outlive the rig */
-    const nt_rig *rig;   /* copied */
-    double period;       /* T [s] */
-    double x, y;         /* where it starts [m] */
-    double clearance;    /* L, height of the tip above the surface there [m] */
+    const nt_plan *plan;    /* borrowed, must outlive the rig */
+    const nt_rig *rig;      /* copied */
+    double period;          /* T [s] */
+    double x, y;            /* where it starts [m] */
+    double clearance;       /* L, height of the tip above the surface there [m] */
     double master_position; /* x_m at the start [m] */
-    uint64_t seed;       /* of the sensors' noise */
-    int delay;           /* periods between write and effect, 0 .. NT_SIM_DELAY_MAX */
+    uint64_t seed;          /* of the sensors' noise */
+    int delay;              /* periods between write and effect, 0 .. NT_SIM_DELAY_MAX */
 } nt_sim_setup;
 
 enum { NT_SIM_DELAY_MAX = 15 };
