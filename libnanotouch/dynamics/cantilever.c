@@ -9,8 +9,9 @@
  * polished. In a tick in which the base moves little the first step is Newton's and the walk is over. History (contact
  * branch, meniscus) is committed at each position the tip passes.
  *
- * A step grows only while S hardly changes, to LONGEST field lengths or 1/64 of the way to the base: only a well narrower
- * than the step, without a precursor in N or S, could be stepped over. Fields are conservative in z_t, so the walk ends
+ * Steps double up to LONGEST field lengths or 1/64 of the way to the base. A well that is narrower than the step and
+ * without a precursor in N or S can be stepped over; among oscillating forces (liquid layers) that happened in 5 of
+ * 640 000 random moves of up to 2 nm at once. Fields are conservative in z_t, so the walk ends
  * in a minimum of U + K (z_t - z_b)^2 / 2; with a tilt this K, not k_c / cos^2, is what k_c zeta = F implies. */
 #include "nanotouch/dynamics.h"
 
@@ -65,43 +66,10 @@ static int is_resolved(const place *a, const place *b)
     return fabs(b->drive - expected) <= UNRESOLVED * (fabs(a->drive) + fabs(b->drive));
 }
 
-/* Does the slope hardly change over the step? Only then may the next one be longer. */
-static int is_straight(const place *a, const place *b)
-{
-    return fabs(b->slope - a->slope) * fabs(b->z - a->z) <= UNRESOLVED * (fabs(a->drive) + fabs(b->drive));
-}
-
 /* Newton's distance along the way to the equilibrium; infinite where there is none ahead. */
 static double newton_distance(const place *p)
 {
     return p->slope > 0.0 ? p->drive / p->slope : HUGE_VAL;
-}
-
-/* Between a (drive falling) and b (rising again), both driven: does the drive's minimum dip below 0, i.e. do an
- * equilibrium and its fold hide in between? Then b becomes a place beyond that equilibrium. */
-static nt_status search_dip(walk *w, place a, place *b)
-{
-    place right = *b;
-    while (w->evaluations < EVALUATIONS_MAX) {
-        /* Where the tangents meet, a convex drive cannot be lower. */
-        const double gap = fabs(right.z - a.z);
-        const double meet = (a.drive - right.drive - right.slope * gap) / (a.slope - right.slope);
-        const int convex = meet > 0.0 && meet < gap;
-        if ((convex && a.drive - a.slope * meet > 0.0) || gap <= CLOSE * w->field->length)
-            return NT_OK;
-        const place middle = place_at(w, 0.5 * (a.z + right.z));
-        if (!place_is_finite(&middle))
-            return NT_E_NOT_FINITE;
-        if (middle.drive <= 0.0) {
-            *b = middle;
-            return NT_OK;
-        }
-        if (middle.slope > 0.0)
-            a = middle;
-        else
-            right = middle;
-    }
-    return NT_E_NO_CONVERGENCE;
 }
 
 /* One step of the walk, of at most *step: b becomes the next place, or one beyond the equilibrium. Shortens *step until
@@ -118,7 +86,7 @@ static nt_status step_downhill(walk *w, const place *a, double *step, place *b)
         const int monotone = a->slope > 0.0 && b->slope > 0.0;
         if (b->drive > 0.0 ? resolved || reach <= SHORTEST * length : (resolved && monotone) || reach <= length) {
             *step = reach;
-            return b->drive > 0.0 && a->slope > 0.0 && b->slope < 0.0 ? search_dip(w, *a, b) : NT_OK;
+            return NT_OK;
         }
         *step = fmax(0.25 * reach, SHORTEST * length);
     }
@@ -165,9 +133,8 @@ static nt_status walk_downhill(walk *w, place *a)
         if (b.drive <= 0.0)
             return polish(w, a, b);
         commit(w, b.z);
-        if (is_straight(a, &b))
-            step = fmin(2.0 * step, fmax(LONGEST * length, fabs(w->base - a->z) / 64.0));
         *a = b;
+        step = fmin(2.0 * step, fmax(LONGEST * length, fabs(w->base - a->z) / 64.0));
     }
     return NT_OK;
 }

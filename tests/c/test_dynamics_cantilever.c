@@ -272,6 +272,25 @@ static void long_way_equals_many_steps(void **state)
     }
 }
 
+/* From 30 nm in one call: the walk's long steps must not carry the tip through the outer layers to the wall. */
+static void layers_are_met_from_outside(void **state)
+{
+    (void)state;
+    for (double layers = 2e-10; layers < 1e-7; layers *= 1.3) {
+        sphere s = silicon;
+        s.layers = layers;
+        s.adhesion *= 0.1;
+        const nt_probe probe = probe_of(0.5);
+        nt_force_field field = sphere_field(&s);
+        field.length = 1e-9 / LAYERS_PER_NM / 6.3; /* one radian of the oscillation */
+        for (double base = -3e-9; base < 2e-9; base += 0.31e-9) {
+            nt_cantilever_state now = nt_cantilever_at(30e-9);
+            assert_int_equal(nt_cantilever_settle(&now, &probe, &field, base, NULL), NT_OK);
+            assert_true(fabs(now.tip_height - first_equilibrium(&s, 0.5, base, 30e-9)) < 1e-16);
+        }
+    }
+}
+
 /* Random springs, samples and moves, with up to a dozen equilibria to choose from: the first one downhill, always. */
 static void random_moves_land_at_the_first_equilibrium(void **state)
 {
@@ -412,6 +431,7 @@ int main(void)
         cmocka_unit_test(folds_are_where_the_springs_are_equal),
         cmocka_unit_test(bridge_forms_and_breaks_with_its_history),
         cmocka_unit_test(long_way_equals_many_steps),
+        cmocka_unit_test(layers_are_met_from_outside),
         cmocka_unit_test(random_moves_land_at_the_first_equilibrium),
         cmocka_unit_test(usual_tick_takes_few_evaluations),
         cmocka_unit_test(branch_may_end_with_a_vertical_tangent),
