@@ -23,24 +23,32 @@ ATTRACTION, NEUTRAL, REPULSION = (0.0, 0.62, 1.0), (1.0, 1.0, 1.0), (0.55, 0.0, 
 TRACE_RADIUS = 0.004  # [scene units]
 
 
-def build(picture: Picture, note: str = "") -> Any:
-    """A renderer with surface, axes, tip, trace, scales and captions; the camera in front, x to the right."""
+def build(picture: Picture, height: int, note: str = "") -> Any:
+    """A renderer with surface, axes, tip, trace, scales and captions; the camera in front, x to the right.
+
+    `height` of the picture [pixels] decides the size of its letters; `note` goes to the top.
+    """
     vtk = require("vtk", "view")
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(*PAPER)
     surface, heights = _surface(vtk, picture)
     renderer.AddActor(surface)
+    letters = max(8, height // 56)
     unit, factor = engineering("m", heights.GetRange())
-    renderer.AddViewProp(_scale(vtk, heights, f"height ({unit})", factor, right=True))
+    bars = [_scale(vtk, heights, f"height ({unit})", factor, 0.89)]
     if len(picture.force):
         trace, forces = _trace(vtk, picture)
         renderer.AddActor(trace)
         unit, factor = engineering("N", forces.GetRange())
-        renderer.AddViewProp(_scale(vtk, forces, f"force ({unit})", factor, right=False))
+        bars.append(_scale(vtk, forces, f"force ({unit})", factor, 0.02))
     if len(picture.tip):
         renderer.AddActor(_tip(vtk, picture.tip))
+    for bar in bars:
+        _plain(bar.GetTitleTextProperty(), letters)
+        _plain(bar.GetLabelTextProperty(), letters)
+        renderer.AddViewProp(bar)
     for text, place in ((picture.caption, (0.02, 0.02)), (note, (0.02, 0.95))):
-        renderer.AddViewProp(_text(vtk, text, place))
+        renderer.AddViewProp(_text(vtk, text, place, letters))
     _look(renderer, surface.GetBounds())
     renderer.AddActor(_axes(vtk, renderer, picture, surface.GetBounds()))
     return renderer
@@ -153,7 +161,7 @@ def _look(renderer: Any, bounds: tuple[float, ...]) -> None:
     camera.SetWindowCenter(0.04, -0.12)
 
 
-def _scale(vtk: Any, colours: Any, title: str, factor: float, right: bool) -> Any:
+def _scale(vtk: Any, colours: Any, title: str, factor: float, left: float) -> Any:
     """A bar of colours at the edge of the picture, its labels in the unit of its title."""
     scaled = vtk.vtkColorTransferFunction()
     node = [0.0] * 6
@@ -169,20 +177,18 @@ def _scale(vtk: Any, colours: Any, title: str, factor: float, right: bool) -> An
     bar.SetNumberOfLabels(5)
     bar.UnconstrainedFontSizeOn()
     bar.SetBarRatio(0.3)
-    bar.SetPosition(0.9 if right else 0.02, 0.3)
+    bar.SetPosition(left, 0.3)
     bar.SetWidth(0.08)
     bar.SetHeight(0.45)
-    for properties in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
-        _plain(properties, 15)
     return bar
 
 
-def _text(vtk: Any, text: str, place: tuple[float, float]) -> Any:
+def _text(vtk: Any, text: str, place: tuple[float, float], letters: int) -> Any:
     actor = vtk.vtkTextActor()
     actor.SetInput(text)
     actor.GetPositionCoordinate().SetCoordinateSystemToNormalizedDisplay()
     actor.SetPosition(*place)
-    _plain(actor.GetTextProperty(), 16)
+    _plain(actor.GetTextProperty(), letters)
     return actor
 
 

@@ -21,9 +21,9 @@ def main(arguments: list[str]) -> int:
             case ["probe"]:
                 print(_probe())
             case ["png", out, width, height, file]:
-                _png(build(Picture.load(file)), out, (int(width), int(height)))
+                _png(build(Picture.load(file), int(height)), out, (int(width), int(height)))
             case ["window", width, height, file]:
-                _window(build(Picture.load(file), HELP), (int(width), int(height)))
+                _window(build(Picture.load(file), int(height), HELP), (int(width), int(height)))
             case _:
                 raise Error(f"unknown task: {' '.join(arguments)}")
     except Error as error:
