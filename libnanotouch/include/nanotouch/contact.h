@@ -95,7 +95,8 @@ NT_API double nt_maugis_lambda(const nt_contact *contact);
  * outside its valid range. */
 NT_API nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact);
 /* {U, F, k, a} at an indentation [m]. info may be NULL. Error < 1e-12 relative away from the folds; at a fold the result
- * is square-root conditioned (1 ulp of the indentation is 1e-8 of the force). *value is untouched on failure. */
+ * is square-root conditioned (1 ulp of the indentation is 1e-8 of the force) and k, infinite there, is reported at the
+ * nearest distance that a double resolves. *value is untouched on failure. */
 NT_API nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch branch, nt_law_value *value,
                                 nt_solve_info *info);
 /* Indentation [m] at a force [N] >= minus the pull-off force: STABLE above the load fold, UNSTABLE below it. */
