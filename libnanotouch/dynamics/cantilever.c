@@ -11,8 +11,8 @@
  *
  * Steps double up to LONGEST field lengths or 1/64 of the way to the base. A well that is narrower than the step and
  * without a precursor in N or S can be stepped over; among oscillating forces (liquid layers) that happened in 5 of
- * 640 000 random moves of up to 2 nm at once. Fields are conservative in z_t, so the walk ends
- * in a minimum of U + K (z_t - z_b)^2 / 2; with a tilt this K, not k_c / cos^2, is what k_c zeta = F implies. */
+ * 640 000 random moves of up to 2 nm at once. The walk ends in a minimum of
+ * U + K (z_t - z_b)^2 / 2; with a tilt it is this K, not k_c / cos^2(alpha), that k_c zeta = F implies. */
 #include "nanotouch/dynamics.h"
 
 #include <float.h>
