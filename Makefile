@@ -5,7 +5,7 @@ OUT ?= nanotouch-out
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test lint format clean
+.PHONY: help demo test fuzz lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -19,6 +19,12 @@ test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev
 	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
+
+fuzz:  ## random input to the C library, with sanitizers; about a minute
+	@tools/setup.sh fuzz
+	@cmake --preset fuzz --log-level WARNING
+	@cmake --build --preset fuzz
+	@ctest --preset fuzz -j $(JOBS)
 
 C_FILES = $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 

@@ -13,7 +13,7 @@ target_compile_options(
             -Wpedantic
             -Wshadow
             -Wconversion
-            -Wdouble-promotion
+            $<$<C_COMPILER_ID:GNU>:-Wdouble-promotion> # clang takes NAN and INFINITY for floats
             $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
             # isnan() and its like in mingw-w64's math.h are macros that cast to float.
             $<$<PLATFORM_ID:Windows>:-Wno-float-conversion>>)

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|test|lint
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|test|lint|fuzz
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|test|lint}
+profile=${1:?usage: tools/setup.sh demo|test|lint|fuzz}
 say() { printf '\033[1m%s\033[0m\n' "-- $*" >&2; }
 
 packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libceres-dev libegl1 libgl1-mesa-dri"
@@ -15,6 +15,8 @@ if [ "$profile" = test ]; then
   extras=all,test
 elif [ "$profile" = lint ]; then
   extras=all,test,lint
+elif [ "$profile" = fuzz ]; then
+  packages="build-essential cmake ninja-build pkg-config clang libclang-rt-dev"
 fi
 
 # --- system packages -------------------------------------------------------------------------------------------------
@@ -108,6 +110,7 @@ install_package() {
 }
 
 install_packages
+[ "$profile" != fuzz ] || exit 0 # C alone
 make_venv
 mkdir -p build
 fetch_libgpiod
