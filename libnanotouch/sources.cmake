@@ -1,11 +1,51 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The sources of the library by layer. `nanotouch_sources_portable` is the plain list for other build systems: C11 and libm.
-foreach(layer core forces contact surface scene dynamics control hal/sim session)
-  file(GLOB found CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/${layer}/*.c)
-  string(REPLACE hal/ "" name ${layer})
-  set(nanotouch_sources_${name} ${found})
-endforeach()
-file(GLOB nanotouch_sources_hal CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/hal/*.c)
-file(GLOB nanotouch_sources_linux CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/hal/linux/*.c)
-set(nanotouch_sources_hosted hal/hal.c hal/loop.c)
-list(REMOVE_ITEM nanotouch_sources_hal ${nanotouch_sources_hosted})
+# The sources of the library by layer: the plain list, also for other build systems. A file that is missing here, or is not
+# there any more, stops the configuration (audit_sources in CMakeLists.txt).
+
+# The portable core: C11 and libm, no heap, no operating system.
+set(nanotouch_sources_core
+    core/field.c
+    core/lti.c
+    core/random.c
+    core/rig.c
+    core/ring.c
+    core/roots.c
+    core/status.c
+    core/version.c)
+set(nanotouch_sources_forces forces/capillary.c forces/electrostatic.c forces/vdw.c)
+set(nanotouch_sources_contact
+    contact/dmt.c
+    contact/hertz.c
+    contact/jkr.c
+    contact/law.c
+    contact/material.c
+    contact/maugis.c
+    contact/maugis_branch.c
+    contact/maugis_solve.c
+    contact/reduced.c
+    contact/sneddon.c)
+set(nanotouch_sources_surface surface/dilation.c surface/dots.c surface/grating.c surface/height_field.c)
+set(nanotouch_sources_scene scene/interaction.c scene/plan.c scene/scene.c)
+set(nanotouch_sources_hal hal/hal.c)
+set(nanotouch_sources_dynamics
+    dynamics/cantilever.c
+    dynamics/hand.c
+    dynamics/master.c
+    dynamics/sensor.c
+    dynamics/stage.c)
+set(nanotouch_sources_control
+    control/margins.c
+    control/passivity.c
+    control/scaling.c
+    control/servo.c
+    control/settings.c
+    control/stage_loop.c
+    control/supervisor.c
+    control/touch.c)
+set(nanotouch_sources_sim hal/sim/sim.c)
+
+# What needs an operating system (POSIX), the heap, libgpiod or Ceres.
+set(nanotouch_sources_hosted hal/loop.c)
+set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
+set(nanotouch_sources_session session/session.c)
+set(nanotouch_sources_fit fit/data.cpp fit/guess.cpp fit/model.cpp fit/options.cpp fit/problem.cpp fit/run.cpp)
