@@ -1,31 +1,42 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How far the loop is from its stability limit (docs/control.md, rules R1, R4, R5).
  *
- * Loop gain kappa C(s)/(s (m s + b)), kappa = (1 + K_f) alpha_f alpha_p k_eff: two sampled hops (stage command and
- * motor force), each half a period of hold and d periods of delay, and the damped stage's lag 2 zeta/wn. */
+ * Loop gain kappa C(s)/(s (m s + b)), kappa = (1 + K_f) alpha_f alpha_p k_eff. C: two sampled hops (stage command and
+ * motor force), each half a period of hold and d periods of delay, and the stage. */
 #include <math.h>
 
 #include "nanotouch/control.h"
 #include "nanotouch/material.h"
 
+/* The stage's share of D = sup -Im C(jw)/w: 2 zeta/wn at w = 0, but below zeta = 1/sqrt(2) the resonance has more (the
+ * bare stage nearly Q/wn). A notch damps only what the samples see (nt_stage_loop_make). */
+static double stage_lag(const nt_stage *stage, const nt_gains *gains)
+{
+    const double zeta = 2.0 * stage->resonance < gains->rate ? gains->stage_damping : 0.5 / stage->quality;
+    const double wn = 2.0 * NT_PI * stage->resonance;
+    return (2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * (1.0 - zeta * zeta)) : 2.0 * zeta) / wn;
+}
+
+/* Standard deviation of the gauge behind the low-pass y += c (u - y), which passes c/(2 - c) of the variance. */
+static double filtered_gauge_noise(const nt_master *master, const nt_gains *gains)
+{
+    const double c = -expm1(-2.0 * NT_PI * gains->force_filter / gains->rate);
+    return sqrt(c / (2.0 - c)) * hypot(master->gauge_noise, master->gauge_resolution / sqrt(12.0));
+}
+
 nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
 {
     const double k_c = rig->probe.spring_constant;
-    const double k_eff = contact_stiffness * k_c / (contact_stiffness + k_c);
+    const double k_eff = k_c / (1.0 + k_c / contact_stiffness); /* k_c on a rigid sample */
     const double T = 1.0 / gains->rate;
-    const double tau_stage = 2.0 * gains->stage_damping / (2.0 * NT_PI * rig->stage.resonance);
     const double reflected = (1.0 + gains->force_gain) * gains->alpha_f;
-    const double slave_noise = reflected * nt_probe_force_noise(&rig->probe);
-    /* the gauge's noise passes the low-pass, whose noise bandwidth is pi/2 times its cut-off */
-    const double pass = fmin(1.0, NT_PI * gains->force_filter * T);
-    const double gauge_noise =
-        gains->force_gain * sqrt(pass) * hypot(rig->master.gauge_noise, rig->master.gauge_resolution / sqrt(12.0));
     nt_margins margins = {
         .loop_stiffness = reflected * gains->alpha_p * k_eff,
-        .loop_delay = 2.0 * (0.5 * T + gains->delay * T) + tau_stage,
+        .loop_delay = 2.0 * (0.5 * T + gains->delay * T) + stage_lag(&rig->stage, gains),
         .quantisation_step =
             reflected * k_eff * fmax(rig->stage.command_resolution, gains->alpha_p * rig->master.resolution),
-        .force_noise = hypot(slave_noise, gauge_noise),
+        .force_noise = hypot(reflected * nt_probe_force_noise(&rig->probe),
+                             gains->force_gain * filtered_gauge_noise(&rig->master, gains)),
     };
     margins.stability_limit = rig->master.damping / margins.loop_delay; /* R1 */
     margins.margin = margins.stability_limit / margins.loop_stiffness;

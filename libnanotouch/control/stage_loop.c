@@ -7,24 +7,33 @@
 #include "nanotouch/control.h"
 #include "nanotouch/material.h"
 
+/* z^2 - sum z + product: the poles of s^2 + 2 zeta wn s + wn^2 under a hold, z = exp(s T); angle = wn T. */
+typedef struct pole_pair {
+    double sum, product;
+} pole_pair;
+
+static pole_pair poles_of(double zeta, double angle)
+{
+    const double decay = zeta * angle;
+    const double split = angle * sqrt(fabs(1.0 - zeta * zeta));
+    const double sum = zeta < 1.0 ? 2.0 * exp(-decay) * cos(split) : exp(split - decay) + exp(-split - decay);
+    return (pole_pair){sum, exp(-2.0 * decay)};
+}
+
 nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *gains)
 {
-    /* N(s) = (s^2 + wn s/Q + wn^2)/(s^2 + 2 zeta wn s + wn^2); Tustin with s = wn/tan(wn T/2) (1 - z^-1)/(1 + z^-1), so
-     * that the zeros fall on the resonance itself; a resonance above half the rate is left alone */
     nt_stage_loop loop = {.b = {1.0, 0.0, 0.0}, .a = {1.0, 0.0, 0.0}, .integral = gains->stage_integral / gains->rate};
-    const double half_angle = NT_PI * stage->resonance / gains->rate;
-    if (half_angle >= 0.5 * NT_PI)
-        return loop;
-    const double t = tan(half_angle);
-    const double common = 1.0 + t * t;
-    const double zero = t / stage->quality;
-    const double pole = 2.0 * gains->stage_damping * t;
-    const double scale = 1.0 / (common + pole);
-    loop.b[0] = (common + zero) * scale;
-    loop.b[1] = 2.0 * (t * t - 1.0) * scale;
-    loop.b[2] = (common - zero) * scale;
-    loop.a[1] = loop.b[1];
-    loop.a[2] = (common - pole) * scale;
+    const double angle = 2.0 * NT_PI * stage->resonance / gains->rate;
+    if (angle >= NT_PI)
+        return loop; /* the samples do not see the resonance */
+    const pole_pair bare = poles_of(0.5 / stage->quality, angle);
+    const pole_pair damped = poles_of(gains->stage_damping, angle);
+    const double scale = (1.0 - damped.sum + damped.product) / (1.0 - bare.sum + bare.product); /* gain 1 at rest */
+    loop.b[0] = scale;
+    loop.b[1] = -scale * bare.sum;
+    loop.b[2] = scale * bare.product;
+    loop.a[1] = -damped.sum;
+    loop.a[2] = damped.product;
     return loop;
 }
 

@@ -48,7 +48,7 @@ static int is_valid(const nt_sample *sample)
 {
     return !(sample->flags & NT_SAMPLE_INVALID) && isfinite(sample->master_position) &&
            isfinite(sample->operator_force) && isfinite(sample->stage_position) && isfinite(sample->deflection) &&
-           isfinite(sample->age);
+           isfinite(sample->x) && isfinite(sample->y) && isfinite(sample->age) && sample->age >= 0.0;
 }
 
 /* One bad sample: hold, reuse nothing; the second in a row: retract. Never "zero force". */
@@ -86,7 +86,8 @@ static nt_state judge_age(const nt_touch *touch, nt_supervisor_state *state, con
     return sample->age > STALE_RETRACT_PERIODS * touch->period ? NT_RETRACT : NT_HOLD;
 }
 
-/* A live sensor shows its noise: identical codes while z moves mean that it is dead. Needs noise above one step. */
+/* A live sensor shows its noise: identical codes while z moves mean that it is dead. Needs noise above one step. The
+ * count stands at STUCK_SAMPLES until z has moved, so that HOLD comes before LATCHED. */
 static nt_state judge_stuck(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
 {
     const nt_probe *probe = &touch->rig.probe;
@@ -98,13 +99,13 @@ static nt_state judge_stuck(const nt_touch *touch, nt_supervisor_state *state, c
         state->stuck_run = 0;
         return NT_RUN;
     }
-    if (state->stuck_run <= 2u * STUCK_SAMPLES)
+    const int moved = fabs(sample->stage_position - state->stuck_position) > 5.0 * touch->rig.stage.resolution;
+    if (state->stuck_run < STUCK_SAMPLES || (moved && state->stuck_run < 2u * STUCK_SAMPLES))
         ++state->stuck_run;
-    const double moved = fabs(sample->stage_position - state->stuck_position);
-    if (state->stuck_run < STUCK_SAMPLES || moved <= 5.0 * touch->rig.stage.resolution)
+    if (state->stuck_run < STUCK_SAMPLES || !moved)
         return NT_RUN;
     state->reasons |= NT_REASON_STUCK;
-    return state->stuck_run > 2u * STUCK_SAMPLES ? NT_LATCHED : NT_HOLD;
+    return state->stuck_run < 2u * STUCK_SAMPLES ? NT_HOLD : NT_LATCHED;
 }
 
 /* Off its command for half the allowed time: hold; for all of it: latched. */

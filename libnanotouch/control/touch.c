@@ -1,16 +1,44 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * One control period: supervisor, passivity, motor law, stage reference, stage loop. */
 #include <math.h>
+#include <stddef.h>
 
 #include "control/servo.h"
 #include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
 #define FADE_TIME 0.05       /* outside RUN the force is gone after this [s] */
+#define LEAST_STEP 1e-3      /* sensors without steps still have noise: this share of the travel */
 
 static double low_pass_factor(double bandwidth, double period)
 {
     return -expm1(-2.0 * NT_PI * bandwidth * period);
+}
+
+/* No limit may promise more than the rig can keep: beyond saturation no force would be seen. */
+static nt_status check_against_rig(const nt_limits *limits, const nt_rig *rig, nt_problem *problem)
+{
+    const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
+    const nt_problem promises[] = {
+        {"limits.force", "N", limits->force, 0.0, saturation},
+        {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},
+        {"limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force},
+    };
+    for (size_t i = 0; i < sizeof promises / sizeof promises[0]; ++i) {
+        if (promises[i].value <= promises[i].maximum)
+            continue;
+        if (problem)
+            *problem = promises[i];
+        return NT_E_RANGE;
+    }
+    return NT_OK;
+}
+
+/* What quantised positions may seem to release at full force: one step of the master or, at its scale, of the stage. */
+static double energy_dead_zone(const nt_rig *rig, double alpha_p)
+{
+    const double steps = fmax(rig->master.resolution, rig->stage.resolution / alpha_p);
+    return rig->master.gauge_range * fmax(steps, LEAST_STEP * rig->master.travel);
 }
 
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
@@ -19,8 +47,12 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
     nt_status status = nt_rig_check(rig, problem);
     if (status == NT_OK)
         status = nt_settings_check(settings, problem);
+    if (status == NT_OK)
+        status = check_against_rig(&settings->limits, rig, problem);
     if (status != NT_OK)
         return status;
+    if (mode != NT_MODE_TOUCH && mode != NT_MODE_TOPOGRAPHY)
+        return NT_E_ARGUMENT;
     const double period = 1.0 / settings->gains.rate;
     nt_touch made = {.rig = *rig,
                      .settings = *settings,
@@ -29,8 +61,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .stage_loop = nt_stage_loop_make(&rig->stage, &settings->gains),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
                      .speed_filter = low_pass_factor(SPEED_BANDWIDTH, period),
-                     /* one position step at full force may seem to come out */
-                     .energy_dead_zone = rig->master.gauge_range * rig->master.resolution};
+                     .energy_dead_zone = energy_dead_zone(rig, settings->gains.alpha_p)};
     *touch = made;
     return NT_OK;
 }
@@ -146,12 +177,17 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     *command = state->command;
 }
 
-void nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)
+nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)
 {
+    if (!isfinite(x) || !isfinite(y) || !isfinite(duration))
+        return NT_E_NOT_FINITE;
+    if (duration < 0.0)
+        return NT_E_RANGE;
     const double distance = hypot(x - state->command.x, y - state->command.y);
     state->target_x = x;
     state->target_y = y;
     state->target_time = fmax(duration, distance / touch->settings.limits.lateral_speed);
+    return NT_OK;
 }
 
 nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
@@ -164,5 +200,8 @@ nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
     state->passivity.gain = 1.0;
     state->passivity.energy = 0.0;
     state->retracted = 0.0;
+    state->target_x = state->command.x; /* the path that a stop has cut short does not go on by itself */
+    state->target_y = state->command.y;
+    state->target_time = 0.0;
     return NT_OK;
 }

@@ -19,8 +19,9 @@ nt_status nt_ring_init(nt_ring *ring, void *memory, size_t element, size_t capac
 
 size_t nt_ring_count(const nt_ring *ring)
 {
-    return atomic_load_explicit(&ring->head, memory_order_acquire) -
-           atomic_load_explicit(&ring->tail, memory_order_acquire);
+    /* tail first: it cannot overtake a head that is read later */
+    const size_t tail = atomic_load_explicit(&ring->tail, memory_order_acquire);
+    return atomic_load_explicit(&ring->head, memory_order_acquire) - tail;
 }
 
 nt_status nt_ring_push(nt_ring *ring, const void *element)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The only POSIX file of the portable part: a step at a fixed rate, on absolute deadlines of the monotonic clock, so
- * that late wake-ups do not add up. */
-#if defined(__unix__) || defined(__APPLE__)
+ * that late wake-ups do not add up. Periods that are lost as a whole are skipped: a burst of steps to catch up would
+ * move the rig on samples that do not belong to the time. */
+#if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
-#include <time.h>
 #endif
 
 #include <math.h>
@@ -13,25 +13,34 @@
 
 #if defined(__linux__)
 
-static double seconds_between(const struct timespec *from, const struct timespec *to)
+#include <errno.h>
+#include <time.h>
+
+static const int64_t second = 1000000000; /* [ns] */
+
+static nt_status read_clock(int64_t *now)
 {
-    return (double)(to->tv_sec - from->tv_sec) + 1e-9 * (double)(to->tv_nsec - from->tv_nsec);
+    struct timespec time;
+    if (clock_gettime(CLOCK_MONOTONIC, &time) != 0)
+        return NT_E_DEVICE;
+    *now = time.tv_sec * second + time.tv_nsec;
+    return NT_OK;
 }
 
-static void add_nanoseconds(struct timespec *time, long nanoseconds)
+static nt_status sleep_until(int64_t deadline)
 {
-    time->tv_nsec += nanoseconds;
-    while (time->tv_nsec >= 1000000000L) {
-        time->tv_nsec -= 1000000000L;
-        ++time->tv_sec;
-    }
+    const struct timespec time = {.tv_sec = (time_t)(deadline / second), .tv_nsec = (long)(deadline % second)};
+    int error;
+    do /* interrupted by a signal: sleep on */
+        error = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, NULL);
+    while (error == EINTR);
+    return error == 0 ? NT_OK : NT_E_DEVICE;
 }
 
 static void count(nt_loop_statistics *statistics, double delay, double period)
 {
     ++statistics->ticks;
     statistics->late += delay > 0.2 * period;
-    statistics->missed += delay > period;
     if (delay > statistics->worst_delay)
         statistics->worst_delay = delay;
     statistics->mean_delay += (delay - statistics->mean_delay) / (double)statistics->ticks;
@@ -46,24 +55,26 @@ nt_status nt_loop_run(double period, uint64_t ticks, nt_loop_step step, void *co
     if (period < 1e-6 || period > 0.999)
         return NT_E_RANGE;
     nt_loop_statistics found = {0, 0, 0, 0.0, 0.0};
-    struct timespec deadline;
-    if (clock_gettime(CLOCK_MONOTONIC, &deadline) != 0)
-        return NT_E_DEVICE;
-    const long nanoseconds = lround(period * 1e9);
-    for (uint64_t tick = 0; tick < ticks; ++tick) {
-        struct timespec now;
-        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL) != 0) {
-        } /* interrupted by a signal: sleep on */
-        if (clock_gettime(CLOCK_MONOTONIC, &now) != 0)
-            return NT_E_DEVICE;
-        count(&found, seconds_between(&deadline, &now), period);
-        if (step(context, tick) != 0)
+    const int64_t length = (int64_t)llround(period * 1e9);
+    int64_t now, start;
+    nt_status status = read_clock(&start);
+    for (uint64_t tick = 0; tick < ticks && status == NT_OK; ++tick) {
+        const int64_t deadline = start + (int64_t)tick * length;
+        status = sleep_until(deadline);
+        if (status == NT_OK)
+            status = read_clock(&now);
+        if (status != NT_OK)
             break;
-        add_nanoseconds(&deadline, nanoseconds);
+        count(&found, 1e-9 * (double)(now - deadline), period);
+        const uint64_t lost = (uint64_t)((now - deadline) / length);
+        found.missed += lost;
+        tick += lost;
+        if (tick >= ticks || step(context, tick) != 0)
+            break;
     }
     if (statistics)
         *statistics = found;
-    return NT_OK;
+    return status;
 }
 
 #else

@@ -6,6 +6,8 @@
  * the capillary force) or the dry tail acts, never both;
  *  - solid: the tail's force is constant inside the range of the contact law's own adhesion, and what it pulls there
  * has been taken out of w (plan.c), so that together they pull 2 pi R w in the rigid limit. */
+#include <math.h>
+
 #include "nanotouch/plan.h"
 #include "nanotouch/scene.h"
 
@@ -29,8 +31,8 @@ nt_law_value nt_interaction_eval_gap(const nt_plan *plan, const nt_interaction_s
 {
     nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
     const int attached = is_attached(plan, state, gap);
-    if (attached || gap != gap) { /* a NaN gap goes through the law, which returns NaN or refuses */
-        nt_law_value contact = {gap, gap, gap, gap};
+    if (attached || isnan(gap)) {
+        nt_law_value contact = {NAN, NAN, NAN, NAN}; /* what stays if the law refuses the gap */
         (void)nt_contact_law_eval(&plan->contact, -gap, NT_BRANCH_STABLE, &contact);
         add(&sum, contact);
     }

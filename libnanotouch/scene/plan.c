@@ -14,6 +14,9 @@
 
 #define JKR_ERROR_COEFFICIENT 0.09
 #define JKR_MINIMUM_LAMBDA 0.5
+/* The demand holds for the sum: half of it for the contact law, a quarter for each term that may be left out. */
+#define CONTACT_SHARE 0.5
+#define TERM_SHARE 0.25
 
 #define FIELD(member, unit, minimum, maximum, doc)                                                                     \
     {"demand." #member, unit, minimum, maximum, (unsigned)offsetof(nt_demand, member), doc}
@@ -85,7 +88,7 @@ static nt_model choose_contact(const nt_contact *contact, const nt_demand *deman
     }
     const double lambda = nt_maugis_lambda(contact);
     const double jkr_error = JKR_ERROR_COEFFICIENT / (lambda * lambda);
-    if (lambda > JKR_MINIMUM_LAMBDA && jkr_error <= demand->relative_accuracy) {
+    if (lambda > JKR_MINIMUM_LAMBDA && jkr_error <= CONTACT_SHARE * demand->relative_accuracy) {
         *error = jkr_error;
         return NT_JKR;
     }
@@ -93,29 +96,29 @@ static nt_model choose_contact(const nt_contact *contact, const nt_demand *deman
     return NT_MAUGIS;
 }
 
-/* Stiffness and radius of the stable branch where it carries `load`, by bisection in the indentation. */
-static nt_law_value law_at_load(const nt_contact_law *law, double load)
+/* The stable branch where it carries `load`: bracket upwards from first touch, where it cannot push, then bisect. */
+static nt_status law_at_load(const nt_contact_law *law, double load, nt_law_value *value)
 {
     const nt_contact *contact = &law->maugis.contact;
-    nt_contact adhesionless = *contact;
-    adhesionless.work_of_adhesion = 0.0;
     double low = 0.0;
-    /* adhesion lowers F(delta) by no more than 3 pi w R of load at equal delta (JKR at high load: sqrt, bounded here)
-     */
-    double high = 2.0 * nt_hertz_indentation(&adhesionless, load + 2.0 * nt_dmt_pull_off_force(contact)) + 1e-12;
-    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
-    for (int i = 0; i < 64 && nt_contact_law_eval(law, high, NT_BRANCH_STABLE, &value) == NT_OK && value.F < load; ++i)
+    double high = nt_hertz_indentation(contact, load);
+    nt_status status = nt_contact_law_eval(law, high, NT_BRANCH_STABLE, value);
+    for (int i = 0; i < 64 && status == NT_OK && value->F < load; ++i) {
+        low = high;
         high *= 2.0;
-    for (int i = 0; i < 60; ++i) {
+        status = nt_contact_law_eval(law, high, NT_BRANCH_STABLE, value);
+    }
+    if (status == NT_OK && value->F < load)
+        return NT_E_NO_CONVERGENCE;
+    for (int i = 0; i < 60 && status == NT_OK; ++i) {
         const double middle = 0.5 * (low + high);
-        if (nt_contact_law_eval(law, middle, NT_BRANCH_STABLE, &value) != NT_OK)
-            break;
-        if (value.F < load)
+        status = nt_contact_law_eval(law, middle, NT_BRANCH_STABLE, value);
+        if (value->F < load)
             low = middle;
         else
             high = middle;
     }
-    return value;
+    return status;
 }
 
 static nt_status refuse(nt_problem *problem, const char *field, const char *unit, double value, double maximum)
@@ -187,7 +190,8 @@ nt_status nt_plan_make(nt_plan *plan, const nt_scene *scene, const nt_demand *de
         return status;
     nt_plan made = {.source = nt_scene_adhesion_source(scene), .surface = surface};
     nt_contact contact = contact_of(scene, made.source);
-    const double felt = fmax(demand->force_floor, demand->relative_accuracy * nt_dmt_pull_off_force(&contact));
+    const double least_pull_off = nt_jkr_pull_off_force(&contact); /* that any theory gives */
+    const double felt = fmax(0.5 * demand->force_floor, TERM_SHARE * demand->relative_accuracy * least_pull_off);
     plan_electrostatic(&made, scene, felt);
     status = plan_tail(&made, &contact, scene, felt, problem);
     if (status == NT_OK)
@@ -198,7 +202,10 @@ nt_status nt_plan_make(nt_plan *plan, const nt_scene *scene, const nt_demand *de
     made.pull_off_force = nt_contact_law_pull_off_force(&made.contact) +
                           (tail_in_contact ? made.terms[NT_PLAN_VDW].bound : 0.0) +
                           (made.terms[NT_PLAN_ELECTROSTATIC].included ? made.terms[NT_PLAN_ELECTROSTATIC].bound : 0.0);
-    const nt_law_value loaded = law_at_load(&made.contact, demand->maximum_load);
+    nt_law_value loaded;
+    status = law_at_load(&made.contact, demand->maximum_load, &loaded);
+    if (status != NT_OK)
+        return status;
     made.maximum_stiffness = loaded.k;
     made.contact_strain = loaded.a / contact.radius;
     *plan = made;

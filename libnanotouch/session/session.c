@@ -46,9 +46,11 @@ static nt_status refuse(nt_problem *problem, const char *field, const char *unit
     return isfinite(value) ? NT_E_RANGE : NT_E_NOT_FINITE;
 }
 
-/* Numbers of the setup that no other check sees. */
+/* Numbers of the setup that no other check sees; rig and settings have been checked. */
 static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
 {
+    if (setup->settings.gains.delay > NT_SIM_DELAY_MAX)
+        return refuse(problem, "gains.delay", "periods", setup->settings.gains.delay, 0.0, NT_SIM_DELAY_MAX);
     if (!(setup->clearance >= 1e-9 && setup->clearance <= 1e-3))
         return refuse(problem, "clearance", "m", setup->clearance, 1e-9, 1e-3);
     if (setup->ring_capacity < 2 || setup->ring_capacity > 1L << 26)
@@ -79,7 +81,6 @@ static double master_start(const nt_session_setup *setup)
 
 static nt_status make_sim(nt_session *session, const nt_session_setup *setup)
 {
-    const double delay = setup->settings.gains.delay;
     const nt_sim_setup sim = {.plan = &session->plan,
                               .rig = &session->touch.rig,
                               .period = session->touch.period,
@@ -88,7 +89,7 @@ static nt_status make_sim(nt_session *session, const nt_session_setup *setup)
                               .clearance = setup->clearance,
                               .master_position = master_start(setup),
                               .seed = setup->seed,
-                              .delay = (int)lround(delay)};
+                              .delay = (int)ceil(setup->settings.gains.delay)};
     const nt_status status = nt_sim_init(&session->sim, &sim);
     return status == NT_OK ? nt_hal_open(&session->hal, nt_sim_backend(), &session->sim) : status;
 }
@@ -118,7 +119,11 @@ nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, n
 {
     if (!session || !setup)
         return NT_E_ARGUMENT;
-    nt_status status = check_setup(setup, problem);
+    nt_status status = nt_rig_check(&setup->rig, problem);
+    if (status == NT_OK)
+        status = nt_settings_check(&setup->settings, problem);
+    if (status == NT_OK)
+        status = check_setup(setup, problem);
     if (status != NT_OK)
         return status;
     size_t capacity = 2;
@@ -163,14 +168,14 @@ nt_status nt_session_aim(nt_session *session, const nt_input *input)
     return NT_OK;
 }
 
-static void take_input(nt_session *session)
+static nt_status take_input(nt_session *session)
 {
     nt_input input;
     if (!nt_mailbox_take(&session->mailbox, &input))
-        return;
+        return NT_OK;
     const nt_hand_target target = {.force = input.operator_force, .duration = input.duration};
     nt_sim_aim_hand(&session->sim, &target);
-    nt_touch_aim(&session->touch, &session->touch_state, input.x, input.y, input.duration);
+    return nt_touch_aim(&session->touch, &session->touch_state, input.x, input.y, input.duration);
 }
 
 static nt_record record_of(const nt_session *session, const nt_sample *sample, const nt_command *command,
@@ -201,8 +206,9 @@ static nt_status step(nt_session *session)
     nt_sample sample;
     nt_command command;
     const nt_truth truth = session->sim.truth; /* at the moment of the sample */
-    take_input(session);
-    nt_status status = nt_hal_read(&session->hal, &sample);
+    nt_status status = take_input(session);
+    if (status == NT_OK)
+        status = nt_hal_read(&session->hal, &sample);
     if (status != NT_OK)
         return status;
     nt_touch_step(&session->touch, &session->touch_state, &sample, &command);

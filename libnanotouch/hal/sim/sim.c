@@ -129,17 +129,34 @@ nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
     return NT_OK;
 }
 
+static double limit(double value, double minimum, double maximum)
+{
+    return fmin(fmax(value, minimum), maximum);
+}
+
+/* What the stage's driver makes of a command: travel, slew, steps. */
+static double drive_stage(nt_sim *sim, double command)
+{
+    const nt_stage *stage = &sim->rig.stage;
+    const double slew = stage->max_speed * sim->period;
+    const double reached = limit(command, sim->stage_drive - slew, sim->stage_drive + slew);
+    sim->stage_drive = limit(reached, -0.5 * stage->travel, 0.5 * stage->travel);
+    const double step = stage->command_resolution;
+    return step > 0.0 ? step * round(sim->stage_drive / step) : sim->stage_drive;
+}
+
 nt_status nt_sim_write(nt_sim *sim, const nt_command *command)
 {
-    const int slots = sim->delay + 1;
-    sim->pending[sim->tick % (uint64_t)slots] = *command;
-    const nt_command *acting =
-        &sim->pending[(sim->tick + 1u) % (uint64_t)slots]; /* the oldest; this one if delay is 0 */
-    const double step = sim->rig.stage.command_resolution;
-    const double stage_command = step > 0.0 ? step * round(acting->stage_position / step) : acting->stage_position;
+    if (!isfinite(command->motor_force) || !isfinite(command->stage_position) || !isfinite(command->x) ||
+        !isfinite(command->y))
+        return NT_E_NOT_FINITE;
+    const uint64_t slots = (uint64_t)sim->delay + 1u;
+    sim->pending[sim->tick % slots] = *command;
+    const nt_command *acting = &sim->pending[(sim->tick + 1u) % slots]; /* the oldest; this one if delay is 0 */
+    const double motor_force = limit(acting->motor_force, -sim->rig.master.max_force, sim->rig.master.max_force);
+    nt_master_step(&sim->master_model, &sim->master, motor_force + nt_hand_now(&sim->hand).force);
     nt_hand_step(&sim->hand, sim->period);
-    nt_master_step(&sim->master_model, &sim->master, acting->motor_force + nt_hand_now(&sim->hand).force);
-    nt_stage_step(&sim->stage_model, &sim->stage, stage_command, sim->truth.tip_force);
+    nt_stage_step(&sim->stage_model, &sim->stage, drive_stage(sim, acting->stage_position), sim->truth.tip_force);
     sim->x = acting->x;
     sim->y = acting->y;
     ++sim->tick;

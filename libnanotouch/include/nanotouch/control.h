@@ -88,7 +88,7 @@ NT_API double nt_margins_jury_limit(const nt_master *master, double period);
 /* --- stage loop: x_s follows the reference: notch on the resonance, integral action on the read-out --- */
 
 typedef struct nt_stage_loop {
-    double b[3], a[3]; /* biquad in z^-1, a[0] = 1: Tustin, prewarped at f_n */
+    double b[3], a[3]; /* biquad in z^-1, a[0] = 1: zeros on the sampled poles of the stage */
     double integral;   /* integral gain per period [-] */
 } nt_stage_loop;
 typedef struct nt_stage_loop_state {
@@ -184,18 +184,19 @@ typedef struct nt_touch_state {
     uint64_t ticks;
 } nt_touch_state;
 
-/* Checks rig and settings. */
+/* Checks rig and settings, and that no limit promises more than the rig can keep. */
 NT_API nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
                                nt_problem *problem);
-/* A loop at rest at (x, y) with the master at x_m, armed. */
+/* A loop at rest at (x, y), the stage at 0, the master at x_m (both finite), armed. */
 NT_API nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, double x, double y);
 /* One control period. */
 NT_API NT_REALTIME void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample,
                                       nt_command *command);
-/* Sends the tip to (x, y) on a straight line within `duration` [s], no faster than the lateral limit. */
-NT_API NT_REALTIME void nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration);
-/* Back to RUN after RETRACT; after LATCHED only with confirmed = 1 (a person at the rig). The force fades in again.
- * NT_E_STATE if LATCHED and not confirmed. */
+/* Sends the tip to (x, y) on a straight line within `duration` >= 0 [s], no faster than the lateral limit. */
+NT_API NT_REALTIME nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y,
+                                          double duration);
+/* Back to RUN after RETRACT; after LATCHED only with confirmed = 1 (a person at the rig). The force fades in again, the
+ * tip stays where it is until the next nt_touch_aim. NT_E_STATE if LATCHED and not confirmed. */
 NT_API nt_status nt_touch_arm(nt_touch_state *state, int confirmed);
 
 #ifdef __cplusplus

@@ -26,14 +26,16 @@ NT_API void nt_hal_close(nt_hal *hal);
 /* --- the loop: calls a step at a fixed rate on the monotonic clock (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
 
 typedef struct nt_loop_statistics {
-    uint64_t ticks;
+    uint64_t ticks;     /* wake-ups */
     uint64_t late;      /* wake-ups later than a fifth of the period */
-    uint64_t missed;    /* wake-ups later than a whole period */
+    uint64_t missed;    /* periods without a step: lost as a whole and skipped, not caught up */
     double worst_delay; /* [s] */
     double mean_delay;  /* [s] */
 } nt_loop_statistics;
-/* Returns 0 to go on; anything else ends the loop. */
+/* tick: number of the period, 0 first, strictly rising. Returns 0 to go on; anything else ends the loop. */
 typedef int (*nt_loop_step)(void *context, uint64_t tick);
+/* Periods 0 .. ticks - 1 of `period` seconds (1e-6 .. 0.999, NT_E_RANGE), the first one at once. statistics may be
+ * NULL; it is written unless the arguments are refused. NT_E_DEVICE if the clock fails. */
 NT_API nt_status nt_loop_run(double period, uint64_t ticks, nt_loop_step step, void *context,
                              nt_loop_statistics *statistics);
 

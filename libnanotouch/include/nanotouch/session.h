@@ -60,8 +60,9 @@ typedef struct nt_record {
     uint32_t reasons;       /* NT_REASON_* */
 } nt_record;
 
-/* Opens a session. NT_E_RANGE with problem->field "stability margin" if the loop would run closer to its stability
- * limit than minimum_margin. The session belongs to the caller: nt_session_close. */
+/* Opens a session. A fractional delay is simulated as the next whole one. NT_E_RANGE with problem->field "stability
+ * margin" if the loop would run closer to its stability limit than minimum_margin. The session belongs to the caller:
+ * nt_session_close. */
 NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
 /* Accepts NULL. */
 NT_API void nt_session_close(nt_session *session);

@@ -49,6 +49,7 @@ typedef struct nt_sim {
     nt_random random;
     nt_hand_state hand;
     nt_stage_state stage;
+    double stage_drive; /* the command as far as the driver has slewed [m] */
     nt_master_state master;
     nt_cantilever_state cantilever;
     nt_interaction_state interaction;
@@ -62,7 +63,9 @@ NT_API nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup);
 /* The operation table; the context is a nt_sim. */
 NT_API const nt_hal_backend *nt_sim_backend(void);
 NT_API NT_REALTIME nt_status nt_sim_read(nt_sim *sim, nt_sample *sample);
-/* Takes the command and lets one period pass. */
+/* Takes the command and lets one period pass; it acts `delay` periods later, within the motor's force and the stage's
+ * travel and speed. NT_E_NOT_FINITE, with no time passed, for a command that is not a number; NT_E_NO_CONVERGENCE if
+ * the probe does not come to rest. */
 NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command);
 /* What the simulated operator does next. */
 NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target);
