@@ -46,6 +46,8 @@ def test_attributes_slices_and_scaling() -> None:
     np.testing.assert_array_equal(recording.scaled_slave_force, 2e6 * recording.slave_force)
     np.testing.assert_array_equal(recording.scaled_stage_position, recording.stage_position / 4e-6 - 0.01)
     np.testing.assert_allclose(recording.tip_height, 6e-7 - recording.stage_position + recording.deflection)
+    tilted = Recording(columns(100), METADATA | {"rig": {"probe": {"tilt": np.pi / 3}}})
+    np.testing.assert_allclose(tilted.tip_height, 6e-7 - recording.stage_position + 0.5 * recording.deflection)
     with pytest.raises(AttributeError, match="no column 'colour'"):
         recording.colour  # noqa: B018
     with pytest.raises(InvalidValue, match="lacks 'alpha_f'"):

@@ -33,7 +33,7 @@ def probe() -> tuple[bool, str]:
         return False, str(error)
 
 
-def display_available() -> bool:
+def has_display() -> bool:
     """Whether there is a display to open a window on."""
     if sys.platform in ("win32", "darwin"):
         return True
@@ -41,22 +41,34 @@ def display_available() -> bool:
 
 
 def render_png(
-    topography: Any, recording: Recording | None, path: str | os.PathLike[str], size: tuple[int, int] = (1200, 900)
+    topography: Any,
+    recording: Recording | None,
+    path: str | os.PathLike[str],
+    size: tuple[int, int] = (1200, 900),
+    tip_radius: float | None = None,
 ) -> None:
-    """Render surface, tip and trace to a PNG, without a display; the file is written whole or not at all."""
+    """Render surface, tip and trace to a PNG, without a display; the file is written whole or not at all.
+
+    `size` in pixels; `tip_radius` [m] by default as in the recording's scene.
+    """
+    picture = Picture.of(topography, recording, tip_radius)
     with replacing(path) as part:
-        _draw(topography, recording, ["png", str(part), *map(str, size)], RENDER_TIME)
+        _draw(picture, ["png", str(part), *map(str, size)], RENDER_TIME)
 
 
-def open_window(topography: Any, recording: Recording | None, size: tuple[int, int] = (1200, 900)) -> None:
+def open_window(
+    topography: Any,
+    recording: Recording | None,
+    tip_radius: float | None = None,
+    size: tuple[int, int] = (1200, 900),
+) -> None:
     """Open a window in which the view can be turned; returns when it is closed."""
-    if not display_available():
+    if not has_display():
         raise Error("no display: neither DISPLAY nor WAYLAND_DISPLAY is set; the view can be rendered to a PNG instead")
-    _draw(topography, recording, ["window", *map(str, size)], None)
+    _draw(Picture.of(topography, recording, tip_radius), ["window", *map(str, size)], None)
 
 
-def _draw(topography: Any, recording: Recording | None, arguments: Sequence[str], time: float | None) -> None:
-    picture = Picture.of(topography, recording)
+def _draw(picture: Picture, arguments: Sequence[str], time: float | None) -> None:
     with tempfile.TemporaryDirectory(prefix="nanotouch-view-") as folder:
         file = Path(folder) / "picture.npz"
         picture.save(file)

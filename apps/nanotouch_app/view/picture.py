@@ -38,7 +38,7 @@ class Picture:
     caption: str
 
     @classmethod
-    def of(cls, topography: Any, recording: Recording | None) -> Picture:
+    def of(cls, topography: Any, recording: Recording | None, tip_radius: float | None = None) -> Picture:
         """Prepare the view of a surface and of what was recorded on it."""
         heights, pixel_size = _coarser(np.asarray(topography.heights, float), np.asarray(topography.pixel_size, float))
         unit = float(np.max(np.asarray(heights.shape) * pixel_size))
@@ -49,7 +49,7 @@ class Picture:
         lines = [f"{topography.name}: heights drawn {drawn}"]
         if recording is not None and len(recording):
             scale = np.array([1.0, 1.0, exaggeration]) / unit
-            tip = _tip(recording, scale, unit)
+            tip = _tip(recording, scale, unit, tip_radius)
             trace, force = _trace(recording, scale, float(np.max(heights)))
             lines.append(f"tip: R = {_length(tip[3] * unit)}, in proportion, at the scale of x and y")
             lines.append("trace: measured path of the tip, coloured by the force on it")
@@ -84,12 +84,13 @@ def _round(value: float) -> float:
     return float(max(step for step in (1, 1.5, 2, 3, 5, 7) if step <= value / power * (1 + 1e-12)) * power)
 
 
-def _tip(recording: Recording, scale: Floats, unit: float) -> Floats:
+def _tip(recording: Recording, scale: Floats, unit: float, radius: float | None) -> Floats:
     """Apex where the tip turned back, its radius and half angle."""
     shape = recording.metadata.get("scene", {}).get("tip", {})
-    row = max(phases(recording)[1] - 1, 0)
+    row = min(phases(recording)[1], len(recording) - 1)
     apex = np.array([recording.x[row], recording.y[row], recording.tip_height[row]]) * scale
-    return np.array([*apex, shape.get("radius", 20e-9) / unit, shape.get("half_angle", 0.3)])
+    radius = radius or float(shape.get("radius", 20e-9))
+    return np.array([*apex, radius / unit, float(shape.get("half_angle", 0.3))])
 
 
 def _trace(recording: Recording, scale: Floats, highest: float) -> tuple[Floats, Floats]:

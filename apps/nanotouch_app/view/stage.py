@@ -50,7 +50,9 @@ def build(picture: Picture, height: int, note: str = "") -> Any:
     for text, place in ((picture.caption, (0.02, 0.02)), (note, (0.02, 0.95))):
         renderer.AddViewProp(_text(vtk, text, place, letters))
     _look(renderer, surface.GetBounds())
-    renderer.AddActor(_axes(vtk, renderer, picture, surface.GetBounds()))
+    axes = _axes(vtk, picture, surface.GetBounds(), letters)
+    axes.SetCamera(renderer.GetActiveCamera())
+    renderer.AddActor(axes)
     return renderer
 
 
@@ -123,11 +125,10 @@ def _tip(vtk: Any, tip: Floats) -> Any:
     return actor
 
 
-def _axes(vtk: Any, renderer: Any, picture: Picture, bounds: tuple[float, ...]) -> Any:
+def _axes(vtk: Any, picture: Picture, bounds: tuple[float, ...], letters: int) -> Any:
     """Axes of x and y at the outer edges; z is read from its colours."""
     axes = vtk.vtkCubeAxesActor()
     axes.SetBounds(bounds)
-    axes.SetCamera(renderer.GetActiveCamera())
     axes.SetFlyModeToOuterEdges()
     sizes = (bounds[1] * picture.unit, bounds[3] * picture.unit)
     for name, size in zip("XY", sizes, strict=True):
@@ -140,12 +141,11 @@ def _axes(vtk: Any, renderer: Any, picture: Picture, bounds: tuple[float, ...]) 
     axes.SetUse2DMode(True)  # its 3-D text has no micro sign
     for axis in range(2):
         for properties in (axes.GetTitleTextProperty(axis), axes.GetLabelTextProperty(axis)):
-            properties.SetColor(*INK)
+            _plain(properties, letters)
     for name in "XY":
         getattr(axes, f"Get{name}AxesLinesProperty")().SetColor(*INK)
         getattr(axes, f"Set{name}LabelFormat")("{:.3g}")
         getattr(axes, f"{name}AxisMinorTickVisibilityOff")()
-    axes.SetScreenSize(14.0)
     return axes
 
 

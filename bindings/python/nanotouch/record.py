@@ -7,6 +7,7 @@ type, unit and meaning, and says how a message holds them. Nothing is left under
 from __future__ import annotations
 
 import json
+import math
 import os
 import struct
 import warnings
@@ -125,9 +126,10 @@ class Recording:
 
     @property
     def tip_height(self) -> NDArray[np.float64]:
-        """z_t = z_0 - x_s + zeta [m], shape (n,), from measured quantities only."""
-        height: NDArray[np.float64] = self.parameter("start_height") - self.stage_position + self.deflection
-        return height
+        """z_t = z_0 - x_s + zeta cos(tilt) [m], shape (n,), from measured quantities only."""
+        tilt = float(self.metadata.get("rig", {}).get("probe", {}).get("tilt", 0.0))
+        base: NDArray[np.float64] = self.parameter("start_height") - self.stage_position
+        return base + math.cos(tilt) * self.deflection
 
     def to_csv(self, path: str | os.PathLike[str], progress: Callable[[float], None] | None = None) -> None:
         """Write a text table: ``# key: value`` lines with the metadata, then ``name [unit],...``, then the rows."""
