@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch fit``: read a force curve, find baseline, contact point, snap-in and pull-off, fit a contact model."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+import nanotouch as nt
+from nanotouch import curves
+from nanotouch import fit as fitting
+from nanotouch.contact import MODELS
+from nanotouch.errors import InvalidValue
+
+from nanotouch_app import output
+from nanotouch_app.quantity import parse_quantity
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser("fit", help="fit a contact model to a measured force curve", description=__doc__)
+    parser.add_argument("curve", metavar="CURVE", help="force curve file (JPK, Asylum .ibw, ...)")
+    parser.add_argument("--model", choices=MODELS, default="maugis", help="contact model (default: %(default)s)")
+    parser.add_argument("--index", type=int, default=0, metavar="N", help="which curve of a map (default: %(default)s)")
+    parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract; approach for hertz")
+    parser.add_argument("--radius", metavar="LENGTH", help="tip radius, as 20nm")
+    parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
+    parser.add_argument(
+        "--sensitivity", metavar="SENSITIVITY", help="deflection sensitivity in place of the file's, as 40nm/V"
+    )
+    parser.add_argument(
+        "--poisson-ratio", type=float, metavar="NU", help="of the sample: also gives its Young's modulus"
+    )
+    parser.add_argument("--scene", metavar="FILE", help="TOML file with tip, sample and adhesion")
+    parser.add_argument(
+        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    found = curves.read(
+        args.curve,
+        spring_constant=_quantity(args.spring_constant, "N/m"),
+        sensitivity=_quantity(args.sensitivity, "m/V"),
+    )
+    if not 0 <= args.index < len(found):
+        raise InvalidValue(f"--index {args.index}: {args.curve} holds the curves 0 .. {len(found) - 1}")
+    curve = found[args.index]
+    result = fitting.fit_curve(curve, args.model, branch=args.branch, **_knowledge(args))
+    out = output.folder(args.out)
+    output.write_json(out / "fit.json", as_json(result))
+    fitting.draw(curve, result, save=out / "fit.png")
+    if len(found) > 1:
+        print(f"curve {args.index} of {len(found)}; --index N picks another")
+    print(result)
+    print(f"written to {out}/: fit.json, fit.png")
+    return 0
+
+
+def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
+    """The numbers of a fit, SI; null for what is infinite or not a number."""
+    return {
+        "curve": result.name,
+        "model": result.model,
+        "branch": result.branch,
+        "points": int(result.z.size),
+        "values": {key: _finite(value) for key, value in result.values.items()},
+        "sigma": {key: _finite(value) for key, value in result.sigma.items()},
+        "units": {key: result.units[key] for key in result.values},
+        "identifiable": dict(result.identifiable),
+        "covariance": {
+            "parameters": list(result.free),
+            "matrix": [[_finite(value) for value in row] for row in result.covariance.tolist()],
+        },
+        "pull_off_force_N": _finite(result.measured_pull_off_force),
+        "snap_in_force_N": _finite(result.measured_snap_in_force),
+        "fitted_pull_off_force_N": result.pull_off_force,
+        "contact_radius_m": result.contact_radius,
+        "contact_stiffness_N_per_m": result.contact_stiffness,
+        "transition_parameter": _finite(result.transition_parameter),
+        "residual_rms_N": result.residual_rms,
+        "noise_N": result.report.noise,
+        "tip_radius_m": result.radius,
+        "spring_constant_N_per_m": result.spring_constant,
+        "converged": result.converged,
+        "assumptions": list(result.assumptions),
+        "notes": list(result.notes),
+        "version": nt.__version__,
+    }
+
+
+def _quantity(text: str | None, unit: str) -> float | None:
+    return None if text is None else parse_quantity(text, unit)
+
+
+def _knowledge(args: argparse.Namespace) -> dict[str, Any]:
+    """What the scene and the options say about tip and sample, as arguments of the fit."""
+    radius = _quantity(args.radius, "m")
+    if args.scene is None:
+        return {"radius": radius, "poisson_ratio": args.poisson_ratio}
+    scene = nt.Scene.from_toml(args.scene)
+    if radius is not None:
+        scene.tip.radius = radius
+    facts = scene.plan().explain()
+    known: dict[str, Any] = {"tip": scene.tip, "poisson_ratio": scene.sample.poisson_ratio}
+    if args.poisson_ratio is not None:
+        known["poisson_ratio"] = args.poisson_ratio
+    if args.model == "maugis" and facts["cohesive_stress"] > 0.0:
+        known["cohesive_range"] = facts["work_of_adhesion"] / facts["cohesive_stress"]
+    return known
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fit a contact model to a measured force curve, and say what the curve can and cannot tell.
+
+>>> import nanotouch as nt
+>>> curve = nt.curves.read("curve.jpk-force")[0]                                           # doctest: +SKIP
+>>> result = nt.fit.fit_curve(curve, model="maugis", radius=20e-9, poisson_ratio=0.3)      # doctest: +SKIP
+>>> result.values["effective_modulus"], result.sigma["effective_modulus"], result.identifiable   # doctest: +SKIP
+
+The force is fitted over the position of the cantilever's base, with the bending of the cantilever inside the model: so
+the noise of the force does not enter the abscissa, and a curve whose slope is that of its cantilever shows itself as
+one that does not determine the modulus. How and why: docs/fit.md.
+"""
+
+from .fitting import TipLike, fit_curve
+from .picture import draw
+from .result import FitResult
+
+__all__ = ["FitResult", "TipLike", "draw", "fit_curve"]

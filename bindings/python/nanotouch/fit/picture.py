@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of a fit: the whole curve with what was read off it, the fitted part with the model, the residuals."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nanotouch.curves import ForceCurve, Segment
+from nanotouch.errors import require
+from nanotouch.plots import BLUE, GREEN, VERMILION, engineering
+from nanotouch.record import replacing
+
+from .result import FitResult, Floats
+
+TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale"}
+
+
+def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | None = None) -> Any:
+    """Draw a fit.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Also written to `save`, whole or not at all.
+    """
+    figure_type = require("matplotlib.figure", "app").Figure
+    figure = figure_type(figsize=(12.0, 5.5), layout="constrained")
+    grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.0))
+    _whole(figure.add_subplot(grid[:, 0]), curve, result)
+    fitted = figure.add_subplot(grid[:2, 1])
+    _fitted(fitted, result)
+    _residuals(figure.add_subplot(grid[2, 1], sharex=fitted), result)
+    figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {TITLES[result.model]} on the {result.branch}")
+    if save is not None:
+        path = Path(save)
+        with replacing(path) as part:
+            figure.savefig(part, dpi=130, format=path.suffix.lstrip(".") or "png")
+    return figure
+
+
+def _whole(panel: Any, curve: ForceCurve, result: FitResult) -> None:
+    branches = [("approach", curve.approach, BLUE), ("retract", curve.retract, VERMILION)]
+    shown: list[tuple[str, Floats, Floats, str]] = []
+    for role, segment, colour in branches:
+        if segment is not None and role in result.report.baselines:
+            shown.append((role, segment.z, _level(segment, result, role), colour))
+    wide, scale_z = engineering("m", np.concatenate([z for _, z, _, _ in shown]))
+    strong, scale_f = engineering("N", np.concatenate([force for _, _, force, _ in shown]))
+    for role, z, force, colour in shown:
+        panel.plot(
+            z * scale_z, force * scale_f, color=colour, lw=0.9, label="retraction" if role == "retract" else role
+        )
+    panel.axhline(0.0, color="0.4", lw=0.8, ls="--", label="baseline (taken off)")
+    contact = result.values["contact_point"]
+    panel.axvline(contact * scale_z, color=GREEN, lw=1.0, ls=":", label="contact point of the fit")
+    report = result.report
+    marks = [("snap-in", report.snap_in_z, report.snap_in_force, BLUE, "v"),
+             ("pull-off", report.pull_off_z, report.pull_off_force, VERMILION, "o")]  # fmt: skip
+    for name, z_mark, force_mark, colour, shape in marks:
+        if force_mark > 0.0:
+            unit, factor = engineering("N", force_mark)
+            label = f"{name} {force_mark * factor:.3g} {unit}"
+            panel.plot(
+                z_mark * scale_z, -force_mark * scale_f, shape, ms=8, mfc="none", mec=colour, mew=1.5, label=label
+            )
+    panel.set_xlabel(f"height of the cantilever's base $z$ ({wide})")
+    panel.set_ylabel(f"force $F$, + repulsive ({strong})")
+    panel.legend(loc="best", fontsize=8)
+
+
+def _level(segment: Segment, result: FitResult, role: str) -> Floats:
+    assert segment.force is not None
+    return segment.force - result.report.baselines[role].at(segment.z)
+
+
+def _fitted(panel: Any, result: FitResult) -> None:
+    travel = result.z - result.values["contact_point"]
+    scale_z = engineering("m", travel)[1]
+    strong, scale_f = engineering("N", result.force)
+    colour = VERMILION if result.branch == "retract" else BLUE
+    panel.plot(travel * scale_z, result.force * scale_f, ".", color=colour, ms=3, alpha=0.6, label="measured")
+    panel.plot(travel * scale_z, result.fitted * scale_f, color="black", lw=1.2, label=TITLES[result.model])
+    panel.axhline(0.0, color="0.4", lw=0.8, ls="--")
+    panel.axvline(0.0, color=GREEN, lw=1.0, ls=":")
+    panel.text(0.97, 0.95, _box(result), transform=panel.transAxes, ha="right", va="top", fontsize=8,
+               bbox={"facecolor": "white", "edgecolor": "0.7", "alpha": 0.9})  # fmt: skip
+    panel.set_ylabel(f"force $F$ ({strong})")
+    panel.tick_params(labelbottom=False)
+    panel.legend(loc="lower left", fontsize=8)
+    panel.set_title(f"the {result.z.size} points of the fit", fontsize=9)
+
+
+def _residuals(panel: Any, result: FitResult) -> None:
+    travel = result.z - result.values["contact_point"]
+    wide, scale_z = engineering("m", travel)
+    weak, scale_f = engineering("N", result.residuals)
+    panel.plot(travel * scale_z, result.residuals * scale_f, ".", color="0.35", ms=3)
+    panel.axhline(0.0, color="black", lw=0.8)
+    noise = result.report.noise * scale_f
+    panel.axhspan(-noise, noise, color="0.85", zorder=0, label="± noise")
+    panel.set_xlabel(f"height of the base over first touch ({wide})")
+    panel.set_ylabel(f"measured − model ({weak})")
+    panel.legend(loc="best", fontsize=8)
+
+
+def _box(result: FitResult) -> str:
+    symbols = {
+        "effective_modulus": "$E^*$",
+        "work_of_adhesion": "$w$",
+        "youngs_modulus": "$E$",
+        "cohesive_range": "$h_0$",
+    }
+    lines = [f"{symbol} = {result.show(key)}" for key, symbol in symbols.items() if key in result.values]
+    lines.append(f"$R$ = {result.radius * 1e9:.3g} nm, $k_c$ = {result.spring_constant:.3g} N/m")
+    return "\n".join(lines)
