@@ -119,6 +119,14 @@ def test_adhesion_in_the_simulators_truth() -> None:
     assert seen.pull_off_force == pytest.approx(PULL_OFF, abs=0.3e-9)
 
 
+def test_letting_go_a_little_is_no_snap_in() -> None:
+    recording = touch()
+    force = recording.tip_force.copy()
+    force[15_000:15_200] -= 100e-9  # while it presses with some hundred nN
+    seen = plots.adhesion(Recording(recording.columns | {"tip_force": force}, recording.metadata))
+    assert seen == plots.adhesion(recording)
+
+
 @pytest.mark.parametrize("rows", [40_000, 200_000])
 def test_adhesion_above_the_noise(rows: int) -> None:
     """The mean over 0.5 ms (4 rows) of 2 nN noise leaves 1 nN, continued to the edge 1.6 nN; twice that here."""

@@ -242,12 +242,12 @@ def _drop(force: Floats, least: float, halves: list[int]) -> tuple[float, int]:
             continue
         start, edge, middle, stop = (total[k * half : k * half + count] for k in (0, 2, 3, 4))
         near, far = (middle - edge) / half, (stop - middle) / half
+        attraction = (far - near) * (half - 1) / (2 * half) - near
         score = ((edge - start) - (stop - edge)) / (2 * half) * math.sqrt(half / halves[0])
+        score[attraction <= 0] = 0.0  # a drop from pressing hard to pressing less
         clearest = int(np.argmax(score))
-        climb = (far[clearest] - near[clearest]) * (half - 1) / (2 * half)
-        attraction = float(climb - near[clearest])
-        if score[clearest] > best and attraction > 0:
-            best, value, row = float(score[clearest]), attraction, clearest + 2 * half
+        if score[clearest] > best:
+            best, value, row = float(score[clearest]), float(attraction[clearest]), clearest + 2 * half
     return value, row
 
 
