@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch curve``: compute and plot a force-distance curve for Hertz, DMT, JKR and Maugis-Dugdale."""
+"""Compute and plot the force over the gap for Hertz, DMT, JKR and Maugis-Dugdale, on retraction from contact."""
 
 from __future__ import annotations
 
 import argparse
 from typing import Any
 
-import numpy as np
-
 import nanotouch as nt
+import numpy as np
 from nanotouch import plots
 from nanotouch.contact import MODELS, Contact, evaluate, pull_off_force
 from nanotouch.record import write_csv
+
 from nanotouch_app import output
 
 TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale"}
@@ -20,9 +20,13 @@ POINTS = 2001
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
-    parser = subparsers.add_parser("curve", help="compute a force-distance curve", description=__doc__)
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "curve", help="compute a force-distance curve", description=__doc__
+    )
     parser.add_argument("--scene", metavar="FILE", help="TOML file with the scene (default: silicon in humid air)")
-    parser.add_argument("--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)")
+    parser.add_argument(
+        "--out", default="nanotouch-out", metavar="DIR", help="folder for results (default: %(default)s)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,15 @@ def folder(path: str | os.PathLike[str]) -> Path:
     return made
 
 
+def clear(folder: Path, names: Iterable[str]) -> None:
+    """Remove what an earlier run left under these names, so that no old result stands beside new ones."""
+    for name in names:
+        try:
+            (folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise Error(f"cannot replace {folder / name}: {error.strerror}") from error
+
+
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
     """Write JSON, whole or not at all."""
     part = path.with_name(f".{path.name}.part")
@@ -43,5 +52,5 @@ def progress_bar(title: str) -> Iterator[Callable[[float], None]]:
     """A bar on the terminal, for what takes longer than a second; called with the fraction done."""
     tqdm = require("tqdm", "app").tqdm
     layout = "{l_bar}{bar}| {elapsed}<{remaining}"
-    with tqdm(total=1.0, desc=title, delay=1.0, bar_format=layout, file=sys.stderr, leave=False) as bar:
+    with tqdm(total=1.0, desc=title, delay=1.0, bar_format=layout, leave=False, file=sys.stderr) as bar:
         yield lambda fraction: bar.update(fraction - bar.n)

@@ -6,9 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 import nanotouch as nt
+import numpy as np
 from nanotouch import _core
 from nanotouch.plots import adhesion
 from nanotouch.record import STATES, Recording
@@ -48,8 +47,8 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
 
 def words(summary: dict[str, Any]) -> str:
     """The summary for a reader."""
-    lines = [f"{summary['mode']} on {summary['surface']}: {summary['duration_s']:.1f} s in {summary['steps']} steps "
-             f"at {summary['loop_rate_Hz'] / 1e3:g} kHz"]  # fmt: skip
+    time = f"{summary['duration_s']:.1f} s, {summary['steps']} steps at {summary['loop_rate_Hz'] / 1e3:g} kHz"
+    lines = [f"{summary['mode']} on {summary['surface']}: {time}"]
     lines += [f"  {line}" for line in summary["models"]]
     lines += [
         f"  scaling           alpha_p {summary['alpha_p']:.3g}, alpha_f {summary['alpha_f']:.3g}",
@@ -57,18 +56,23 @@ def words(summary: dict[str, Any]) -> str:
         f"  pull-off          {_force(summary, 'pull_off')}",
         f"  largest force     {summary['largest_force_N'] * 1e9:.1f} nN",
         f"  position tracking {summary['position_tracking_rms_m'] * 1e9:.2f} nm RMS at the stage",
-        f"  force tracking    {summary['force_tracking_rms_N']:.3f} N RMS at the hand",
+        f"  force tracking    {_tracking(summary['force_tracking_rms_N'])}",
         f"  stability margin  {summary['stability_margin']:.1f} (1 is the limit)",
     ]
-    stopped = {name: count for name, count in summary["states"].items() if name != "RUN" and count}
+    seconds = {name: count / summary["loop_rate_Hz"] for name, count in summary["states"].items()}
+    stopped = [f"{seconds[name]:.4g} s {name}" for name in seconds if name != "RUN" and seconds[name]]
     if stopped:
-        lines.append(f"  not RUN           {stopped} because of {', '.join(summary['reasons'])}")
+        lines.append(f"  stopped           {', '.join(stopped)}: {', '.join(summary['reasons'])}")
     return "\n".join(lines)
 
 
 def _force(summary: dict[str, Any], name: str) -> str:
     tip, hand = summary[f"{name}_force_N"], summary[f"hand_{name}_force_N"]
     return "none" if tip is None else f"{tip * 1e9:.1f} nN at the tip, {hand:.3f} N at the hand"
+
+
+def _tracking(force: float | None) -> str:
+    return "none: never in contact" if force is None else f"{force:.3f} N RMS at the hand"
 
 
 def _position_error(session: nt.Session, recording: Recording) -> Any:

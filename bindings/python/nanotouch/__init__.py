@@ -29,7 +29,7 @@ _MODULES = (
     "session", "surface", "units",
 )  # fmt: skip
 
-__all__ = ["Error", "__version__", *_HOMES, *_MODULES]  # noqa: PLE0604
+__all__ = ["Error", "__version__", *_HOMES, *_MODULES]
 
 
 def __getattr__(name: str) -> Any:

@@ -8,19 +8,30 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nanotouch.errors import InvalidValue
+
 Floats = NDArray[np.float64]
 
 
 def as_floats(values: ArrayLike, name: str) -> Floats:
-    """A float64 array of real numbers."""
+    """A float64 array of real numbers, of the same shape."""
     if isinstance(values, np.ma.MaskedArray):
         raise TypeError(f"{name} is a masked array; fill or compress it first")
+    if isinstance(values, np.matrix):
+        raise TypeError(f"{name} is a numpy.matrix; pass numpy.asarray of it")
     if hasattr(values, "units") or hasattr(values, "unit"):
         raise TypeError(f"{name} carries a unit; convert it to SI and pass plain numbers")
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be real numbers, not {array.dtype}")
     return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+
+
+def check_between(name: str, value: float, unit: str, *, above: float, up_to: float = np.inf) -> None:
+    """Raise :class:`~nanotouch.errors.InvalidValue` unless ``above`` < value <= ``up_to``."""
+    if not above < value <= up_to:
+        span = f"above {above:g}" + (f", up to {up_to:g}" if up_to < np.inf else "")
+        raise InvalidValue(f"{name} = {value:g} {unit}".rstrip() + f": it must be {span} {unit}".rstrip())
 
 
 class Law(NamedTuple):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contact mechanics: the force between an elastic tip and a half-space at a given indentation.
 
-Models: ``"hertz"``, ``"dmt"``, ``"jkr"``, ``"maugis"`` (Maugis-Dugdale, every case between DMT and JKR). Adhesive models
-have branches: ``"stable"`` is what retraction from contact meets under grips, ``"approach"`` what approach from far away
-meets, ``"unstable"`` the equilibrium between the folds that no grip can hold (NaN where there is none).
+Models: ``"hertz"``, ``"dmt"``, ``"jkr"``, ``"maugis"`` (Maugis-Dugdale, every case between DMT and JKR). Adhesive
+models have branches: ``"stable"`` is what retraction from contact meets under grips, ``"approach"`` what approach from
+far away meets, ``"unstable"`` the equilibrium between the folds that no grip can hold (NaN where there is none).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Literal, get_args
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Law, as_floats, as_law, plain
+from nanotouch._arrays import Law, as_floats, as_law, check_between, plain
 from nanotouch.errors import InvalidValue
 
 Model = Literal["hertz", "dmt", "jkr", "maugis"]
@@ -49,9 +49,9 @@ class Contact:
 
     def __post_init__(self) -> None:
         if self.cohesive_stress is not None and self.range is not None:
-            raise InvalidValue("give cohesive_stress [Pa] or range [m], not both: range = work_of_adhesion/cohesive_stress")
-        if self.range is not None and not self.range > 0.0:
-            raise InvalidValue(f"range = {self.range} m: it must be above 0")
+            raise InvalidValue("give cohesive_stress [Pa] or range [m], not both: range is w over cohesive stress")
+        if self.range is not None:
+            check_between("range", self.range, "m", above=0.0)
         self.law("jkr")  # the C library checks the values
 
     def law(self, model: Model) -> _core.ContactLaw:
@@ -106,20 +106,29 @@ def pull_off_force(model: Model, contact: Contact) -> float:
 def effective_modulus(
     tip_youngs_modulus: float, tip_poisson_ratio: float, sample_youngs_modulus: float, sample_poisson_ratio: float
 ) -> float:
-    """E* [Pa] of two bodies: 1/E* = (1 - nu_t^2)/E_t + (1 - nu_s^2)/E_s."""
+    """E* [Pa] of two bodies: 1/E* = (1 - nu_t^2)/E_t + (1 - nu_s^2)/E_s. An infinite modulus is a rigid body."""
+    check_between("tip_youngs_modulus", tip_youngs_modulus, "Pa", above=0.0)
+    check_between("sample_youngs_modulus", sample_youngs_modulus, "Pa", above=0.0)
+    check_between("tip_poisson_ratio", tip_poisson_ratio, "", above=-1.0, up_to=0.5)
+    check_between("sample_poisson_ratio", sample_poisson_ratio, "", above=-1.0, up_to=0.5)
     return _core.effective_modulus(tip_youngs_modulus, tip_poisson_ratio, sample_youngs_modulus, sample_poisson_ratio)
 
 
 def cohesive_stress_atomic(work_of_adhesion: float, equilibrium_distance: float) -> float:
     """sigma0 [Pa] of atoms against atoms: 16 w/(9 sqrt(3) z0) (the paper's 1.03 w/a0)."""
+    check_between("equilibrium_distance", equilibrium_distance, "m", above=0.0)
     return _core.cohesive_stress_atomic(work_of_adhesion, equilibrium_distance)
 
 
 def cone(indentation: ArrayLike, effective_modulus: float, half_angle: float) -> Law:
     """Sneddon's cone of half-angle psi [rad] at an indentation [m]: F = 2/pi E* tan(psi) delta^2."""
+    check_between("effective_modulus", effective_modulus, "Pa", above=0.0)
+    check_between("half_angle", half_angle, "rad", above=0.0, up_to=1.57)
     return as_law(_core.cone_eval(effective_modulus, half_angle, as_floats(indentation, "indentation")))
 
 
 def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> Law:
     """Flat punch of a radius [m] at an indentation [m]: F = 2 E* a delta."""
+    check_between("effective_modulus", effective_modulus, "Pa", above=0.0)
+    check_between("radius", radius, "m", above=0.0)
     return as_law(_core.punch_eval(effective_modulus, radius, as_floats(indentation, "indentation")))

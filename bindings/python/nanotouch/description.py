@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Descriptions whose fields come from the C library's tables: scene, rig, settings.
 
-One table gives the attributes (``scene.tip.radius``), the checks, the keys of a TOML file (``[tip] radius_nm = 20``) and
-their documentation, so that they cannot disagree.
+One table gives the attributes (``scene.tip.radius``), the checks, the keys of a TOML file (``[tip] radius_nm = 20``)
+and their documentation, so that they cannot disagree.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple, Self
 
 from nanotouch.errors import InvalidValue
-from nanotouch.units import key_spellings
+from nanotouch.units import from_si, key_spellings, to_si
 
 
 class Field(NamedTuple):
@@ -25,35 +25,53 @@ class Field(NamedTuple):
     maximum: float
     doc: str
 
+    def check(self, value: float, label: str, written: float, factor: float = 1.0) -> None:
+        """Raise :class:`~nanotouch.errors.InvalidValue` for an SI value out of range, in the unit it was written in."""
+        if math.isfinite(value) and self.minimum <= value <= self.maximum:
+            return
+        low, high = from_si(self.minimum, factor), from_si(self.maximum, factor)
+        unit = f" {self.unit}" if self.unit and factor == 1.0 else ""
+        raise InvalidValue(f"{label} = {written:g}{unit} ({self.doc}): valid is {low:.6g} .. {high:.6g}{unit}")
+
 
 class Section:
     """The fields under one name, as attributes in SI."""
+
+    __slots__ = ("_name", "_owner")
+    _name: str
+    _owner: Description
 
     def __init__(self, owner: Description, name: str) -> None:
         object.__setattr__(self, "_owner", owner)
         object.__setattr__(self, "_name", name)
 
+    def _field(self, key: str) -> str:
+        name = f"{self._name}.{key}"
+        if name not in self._owner.fields:
+            raise AttributeError(f"{self._name} has no field {key!r}; it has {', '.join(dir(self))}")
+        return name
+
     def __getattr__(self, key: str) -> float:
-        owner: Description = self.__dict__["_owner"]
-        return owner[f"{self.__dict__['_name']}.{key}"]
+        if key.startswith("_"):  # copying and pickling ask before there is an owner
+            raise AttributeError(key)
+        return self._owner[self._field(key)]
 
     def __setattr__(self, key: str, value: float) -> None:
-        self.__dict__["_owner"][f"{self.__dict__['_name']}.{key}"] = value
+        self._owner[self._field(key)] = value
+
+    def __reduce__(self) -> Any:
+        return Section, (self._owner, self._name)
 
     def __dir__(self) -> list[str]:
-        prefix = self.__dict__["_name"] + "."
-        owner: Description = self.__dict__["_owner"]
-        return [name.removeprefix(prefix) for name in owner if name.startswith(prefix)]
+        prefix = f"{self._name}."
+        return [name.removeprefix(prefix) for name in self._owner.fields if name.startswith(prefix)]
 
     def __repr__(self) -> str:
-        owner: Description = self.__dict__["_owner"]
-        name = self.__dict__["_name"]
-        values = ", ".join(f"{key}={owner[f'{name}.{key}']:g}" for key in dir(self))
-        return f"{name}({values})"
+        return f"{self._name}({', '.join(f'{key}={getattr(self, key):g}' for key in dir(self))})"
 
 
 class Description(Mapping[str, float]):
-    """A mapping of dotted field names to SI values, with sections as attributes.
+    """A mapping of dotted field names to SI values, with sections as attributes. A value out of its range is refused.
 
     >>> scene = Scene(tip={"radius": 30e-9})    # doctest: +SKIP
     >>> scene.tip.radius, scene["tip.radius"]   # doctest: +SKIP
@@ -61,17 +79,29 @@ class Description(Mapping[str, float]):
     """
 
     _core_type: ClassVar[Any]
+    _all_sections: ClassVar[list[str]] = []
     fields: ClassVar[dict[str, Field]]
+    core: Any
 
     def __init__(self, **sections: Mapping[str, float]) -> None:
-        self.core = self._core_type()
+        self._take(self._core_type())
         for section, values in sections.items():
-            for key, value in values.items():
-                self[f"{section}.{key}"] = value
+            if section not in self.sections():
+                raise InvalidValue(
+                    f"{type(self).__name__} has no section {section!r}; it has {', '.join(self.sections())}"
+                )
+            for key, value in _as_table(section, values).items():
+                name = f"{section}.{key}"
+                if name not in self.fields:
+                    raise InvalidValue(
+                        f"{section} has no field {key!r}; it has {', '.join(dir(getattr(self, section)))}"
+                    )
+                self[name] = value
 
     def __init_subclass__(cls, core_type: Any) -> None:
         cls._core_type = core_type
         cls.fields = {entry[0]: Field(*entry) for entry in core_type.fields}
+        Description._all_sections = [*Description._all_sections, *cls.sections()]
 
     @classmethod
     def sections(cls) -> list[str]:
@@ -80,59 +110,56 @@ class Description(Mapping[str, float]):
 
     @classmethod
     def from_tables(cls, tables: Mapping[str, Any]) -> Self:
-        """From the tables of a TOML file, ``{"tip": {"radius_nm": 20}}``; sections of other descriptions are left alone."""
+        """From the tables of a TOML file, ``{"tip": {"radius_nm": 20}}``; sections of others are left alone."""
         made = cls()
         made.update_from_tables(tables)
         return made
 
     def update_from_tables(self, tables: Mapping[str, Any]) -> None:
-        """Set what the tables name, then check everything."""
+        """Set what the tables name; a section that no description has is refused."""
+        for section in tables:
+            if section not in Description._all_sections:
+                raise InvalidValue(f"unknown section [{section}]; known are {', '.join(Description._all_sections)}")
         for section in self.sections():
-            table = tables.get(section, {})
-            if not isinstance(table, Mapping):
-                raise InvalidValue(f"[{section}] must be a table of keys")
             seen: dict[str, str] = {}
-            for key, value in table.items():
+            for key, value in _as_table(section, tables.get(section, {})).items():
                 name, factor = self._field_of(section, key)
                 if name in seen:
                     raise InvalidValue(f"[{section}] has both {seen[name]} and {key}: give one")
                 seen[name] = key
                 if isinstance(value, bool) or not isinstance(value, int | float):
                     raise InvalidValue(f"[{section}] {key} = {value!r}: it must be a number")
-                self._check_entry(section, key, name, float(value), factor)
-                self[name] = float(value) * factor
-        self.check()
+                number = float(value)
+                si = to_si(number, factor) if math.isfinite(number) else number
+                self.fields[name].check(si, f"[{section}] {key}", number, factor)
+                self.core.set(name, si)
 
     def _field_of(self, section: str, key: str) -> tuple[str, float]:
         spellings: dict[str, tuple[str, float]] = {}
         for name, field in self.fields.items():
             if name.startswith(section + "."):
                 keys = key_spellings(name.removeprefix(section + "."), field.unit)
+                if key == name.removeprefix(section + ".") and key not in keys:
+                    raise InvalidValue(f"[{section}] {key} lacks its unit: write {', '.join(keys)}")
                 spellings |= {spelling: (name, factor) for spelling, factor in keys.items()}
         if key in spellings:
             return spellings[key]
-        with_unit = [spelling for spelling in spellings if spelling.startswith(key + "_")]
-        if with_unit:
-            raise InvalidValue(f"[{section}] {key} lacks its unit: write {', '.join(with_unit[:4])}")
         near = difflib.get_close_matches(key, spellings, 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
-        raise InvalidValue(f"[{section}] has no key {key}{hint}")
-
-    def _check_entry(self, section: str, key: str, name: str, value: float, factor: float) -> None:
-        field = self.fields[name]
-        if not math.isfinite(value) or not field.minimum <= value * factor <= field.maximum:
-            low, high = field.minimum / factor, field.maximum / factor
-            raise InvalidValue(f"[{section}] {key} = {value:g} ({field.doc}): valid is {low:.6g} .. {high:.6g}")
+        hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(dir(getattr(self, section)))}"
+        raise InvalidValue(f"[{section}] has no key {key}; {hint}")
 
     def check(self) -> None:
-        """Raise :class:`~nanotouch.errors.InvalidValue` naming the first field out of its range."""
+        """Let the C library check it: :class:`~nanotouch.errors.InvalidValue` names the first bad field."""
         self.core.check()
 
     def copy(self) -> Self:
         """An independent copy."""
         made = type(self).__new__(type(self))
-        made.core = self.core.copy()
+        made._take(self.core.copy())
         return made
+
+    def _take(self, core: Any) -> None:
+        object.__setattr__(self, "core", core)
 
     def to_dict(self) -> dict[str, dict[str, float]]:
         """Nested plain numbers in SI, for JSON."""
@@ -148,13 +175,19 @@ class Description(Mapping[str, float]):
 
     def __setitem__(self, name: str, value: float) -> None:
         if name not in self.fields:
-            raise AttributeError(f"{type(self).__name__} has no field {name!r}")
-        self.core.set(name, float(value))
+            raise KeyError(name)
+        number = float(value)
+        self.fields[name].check(number, name, number)
+        self.core.set(name, number)
 
     def __getattr__(self, name: str) -> Section:
         if name in type(self).sections():
             return Section(self, name)
         raise AttributeError(f"{type(self).__name__} has no section {name!r}; it has {', '.join(self.sections())}")
+
+    def __setattr__(self, name: str, value: object) -> None:
+        first = next((field for field in self.fields if field.startswith(f"{name}.")), next(iter(self.fields)))
+        raise AttributeError(f"{type(self).__name__}: set a field of a section, such as {first}, not {name!r} itself")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.fields)
@@ -162,11 +195,20 @@ class Description(Mapping[str, float]):
     def __len__(self) -> int:
         return len(self.fields)
 
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.sections()]
+
     def __reduce__(self) -> Any:
         return _restore, (type(self), dict(self))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(repr(getattr(self, name)) for name in self.sections())})"
+
+
+def _as_table(section: str, values: Any) -> Mapping[str, Any]:
+    if not isinstance(values, Mapping):
+        raise InvalidValue(f"[{section}] must be a table of keys, not {values!r}")
+    return values
 
 
 def _restore(kind: type[Description], values: dict[str, float]) -> Description:

@@ -16,7 +16,7 @@ class InvalidValue(Error, ValueError):
 
 
 class ReadError(Error, OSError):
-    """A file cannot be read, or what it holds is not plausible; the message names the file, the reader and the reason."""
+    """A file cannot be read, or what it holds is not plausible; the message names file, reader and reason."""
 
 
 class SolverError(Error, ArithmeticError):
@@ -36,6 +36,4 @@ def require(module: str, extra: str) -> ModuleType:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise MissingExtra(
-            f"{module} is not installed: pip install 'nanotouch[{extra}]'"
-        ) from error
+        raise MissingExtra(f"{module} is not installed: pip install 'nanotouch[{extra}]'") from error

@@ -9,23 +9,27 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Law, as_floats, as_law
+from nanotouch._arrays import Law, as_floats, as_law, check_between
+from nanotouch.errors import InvalidValue
 
 
 def vdw(
     gap: ArrayLike, *, radius: float, hamaker_constant: float, roughness: float = 0.0, minimum_gap: float = 0.2e-9
 ) -> Law:
-    """Van der Waals force, exact Hamaker sphere: -2 H R^3/(3 s^2 (s + 2R)^2), s = max(gap, minimum_gap) + roughness/2."""
+    """Van der Waals, exact Hamaker sphere: -2 H R^3/(3 s^2 (s + 2R)^2), s = max(gap, minimum_gap) + roughness/2."""
     return as_law(_core.vdw_eval(as_floats(gap, "gap"), radius, hamaker_constant, roughness, minimum_gap))
 
 
 def capillary(
-    gap: ArrayLike, *, radius: float, surface_tension: float = 0.072, meniscus_radius: float, film_thickness: float = 0.0
+    gap: ArrayLike,
+    *,
+    radius: float,
+    surface_tension: float = 0.072,
+    meniscus_radius: float,
+    film_thickness: float = 0.0,
 ) -> Law:
     """Force of a standing meniscus: -4 pi gamma R [1 - (gap - 2e)/(2 r1)], the bracket held in 0..1 (erratum E3)."""
-    return as_law(
-        _core.capillary_eval(as_floats(gap, "gap"), radius, surface_tension, meniscus_radius, film_thickness)
-    )
+    return as_law(_core.capillary_eval(as_floats(gap, "gap"), radius, surface_tension, meniscus_radius, film_thickness))
 
 
 def electrostatic(gap: ArrayLike, *, radius: float, potential: float, minimum_gap: float = 0.2e-9) -> Law:
@@ -34,7 +38,14 @@ def electrostatic(gap: ArrayLike, *, radius: float, potential: float, minimum_ga
 
 
 def kelvin_radius(
-    relative_humidity: float, *, surface_tension: float = 0.072, molar_volume: float = 1.8e-5, temperature: float = 298.15
+    relative_humidity: float,
+    *,
+    surface_tension: float = 0.072,
+    molar_volume: float = 1.8e-5,
+    temperature: float = 298.15,
 ) -> float:
     """Radius r1 of a meniscus [m] in equilibrium with a humidity (Kelvin equation); water at 25 C by default."""
+    if not 0.0 < relative_humidity < 1.0:
+        raise InvalidValue(f"relative_humidity = {relative_humidity:g}: it must be between 0 and 1 (0.4 for 40 %)")
+    check_between("temperature", temperature, "K", above=0.0)
     return _core.kelvin_radius(surface_tension, molar_volume, temperature, relative_humidity)

@@ -31,7 +31,7 @@ class Input(NamedTuple):
 
 
 def script_for(session: Session) -> list[Input]:
-    """Approach, press and retract at a point; or approach, follow the path and retract; or follow it at constant force."""
+    """Approach, press and retract at a point; or approach, follow the path, retract; or follow it at constant force."""
     if session.mode == "topography":
         return _follow(session)
     if session.mode == "scan":
@@ -56,24 +56,33 @@ def _approach(session: Session) -> list[Input]:
     return [Input(APPROACH_FORCE, x, y, 0.5), Input(APPROACH_FORCE, x, y, travel_time + 0.5)]
 
 
-def _retract(session: Session) -> list[Input]:
-    """Pull with more than the adhesion at the operator's scale, but not with more than the gauge can read."""
+def _depth(session: Session, force: float) -> float:
+    """Travel of the stage past first touch to press with a hand force [N]: indentation and deflection [m]."""
+    load = force / session.settings.gains.alpha_f
+    indentation = np.geomspace(1e-11, 1e-5, 1000)
+    reached = np.interp(load, session.plan.force(-indentation, "retract"), indentation)
+    return float(reached) + load / session.rig.probe.spring_constant
+
+
+def _retract(session: Session, pressed: float) -> list[Input]:
+    """Back from where a hand force [N] has pressed, by pulling with more than the adhesion at the operator's scale, but
+    not with more than the gauge can read."""
     x, y = session.path[-1]
     adhesion = session.settings.gains.alpha_f * session.plan.pull_off_force
     force = -min(max(RETRACT_FORCE, 2.0 * adhesion), 0.9 * session.rig.master.gauge_range)
     stretch = session.plan.pull_off_force / session.rig.probe.spring_constant
-    travel_time = (session.clearance + stretch) / _slave_speed(session, -force)
+    travel_time = (_depth(session, pressed) + stretch + session.clearance) / _slave_speed(session, -force)
     return [Input(force, x, y, 3.0), Input(force, x, y, travel_time), Input(0.0, x, y, 0.2), Input(0.0, x, y, 0.3)]
 
 
 def _press(session: Session) -> list[Input]:
     x, y = session.path[0]
     force = _contact_force(session, PRESS_FORCE)
-    return [*_approach(session), Input(force, x, y, 1.5), Input(force, x, y, 1.5), *_retract(session)]
+    return [*_approach(session), Input(force, x, y, 1.5), Input(force, x, y, 1.5), *_retract(session, force)]
 
 
 def _along_path(session: Session, force: float, slave_speed: float) -> list[Input]:
-    """The path's legs, slow enough for the stage to climb the slopes that make up 95 % of it at ``slave_speed`` [m/s]."""
+    """The path's legs, slow enough for the stage to climb 95 % of its slopes at ``slave_speed`` [m/s]."""
     distance, height = session.path_heights()
     slope = np.quantile(np.abs(np.gradient(height, distance)), 0.95) if distance[-1] > 0.0 else 0.0
     shortest, longest = SCAN_TIMES
@@ -90,8 +99,11 @@ def _scan(session: Session) -> list[Input]:
     force = _contact_force(session, SCAN_FORCE)
     settle = [Input(force, x, y, 0.5), Input(force, x, y, 0.5)]
     return [
-        *_approach(session), *settle, *_along_path(session, force, _slave_speed(session, 0.5 * force)), *_retract(session),
-    ]  # fmt: skip
+        *_approach(session),
+        *settle,
+        *_along_path(session, force, _slave_speed(session, 0.5 * force)),
+        *_retract(session, force),
+    ]
 
 
 def _follow(session: Session) -> list[Input]:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What there is and with what it is touched: :class:`Scene`, :class:`Rig`, :class:`Settings`, and the :class:`Plan` made
-from them. All three descriptions may stand in one TOML file; every key carries its unit (``[tip] radius_nm = 20``)."""
+"""What there is and with what it is touched: :class:`Scene`, :class:`Rig`, :class:`Settings`, and the :class:`Plan`
+made from them. All three descriptions may stand in one TOML file; every key carries its unit (``[tip] radius_nm``)."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ from nanotouch._arrays import Law, as_floats, as_law
 from nanotouch.description import Description
 from nanotouch.errors import InvalidValue, ReadError
 
+MAXIMUM_STRAIN = 0.3  # a/R up to which a sphere is a paraboloid to some per cent
+
 
 class Scene(Description, core_type=_core.Scene):
-    """Tip, sample, medium and adhesion. The defaults are the paper's: a silicon tip of 20 nm on silicon in humid air."""
+    """Tip, sample, medium and adhesion; by default the paper's silicon tip of 20 nm on silicon in humid air."""
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Self:
@@ -55,7 +57,7 @@ class Settings(Description, core_type=_core.Settings):
     def for_rig(cls, rig: Rig) -> Self:
         """10 kHz, K_f = 2, scaling by the heuristic rule, limits inside the rig's ranges."""
         made = cls()
-        made.core = _core.settings_for(rig.core)
+        made._take(_core.settings_for(rig.core))
         return made
 
     @classmethod
@@ -76,19 +78,14 @@ def read_toml(path: str | os.PathLike[str]) -> tuple[Scene, Rig, Settings]:
 
 
 def read_tables(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The tables of a TOML file for scene, rig and settings; an unknown section is refused."""
+    """The tables of a TOML file."""
     try:
         with open(path, "rb") as file:
-            tables = tomllib.load(file)
+            return tomllib.load(file)
     except OSError as error:
         raise ReadError(f"{os.fspath(path)}: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ReadError(f"{os.fspath(path)} is not a TOML file: {error}") from error
-    known = [*Scene.sections(), *Rig.sections(), *Settings.sections()]
-    for section in tables:
-        if section not in known:
-            raise InvalidValue(f"{os.fspath(path)}: unknown section [{section}]; known are {', '.join(known)}")
-    return tables
 
 
 class Term(NamedTuple):
@@ -148,36 +145,48 @@ class Plan:
     def warnings(self) -> list[str]:
         """Where a law is outside its validity."""
         strain = self._facts["contact_strain"]
-        if strain <= 0.3:
+        if strain <= MAXIMUM_STRAIN:
             return []
-        return [f"a/R reaches {strain:.2f} at the largest load: the paraboloid is outside its validity (0.3)"]
+        return [
+            f"the contact radius reaches {strain:.2f} R at the largest load; "
+            f"the laws are for small contacts, up to about {MAXIMUM_STRAIN} R"
+        ]
 
     def __str__(self) -> str:
-        facts = self._facts
         contact, *others = self._all_terms()
-        lines = [_contact_sentence(contact, facts)]
-        lines += [_term_sentence(term, facts["pull_off_force"]) for term in others]
+        lines = [_contact_sentence(contact, self._facts)]
+        lines += [_term_sentence(term, self.pull_off_force) for term in others]
         return "\n".join(lines + [f"warning: {text}" for text in self.warnings])
 
+    def __repr__(self) -> str:
+        return f"Plan({', '.join(term.name for term in self.terms)})"
 
-_SOURCES = {"none": "no adhesion", "solid": "the solids' own attraction", "meniscus": "a water meniscus"}
+
 _NAMES = {
     "hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale",
     "vdw": "van der Waals", "electrostatic": "electrostatic",
 }  # fmt: skip
+_SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
+_ABSENT = {"vdw": "the Hamaker constant is 0", "electrostatic": "no potential difference"}
 
 
 def _contact_sentence(term: Term, facts: dict[str, Any]) -> str:
     if facts["adhesion_source"] == "none":
-        return "contact: Hertz (no adhesion)"
+        return "contact: Hertz, no adhesion"
+    if term.name == "hertz":
+        return "contact: Hertz, the adhesion is too weak to be felt"
+    accuracy = f"within {100 * term.bound:.2g} % of Maugis-Dugdale" if term.name == "jkr" else "solved to rounding"
     return (
-        f"contact: {_NAMES[term.name]}, adhesion by {_SOURCES[facts['adhesion_source']]} "
-        f"(w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2, lambda = {facts['lambda']:.3g}, "
-        f"pull-off {facts['pull_off_force'] * 1e9:.4g} nN); error of the law at most {term.bound:.1g}"
+        f"contact: {_NAMES[term.name]} (lambda {facts['lambda']:.3g}), {accuracy}; "
+        f"adhesion {_SOURCES[facts['adhesion_source']]}, w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2; "
+        f"pull-off {facts['pull_off_force'] * 1e9:.4g} nN"
     )
 
 
 def _term_sentence(term: Term, pull_off_force: float) -> str:
-    share = f", {100 * term.bound / pull_off_force:.2g} % of the pull-off" if pull_off_force > 0 else ""
-    verb = "computed: up to" if term.included else "left out: at most"
-    return f"{_NAMES[term.name]} {verb} {term.bound * 1e9:.3g} nN{share}"
+    name = _NAMES[term.name]
+    if term.bound == 0.0:
+        return f"{name}: none ({_ABSENT[term.name]})"
+    share = f" ({100 * term.bound / pull_off_force:.2g} % of the pull-off)" if pull_off_force > 0.0 else ""
+    verb = "computed, up to" if term.included else "left out, it would add at most"
+    return f"{name}: {verb} {term.bound * 1e9:.2g} nN{share}"

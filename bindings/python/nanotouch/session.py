@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from operator import index
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -92,19 +94,20 @@ class Session:
     ) -> None:
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
-        self.scene = scene or Scene()
-        self.rig = rig or Rig()
+        self.scene = Scene() if scene is None else scene.copy()
+        self.rig = Rig() if rig is None else rig.copy()
         self.surface = surface
         self.mode: Mode = mode
-        self.seed = seed
+        self.seed = _checked_seed(seed)
         self.clearance = clearance
         self.path = _checked_path(mode, path, surface)
         heights = self.path_heights()[1]
         self.relief = float(np.ptp(heights))
-        self.settings = settings or settings_for_path(self.rig, self.relief, clearance)
+        self.settings = settings_for_path(self.rig, self.relief, clearance) if settings is None else settings.copy()
         options = {
-            "topography": mode == "topography", "x": self.path[0][0], "y": self.path[0][1], "clearance": clearance,
-            "rise": float(heights.max() - heights[0]), "seed": seed, "minimum_margin": minimum_margin, "relative_accuracy": rtol,
+            "topography": mode == "topography", "x": self.path[0][0], "y": self.path[0][1], "seed": self.seed,
+            "clearance": clearance, "rise": float(heights.max() - heights[0]),
+            "minimum_margin": minimum_margin, "relative_accuracy": rtol,
         }  # fmt: skip
         self.core = _core.Session(
             self.scene.core, self.rig.core, self.settings.core, surface.core if surface else None, options
@@ -136,18 +139,18 @@ class Session:
 
     def advance(self, duration: float, input: Input | None = None) -> Columns:
         """Run for a time [s] and return what was recorded, as columns; ``input`` is where hand and tip go meanwhile."""
-        if not duration >= 0.0:
-            raise InvalidValue(f"duration = {duration} s: it must be 0 or more")
+        if not 0.0 <= duration < math.inf:
+            raise InvalidValue(f"duration = {duration} s: it must be a time of 0 s or more")
         if input is not None:
-            self.core.aim(input.operator_force, input.x, input.y, input.duration)
+            self._aim(input)
         left = round(duration * self.rate)
-        blocks = []
+        blocks: list[Columns] = []
         while left > 0 or not blocks:
             ticks = min(left, BLOCK_TICKS)
             self.core.advance(ticks)
             blocks.append(self.core.read(ticks))
             left -= ticks
-        return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+        return _joined(blocks)
 
     def run(
         self,
@@ -170,26 +173,36 @@ class Session:
         progress : callable, optional
             Called with the fraction done.
         """
-        script = list(operator) if operator is not None else script_for(self)
-        total = sum(step.duration for step in script)
-        stretch = 1.0 if duration is None else duration / total
-        blocks: list[Columns] = []
-        done = 0.0
+        script = _stretched(list(operator) if operator is not None else script_for(self), duration)
         for step in script:
-            step = step._replace(duration=step.duration * stretch)
-            self.core.aim(step.operator_force, step.x, step.y, step.duration)
-            left = step.duration
-            while left > 0.5 / self.rate:
-                block = self.advance(min(left, BLOCK_TICKS / self.rate))
-                left -= len(block["time"]) / self.rate
-                done += len(block["time"]) / self.rate
+            self._check(step)
+        ticks = [round(step.duration * self.rate) for step in script]
+        blocks: list[Columns] = []
+        done = 0
+        for step, left in zip(script, ticks, strict=True):
+            self.core.aim(*step)
+            for length in _blocks_of(left):
+                block = self.advance(length / self.rate)
                 blocks.append(block)
+                done += length
                 if writer is not None:
                     writer.append(block)
                 if progress is not None:
-                    progress(min(1.0, done / (total * stretch)))
-        columns = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]} if blocks else self.advance(0.0)
-        return Recording(columns, self.metadata())
+                    progress(done / sum(ticks))
+        return Recording(_joined(blocks) if blocks else self.advance(0.0), self.metadata())
+
+    def _aim(self, input: Input) -> None:
+        self._check(input)
+        self.core.aim(*input)
+
+    def _check(self, input: Input) -> None:
+        """Refuse what the C library would, with the names and ranges it does not know."""
+        for name, value in input._asdict().items():
+            if not math.isfinite(value):
+                raise InvalidValue(f"operator input: {name} = {value} is not finite")
+        if input.duration < 0.0:
+            raise InvalidValue(f"operator input: duration = {input.duration} s: it must be 0 s or more")
+        _check_inside(self.surface, input.x, input.y, "operator input")
 
     def metadata(self) -> dict[str, Any]:
         """What a recording of this session has to be read with; JSON-able, SI."""
@@ -220,31 +233,59 @@ class Session:
         self.core.emergency_stop(pressed)
 
 
+def _joined(blocks: Sequence[Columns]) -> Columns:
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _blocks_of(ticks: int) -> list[int]:
+    return [min(BLOCK_TICKS, ticks - start) for start in range(0, ticks, BLOCK_TICKS)]
+
+
+def _stretched(script: list[Input], duration: float | None) -> list[Input]:
+    if duration is None:
+        return script
+    total = sum(step.duration for step in script)
+    if not (0.0 < duration < math.inf and total > 0.0):
+        raise InvalidValue(f"duration = {duration} s: it must be above 0 s, and so must the script's own, {total:g} s")
+    return [step._replace(duration=step.duration * duration / total) for step in script]
+
+
+def _checked_seed(seed: int) -> int:
+    if not 0 <= index(seed) < 2**64:
+        raise InvalidValue(f"seed = {seed}: valid is 0 .. 2^64 - 1")
+    return index(seed)
+
+
+def _check_inside(surface: Surface | None, x: float, y: float, what: str) -> None:
+    if surface is None:
+        return
+    width, height = surface.size
+    if not (0.0 <= x <= width and 0.0 <= y <= height):
+        raise InvalidValue(
+            f"{what}: ({x * 1e6:.6g} um, {y * 1e6:.6g} um) is outside the surface; "
+            f"valid is x 0 .. {width * 1e6:.6g} um, y 0 .. {height * 1e6:.6g} um"
+        )
+
+
 def _checked_path(
     mode: Mode, path: Sequence[tuple[float, float]] | None, surface: Surface | None
 ) -> list[tuple[float, float]]:
     if path is None:
         path = _default_path(mode, surface)
     points = [(float(x), float(y)) for x, y in path]
-    needed = 1 if mode == "point" else 2
-    if len(points) < needed:
-        raise InvalidValue(f"mode {mode!r} needs at least {needed} point(s) in its path, not {len(points)}")
+    if mode == "point" and len(points) != 1:
+        raise InvalidValue(f"mode 'point' takes one point as its path, not {len(points)}")
+    if mode != "point" and len(points) < 2:
+        raise InvalidValue(f"mode {mode!r} needs at least two points in its path, not {len(points)}")
     for x, y in points:
-        if not np.isfinite([x, y]).all():
-            raise InvalidValue(f"path: ({x}, {y}) m is not finite")
-        if surface is not None:
-            width, height = surface.size
-            if not (0.0 <= x <= width and 0.0 <= y <= height):
-                raise InvalidValue(
-                    f"path: ({x:.4g}, {y:.4g}) m is outside the surface; valid is x 0 .. {width:.4g} m, y 0 .. {height:.4g} m"
-                )
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise InvalidValue(f"path: ({x} m, {y} m) is not finite")
+        _check_inside(surface, x, y, "path")
     return points
 
 
 def _default_path(mode: Mode, surface: Surface | None) -> list[tuple[float, float]]:
-    if surface is None:
-        return [(0.0, 0.0)] if mode == "point" else [(0.0, 0.0), (1e-6, 0.0)]
-    width, height = surface.size
+    width, height = surface.size if surface is not None else (1e-6, 0.0)
     if mode == "point":
         return [(0.5 * width, 0.5 * height)]
     return [(0.02 * width, 0.5 * height), (0.98 * width, 0.5 * height)]

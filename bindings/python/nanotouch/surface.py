@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import as_floats, plain
+from nanotouch._arrays import as_floats, check_between, plain
+from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
 
@@ -21,13 +22,13 @@ class Surface:
     topography : Topography
         Heights (ny, nx) [m], row 0 at y = 0.
     tip_radius : float, optional
-        R of the tip [m]; with ``tip_half_angle`` [rad] the heights are dilated by the tip (sphere into cone). Without it
-        the heights are taken as they are.
+        R of the tip [m]; with ``tip_half_angle`` [rad] the heights are dilated by the tip (sphere into cone). Without
+        it the heights are taken as they are.
     """
 
     def __init__(self, topography: Topography, tip_radius: float | None = None, tip_half_angle: float = 0.3) -> None:
         dy, dx = topography.pixel_size
-        heights = np.ascontiguousarray(topography.heights)
+        heights = topography.heights
         if tip_radius is not None:
             heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
         self.topography = topography
@@ -42,8 +43,8 @@ class Surface:
 
     def height(self, x: ArrayLike, y: ArrayLike) -> Any:
         """Height [m] of the apex at first touch over (x, y) [m], broadcast."""
-        x_floats, y_floats = np.broadcast_arrays(as_floats(x, "x"), as_floats(y, "y"))
-        return plain(self.core.heights(np.ascontiguousarray(x_floats), np.ascontiguousarray(y_floats)).reshape(x_floats.shape))
+        xs, ys = np.broadcast_arrays(as_floats(x, "x"), as_floats(y, "y"))
+        return plain(self.core.heights(np.array(xs, order="C"), np.array(ys, order="C")))
 
 
 def grating(
@@ -56,13 +57,29 @@ def grating(
     offset: float = 0.75e-6,
 ) -> Topography:
     """A square grating like TGZ-03 (lines along y, 3 um period, 480 nm), sampled on pixels x pixels of ``size`` [m]."""
-    pixel = size / pixels
+    pixel = _pixel(size, pixels)
+    check_between("period", period, "m", above=0.0, up_to=1e-3)
+    check_between("height", height, "m", above=0.0, up_to=1e-3)
+    check_between("duty", duty, "", above=0.0, up_to=1.0)
     heights = _core.grating(pixels, pixels, pixel, pixel, period, height, duty, offset)
     return Topography(heights=heights, pixel_size=(pixel, pixel), name="grating")
 
 
 def dots(size: float = 500e-9, pixels: int = 512, *, count: int = 24, seed: int = 1) -> Topography:
     """Quantum dots of 10 to 30 nm on a flat, as in the paper's second sample; the same for the same seed."""
-    pixel = size / pixels
+    pixel = _pixel(size, pixels)
     heights = _core.dots(pixels, pixels, pixel, pixel, count, size, seed)
     return Topography(heights=heights, pixel_size=(pixel, pixel), name="quantum dots")
+
+
+def flat(size: float = 6e-6, pixels: int = 64) -> Topography:
+    """A flat at z = 0."""
+    pixel = _pixel(size, pixels)
+    return Topography(heights=np.zeros((pixels, pixels)), pixel_size=(pixel, pixel), name="flat")
+
+
+def _pixel(size: float, pixels: int) -> float:
+    check_between("size", size, "m", above=0.0, up_to=1e-3)
+    if not 4 <= pixels <= 16384:
+        raise InvalidValue(f"pixels = {pixels}: valid is 4 .. 16384")
+    return size / pixels

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Units at the edge: quantities on a command line (``2.5um``) and keys of a TOML file (``radius_nm``). Inside: SI only."""
+"""Units at the edge: quantities on a command line (``2.5um``), keys of a TOML file (``radius_nm``). Inside: SI only."""
 
 from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 
 from nanotouch.errors import InvalidValue
 
-_PREFIXES = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15, "a": 1e-18, "z": 1e-21}
+_PREFIXES = {
+    "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9,
+    "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15, "a": 1e-18, "z": 1e-21,
+}  # fmt: skip
 
 
 def _scaled(symbol: str, prefixes: str, rest: str = "") -> dict[str, float]:
@@ -39,27 +43,39 @@ UNITS: dict[str, dict[str, float]] = {
     "periods": {"periods": 1.0, "": 1.0},
 }
 
+_EXAMPLES = {"": "0.4", "m": "2.5um", "s": "20s", "N": "100nN"}
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+
+def to_si(value: float, factor: float) -> float:
+    """``value`` times ``factor``, rounded once in decimal: 3 nm is the double 3e-9, as it would be written in SI."""
+    return float(Decimal(repr(value)) * Decimal(repr(factor)))
+
+
+def from_si(value: float, factor: float) -> float:
+    """``value`` over ``factor``, the inverse of :func:`to_si`."""
+    return float(Decimal(repr(value)) / Decimal(repr(factor)))
 
 
 def parse_quantity(text: str, unit: str) -> float:
     """``"2.5um"`` with unit ``"m"`` to 2.5e-6. The unit must be written; ``µ`` is read as ``u``."""
-    match = _QUANTITY.fullmatch(text.replace("µ", "u").replace("μ", "u").replace("²", "2"))  # noqa: RUF001
+    match = _QUANTITY.fullmatch(text.replace("µ", "u").replace("μ", "u").replace("²", "2").replace("³", "3"))
     if not match:
-        raise InvalidValue(f"{text!r} is not a number with a unit such as {_example(unit)}")
-    factor = UNITS[unit].get(match[2].replace("^", ""))
-    if factor is None:
+        raise InvalidValue(f"{text!r} is not a number with a unit; write it like {_example(unit)}")
+    spelling = match[2].replace("^", "")
+    if spelling not in UNITS[unit]:
         given = f"the unit {match[2]!r}" if match[2] else "no unit"
-        raise InvalidValue(f"{text!r} has {given}; write one of {', '.join(UNITS[unit])}, as in {_example(unit)}")
-    value = float(match[1]) * factor
+        valid = ", ".join(filter(None, UNITS[unit])) or "none"
+        raise InvalidValue(f"{text!r} has {given}; write it like {_example(unit)} (units: {valid})")
+    number = float(match[1])
+    value = to_si(number, UNITS[unit][spelling]) if math.isfinite(number) else number
     if not math.isfinite(value):
         raise InvalidValue(f"{text!r} is not a finite number")
     return value
 
 
 def _example(unit: str) -> str:
-    spellings = [spelling for spelling in UNITS[unit] if spelling]
-    return f"20{spellings[len(spellings) // 2]}" if spellings else "0.4"
+    return _EXAMPLES.get(unit) or "20" + next(spelling for spelling in UNITS[unit] if spelling)
 
 
 def key_suffix(spelling: str) -> str:

@@ -52,8 +52,10 @@ void bind_contact(py::module_ &module) {
             const double *in = force.data();
             double *delta = out.mutable_data();
             const py::ssize_t count = force.size();
-            py::gil_scoped_release release;
-            for (py::ssize_t i = 0; i < count; ++i) delta[i] = indentation_at(law, in[i], branch);
+            {
+                py::gil_scoped_release release;
+                for (py::ssize_t i = 0; i < count; ++i) delta[i] = indentation_at(law, in[i], branch);
+            }
             return out;
         })
         .def_property_readonly("pull_off_force", [](const nt_contact_law &l) { return nt_contact_law_pull_off_force(&l); })

@@ -41,7 +41,7 @@ void bind_plan(py::module_ &module) {
             [](const nt_plan &plan, const Array &gap, bool attached) {
                 nt_interaction_state state = {attached ? 1 : 0};
                 return map_law(gap, [&plan, &state](double h) {
-                    nt_interaction_advance(&plan, &state, h);
+                    if (h == h) nt_interaction_advance(&plan, &state, h); // a NaN is no step of the path
                     return nt_interaction_eval_gap(&plan, &state, h);
                 });
             },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // session.h
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "descriptions.h"
@@ -11,6 +12,7 @@ namespace {
 struct Session {
     nt_session *handle = nullptr;
     std::shared_ptr<Surface> surface; // outlives the handle
+    std::mutex one_at_a_time;         // advance and read: Python threads may share a session
     ~Session() { nt_session_close(handle); }
 };
 
@@ -61,6 +63,7 @@ void advance_session(Session &self, long ticks) {
     nt_status status;
     {
         py::gil_scoped_release release;
+        const std::lock_guard<std::mutex> lock(self.one_at_a_time);
         status = nt_session_advance(self.handle, ticks);
     }
     raise_on(status, "advance");
@@ -68,7 +71,12 @@ void advance_session(Session &self, long ticks) {
 
 py::dict read_records(Session &self, long count) {
     std::vector<nt_record> records(static_cast<size_t>(count));
-    const long got = nt_session_read(self.handle, records.data(), count);
+    long got;
+    {
+        py::gil_scoped_release release; // before the lock: advance holds it without the GIL
+        const std::lock_guard<std::mutex> lock(self.one_at_a_time);
+        got = nt_session_read(self.handle, records.data(), count);
+    }
     py::dict out;
     for (const Column &column : columns) {
         py::array_t<double> values(got);

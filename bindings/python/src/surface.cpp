@@ -30,15 +30,25 @@ static std::shared_ptr<Surface> make(const Array &heights, double dy, double dx)
     const nt_height_map map = map_of(heights, dy, dx);
     auto made = std::make_shared<Surface>();
     made->coefficients.resize(static_cast<size_t>(heights.size()));
-    raise_on(nt_surface_init(&made->surface, &map, made->coefficients.data()), "surface");
+    nt_status status;
+    {
+        py::gil_scoped_release release;
+        status = nt_surface_init(&made->surface, &map, made->coefficients.data());
+    }
+    raise_on(status, "surface");
     return made;
 }
 
 static py::array_t<double> heights_at(const Surface &self, const Array &x, const Array &y) {
     if (x.size() != y.size()) throw py::value_error("x and y must have the same shape");
     py::array_t<double> out(std::vector<py::ssize_t>(x.shape(), x.shape() + x.ndim()));
-    for (py::ssize_t i = 0; i < x.size(); ++i)
-        out.mutable_data()[i] = nt_surface_eval(&self.surface, x.data()[i], y.data()[i]).z;
+    const double *xs = x.data(), *ys = y.data();
+    double *z = out.mutable_data();
+    const py::ssize_t count = x.size();
+    {
+        py::gil_scoped_release release;
+        for (py::ssize_t i = 0; i < count; ++i) z[i] = nt_surface_eval(&self.surface, xs[i], ys[i]).z;
+    }
     return out;
 }
 
