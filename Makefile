@@ -5,7 +5,7 @@ OUT ?= nanotouch-out
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test fuzz lint format clean
+.PHONY: help demo test fuzz bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -25,6 +25,12 @@ fuzz:  ## random input to the C library, with sanitizers; about a minute
 	@cmake --preset fuzz --log-level WARNING
 	@cmake --build --preset fuzz
 	@ctest --preset fuzz -j $(JOBS)
+
+bench:  ## what one call costs on this machine, as JSON
+	@tools/setup.sh test
+	@cmake --preset release --log-level WARNING >/dev/null
+	@cmake --build --preset release --target bench_core >/dev/null
+	@build/release/tests/bench/bench_core
 
 C_FILES = $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 
