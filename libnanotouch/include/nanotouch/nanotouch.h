@@ -19,5 +19,6 @@
 #include "nanotouch/status.h"
 #include "nanotouch/surface.h"
 #include "nanotouch/types.h"
+#include "nanotouch/version.h"
 
 #endif
