@@ -26,6 +26,7 @@ _LOSS_SCALE = 3.0  # times the noise
 _STIFF = 5.0  # contact stiffness over spring constant, from where the cantilever rules the curve
 _SMALL_CONTACT = 0.5  # a/R up to which a paraboloid on a half-space is believed
 _MISFIT = 3.0  # residual over noise from where the model is said not to describe the curve
+_WRONG = 0.05  # residual over the span of the force from where no parameter is believed
 _BLOCKS = 20  # of residuals, whose means show how they hang together
 _CORRELATED = 2.0  # of white noise this ratio is 1 +- 0.3
 _MUCH_BETTER = 0.7  # ratio of residuals
@@ -183,10 +184,7 @@ def _points(
     order = np.argsort(z, kind="stable")  # from the deepest point outwards
     z, force = z[order], force[order]
     dips = report.pull_off_force > 0 if branch == "retract" else report.snap_in_force > 0
-    if model == "hertz":
-        keep = _repulsive(z, force, dips)
-    else:
-        keep = slice(0, int(np.argmin(force)) + 1) if dips else slice(None)
+    keep = slice(0, int(np.argmin(force)) + 1) if dips and model != "hertz" else _repulsive(z, force, dips)
     z, force = z[keep], force[keep]
     if window is not None:
         inside = (force >= window[0]) & (force <= window[1])
@@ -197,7 +195,7 @@ def _points(
 
 
 def _repulsive(z: Floats, force: Floats, dips: bool) -> slice:
-    """Hertz knows no attraction: up to where it begins; without attraction, a piece of the baseline as well."""
+    """Up to where attraction begins, which Hertz does not know; without attraction, a piece of the baseline as well."""
     deepest = int(np.argmax(force))
     below = np.flatnonzero(force[deepest:] <= 0.0)
     zero = deepest + int(below[0]) if below.size else z.size
@@ -257,7 +255,8 @@ def _run(
     position = -points.z
     first = extension.run(options, position, points.force)
     scatter = _scatter(points.force - extension.evaluate(options, first["value"], position)[0])
-    assumptions.append(f"deflection sensitivity known to {100 * sensitivity_uncertainty:.3g} %")
+    known = f"known to {100 * sensitivity_uncertainty:.3g} %" if sensitivity_uncertainty else "exact"
+    assumptions.append(f"deflection sensitivity {known}")
     if scatter < 1e-9 * float(np.max(np.abs(points.force))):  # a computed curve: nothing to be weighed
         return first, []
     options.force_noise = scatter
@@ -288,9 +287,9 @@ def _doubt_calibration(found: dict[str, Any], free: dict[str, Any]) -> list[str]
         return []
     found["identifiable"][0] = False
     return [
-        f"the curve disagrees with its calibration: with the deflection sensitivity free the residual falls from "
-        f"{found['residual_rms'] * 1e12:.3g} to {free['residual_rms'] * 1e12:.3g} pN, at {free['value'][5]:.2g} times the "
-        f"sensitivity given and E* = {with_sigma(other, 0.0, 'Pa')}; either it or the model is wrong"
+        "the curve disagrees with its calibration: with the deflection sensitivity free the residual falls from "
+        f"{found['residual_rms'] * 1e12:.3g} to {free['residual_rms'] * 1e12:.3g} pN, at {free['value'][5]:.2g} times "
+        f"the sensitivity given and E* = {with_sigma(other, 0.0, 'Pa')}; either it or the model is wrong"
     ]
 
 
@@ -309,6 +308,9 @@ def _result(
     identifiable = {names[i]: found["identifiable"][i] for i in free}
     misfit = found["residual_rms"] / report.noise if report.noise > 0.0 else np.inf
     notes = given.notes + _notes(options, found, identifiable, misfit)
+    if misfit > _MISFIT and found["residual_rms"] > _WRONG * float(np.ptp(points.force)):
+        identifiable = dict.fromkeys(identifiable, False)
+        notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
     if given.poisson_ratio is not None:
         values["youngs_modulus"], sigma["youngs_modulus"] = _sample_modulus(
             values["effective_modulus"], sigma["effective_modulus"], given, notes

@@ -34,7 +34,7 @@ def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | No
     fitted = figure.add_subplot(grid[:2, 1])
     _fitted(fitted, result)
     _residuals(figure.add_subplot(grid[2, 1], sharex=fitted), result)
-    figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {TITLES[result.model]} on the {result.branch}")
+    figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {TITLES[result.model]}")
     if save is not None:
         path = Path(save)
         with replacing(path) as part:
@@ -90,8 +90,9 @@ def _fitted(panel: Any, result: FitResult) -> None:
                bbox={"facecolor": "white", "edgecolor": "0.7", "alpha": 0.9})  # fmt: skip
     panel.set_ylabel(f"force $F$ ({strong})")
     panel.tick_params(labelbottom=False)
-    panel.legend(loc="lower left", fontsize=8)
-    panel.set_title(f"the {result.z.size} points of the fit", fontsize=9)
+    panel.legend(loc="center right", fontsize=8)
+    branch = "retraction" if result.branch == "retract" else "approach"
+    panel.set_title(f"the {result.z.size} points of the {branch} that were fitted", fontsize=9)
 
 
 def _residuals(panel: Any, result: FitResult) -> None:
@@ -103,7 +104,7 @@ def _residuals(panel: Any, result: FitResult) -> None:
     noise = result.report.noise * scale_f
     panel.axhspan(-noise, noise, color="0.85", zorder=0, label="± noise")
     panel.set_xlabel(f"height of the base over first touch ({wide})")
-    panel.set_ylabel(f"measured − model ({weak})")
+    panel.set_ylabel(f"residual ({weak})")
     panel.legend(loc="best", fontsize=8)
 
 
@@ -116,4 +117,4 @@ def _box(result: FitResult) -> str:
     }
     lines = [f"{symbol} = {result.show(key)}" for key, symbol in symbols.items() if key in result.values]
     lines.append(f"$R$ = {result.radius * 1e9:.3g} nm, $k_c$ = {result.spring_constant:.3g} N/m")
-    return "\n".join(lines)
+    return "\n".join(lines).replace("+-", "±").replace("^2", "²")
