@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/control.h"
+
+static void defaults_are_valid_and_inside_the_rig(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    for (double stiffness = 0.01; stiffness < 1000.0; stiffness *= 10.0) {
+        rig.probe.spring_constant = stiffness;
+        const nt_settings settings = nt_settings_defaults(&rig);
+        nt_touch touch;
+        assert_int_equal(nt_settings_check(&settings, NULL), NT_OK);
+        assert_int_equal(nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+        assert_true(settings.limits.force < stiffness * nt_probe_deflection_range(&rig.probe));
+    }
+    rig = nt_rig_defaults();
+    const nt_gains gains = nt_settings_defaults(&rig).gains;
+    assert_true(gains.rate == 10e3 && gains.force_gain == 2.0);
+}
+
+static void every_field_is_refused_by_name(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    int count = 0;
+    const nt_field *fields = nt_settings_fields(&count);
+    assert_int_equal((size_t)count * sizeof(double), sizeof(nt_settings)); /* no number is without a check */
+    for (int i = 0; i < count; i++) {
+        const nt_field *field = &fields[i];
+        const double outside[] = {nextafter(field->minimum, -HUGE_VAL), nextafter(field->maximum, HUGE_VAL), NAN,
+                                  HUGE_VAL};
+        for (int j = 0; j < 4; j++) {
+            nt_settings settings = nt_settings_defaults(&rig);
+            nt_problem problem = {0};
+            nt_field_set(field, &settings, outside[j]);
+            assert_int_equal(nt_settings_check(&settings, &problem), j < 2 ? NT_E_RANGE : NT_E_NOT_FINITE);
+            assert_string_equal(problem.field, field->name);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(defaults_are_valid_and_inside_the_rig),
+        cmocka_unit_test(every_field_is_refused_by_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
