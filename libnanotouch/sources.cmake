@@ -12,7 +12,16 @@ set(nanotouch_sources_core
     core/roots.c
     core/status.c
     core/version.c)
-set(nanotouch_sources_forces forces/capillary.c forces/electrostatic.c forces/vdw.c)
+set(nanotouch_sources_forces
+    forces/capillary.c
+    forces/double_layer.c
+    forces/electrostatic.c
+    forces/electrostatic_probe.c
+    forces/hydration.c
+    forces/lennard_jones.c
+    forces/steric.c
+    forces/vdw.c
+    forces/vdw_tip.c)
 set(nanotouch_sources_contact
     contact/dmt.c
     contact/hertz.c

@@ -5,12 +5,12 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "forces/law.h"
 #include "nanotouch/field.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) \
-    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_capillary, path), doc}
+#define FIELD(member, unit, minimum, maximum, doc) NT_FORCE_FIELD(nt_capillary, member, unit, minimum, maximum, doc)
 
 static const nt_field capillary_fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),
@@ -28,13 +28,43 @@ nt_status nt_capillary_check(const nt_capillary *capillary, nt_problem *problem)
 nt_law_value nt_capillary_eval(const nt_capillary *capillary, double gap)
 {
     const double full = 4.0 * NT_PI * capillary->surface_tension * capillary->radius;
-    const double length = 2.0 * capillary->meniscus_radius, s = gap - 2.0 * capillary->film_thickness;
+    const double length = 2.0 * capillary->meniscus_radius, s = gap - nt_capillary_forms_at(capillary);
+    if (isnan(s))
+        return (nt_law_value){.U = s, .F = s, .k = s};
     if (s >= length)
         return (nt_law_value){0};
-    if (s <= 0.0)
-        return (nt_law_value){.U = -full * (0.5 * length - s), .F = -full};
-    const double rest = (length - s) / length;
-    return (nt_law_value){.U = -0.5 * full * length * rest * rest, .F = -full * rest, .k = -full / length};
+    const double rest = fmin((length - s) / length, 1.0);
+    const nt_law_value value = {.U = -0.5 * full * length * rest * rest, .F = -full * rest, .k = -full / length};
+    return nt_law_hold(value, -s);
+}
+
+NT_LAW_ARRAY(nt_capillary, nt_capillary_eval)
+
+double nt_capillary_forms_at(const nt_capillary *capillary)
+{
+    return 2.0 * capillary->film_thickness;
+}
+
+double nt_capillary_ruptures_at(const nt_capillary *capillary)
+{
+    return nt_capillary_forms_at(capillary) + 2.0 * capillary->meniscus_radius;
+}
+
+int nt_capillary_advance(const nt_capillary *capillary, int bridged, double gap)
+{
+    if (gap <= nt_capillary_forms_at(capillary))
+        return 1;
+    return bridged && !(gap > nt_capillary_ruptures_at(capillary));
+}
+
+void nt_capillary_trace_n(const nt_capillary *capillary, int *bridged, const nt_strided *arrays)
+{
+    for (long i = 0; i < arrays->count; i++) {
+        const double gap = arrays->in[i * arrays->in_stride];
+        *bridged = nt_capillary_advance(capillary, *bridged, gap);
+        const nt_law_value none = {0};
+        nt_law_store(arrays, i, *bridged || isnan(gap) ? nt_capillary_eval(capillary, gap) : none);
+    }
 }
 
 double nt_kelvin_radius(double surface_tension, double molar_volume, double temperature, double relative_humidity)

@@ -5,11 +5,11 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "forces/hold.h"
+#include "forces/law.h"
 #include "nanotouch/field.h"
 #include "nanotouch/forces.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) {#path, unit, minimum, maximum, (unsigned)offsetof(nt_vdw, path), doc}
+#define FIELD(member, unit, minimum, maximum, doc) NT_FORCE_FIELD(nt_vdw, member, unit, minimum, maximum, doc)
 
 static const nt_field vdw_fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),
@@ -42,30 +42,31 @@ static double energy_factor(double R, double s)
 static nt_law_value sphere(const nt_vdw *vdw, double s)
 {
     const double R = vdw->radius, H = vdw->hamaker_constant, far = s + 2.0 * R;
-    const double ratio = R / (s * far);
-    const double F = -2.0 / 3.0 * H * R * ratio * ratio;
+    const double ratio = R / s / (far / R);
+    const double F = -2.0 / 3.0 * H / R * ratio * ratio;
     return (nt_law_value){.U = -H / 6.0 * energy_factor(R, s), .F = F, .k = 2.0 * F * (1.0 / s + 1.0 / far)};
 }
 
 static nt_law_value derjaguin(const nt_vdw *vdw, double s)
 {
-    const double F = -vdw->hamaker_constant * vdw->radius / (6.0 * s * s);
-    return (nt_law_value){.U = F * s, .F = F, .k = 2.0 * F / s};
+    const double U = -vdw->hamaker_constant / 6.0 * (vdw->radius / s);
+    return (nt_law_value){.U = U, .F = U / s, .k = 2.0 * U / s / s};
 }
 
-static nt_law_value eval(const nt_vdw *vdw, double gap, nt_law_value law(const nt_vdw *, double))
+static double separation(const nt_vdw *vdw, double gap)
 {
-    if (gap < vdw->minimum_gap)
-        return nt_law_hold(law(vdw, vdw->minimum_gap + 0.5 * vdw->roughness), vdw->minimum_gap - gap);
-    return law(vdw, gap + 0.5 * vdw->roughness);
+    return nt_law_gap(gap, vdw->minimum_gap) + 0.5 * vdw->roughness;
 }
 
 nt_law_value nt_vdw_eval(const nt_vdw *vdw, double gap)
 {
-    return eval(vdw, gap, sphere);
+    return nt_law_hold(sphere(vdw, separation(vdw, gap)), vdw->minimum_gap - gap);
 }
 
 nt_law_value nt_vdw_derjaguin_eval(const nt_vdw *vdw, double gap)
 {
-    return eval(vdw, gap, derjaguin);
+    return nt_law_hold(derjaguin(vdw, separation(vdw, gap)), vdw->minimum_gap - gap);
 }
+
+NT_LAW_ARRAY(nt_vdw, nt_vdw_eval)
+NT_LAW_ARRAY(nt_vdw, nt_vdw_derjaguin_eval)

@@ -141,12 +141,6 @@ NT_API double nt_contact_law_pull_off_force(const nt_contact_law *law);
 /* The last indentation that the STABLE branch holds under grips [m]; below it the bodies are apart. */
 NT_API double nt_contact_law_grip_indentation(const nt_contact_law *law);
 
-typedef struct nt_strided {
-    const double *in;
-    double *U, *F, *k, *a;    /* any may be NULL */
-    long count;
-    long in_stride, out_stride; /* [elements] */
-} nt_strided;
 NT_API nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, const nt_strided *arrays);
 
 #ifdef __cplusplus

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Non-contact forces between a spherical tip and a flat, at gap h of the undeformed bodies (paper, Eq. 1, corrected:
- * docs/errata.md). Each law returns {U, F, k, a = 0}; U is 0 at infinite gap, F = -dU/dh, k = -dF/dh.
- * All functions: thread-safe, real-time safe; NaN in, NaN out. Parameters are checked once by nt_x_check(). */
+ * Non-contact forces between a tip and a flat, at gap h of the undeformed bodies (paper, Eq. 1, corrected: docs/errata.md;
+ * in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F = -dU/dh, k = -dF/dh. Below
+ * minimum_gap F stays at its value there and U goes on linearly. nt_x_eval_n is nt_x_eval over arrays.
+ * All functions: thread-safe, real-time safe; NaN in, NaN out; an infinite gap gives 0. Parameters are checked once by
+ * nt_x_check(). What adds, is added by the caller; erratum E5b says what may be added to a contact law. */
 #ifndef NANOTOUCH_FORCES_H
 #define NANOTOUCH_FORCES_H
 
@@ -11,20 +13,37 @@
 extern "C" {
 #endif
 
-/* Van der Waals. */
+/* --- Van der Waals --- */
+
 typedef struct nt_vdw {
     double radius;           /* R of the tip [m] */
     double hamaker_constant; /* H [J], >= 0 */
     double roughness;        /* b, peak to peak [m], >= 0: the effective gap is h + b/2 (erratum E2) */
-    double minimum_gap;      /* a0, the closest approach of the atoms [m], > 0: below it F stays at its value there (E1) */
+    double minimum_gap;      /* a0, the closest approach of the atoms [m], > 0 (E1) */
 } nt_vdw;
 NT_API nt_status nt_vdw_check(const nt_vdw *vdw, nt_problem *problem);
 /* Exact Hamaker sphere: F = -2 H R^3/(3 s^2 (s + 2R)^2), s = max(h, a0) + b/2. */
 NT_API nt_law_value nt_vdw_eval(const nt_vdw *vdw, double gap);
+NT_API void nt_vdw_eval_n(const nt_vdw *vdw, const nt_strided *arrays);
 /* The paper's Derjaguin form -H R/(6 s^2), valid for s << R: +36 % at h = 10 nm for R = 30 nm (erratum E1). */
 NT_API nt_law_value nt_vdw_derjaguin_eval(const nt_vdw *vdw, double gap);
+NT_API void nt_vdw_derjaguin_eval_n(const nt_vdw *vdw, const nt_strided *arrays);
 
-/* Capillary meniscus of a water film. */
+/* The same of a whole tip: a cone rounded by a sphere that touches it all around (Hamaker's sum, exact). */
+typedef struct nt_vdw_tip {
+    double radius;           /* R of the apex [m] */
+    double hamaker_constant; /* H [J], >= 0 */
+    double half_angle;       /* theta of the cone [rad], 0 .. 1.5 */
+    double height;           /* L of the cone, above the apex sphere [m], >= 0 */
+    double roughness;        /* b, peak to peak [m], >= 0 */
+    double minimum_gap;      /* a0 [m], > 0 */
+} nt_vdw_tip;
+NT_API nt_status nt_vdw_tip_check(const nt_vdw_tip *tip, nt_problem *problem);
+NT_API nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap);
+NT_API void nt_vdw_tip_eval_n(const nt_vdw_tip *tip, const nt_strided *arrays);
+
+/* --- Capillary meniscus of a water film --- */
+
 typedef struct nt_capillary {
     double radius;          /* R of the tip [m] */
     double surface_tension; /* gamma_L [N/m], >= 0 */
@@ -32,23 +51,136 @@ typedef struct nt_capillary {
     double film_thickness;  /* e of the film on each surface [m], >= 0 */
 } nt_capillary;
 NT_API nt_status nt_capillary_check(const nt_capillary *capillary, nt_problem *problem);
-/* F = -4 pi gamma_L R [1 - (h - 2e)/(2 r1)], the bracket clamped to [0, 1] (errata E3): constant below 2e, 0 beyond
- * 2e + 2 r1. Whether there is a bridge at all is history: it forms at h <= 2e and ruptures beyond 2e + 2 r1; the caller
- * keeps that (scene.h, nt_interaction). */
+/* The force of a standing bridge, F = -4 pi gamma_L R [1 - (h - 2e)/(2 r1)], the bracket clamped to [0, 1] (erratum E3):
+ * constant below 2e, 0 beyond 2e + 2 r1. */
 NT_API nt_law_value nt_capillary_eval(const nt_capillary *capillary, double gap);
+NT_API void nt_capillary_eval_n(const nt_capillary *capillary, const nt_strided *arrays);
+
+/* Whether there is a bridge is history: it forms on approach where the films touch, at 2e [m], ... */
+NT_API double nt_capillary_forms_at(const nt_capillary *capillary);
+/* ... and ruptures on retraction at 2e + 2 r1 [m]. */
+NT_API double nt_capillary_ruptures_at(const nt_capillary *capillary);
+/* Whether a bridge stands (1) or not (0) at a gap, after it did or did not before; NaN changes nothing. */
+NT_API int nt_capillary_advance(const nt_capillary *capillary, int bridged, double gap);
+/* The force along a path: gaps in order, *bridged before the first and, on return, after the last. */
+NT_API void nt_capillary_trace_n(const nt_capillary *capillary, int *bridged, const nt_strided *arrays);
+
 /* Kelvin radius of a meniscus: -gamma_L V_m/(R_gas T ln(RH)), relative_humidity in (0, 1), temperature [K]. */
 NT_API double nt_kelvin_radius(double surface_tension, double molar_volume, double temperature, double relative_humidity);
 
-/* Electrostatic force of a conducting sphere at potential difference U against a conducting plane. */
+/* --- Electrostatic force of conductors at a potential difference U --- */
+
+/* Sphere and plane. */
 typedef struct nt_electrostatic {
     double radius;      /* R [m] */
     double potential;   /* U: contact potential (phi_1 - phi_2)/e plus any bias [V] */
-    double minimum_gap; /* a0 [m], > 0: below it F stays at its value there */
+    double minimum_gap; /* a0 [m], > 0 */
 } nt_electrostatic;
 NT_API nt_status nt_electrostatic_check(const nt_electrostatic *electrostatic, nt_problem *problem);
-/* F = -pi eps0 U^2 R^2/(h (h + R)) (Hudlet 1998; within 5.2 % of the exact image series for 0.2..100 nm, R = 30 nm; the
- * paper's plate law with S = 4 pi R r1 is 10.8 times too large at a0: erratum E5). */
+/* F = -pi eps0 U^2 R^2/(h (h + R)) (Hudlet 1998; within 5.2 % of the exact image series for 0.2..100 nm, R = 30 nm). */
 NT_API nt_law_value nt_electrostatic_eval(const nt_electrostatic *electrostatic, double gap);
+NT_API void nt_electrostatic_eval_n(const nt_electrostatic *electrostatic, const nt_strided *arrays);
+
+/* Parallel plates, the paper's form: F = -eps0 S U^2/(2 h^2). The paper's S = 4 pi R r1 is the area of a meniscus and makes
+ * it 10.8 times too large at a0, 0.28 times at 10 nm (erratum E5); it is right for an area S that is really flat. */
+typedef struct nt_electrostatic_plate {
+    double area;        /* S [m^2], >= 0 */
+    double potential;   /* U [V] */
+    double minimum_gap; /* a0 [m], > 0 */
+} nt_electrostatic_plate;
+NT_API nt_status nt_electrostatic_plate_check(const nt_electrostatic_plate *plate, nt_problem *problem);
+NT_API nt_law_value nt_electrostatic_plate_eval(const nt_electrostatic_plate *plate, double gap);
+NT_API void nt_electrostatic_plate_eval_n(const nt_electrostatic_plate *plate, const nt_strided *arrays);
+
+/* Apex sphere and cone of a tip, in place of the sphere (Hudlet 1998, over the finite height of the cone). */
+typedef struct nt_electrostatic_tip {
+    double radius;      /* R of the apex [m] */
+    double half_angle;  /* theta of the cone [rad], 0.01 .. 1.5 */
+    double height;      /* L of the cone, above the apex sphere [m], >= 0 */
+    double potential;   /* U [V] */
+    double minimum_gap; /* a0 [m], > 0 */
+} nt_electrostatic_tip;
+NT_API nt_status nt_electrostatic_tip_check(const nt_electrostatic_tip *tip, nt_problem *problem);
+NT_API nt_law_value nt_electrostatic_tip_eval(const nt_electrostatic_tip *tip, double gap);
+NT_API void nt_electrostatic_tip_eval_n(const nt_electrostatic_tip *tip, const nt_strided *arrays);
+
+/* Lever, to be added: a tilted plate in the field of the wedge that it makes with the plane. At gap h of the apex, with
+ * D = tip_height + h, F = -eps0 U^2 w l cos(b) (sin(b)/b)^2/(2 D (D + l sin(b))). Edges are neglected. */
+typedef struct nt_electrostatic_lever {
+    double length;      /* l [m] */
+    double width;       /* w [m] */
+    double tilt;        /* b against the plane [rad], 0 .. 1.5; the tip's end is the lower */
+    double tip_height;  /* of the lever's lower end above the apex [m], > 0 */
+    double potential;   /* U [V] */
+    double minimum_gap; /* a0 of the apex [m], > 0 */
+} nt_electrostatic_lever;
+NT_API nt_status nt_electrostatic_lever_check(const nt_electrostatic_lever *lever, nt_problem *problem);
+NT_API nt_law_value nt_electrostatic_lever_eval(const nt_electrostatic_lever *lever, double gap);
+NT_API void nt_electrostatic_lever_eval_n(const nt_electrostatic_lever *lever, const nt_strided *arrays);
+
+/* --- Lennard-Jones: attraction and repulsion of rigid surfaces --- */
+
+typedef struct nt_lennard_jones {
+    double radius;               /* R of the tip [m], >> z0 */
+    double work_of_adhesion;     /* w [J/m^2], >= 0 */
+    double equilibrium_distance; /* z0, where two half-spaces rest [m] */
+    double minimum_gap;          /* [m], > 0 */
+} nt_lennard_jones;
+NT_API nt_status nt_lennard_jones_check(const nt_lennard_jones *lennard_jones, nt_problem *problem);
+/* F = 2 pi R w/3 [(z0/h)^8 - 4 (z0/h)^2], h between the surface atoms: -2 pi w R at z0 (Bradley), 0 at 0.794 z0. */
+NT_API nt_law_value nt_lennard_jones_eval(const nt_lennard_jones *lennard_jones, double gap);
+NT_API void nt_lennard_jones_eval_n(const nt_lennard_jones *lennard_jones, const nt_strided *arrays);
+
+/* --- In liquid --- */
+
+/* Electric double layers of two different surfaces; potentials below some 25 mV, R >> debye_length. */
+typedef struct nt_double_layer {
+    double radius;                /* R of the tip [m] */
+    double debye_length;          /* 1/kappa [m]: nt_debye_length */
+    double relative_permittivity; /* of the liquid [-] */
+    double tip_potential;         /* psi_1 of the tip when alone [V] */
+    double sample_potential;      /* psi_2 of the sample when alone [V] */
+    double minimum_gap;           /* [m], > 0 */
+} nt_double_layer;
+NT_API nt_status nt_double_layer_check(const nt_double_layer *layer, nt_problem *problem);
+/* The surfaces keep their potential (Hogg, Healy, Fuerstenau 1966). */
+NT_API nt_law_value nt_double_layer_potential_eval(const nt_double_layer *layer, double gap);
+NT_API void nt_double_layer_potential_eval_n(const nt_double_layer *layer, const nt_strided *arrays);
+/* The surfaces keep their charge (Wiese, Healy 1970); sigma = eps psi/debye_length. */
+NT_API nt_law_value nt_double_layer_charge_eval(const nt_double_layer *layer, double gap);
+NT_API void nt_double_layer_charge_eval_n(const nt_double_layer *layer, const nt_strided *arrays);
+/* Debye length [m]: sqrt(eps0 eps_r k T/(2 N_A e^2 I)), ionic_strength I [mol/m^3] (1 mM is 1), temperature [K];
+ * NaN unless all are above 0. */
+NT_API double nt_debye_length(double ionic_strength, double relative_permittivity, double temperature);
+
+/* Hydration (amplitude > 0) and hydrophobic (< 0) forces, two exponentials: F = 2 pi R Sum W_i exp(-h/l_i). */
+typedef struct nt_hydration {
+    double radius;              /* R of the tip [m], >> l_i */
+    double amplitude;           /* W_1, energy of plates at gap 0 [J/m^2] */
+    double decay_length;        /* l_1 [m] */
+    double second_amplitude;    /* W_2 [J/m^2]; 0: one term */
+    double second_decay_length; /* l_2 [m] */
+    double minimum_gap;         /* [m], >= 0 */
+} nt_hydration;
+NT_API nt_status nt_hydration_check(const nt_hydration *hydration, nt_problem *problem);
+NT_API nt_law_value nt_hydration_eval(const nt_hydration *hydration, double gap);
+NT_API void nt_hydration_eval_n(const nt_hydration *hydration, const nt_strided *arrays);
+
+/* Steric force of polymer brushes (Alexander, de Gennes), a scaling law: F = 2 pi R Int_h^T p,
+ * p = kT/s^3 [(T/h)^(9/4) - (h/T)^(3/4)]; 0 beyond T. */
+typedef struct nt_steric {
+    double radius;      /* R of the tip [m], >> T */
+    double thickness;   /* T, of the free brushes of both bodies together [m]: 2L, or L where one bears none */
+    double spacing;     /* s, distance of grafted chains [m]; s^-2 per area */
+    double temperature; /* [K] */
+    double minimum_gap; /* [m], > 0 */
+} nt_steric;
+NT_API nt_status nt_steric_check(const nt_steric *steric, nt_problem *problem);
+NT_API nt_law_value nt_steric_eval(const nt_steric *steric, double gap);
+NT_API void nt_steric_eval_n(const nt_steric *steric, const nt_strided *arrays);
+/* Its usual approximation p = 100 kT/s^3 exp(-2 pi h/T), for 0.2 < h/T < 0.9. */
+NT_API nt_law_value nt_steric_exponential_eval(const nt_steric *steric, double gap);
+NT_API void nt_steric_exponential_eval_n(const nt_steric *steric, const nt_strided *arrays);
 
 #ifdef __cplusplus
 }

@@ -13,6 +13,8 @@ extern "C" {
 #define NT_VACUUM_PERMITTIVITY 8.8541878128e-12 /* [F/m] */
 #define NT_GAS_CONSTANT 8.31446261815324        /* [J/(mol K)] */
 #define NT_BOLTZMANN 1.380649e-23               /* [J/K] */
+#define NT_AVOGADRO 6.02214076e23               /* [1/mol] */
+#define NT_ELEMENTARY_CHARGE 1.602176634e-19    /* [C] */
 
 /* An isotropic elastic material. */
 typedef struct nt_material {

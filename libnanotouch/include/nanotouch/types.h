@@ -23,6 +23,14 @@ typedef struct nt_law_value {
     double a; /* contact radius [m]; 0 where the bodies do not touch */
 } nt_law_value;
 
+/* Arrays of a law: out[i * out_stride] from in[i * in_stride]; in and out may be the same array. */
+typedef struct nt_strided {
+    const double *in;
+    double *U, *F, *k, *a;      /* any may be NULL */
+    long count;
+    long in_stride, out_stride; /* [elements] */
+} nt_strided;
+
 /* Measured error of a law or tier against its reference. */
 typedef struct nt_accuracy {
     double force_error; /* max |dF| / max(|F|, |F_pull-off|) away from folds [-] */
