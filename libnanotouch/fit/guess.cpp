@@ -14,8 +14,8 @@ namespace nanotouch {
 
 namespace {
 
-constexpr int grid_per_decade = 2;
-constexpr long sample_size = 48;
+constexpr int grid_per_decade = 1;
+constexpr long sample_size = 24;
 
 struct Sample {
     double position, force;

@@ -14,7 +14,7 @@
 #include "nanotouch/fit.h"
 #include "nanotouch/random.h"
 
-enum { POINTS = 400 };
+enum { POINTS = 250 };
 
 static const double truth[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 3e-9, 0.0, 1.0}; /* lambda = 2.0 */
 
@@ -103,10 +103,10 @@ static void range_needs_an_exact_curve(void **state)
 }
 
 /* (value - truth)/sigma over many seeds: mean 0 within 3/sqrt(n), standard deviation 1; its own standard error is
- * 1/sqrt(2 n) = 0.05 at n = 200, so 0.8 .. 1.2 is four of them. */
+ * 1/sqrt(2 n) = 0.06 at n = 150, so 0.8 .. 1.2 is three of them. */
 static void check_pulls(const nt_fit_options *options, double noise, int known)
 {
-    enum { SEEDS = 200 };
+    enum { SEEDS = 150 };
     double sum[NT_FIT_PARAMETERS] = {0}, squares[NT_FIT_PARAMETERS] = {0};
     nt_fit_options with = *options;
     with.force_noise = known ? noise : 0.0;
@@ -173,7 +173,7 @@ static void stiff_contact_is_not_determined(void **state)
     curve made;
     nt_random random = nt_random_seed(5);
     for (int i = 0; i < POINTS; i++)
-        made.position[i] = 60e-9 - 0.25e-9 * i;
+        made.position[i] = 60e-9 - 0.4e-9 * i;
     const nt_fit_data data = data_of(&made);
     assert_int_equal(nt_fit_model_n(&options, silicon, &data, made.force), NT_OK);
     for (int i = 0; i < POINTS; i++)
