@@ -2,6 +2,7 @@
 // Options of a fit: names, defaults, checks.
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "nanotouch/field.h"
@@ -10,6 +11,16 @@
 namespace {
 
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+
+// An enumerator from C may be any number; C++ must not look at it as an enumerator before it is checked.
+template <class Enumeration>
+int number_of(const Enumeration &enumerator)
+{
+    static_assert(sizeof(Enumeration) == sizeof(int));
+    int number;
+    std::memcpy(&number, &enumerator, sizeof number);
+    return number;
+}
 
 struct Description {
     const char *name, *unit;
@@ -76,10 +87,11 @@ nt_status check_start(const Description &description, const nt_fit_start &start,
 
 nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
 {
-    if (options->model < NT_HERTZ || options->model > NT_MAUGIS)
-        return complain(problem, {"model", "", double(options->model), NT_HERTZ, NT_MAUGIS});
-    if (options->loss < NT_LOSS_SQUARES || options->loss > NT_LOSS_CAUCHY)
-        return complain(problem, {"loss", "", double(options->loss), NT_LOSS_SQUARES, NT_LOSS_CAUCHY});
+    const int model = number_of(options->model), loss = number_of(options->loss);
+    if (model < NT_HERTZ || model > NT_MAUGIS)
+        return complain(problem, {"model", "", double(model), NT_HERTZ, NT_MAUGIS});
+    if (loss < NT_LOSS_SQUARES || loss > NT_LOSS_CAUCHY)
+        return complain(problem, {"loss", "", double(loss), NT_LOSS_SQUARES, NT_LOSS_CAUCHY});
     if (options->max_iterations < 1 || options->max_iterations > 100000)
         return complain(problem, {"max_iterations", "", double(options->max_iterations), 1.0, 1e5});
     const bool needs_noise = options->pull_off_sigma > 0.0 || options->compliance_sigma > 0.0;
@@ -95,12 +107,14 @@ nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
 
 const char *nt_fit_parameter_name(nt_fit_parameter parameter)
 {
-    return parameter >= 0 && parameter < NT_FIT_PARAMETERS ? descriptions[parameter].name : nullptr;
+    const int index = number_of(parameter);
+    return index >= 0 && index < NT_FIT_PARAMETERS ? descriptions[index].name : nullptr;
 }
 
 const char *nt_fit_parameter_unit(nt_fit_parameter parameter)
 {
-    return parameter >= 0 && parameter < NT_FIT_PARAMETERS ? descriptions[parameter].unit : nullptr;
+    const int index = number_of(parameter);
+    return index >= 0 && index < NT_FIT_PARAMETERS ? descriptions[index].unit : nullptr;
 }
 
 int nt_fit_model_has(nt_model model, nt_fit_parameter parameter)
