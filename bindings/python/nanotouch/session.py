@@ -281,6 +281,8 @@ def _checked_path(
         if not (math.isfinite(x) and math.isfinite(y)):
             raise InvalidValue(f"path: ({x} m, {y} m) is not finite")
         _check_inside(surface, x, y, "path")
+    if mode != "point" and len(set(points)) == 1:
+        raise InvalidValue(f"mode {mode!r} needs a path with a length; all its points are the same")
     return points
 
 

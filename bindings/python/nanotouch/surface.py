@@ -28,7 +28,7 @@ class Surface:
 
     def __init__(self, topography: Topography, tip_radius: float | None = None, tip_half_angle: float = 0.3) -> None:
         dy, dx = topography.pixel_size
-        heights = topography.heights
+        heights = np.pad(topography.heights, ((0, 1), (0, 1)), mode="edge")
         if tip_radius is not None:
             heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
         self.topography = topography
@@ -36,10 +36,9 @@ class Surface:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Extent (x, y) that can be touched [m]: from the first pixel to the last."""
-        ny, nx = self.topography.heights.shape
-        dy, dx = self.topography.pixel_size
-        return (nx - 1) * dx, (ny - 1) * dy
+        """Extent (x, y) that can be touched [m]: the scan size; beyond its middle the last pixel goes on level."""
+        height, width = self.topography.size
+        return width, height
 
     def height(self, x: ArrayLike, y: ArrayLike) -> Any:
         """Height [m] of the apex at first touch over (x, y) [m], broadcast."""
