@@ -75,7 +75,7 @@ nt_law_value nt_steric_eval(const nt_steric *steric, double gap)
 }
 
 /* p = 100 kT/s^3 exp(-2 pi h/T) (Israelachvili, Intermolecular and Surface Forces, 2nd ed. 1992, ch. 14),
- * within 21 % of the full law for 0.2 < h/T < 0.8. */
+ * within 24 % of the full law for 0.2 < h/T < 0.9. */
 nt_law_value nt_steric_exponential_eval(const nt_steric *steric, double gap)
 {
     const double decay_length = steric->thickness / (2.0 * NT_PI), h = nt_law_gap(gap, steric->minimum_gap);

@@ -8,14 +8,9 @@
 
 #include <cmocka.h>
 
+#include "force_laws.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 
 static const nt_capillary water = {30e-9, 0.072, 1.06e-9, 5e-9}; /* the paper's Fig. 6 */
@@ -63,6 +58,66 @@ static void force_is_the_slope_of_the_energy(void **state)
     }
 }
 
+FORCE_LAW(nt_capillary, nt_capillary_eval)
+
+/* The same rules as all laws: held below 2e, where the films touch. */
+static void rules(void **state)
+{
+    (void)state;
+    const force_law law = {nt_capillary_eval_at, nt_capillary_eval_over, &water, nt_capillary_forms_at(&water)};
+    assert_ends(&law);
+    assert_array(&law);
+    const nt_law_value at = nt_capillary_eval(&water, 10e-9), deep = nt_capillary_eval(&water, -INFINITY);
+    assert_true(deep.F == at.F && deep.k == 0.0 && isinf(deep.U) && deep.U < 0.0);
+    assert_true(nt_capillary_eval(&water, 0.0).F == at.F && nt_capillary_eval(&water, -5e-324).k == 0.0);
+}
+
+/* There and back: nothing until the films touch at 2e = 10 nm, then a bridge until 2e + 2 r1 = 12.12 nm; the work that is
+ * lost in a cycle is that of pulling the bridge apart, half of 4 pi gamma R times 2 r1. */
+static void bridge_forms_and_ruptures(void **state)
+{
+    (void)state;
+    enum { N = 4001 };
+    const double full = 4.0 * NT_PI * 0.072 * 30e-9, step = 16e-9 / (N - 1);
+    static double gap[2 * N], F[2 * N];
+    for (int i = 0; i < N; i++)
+        gap[i] = gap[2 * N - 1 - i] = 16e-9 - i * step;
+    int bridged = 0;
+    const nt_strided there = {.in = gap, .F = F, .count = N, .in_stride = 1, .out_stride = 1};
+    nt_capillary_trace_n(&water, &bridged, &there);
+    assert_int_equal(bridged, 1);
+    const nt_strided back = {.in = gap + N, .F = F + N, .count = N, .in_stride = 1, .out_stride = 1};
+    nt_capillary_trace_n(&water, &bridged, &back);
+    assert_int_equal(bridged, 0);
+    double lost = 0.0;
+    for (int i = 0; i < N; i++) {
+        assert_true((F[i] == 0.0) == (gap[i] > nt_capillary_forms_at(&water)));
+        assert_within(F[2 * N - 1 - i], nt_capillary_eval(&water, gap[i]).F, 0.0);
+        lost += (F[i] - F[2 * N - 1 - i]) * step;
+    }
+    assert_within(nt_capillary_ruptures_at(&water), 12.12e-9, 1e-22);
+    assert_within(lost, 0.5 * full * 2.12e-9, full * step);
+}
+
+static void bridge_is_a_state(void **state)
+{
+    (void)state;
+    assert_int_equal(nt_capillary_advance(&water, 0, 10.001e-9), 0);
+    assert_int_equal(nt_capillary_advance(&water, 0, 10e-9), 1);
+    assert_int_equal(nt_capillary_advance(&water, 0, -1.0), 1);
+    assert_int_equal(nt_capillary_advance(&water, 1, 12.11e-9), 1);
+    assert_int_equal(nt_capillary_advance(&water, 1, 12.13e-9), 0);
+    assert_int_equal(nt_capillary_advance(&water, 1, INFINITY), 0);
+    for (int bridged = 0; bridged < 2; bridged++) {
+        assert_int_equal(nt_capillary_advance(&water, bridged, NAN), bridged);
+        const double gap = NAN;
+        double F = 0.0;
+        int now = bridged;
+        nt_capillary_trace_n(&water, &now, &(nt_strided){.in = &gap, .F = &F, .count = 1});
+        assert_true(isnan(F) && now == bridged);
+    }
+}
+
 /* Water at 20 C: gamma V_m/(R T) = 0.54 nm; r = 0.54 nm/ln(1/RH) (Israelachvili: 1.6 nm at 70 %, 0.5 nm at 37 %). */
 static void kelvin_radius_of_water(void **state)
 {
@@ -97,6 +152,9 @@ int main(void)
         cmocka_unit_test(force_is_the_slope_of_the_energy),
         cmocka_unit_test(kelvin_radius_of_water),
         cmocka_unit_test(nan_and_check),
+        cmocka_unit_test(rules),
+        cmocka_unit_test(bridge_forms_and_ruptures),
+        cmocka_unit_test(bridge_is_a_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,14 +8,9 @@
 
 #include <cmocka.h>
 
+#include "force_laws.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 
 static const nt_electrostatic gold = {30e-9, 0.25, 0.165e-9}; /* the paper's Fig. 6 */
@@ -61,10 +56,34 @@ static void plate_law_of_the_paper_is_wrong_as_stated(void **state)
 {
     (void)state;
     const double S = 4.0 * NT_PI * gold.radius * 1.06e-9, U = gold.potential;
-    const double near = NT_VACUUM_PERMITTIVITY * S * U * U / (2.0 * 0.198e-9 * 0.198e-9);
-    const double far = NT_VACUUM_PERMITTIVITY * S * U * U / (2.0 * 10e-9 * 10e-9);
-    assert_within(near / -nt_electrostatic_eval(&gold, 0.198e-9).F, 10.8, 0.1);
-    assert_within(far / -nt_electrostatic_eval(&gold, 10e-9).F, 0.28, 0.01);
+    const nt_electrostatic_plate plate = {S, U, 0.165e-9};
+    const double near = nt_electrostatic_plate_eval(&plate, 0.198e-9).F;
+    const double far = nt_electrostatic_plate_eval(&plate, 10e-9).F;
+    assert_within(near, -2.82e-9, 0.005e-9); /* Fig. 6 */
+    assert_within(near / nt_electrostatic_eval(&gold, 0.198e-9).F, 10.8, 0.1);
+    assert_within(far / nt_electrostatic_eval(&gold, 10e-9).F, 0.28, 0.01);
+}
+
+FORCE_LAW(nt_electrostatic, nt_electrostatic_eval)
+FORCE_LAW(nt_electrostatic_plate, nt_electrostatic_plate_eval)
+
+/* The plate of 1 cm^2 at 1 mm and 1 kV of the textbooks: eps0 A U^2/(2 d^2) = 0.443 mN, half the charge times the field. */
+static void rules(void **state)
+{
+    (void)state;
+    const nt_electrostatic_plate plate = {1e-4, 1e3, 1e-10};
+    const nt_law_value value = nt_electrostatic_plate_eval(&plate, 1e-3);
+    assert_within(value.F, -0.4427e-3, 0.0001e-3);
+    assert_within(value.U, -0.4427e-6, 0.0001e-6);
+    const force_law sphere = {nt_electrostatic_eval_at, nt_electrostatic_eval_over, &gold, gold.minimum_gap};
+    const force_law flat = {nt_electrostatic_plate_eval_at, nt_electrostatic_plate_eval_over, &plate, 1e-10};
+    assert_keeps_the_rules(&sphere);
+    assert_keeps_the_rules(&flat);
+    assert_slopes(&flat, (double[]){1.1e-10, 1e-2}, (nt_law_value){0});
+    nt_problem problem;
+    assert_int_equal(nt_electrostatic_plate_check(&plate, NULL), NT_OK);
+    assert_int_equal(nt_electrostatic_plate_check(&(nt_electrostatic_plate){-1.0, 1.0, 1e-10}, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "area");
 }
 
 /* Five points, truncation (step/h)^4. */
@@ -116,6 +135,7 @@ int main(void)
         cmocka_unit_test(force_is_the_slope_of_the_energy),
         cmocka_unit_test(limits),
         cmocka_unit_test(check_names_the_field),
+        cmocka_unit_test(rules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

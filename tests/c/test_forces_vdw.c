@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "force_laws.h"
 #include "nanotouch/forces.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 
 static const nt_vdw gold = {30e-9, 2.03e-19, 0.0, 0.165e-9}; /* the paper's Fig. 6 */
@@ -65,6 +60,18 @@ static void energy_is_smooth_where_the_series_takes_over(void **state)
     const double s = gold.radius * 0.7 / 0.3, h = 1e-13;
     const nt_law_value left = nt_vdw_eval(&gold, s - h), right = nt_vdw_eval(&gold, s + h);
     assert_within(left.U - right.U, (left.F + right.F) * h, 1e-14 * -left.U);
+}
+
+FORCE_LAW(nt_vdw, nt_vdw_eval)
+FORCE_LAW(nt_vdw, nt_vdw_derjaguin_eval)
+
+static void rules(void **state)
+{
+    (void)state;
+    const force_law sphere = {nt_vdw_eval_at, nt_vdw_eval_over, &gold, gold.minimum_gap};
+    const force_law derjaguin = {nt_vdw_derjaguin_eval_at, nt_vdw_derjaguin_eval_over, &gold, gold.minimum_gap};
+    assert_keeps_the_rules(&sphere);
+    assert_keeps_the_rules(&derjaguin);
 }
 
 /* F = -dU/dh and k = -dF/dh; five points, truncation (step/s)^4. */
@@ -155,6 +162,7 @@ int main(void)
         cmocka_unit_test(roughness_shifts_the_gap),
         cmocka_unit_test(held_below_the_minimum_gap),
         cmocka_unit_test(check_names_the_field),
+        cmocka_unit_test(rules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

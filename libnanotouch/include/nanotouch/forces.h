@@ -178,7 +178,7 @@ typedef struct nt_steric {
 NT_API nt_status nt_steric_check(const nt_steric *steric, nt_problem *problem);
 NT_API nt_law_value nt_steric_eval(const nt_steric *steric, double gap);
 NT_API void nt_steric_eval_n(const nt_steric *steric, const nt_strided *arrays);
-/* Its usual approximation p = 100 kT/s^3 exp(-2 pi h/T), for 0.2 < h/T < 0.9. */
+/* Its usual approximation p = 100 kT/s^3 exp(-2 pi h/T): p within 24 % for 0.2 < h/T < 0.9. */
 NT_API nt_law_value nt_steric_exponential_eval(const nt_steric *steric, double gap);
 NT_API void nt_steric_exponential_eval_n(const nt_steric *steric, const nt_strided *arrays);
 
