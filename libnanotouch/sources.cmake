@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The sources of the library by layer: the plain list, also for other build systems. A file that is missing here, or is not
-# there any more, stops the configuration (audit_sources in CMakeLists.txt).
+# The sources of the library by layer: the plain list, also for other build systems. tools/check_layers.py, one of the
+# tests, compares it with the folders.
 
 # The portable core: C11 and libm, no heap, no operating system.
 set(nanotouch_sources_core

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Check who includes whom. Prints each offence as file:line and exits with their number."""
+"""Check who includes whom, and that the list of sources is complete. Prints each offence as file:line and exits with their number."""
 
 import ast
 import re
@@ -26,11 +26,10 @@ USES = {
     "fit": "core forces contact",
 }
 
-# The layer that each public header belongs to, where it does not bear the layer's name.
+# The layer that each public header belongs to, where it is not named after it (contact.h, contact_table.h).
 HEADERS = {
-    **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random", "ring", "mailbox"], "core"),
+    **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
     "plan": "scene",
-    "hal_backend": "hal",
     "sim": "hal/sim",
     "hal_linux": "hal/linux",
 }
@@ -54,7 +53,8 @@ def layer_of_file(path: Path) -> str:
 
 def layer_of_header(stem: str) -> str:
     """Return the layer of a public header; "" for one that this script does not know."""
-    return HEADERS.get(stem, stem if stem in USES else "")
+    prefix = stem.split("_")[0]
+    return HEADERS.get(stem, prefix if prefix in USES else "")
 
 
 def includes(path: Path) -> Iterator[tuple[int, str, str]]:
@@ -99,6 +99,16 @@ def check_library() -> Iterator[str]:
                 yield f"{path.relative_to(ROOT)}:{number}: {offence}"
 
 
+def check_sources() -> Iterator[str]:
+    """Yield the sources that sources.cmake does not list, and those that it lists and are not there."""
+    listed = set(re.findall(r"[\w/]+\.c(?:pp)?\b", (LIBRARY / "sources.cmake").read_text()))
+    found = {p.relative_to(LIBRARY).as_posix() for p in LIBRARY.rglob("*") if p.suffix in {".c", ".cpp"}}
+    yield from (
+        f"libnanotouch/{name}:1: is not listed in libnanotouch/sources.cmake" for name in sorted(found - listed)
+    )
+    yield from (f"libnanotouch/sources.cmake:1: lists {name}, which is not there" for name in sorted(listed - found))
+
+
 def check_users() -> Iterator[str]:
     """Yield the offences of bindings and apps: they include public headers and their own, nothing inside."""
     for folder in ("bindings", "apps"):
@@ -132,8 +142,8 @@ def check_python() -> Iterator[str]:
 
 def main() -> int:
     """Print all offences."""
-    offences = [*check_library(), *check_users(), *check_python()]
-    print("\n".join(offences) or "every include and import keeps to its layer")
+    offences = [*check_sources(), *check_library(), *check_users(), *check_python()]
+    print("\n".join(offences) or "every source is listed, every include and import keeps to its layer")
     return min(len(offences), 99)
 
 
