@@ -48,7 +48,7 @@ class Section:
     def _field(self, key: str) -> str:
         name = f"{self._name}.{key}"
         if name not in self._owner.fields:
-            raise AttributeError(f"{self._name} has no field {key!r}; it has {', '.join(dir(self))}")
+            raise AttributeError(f"{self._name} has no field {key!r}; it has {', '.join(self.__dir__())}")
         return name
 
     def __getattr__(self, key: str) -> float:
@@ -63,11 +63,10 @@ class Section:
         return Section, (self._owner, self._name)
 
     def __dir__(self) -> list[str]:
-        prefix = f"{self._name}."
-        return [name.removeprefix(prefix) for name in self._owner.fields if name.startswith(prefix)]
+        return self._owner.keys_of(self._name)
 
     def __repr__(self) -> str:
-        return f"{self._name}({', '.join(f'{key}={getattr(self, key):g}' for key in dir(self))})"
+        return f"{self._name}({', '.join(f'{key}={getattr(self, key):g}' for key in self.__dir__())})"
 
 
 class Description(Mapping[str, float]):
@@ -93,9 +92,7 @@ class Description(Mapping[str, float]):
             for key, value in _as_table(section, values).items():
                 name = f"{section}.{key}"
                 if name not in self.fields:
-                    raise InvalidValue(
-                        f"{section} has no field {key!r}; it has {', '.join(dir(getattr(self, section)))}"
-                    )
+                    raise InvalidValue(f"{section} has no field {key!r}; it has {', '.join(self.keys_of(section))}")
                 self[name] = value
 
     def __init_subclass__(cls, core_type: Any) -> None:
@@ -107,6 +104,11 @@ class Description(Mapping[str, float]):
     def sections(cls) -> list[str]:
         """Names of the sections, in order."""
         return list(dict.fromkeys(name.split(".")[0] for name in cls.fields))
+
+    @classmethod
+    def keys_of(cls, section: str) -> list[str]:
+        """Names of the fields of a section, in order."""
+        return [name.removeprefix(f"{section}.") for name in cls.fields if name.startswith(f"{section}.")]
 
     @classmethod
     def from_tables(cls, tables: Mapping[str, Any]) -> Self:
@@ -129,7 +131,7 @@ class Description(Mapping[str, float]):
                 seen[name] = key
                 if isinstance(value, bool) or not isinstance(value, int | float):
                     raise InvalidValue(f"[{section}] {key} = {value!r}: it must be a number")
-                number = float(value)
+                number = _as_float(value)
                 si = to_si(number, factor) if math.isfinite(number) else number
                 self.fields[name].check(si, f"[{section}] {key}", number, factor)
                 self.core.set(name, si)
@@ -145,7 +147,7 @@ class Description(Mapping[str, float]):
         if key in spellings:
             return spellings[key]
         near = difflib.get_close_matches(key, spellings, 1)
-        hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(dir(getattr(self, section)))}"
+        hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(self.keys_of(section))}"
         raise InvalidValue(f"[{section}] has no key {key}; {hint}")
 
     def check(self) -> None:
@@ -209,6 +211,13 @@ def _as_table(section: str, values: Any) -> Mapping[str, Any]:
     if not isinstance(values, Mapping):
         raise InvalidValue(f"[{section}] must be a table of keys, not {values!r}")
     return values
+
+
+def _as_float(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:  # a whole number beyond the largest double
+        return math.inf if value > 0 else -math.inf
 
 
 def _restore(kind: type[Description], values: dict[str, float]) -> Description:

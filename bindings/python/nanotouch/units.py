@@ -37,14 +37,15 @@ UNITS: dict[str, dict[str, float]] = {
     "m/V": _scaled("m", "un", "/V"),
     "m/s": _scaled("m", "mun", "/s"),
     "N/s": _scaled("N", "mk", "/s"),
-    "1/s": {"1/s": 1.0, "/s": 1.0},
+    "1/s": {"/s": 1.0},
     "N s/m": {"Ns/m": 1.0},
     "m^3/mol": {"m3/mol": 1.0, "cm3/mol": 1e-6},
     "periods": {"periods": 1.0, "": 1.0},
 }
 
 _EXAMPLES = {"": "0.4", "m": "2.5um", "s": "20s", "N": "100nN"}
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+_SPELT = str.maketrans({"µ": "u", "μ": "u", "²": "2", "³": "3", "^": None})
+_QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
 
 
 def to_si(value: float, factor: float) -> float:
@@ -59,10 +60,10 @@ def from_si(value: float, factor: float) -> float:
 
 def parse_quantity(text: str, unit: str) -> float:
     """``"2.5um"`` with unit ``"m"`` to 2.5e-6. The unit must be written; ``µ`` is read as ``u``."""
-    match = _QUANTITY.fullmatch(text.replace("µ", "u").replace("μ", "u").replace("²", "2").replace("³", "3"))
+    match = _QUANTITY.fullmatch(text)
     if not match:
         raise InvalidValue(f"{text!r} is not a number with a unit; write it like {_example(unit)}")
-    spelling = match[2].replace("^", "")
+    spelling = match[2].translate(_SPELT)
     if spelling not in UNITS[unit]:
         given = f"the unit {match[2]!r}" if match[2] else "no unit"
         valid = ", ".join(filter(None, UNITS[unit])) or "none"
