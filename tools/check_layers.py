@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Check who includes whom, and that the list of sources is complete. Prints each offence as file:line and exits with their number."""
+"""Check who includes whom, and that the list of sources is complete.
+
+Prints each offence as file:line and exits with their number.
+"""
 
 import ast
 import re
