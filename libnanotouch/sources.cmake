@@ -6,6 +6,7 @@
 set(nanotouch_sources_core
     core/field.c
     core/lti.c
+    core/materials.c
     core/random.c
     core/rig.c
     core/ring.c

@@ -22,6 +22,28 @@ typedef struct nt_material {
     double poisson_ratio;  /* nu [-], -1 < nu <= 0.5 */
 } nt_material;
 
+/* What a material is known by. NaN: no value that could be vouched for. */
+typedef struct nt_material_entry {
+    const char *name;        /* "silicon" */
+    const char *symbol;      /* "Si", "PMMA" */
+    nt_material elastic;     /* at room temperature; of crystals, across the face that is usually touched */
+    double surface_energy;   /* gamma of the clean surface [J/m^2]; in air and water it is often far less */
+    double hamaker_constant; /* H of the material against itself across vacuum [J], not retarded */
+} nt_material_entry;
+
+/* The material of that name or symbol, exactly as written; NULL if there is none. The table with its sources, and how far
+ * they differ, is core/materials.c. Thread-safe. */
+NT_API const nt_material_entry *nt_material_find(const char *name);
+/* The materials by number, 0 .. ; NULL beyond the last. */
+NT_API const nt_material_entry *nt_material_at(int index);
+
+/* H [J] of materials 1 and 2 across 3 (0 for vacuum) from each one's own:
+ * (sqrt(H_1) - sqrt(H_3)) (sqrt(H_2) - sqrt(H_3)); < 0: repulsion. An estimate: it fails across water, where the static
+ * part counts (Israelachvili 2011, ch. 13). */
+NT_API double nt_hamaker_combine(double hamaker_1, double hamaker_2, double hamaker_3);
+/* w = 2 sqrt(gamma_1 gamma_2) [J/m^2], for dispersion forces (Girifalco, Good 1957; Fowkes 1964). */
+NT_API double nt_work_of_adhesion(double surface_energy_1, double surface_energy_2);
+
 /* E* of two bodies in contact: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 (the paper's K of Eq. 4 is 4/3 E*).
  * Returns E* [Pa]; NaN in, NaN out. Thread-safe, real-time safe. */
 NT_API double nt_effective_modulus(nt_material tip, nt_material sample);
