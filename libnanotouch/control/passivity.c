@@ -1,28 +1,60 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Time-domain passivity of the two-port between hand and tip: what goes in at the hand, f_m dx_m, minus what comes out
- * at the tip, alpha_f f_s dx_s/alpha_p, is swallowed by damping; holds, delays and a large K_f can turn it negative.
- * Then K_f backs off by 5 % and stays there: damping injection alone does not stop that limit cycle (docs/control.md).
- * The hand's port alone would not do: a surface that rises under a moving tip gives energy to the operator, and that is
- * the physics. What has been swallowed is forgotten beyond a small store, or it would hide an instability that begins
- * late. */
+ * Time-domain passivity of the two-port between hand and tip. What goes in at the hand, f_m dx_m, minus what comes out
+ * at the tip, alpha_f f_s dx_s/alpha_p, is by Eq. 12 and 17 (f_m - alpha_f f_s) dx = (m x'' + b x') dx/(1 + K_f): the
+ * master's own damping, whatever the surface does. Holds and delays take from it; in a limit cycle nothing is left,
+ * because the motor pays for the damping. So it is not enough that no energy comes out: a share of b v^2/(1 + K_f) must
+ * be seen to go in. Where it is not, K_f backs off by 5 % and stays there: damping injection alone does not stop that
+ * limit cycle (docs/control.md). The hand's port alone would not do: a surface that rises under a moving tip gives
+ * energy to the operator, and that is the physics. What has been swallowed is forgotten beyond a small store, or it
+ * would hide an instability that begins late. */
 #include <math.h>
 
 #include "nanotouch/control.h"
+#include "nanotouch/material.h"
 
 #define BACK_OFF 0.95
+#define DUE_SHARE 0.2         /* of the damping; at the margin of 1.5 at which a loop may be armed a third is left */
+#define SPEED_BANDWIDTH 200.0 /* of the speed in b v^2 [Hz] */
+#define LEAST_STEP 1e-3       /* sensors without steps still have noise: this share of the travel */
+
+nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
+{
+    const double T = 1.0 / gains->rate;
+    const double master_step = fmax(rig->master.resolution, LEAST_STEP * rig->master.travel);
+    const double stage_step = rig->stage.resolution / gains->alpha_p;
+    const double filter = -expm1(-2.0 * NT_PI * SPEED_BANDWIDTH * T);
+    return (nt_passivity){.dead_zone = rig->master.gauge_range * fmax(master_step, stage_step),
+                          .due = DUE_SHARE * rig->master.damping * T,
+                          .force_gain = gains->force_gain,
+                          .speed_filter = filter,
+                          .speed_floor = master_step * filter / T,
+                          .period = T};
+}
 
 static double work(const nt_port *from, const nt_port *to)
 {
     return 0.5 * (from->force + to->force) * (to->position - from->position);
 }
 
-double nt_passivity_step(nt_passivity_state *state, const nt_port *hand, const nt_port *tip, double dead_zone)
+/* The least that the damping has to swallow in this period [J]. */
+static double energy_due(const nt_passivity *passivity, nt_passivity_state *state, const nt_port *hand)
 {
+    const double speed = (hand->position - state->last_hand.position) / passivity->period;
+    state->speed += passivity->speed_filter * (speed - state->speed);
+    const double floor = passivity->speed_floor;
+    const double square = fmax(0.0, state->speed * state->speed - floor * floor);
+    return passivity->due * square / (1.0 + state->gain * passivity->force_gain);
+}
+
+double nt_passivity_step(const nt_passivity *passivity, nt_passivity_state *state, const nt_port *hand,
+                         const nt_port *tip)
+{
+    const double due = energy_due(passivity, state, hand);
     const double swallowed = work(&state->last_hand, hand) - work(&state->last_tip, tip);
-    state->energy = fmin(state->energy + swallowed, NT_PASSIVITY_STORE * dead_zone);
+    state->energy = fmin(state->energy + swallowed - due, NT_PASSIVITY_STORE * passivity->dead_zone);
     state->last_hand = *hand;
     state->last_tip = *tip;
-    if (state->energy < -dead_zone) {
+    if (state->energy < -passivity->dead_zone) {
         state->gain *= BACK_OFF;
         state->energy = 0.0;
         ++state->trips;

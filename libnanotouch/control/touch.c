@@ -8,7 +8,6 @@
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
 #define FADE_TIME 0.05       /* outside RUN the force is gone after this [s] */
-#define LEAST_STEP 1e-3      /* sensors without steps still have noise: this share of the travel */
 
 static double low_pass_factor(double bandwidth, double period)
 {
@@ -34,13 +33,6 @@ static nt_status check_against_rig(const nt_limits *limits, const nt_rig *rig, n
     return NT_OK;
 }
 
-/* What quantised positions may seem to release at full force: one step of the master or, at its scale, of the stage. */
-static double energy_dead_zone(const nt_rig *rig, double alpha_p)
-{
-    const double steps = fmax(rig->master.resolution, rig->stage.resolution / alpha_p);
-    return rig->master.gauge_range * fmax(steps, LEAST_STEP * rig->master.travel);
-}
-
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
                         nt_problem *problem)
 {
@@ -61,7 +53,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .stage_loop = nt_stage_loop_make(&rig->stage, &settings->gains),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
                      .speed_filter = low_pass_factor(SPEED_BANDWIDTH, period),
-                     .energy_dead_zone = energy_dead_zone(rig, settings->gains.alpha_p)};
+                     .passivity = nt_passivity_make(rig, &settings->gains)};
     *touch = made;
     return NT_OK;
 }
@@ -90,7 +82,7 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     const double slave_force = touch->rig.probe.spring_constant * sample->deflection;
     const nt_port hand = {sample->operator_force, sample->master_position};
     const nt_port tip = {gains->alpha_f * slave_force, sample->stage_position / gains->alpha_p};
-    nt_passivity_step(&state->passivity, &hand, &tip, touch->energy_dead_zone);
+    nt_passivity_step(&touch->passivity, &state->passivity, &hand, &tip);
 }
 
 /* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel. */

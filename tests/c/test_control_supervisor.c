@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The table of docs/safety.md: every state x every event, every pair of events, and how long each takes. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/control.h"
+
+static nt_touch touch;
+
+static int make_touch(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    return nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL) != NT_OK;
+}
+
+/* What the supervisor is given in one tick. */
+typedef struct input {
+    nt_sample sample;
+    double reference;
+    int unstable;
+    nt_supervisor_state history; /* runs that have lasted */
+} input;
+
+static input healthy(nt_state state)
+{
+    return (input){.sample = {.deflection = 1e-9, .stage_position = 1e-6},
+                   .reference = 1e-6,
+                   .history = {.state = state, .stuck_deflection = NAN}};
+}
+
+static void no_event(input *in)
+{
+    (void)in;
+}
+
+static void nan_force(input *in)
+{
+    in->sample.operator_force = NAN;
+}
+
+static void bad_frame_again(input *in)
+{
+    in->sample.flags |= NT_SAMPLE_INVALID;
+    in->history.invalid_run = 1;
+}
+
+static void saturated(input *in)
+{
+    in->sample.deflection = nt_probe_deflection_range(&touch.rig.probe);
+}
+
+static void pulled_to_the_end(input *in)
+{
+    in->sample.deflection = -nt_probe_deflection_range(&touch.rig.probe);
+}
+
+static void above_force_limit(input *in)
+{
+    in->sample.deflection = 1.0001 * touch.settings.limits.force / touch.rig.probe.spring_constant;
+}
+
+static void below_negative_limit(input *in)
+{
+    in->sample.deflection = -1.0001 * touch.settings.limits.force / touch.rig.probe.spring_constant;
+}
+
+static void age_three_periods(input *in)
+{
+    in->sample.age = 3.0 * touch.period;
+}
+
+static void age_six_periods(input *in)
+{
+    in->sample.age = 6.0 * touch.period;
+}
+
+static void stuck(input *in)
+{
+    in->history.stuck_deflection = in->sample.deflection;
+    in->history.stuck_run = 199;
+    in->history.stuck_position = in->sample.stage_position - 6e-9; /* has moved by six steps */
+}
+
+static void stuck_for_long(input *in)
+{
+    stuck(in);
+    in->history.stuck_run = 399;
+}
+
+static void off_its_command(input *in)
+{
+    in->reference += 1.1 * touch.settings.limits.follow_error;
+    in->history.follow_time = 0.5 * touch.settings.limits.follow_time;
+}
+
+static void off_for_long(input *in)
+{
+    off_its_command(in);
+    in->history.follow_time = touch.settings.limits.follow_time;
+}
+
+static void no_gain_left(input *in)
+{
+    in->unstable = 1;
+}
+
+static void emergency_stop(input *in)
+{
+    in->sample.flags |= NT_SAMPLE_EMERGENCY_STOP;
+}
+
+static void limit_switch(input *in)
+{
+    in->sample.flags |= NT_SAMPLE_LIMIT_SWITCH;
+}
+
+static void gauge_at_its_range(input *in)
+{
+    in->sample.operator_force = -touch.rig.master.gauge_range;
+}
+
+typedef struct event {
+    void (*happen)(input *in);
+    nt_state verdict; /* from RUN or HOLD */
+    uint32_t reason;
+    int kind;     /* events of one kind exclude each other */
+    int measured; /* reads the sample's numbers: an invalid sample is not read */
+} event;
+
+static const event events[] = {
+    {no_event, NT_RUN, 0, 0, 0},
+    {nan_force, NT_HOLD, NT_REASON_INVALID, 1, 0},
+    {bad_frame_again, NT_RETRACT, NT_REASON_INVALID, 1, 0},
+    {saturated, NT_RETRACT, NT_REASON_SATURATED | NT_REASON_FORCE_LIMIT, 2, 1},
+    {pulled_to_the_end, NT_RETRACT, NT_REASON_SATURATED | NT_REASON_FORCE_LIMIT, 2, 1},
+    {above_force_limit, NT_RETRACT, NT_REASON_FORCE_LIMIT, 2, 1},
+    {below_negative_limit, NT_RETRACT, NT_REASON_FORCE_LIMIT, 2, 1},
+    {age_three_periods, NT_HOLD, NT_REASON_STALE, 3, 1},
+    {age_six_periods, NT_RETRACT, NT_REASON_STALE, 3, 1},
+    {stuck, NT_HOLD, NT_REASON_STUCK, 2, 1},
+    {stuck_for_long, NT_LATCHED, NT_REASON_STUCK, 2, 1},
+    {off_its_command, NT_HOLD, NT_REASON_FOLLOW, 4, 1},
+    {off_for_long, NT_LATCHED, NT_REASON_FOLLOW, 4, 1},
+    {no_gain_left, NT_HOLD, NT_REASON_UNSTABLE, 5, 0},
+    {emergency_stop, NT_LATCHED, NT_REASON_EMERGENCY_STOP, 6, 0},
+    {limit_switch, NT_RETRACT, NT_REASON_LIMIT_SWITCH, 7, 0},
+    {gauge_at_its_range, NT_RUN, NT_REASON_OPERATOR_CLIPPED, 1, 1},
+};
+enum { EVENTS = (int)(sizeof events / sizeof *events) };
+
+static nt_state worse(nt_state a, nt_state b)
+{
+    return a > b ? a : b;
+}
+
+/* All states x all pairs of events (an event with itself: that event alone). RETRACT and LATCHED are never left. */
+static void every_state_and_every_pair_of_events(void **unused)
+{
+    (void)unused;
+    int tried = 0;
+    for (int s = NT_RUN; s <= NT_LATCHED; s++)
+        for (int i = 0; i < EVENTS; i++)
+            for (int j = i; j < EVENTS; j++) {
+                const event *a = &events[i], *b = &events[j];
+                if (i != j && a->kind == b->kind)
+                    continue;
+                input in = healthy((nt_state)s);
+                a->happen(&in);
+                b->happen(&in);
+                const int invalid = (a->reason | b->reason) & NT_REASON_INVALID;
+                const nt_state va = invalid && a->measured ? NT_RUN : a->verdict;
+                const nt_state vb = invalid && b->measured ? NT_RUN : b->verdict;
+                const uint32_t reasons =
+                    (invalid && a->measured ? 0 : a->reason) | (invalid && b->measured ? 0 : b->reason);
+                const nt_state found = nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, in.unstable);
+                const nt_state verdict = worse(va, vb);
+                assert_int_equal(found, s >= NT_RETRACT ? worse((nt_state)s, verdict) : verdict);
+                assert_int_equal(in.history.state, found);
+                assert_int_equal(in.history.reasons, reasons);
+                tried++;
+            }
+    assert_true(tried > 4 * 110);
+}
+
+/* Every number of a sample, NaN and either infinity, and an age from the future. */
+static void every_number_of_a_sample_is_checked(void **unused)
+{
+    (void)unused;
+    const size_t fields[] = {offsetof(nt_sample, age),
+                             offsetof(nt_sample, master_position),
+                             offsetof(nt_sample, operator_force),
+                             offsetof(nt_sample, stage_position),
+                             offsetof(nt_sample, deflection),
+                             offsetof(nt_sample, x),
+                             offsetof(nt_sample, y)};
+    const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+        for (int j = 0; j < 3; j++) {
+            input in = healthy(NT_RUN);
+            *(double *)(void *)((char *)&in.sample + fields[i]) = bad[j];
+            assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);
+            assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RETRACT);
+            assert_int_equal(in.history.reasons, NT_REASON_INVALID);
+        }
+    input in = healthy(NT_RUN);
+    in.sample.age = -1e-9;
+    assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);
+}
+
+static void a_good_sample_between_bad_ones_ends_the_run(void **unused)
+{
+    (void)unused;
+    input in = healthy(NT_RUN);
+    for (int i = 0; i < 100; i++) {
+        in.sample.flags = i % 2 ? NT_SAMPLE_INVALID : 0u;
+        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0),
+                         i % 2 ? NT_HOLD : NT_RUN);
+    }
+}
+
+/* Limits are sharp: just inside is RUN. */
+static void just_inside_every_limit_is_run(void **unused)
+{
+    (void)unused;
+    const nt_limits *limits = &touch.settings.limits;
+    input in = healthy(NT_RUN);
+    in.sample.deflection = 0.9999 * limits->force / touch.rig.probe.spring_constant;
+    in.sample.age = 2.0 * touch.period;
+    in.sample.operator_force = 0.9999 * touch.rig.master.gauge_range;
+    in.reference = in.sample.stage_position + 0.9999 * limits->follow_error;
+    for (int i = 0; i < 10000; i++)
+        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RUN);
+    assert_int_equal(in.history.reasons, 0);
+}
+
+/* Ticks to each reaction, as printed in docs/safety.md. */
+static int ticks_until(input *in, nt_state wanted, double stage_speed)
+{
+    for (int tick = 1; tick < 100000; tick++) {
+        in->sample.stage_position += stage_speed * touch.period;
+        in->reference += stage_speed * touch.period;
+        if (nt_supervisor_step(&touch, &in->history, &in->sample, in->reference, in->unstable) >= wanted)
+            return tick;
+    }
+    return 0;
+}
+
+static void a_stuck_sensor_is_found_while_z_moves(void **unused)
+{
+    (void)unused;
+    input in = healthy(NT_RUN);
+    assert_int_equal(ticks_until(&in, NT_HOLD, 1e-6), 201); /* the first one is new, then 200 alike */
+    assert_int_equal(ticks_until(&in, NT_LATCHED, 0.0), 200);
+    /* long still before it moves: HOLD comes first all the same */
+    in = healthy(NT_RUN);
+    assert_int_equal(ticks_until(&in, NT_HOLD, 0.0), 0);      /* at rest nobody can tell */
+    assert_in_range(ticks_until(&in, NT_HOLD, 1e-6), 50, 52); /* 5 nm */
+    assert_int_equal(in.history.state, NT_HOLD);
+    /* one different code: it lives */
+    in.sample.deflection += 1e-11;
+    assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RUN);
+}
+
+/* Gain -1, 0 and 0.1 of a stage that is told to move 10 um/s. */
+static void a_stage_that_does_not_follow(void **unused)
+{
+    (void)unused;
+    static const double gains[] = {-1.0, 0.0, 0.1};
+    for (int i = 0; i < 3; i++) {
+        input in = healthy(NT_RUN);
+        double held_after = 0.0, latched_after = 0.0;
+        for (int tick = 1; tick < 10000 && latched_after == 0.0; tick++) {
+            in.sample.deflection += 1e-12; /* alive */
+            in.sample.stage_position += gains[i] * 10e-6 * touch.period;
+            in.reference += 10e-6 * touch.period;
+            const nt_state found = nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0);
+            if (found >= NT_HOLD && held_after == 0.0)
+                held_after = tick * touch.period;
+            if (found == NT_LATCHED)
+                latched_after = tick * touch.period;
+        }
+        const double reached = 0.1e-6 / ((1.0 - gains[i]) * 10e-6); /* error at its limit after this */
+        assert_true(fabs(held_after - (reached + 0.025)) < 4.0 * touch.period);
+        assert_true(fabs(latched_after - (reached + 0.050)) < 4.0 * touch.period);
+    }
+    /* a short excursion is forgotten */
+    input in = healthy(NT_RUN);
+    for (int i = 0; i < 10000; i++) {
+        in.reference = in.sample.stage_position + (i % 200 ? 2.0 : 0.0) * touch.settings.limits.follow_error;
+        in.sample.deflection += 1e-12;
+        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RUN);
+    }
+}
+
+static void reasons_have_names(void **unused)
+{
+    (void)unused;
+    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_COMMAND_LIMITED; bit <<= 1)
+        assert_true(nt_reason_name(bit)[0] != 0);
+    assert_string_equal(nt_reason_name(NT_REASON_COMMAND_LIMITED << 1), "");
+    assert_string_equal(nt_reason_name(0), "");
+    assert_string_equal(nt_reason_name(NT_REASON_FORCE_LIMIT), "force limit");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_state_and_every_pair_of_events),
+        cmocka_unit_test(every_number_of_a_sample_is_checked),
+        cmocka_unit_test(a_good_sample_between_bad_ones_ends_the_run),
+        cmocka_unit_test(just_inside_every_limit_is_run),
+        cmocka_unit_test(a_stuck_sensor_is_found_while_z_moves),
+        cmocka_unit_test(a_stage_that_does_not_follow),
+        cmocka_unit_test(reasons_have_names),
+    };
+    return cmocka_run_group_tests(tests, make_touch, NULL);
+}
