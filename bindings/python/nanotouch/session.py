@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch import _core
+from nanotouch._arrays import check_between
 from nanotouch.errors import InvalidValue
 from nanotouch.operator import Input, script_for
 from nanotouch.record import Recording, Writer
@@ -46,6 +47,8 @@ class Margins(NamedTuple):
 
 def settings_for_path(rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6) -> Settings:
     """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m]."""
+    check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
+    check_between("relief", relief, "m", above=-1e-15, up_to=1e-3)
     settings = Settings.for_rig(rig)
     slave_path = clearance + INDENTATION_RANGE + relief
     settings.gains.alpha_p, settings.gains.alpha_f = _core.scaling_heuristic(rig.core, slave_path, ATTRACTION_RANGE)

@@ -12,7 +12,7 @@ namespace {
 struct Session {
     nt_session *handle = nullptr;
     std::shared_ptr<Surface> surface; // outlives the handle
-    std::mutex one_at_a_time;         // advance and read: Python threads may share a session
+    std::mutex one_at_a_time;
     ~Session() { nt_session_close(handle); }
 };
 
@@ -59,24 +59,21 @@ std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const De
     return made;
 }
 
+// Python threads may share a session: one call at a time, waiting without the GIL.
+template <class Call>
+auto alone(Session &self, Call call) {
+    py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(self.one_at_a_time);
+    return call(self.handle);
+}
+
 void advance_session(Session &self, long ticks) {
-    nt_status status;
-    {
-        py::gil_scoped_release release;
-        const std::lock_guard<std::mutex> lock(self.one_at_a_time);
-        status = nt_session_advance(self.handle, ticks);
-    }
-    raise_on(status, "advance");
+    raise_on(alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); }), "advance");
 }
 
 py::dict read_records(Session &self, long count) {
     std::vector<nt_record> records(static_cast<size_t>(count));
-    long got;
-    {
-        py::gil_scoped_release release; // before the lock: advance holds it without the GIL
-        const std::lock_guard<std::mutex> lock(self.one_at_a_time);
-        got = nt_session_read(self.handle, records.data(), count);
-    }
+    const long got = alone(self, [&](nt_session *handle) { return nt_session_read(handle, records.data(), count); });
     py::dict out;
     for (const Column &column : columns) {
         py::array_t<double> values(got);
@@ -105,8 +102,12 @@ void bind_session(py::module_ &module) {
         })
         .def("advance", &advance_session)
         .def("read", &read_records)
-        .def("arm", [](Session &self, bool confirmed) { raise_on(nt_session_arm(self.handle, confirmed), "arm"); })
-        .def("emergency_stop", [](Session &self, bool pressed) { nt_session_emergency_stop(self.handle, pressed); })
+        .def("arm", [](Session &self, bool confirmed) {
+            raise_on(alone(self, [=](nt_session *handle) { return nt_session_arm(handle, confirmed); }), "arm");
+        })
+        .def("emergency_stop", [](Session &self, bool pressed) {
+            alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });
+        })
         .def_property_readonly("plan", [](const Session &self) { return nt_plan(*nt_session_plan(self.handle)); })
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
