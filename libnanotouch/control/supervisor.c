@@ -44,17 +44,27 @@ static nt_state worse(nt_state a, nt_state b)
     return a > b ? a : b;
 }
 
-static int is_valid(const nt_sample *sample)
+/* NaN fails every comparison. */
+static int is_within(double value, double range)
 {
-    return !(sample->flags & NT_SAMPLE_INVALID) && isfinite(sample->master_position) &&
-           isfinite(sample->operator_force) && isfinite(sample->stage_position) && isfinite(sample->deflection) &&
+    return fabs(value) <= range;
+}
+
+/* Numbers that no sensor of this rig can give (twice its range) are as bad as no numbers. The deflection is judged by
+ * its force. */
+static int is_valid(const nt_touch *touch, const nt_sample *sample)
+{
+    const nt_rig *rig = &touch->rig;
+    return !(sample->flags & NT_SAMPLE_INVALID) && is_within(sample->master_position, rig->master.travel) &&
+           is_within(sample->operator_force, 2.0 * rig->master.gauge_range) &&
+           is_within(sample->stage_position, rig->stage.travel) && isfinite(sample->deflection) &&
            isfinite(sample->x) && isfinite(sample->y) && isfinite(sample->age) && sample->age >= 0.0;
 }
 
 /* One bad sample: hold, reuse nothing; the second in a row: retract. Never "zero force". */
-static nt_state judge_validity(nt_supervisor_state *state, const nt_sample *sample)
+static nt_state judge_validity(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
 {
-    if (is_valid(sample)) {
+    if (is_valid(touch, sample)) {
         state->invalid_run = 0;
         return NT_RUN;
     }
@@ -145,7 +155,7 @@ nt_state nt_supervisor_step(const nt_touch *touch, nt_supervisor_state *state, c
     if (state->state < NT_RETRACT)
         state->reasons = 0;
     nt_state verdict = judge_stops(state, sample);
-    const nt_state validity = judge_validity(state, sample);
+    const nt_state validity = judge_validity(touch, state, sample);
     verdict = worse(verdict, validity);
     if (validity == NT_RUN) {
         verdict = worse(verdict, judge_force(touch, state, sample));

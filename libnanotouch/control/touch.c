@@ -141,6 +141,21 @@ static void move_lateral(const nt_touch *touch, nt_touch_state *state)
     state->target_time = fmax(0.0, left - touch->period);
 }
 
+/* A read-out that cannot be trusted (not RUN) or that follow_error calls a fault takes no part: the integral stands
+ * still. */
+static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
+{
+    const double error = state->reference - sample->stage_position;
+    const int trusted = state->supervisor.state == NT_RUN && fabs(error) <= touch->settings.limits.follow_error;
+    const double measured = trusted ? sample->stage_position : state->reference;
+    const double wanted = nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
+    const double end = 0.5 * touch->rig.stage.travel;
+    const double command = fmin(fmax(wanted, -end), end);
+    if (command != wanted)
+        state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
+    return command;
+}
+
 void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, nt_command *command)
 {
     const int unstable = touch->mode == NT_MODE_TOUCH && state->passivity.gain < 0.05;
@@ -158,10 +173,7 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     state->motor_force = nt_servo_limit(&touch->settings.limits, touch->period, state->motor_force, motor_force);
     if (verdict == NT_RUN)
         state->coupled_force = state->motor_force;
-    /* a sensor that cannot be trusted takes no part: the integral stands still */
-    const double measured = verdict == NT_RUN ? sample->stage_position : state->reference;
-    state->command.stage_position =
-        nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
+    state->command.stage_position = drive_stage(touch, state, sample);
     state->command.motor_force = state->motor_force;
     state->command.state = (uint32_t)verdict;
     state->command.reasons = state->supervisor.reasons;

@@ -209,6 +209,13 @@ static void every_number_of_a_sample_is_checked(void **unused)
             assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RETRACT);
             assert_int_equal(in.history.reasons, NT_REASON_INVALID);
         }
+    const double far[] = {1.01 * touch.rig.master.travel, 2.02 * touch.rig.master.gauge_range,
+                          1.01 * touch.rig.stage.travel}; /* no sensor of this rig says so */
+    for (int i = 0; i < 3; i++) {
+        input in = healthy(NT_RUN);
+        *(double *)(void *)((char *)&in.sample + fields[i + 1]) = -far[i];
+        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);
+    }
     input in = healthy(NT_RUN);
     in.sample.age = -1e-9;
     assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);

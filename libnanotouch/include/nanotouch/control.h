@@ -132,7 +132,7 @@ NT_API NT_REALTIME double nt_passivity_step(const nt_passivity *passivity, nt_pa
 /* --- supervisor: a pure function of sample, command and limits (the table in docs/safety.md) --- */
 
 enum {
-    NT_REASON_INVALID = 1u << 0,   /* NaN, infinite or bad frame */
+    NT_REASON_INVALID = 1u << 0,   /* NaN, infinite, beyond any reading of the sensor, or bad frame */
     NT_REASON_SATURATED = 1u << 1, /* deflection at the end of its range */
     NT_REASON_FORCE_LIMIT = 1u << 2,
     NT_REASON_STALE = 1u << 3,    /* sample older than 2 T */
