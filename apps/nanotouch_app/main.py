@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
@@ -29,12 +30,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status."""
     args = build_parser().parse_args(arguments)
     try:
-        return int(importlib.import_module(f"nanotouch_app.{args.command}").run(args))
+        status = int(importlib.import_module(f"nanotouch_app.{args.command}").run(args))
+        sys.stdout.flush()
+        return status
     except nt.Error as error:
         print(f"nanotouch {args.command}: {error}", file=sys.stderr)
         return 2
-    except BrokenPipeError:
-        return 0
+    except BrokenPipeError:  # the reader has gone; nor may the flush at exit complain
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except KeyboardInterrupt:
         print("nanotouch: stopped", file=sys.stderr)
         return 130

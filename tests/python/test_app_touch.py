@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch touch``, in every mode and on every built-in surface: the files it promises, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from nanotouch import record
+from nanotouch.surface import grating
+from nanotouch_app import touch, view
+from nanotouch_app.main import main
+from synthetic import write_ibw_image, write_matrix
+
+pytest.importorskip("mcap")
+pytest.importorskip("tqdm")
+image = pytest.importorskip("matplotlib.image")
+pytest.importorskip("vtkmodules")
+
+KEYS = {  # of the interface, and beyond
+    "models", "snap_in_force_N", "pull_off_force_N", "hand_pull_off_force_N", "position_tracking_rms_m",
+    "force_tracking_rms_N", "loop_rate_Hz", "steps", "stability_margin",
+    "surface", "mode", "hand_snap_in_force_N", "planned_pull_off_force_N", "largest_force_N", "alpha_p", "alpha_f",
+    "duration_s", "stability", "states", "reasons", "seed", "version",
+}  # fmt: skip
+ALWAYS = {"recording.mcap", "summary.json", "time.png", "force_gap.png", "view.png"}
+
+
+@pytest.fixture(autouse=True)
+def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture
+def no_view(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For tests of other things: VTK takes its time."""
+    monkeypatch.setattr(view, "render_png", lambda _topography, _recording, path, **_: Path(path).touch())
+
+
+def names(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "duration"),
+    [
+        (["--mode", "point"], 5.0),
+        (["--mode", "point", "--surface", "dots", "--at", "100nm,0.2um"], 5.0),
+        (["--mode", "scan", "--surface", "flat", "--line", "0um,2um,6um,2um"], 8.0),
+        (["--mode", "scan", "--line", "0.1um,2um,1.5um,2um"], 20.0),
+        (["--mode", "topography", "--surface", "dots"], 5.0),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, list) else None,
+)
+def test_leaves_what_it_promises(
+    arguments: list[str], duration: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "new" / "out"
+    assert main(["touch", *arguments, "--duration", f"{duration}s", "--out", str(out)]) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+    line = {"line.png"} if "point" not in arguments else set()
+    assert names(out) == ALWAYS | line
+    assert all(name in said.out.splitlines()[-1] for name in names(out))
+
+    summary = json.loads((out / "summary.json").read_text())
+    assert set(summary) == KEYS
+    recording = record.read(out / "recording.mcap")
+    # every step of the script is rounded to a tick
+    assert len(recording) == summary["steps"] == pytest.approx(duration * 1e4, abs=10)
+    assert summary["loop_rate_Hz"] == 1e4
+    assert summary["mode"] == arguments[1]
+    assert summary["states"] == {"RUN": len(recording), "HOLD": 0, "RETRACT": 0, "LATCHED": 0}
+    assert summary["stability_margin"] > 1.5
+    assert summary["largest_force_N"] == recording.tip_force.max()
+    assert len(summary["models"]) >= 3
+    for picture in (ALWAYS | line) - {"recording.mcap", "summary.json"}:
+        pixels = image.imread(out / picture)
+        assert min(pixels.shape[:2]) > 400, picture
+        assert pixels[..., :3].std() > 0.02, f"{picture} is blank"
+
+
+def test_what_it_says_is_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+    """On a flat at the defaults: the plan's 18 nN, felt through alpha_f."""
+    assert main(["touch", "--surface", "flat", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    pull_off = summary["pull_off_force_N"]
+    assert pull_off == pytest.approx(summary["planned_pull_off_force_N"], rel=0.1)  # smoothed against the noise
+    assert summary["hand_pull_off_force_N"] == pytest.approx(summary["alpha_f"] * pull_off, rel=1e-12)
+    assert 0.0 < summary["snap_in_force_N"] < pull_off
+    assert f"{pull_off * 1e9:.1f} nN at the tip" in said
+    assert f"{summary['stability_margin']:.1f} (1 is the limit)" in said
+    assert all(line in said for line in summary["models"])
+    assert "surface: flat, 6 x 6 um" in said
+    assert summary["position_tracking_rms_m"] < 5e-9  # the paper's stage: 1 nm steps
+
+
+def test_same_seed_same_recording(tmp_path: Path, no_view: None) -> None:
+    for name, seed in (("one", "3"), ("two", "3"), ("three", "4")):
+        assert main(["touch", "--seed", seed, "--duration", "1s", "--out", str(tmp_path / name)]) == 0
+    one, two, three = ((tmp_path / name / "recording.mcap").read_bytes() for name in ("one", "two", "three"))
+    assert one == two != three
+
+
+def test_second_run_replaces_the_first(tmp_path: Path, no_view: None) -> None:
+    """What a scan left does not stand beside the results of a point; the user's own files stay."""
+    (tmp_path / "notes.txt").write_text("mine")
+    short = ["--surface", "flat", "--out", str(tmp_path)]
+    assert main(["touch", "--mode", "scan", "--duration", "6s", *short]) == 0
+    assert names(tmp_path) == ALWAYS | {"line.png", "notes.txt"}
+    assert main(["touch", "--duration", "1s", *short]) == 0
+    assert names(tmp_path) == ALWAYS | {"notes.txt"}
+    assert json.loads((tmp_path / "summary.json").read_text())["mode"] == "point"
+
+
+def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+    """Tilted by 2 degrees, read through its own format, levelled, and felt where it was asked for."""
+    heights = grating(pixels=64, height=100e-9).heights
+    tilt = 0.035 * 6e-6 / 64 * np.arange(64)
+    file = write_ibw_image(tmp_path / "grating.ibw", {"HeightRetrace": heights + tilt}, 6e-6 / 64)
+    out = tmp_path / "out"
+    assert main(["touch", str(file), "--at", "1.5um,3um", "--duration", "4s", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "plane levelling removed a tilt of 2" in said
+    assert "surface: grating.ibw, 6 x 6 um, 64 x 64 pixels" in said
+    assert "LevelReport(" not in said
+    recording = record.read(out / "recording.mcap")
+    assert recording.x[-1] == pytest.approx(1.5e-6, rel=1e-6)
+    # a ridge (0.75 .. 2.25 um) of a levelled image, half of which is ridge
+    assert recording.surface_height[-1] == pytest.approx(50e-9, abs=5e-9)
+
+
+def test_image_without_units_is_touched_with_them(tmp_path: Path, no_view: None) -> None:
+    file = write_matrix(tmp_path / "matrix.txt", grating(pixels=32, height=100e-9).heights * 1e9, None, None)
+    out = tmp_path / "out"
+    arguments = ["touch", str(file), "--duration", "1s", "--out", str(out)]
+    assert main(arguments) == 2
+    assert not out.exists()
+    assert main([*arguments, "--pixel-size", "100nm", "--z-unit", "nm"]) == 0
+    assert np.ptp(record.read(out / "recording.mcap").surface_height) == 0.0
+
+
+def test_scene_file(tmp_path: Path, no_view: None) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(
+        "[tip]\nradius_nm = 40\n[probe]\nspring_constant_N_per_m = 20\n[gains]\nrate_kHz = 5\nforce_gain = 1\n"
+    )
+    out = tmp_path / "out"
+    assert main(["touch", "--scene", str(file), "--duration", "1s", "--out", str(out)]) == 0
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["loop_rate_Hz"] == 5e3
+    assert summary["planned_pull_off_force_N"] == pytest.approx(2 * np.pi * 0.144 * 40e-9, rel=0.02)
+    metadata = record.read(out / "recording.mcap").metadata
+    assert metadata["spring_constant"] == 20.0
+    assert metadata["settings"]["gains"]["force_gain"] == 1.0
+
+
+def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+    """Nothing was felt: it says so, with null in the summary."""
+    assert main(["touch", "--duration", "0.05s", "--out", str(tmp_path)]) == 0
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["force_tracking_rms_N"] is None
+    assert summary["pull_off_force_N"] is None
+    said = capsys.readouterr().out
+    assert "none: never in contact" in said
+    assert "pull-off          none" in said
+
+
+def test_window_opens_where_there_is_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, no_view: None) -> None:
+    opened: list[float] = []
+    monkeypatch.setattr(view, "open_window", lambda _topography, _recording, radius: opened.append(radius))
+    arguments = ["touch", "--duration", "0.5s", "--out", str(tmp_path)]
+    assert main(arguments) == 0
+    assert not opened
+    monkeypatch.setenv("DISPLAY", ":0")
+    assert main([*arguments, "--no-window"]) == 0
+    assert not opened
+    assert main(arguments) == 0
+    assert opened == [20e-9]
+
+
+def test_interrupted_leaves_nothing_half_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(record.Writer, "append", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    assert main(["touch", "--duration", "1s", "--out", str(tmp_path)]) == 130
+    assert names(tmp_path) == set()
+    assert capsys.readouterr().err == "nanotouch: stopped\n"
+
+
+def test_as_a_command(tmp_path: Path) -> None:
+    """In a process of its own, with warnings as errors."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    command = [sys.executable, "-W", "error", "-m", "nanotouch_app", "touch", "--duration", "1s", "--no-window"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert names(tmp_path / "nanotouch-out") == ALWAYS
+    assert done.stdout.splitlines()[-1].startswith("written to nanotouch-out/: recording.mcap, summary.json, ")
+
+
+def test_promised_files_are_listed_once() -> None:
+    assert set(touch.FILES) == ALWAYS | {"line.png"}
