@@ -31,7 +31,10 @@ set(nanotouch_sources_contact
     contact/material.c
     contact/maugis.c
     contact/maugis_branch.c
+    contact/maugis_kernel.c
     contact/maugis_solve.c
+    contact/maugis_table.c
+    contact/maugis_tier.c
     contact/reduced.c
     contact/sneddon.c)
 set(nanotouch_sources_surface surface/dilation.c surface/dots.c surface/grating.c surface/height_field.c)

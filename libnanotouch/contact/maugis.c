@@ -48,9 +48,11 @@ static nt_law_value non_contact_eval(const nt_maugis *maugis, double d, int stab
 
 static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_law_value *reduced, nt_solve_info *info)
 {
-    nt_maugis_equilibrium fold, point;
-    nt_maugis_equilibrium_at(maugis->lambda, maugis->fold_y, &fold);
-    const nt_maugis_goal goal = {NT_GIVEN_INDENTATION, d, &fold, !stable};
+    const nt_maugis_folds *folds = &maugis->folds;
+    const double lowest = folds->grip_in_contact ? folds->grip_indentation : folds->touch_indentation;
+    const nt_maugis_equilibrium fold = {.y = maugis->fold_y, .a = folds->grip_radius, .d = lowest};
+    nt_maugis_equilibrium point;
+    const nt_maugis_goal goal = {NT_GIVEN_INDENTATION, d, &fold, !stable, 0.0};
     const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
     if (status != NT_OK)
         return status;
@@ -69,7 +71,7 @@ static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_
 
 static nt_status zero_load_find(nt_maugis *maugis, const nt_maugis_equilibrium *load_fold)
 {
-    const nt_maugis_goal goal = {NT_GIVEN_LOAD, 0.0, load_fold, 0};
+    const nt_maugis_goal goal = {NT_GIVEN_LOAD, 0.0, load_fold, 0, 0.0};
     nt_maugis_equilibrium point;
     const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, NULL);
     if (status != NT_OK)
@@ -119,28 +121,45 @@ double nt_maugis_lambda(const nt_contact *contact)
            cbrt(NT_PI * contact->work_of_adhesion);
 }
 
-nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact)
+/* Scales and folds of a checked contact. */
+static nt_status prepare(nt_maugis *maugis, const nt_contact *contact, double lambda)
 {
-    nt_status status = nt_contact_check(contact, NULL);
-    if (status != NT_OK)
-        return status;
     const nt_reduced_units units = nt_reduced_units_of(contact);
     nt_maugis made = {
-        .lambda = nt_maugis_lambda(contact),
+        .lambda = lambda,
         .load_scale = units.load,
         .radius_scale = units.radius,
         .indentation_scale = units.indentation,
         .contact = *contact,
     };
     if (contact->work_of_adhesion > 0.0) {
-        if (!(made.lambda >= NT_MAUGIS_LAMBDA_MIN && made.lambda <= NT_MAUGIS_LAMBDA_MAX))
+        if (!(lambda >= NT_MAUGIS_LAMBDA_MIN && lambda <= NT_MAUGIS_LAMBDA_MAX))
             return NT_E_RANGE;
-        status = folds_find(&made);
+        const nt_status status = folds_find(&made);
         if (status != NT_OK)
             return status;
     }
     *maugis = made;
     return NT_OK;
+}
+
+nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact)
+{
+    const nt_status status = nt_contact_check(contact, NULL);
+    return status == NT_OK ? prepare(maugis, contact, nt_maugis_lambda(contact)) : status;
+}
+
+nt_status nt_maugis_init_lambda(nt_maugis *maugis, const nt_contact *contact, double lambda)
+{
+    nt_contact complete = *contact;
+    complete.cohesive_stress = 1.0; /* read by nothing before it is known */
+    const nt_status status = nt_contact_check(&complete, NULL);
+    if (status != NT_OK)
+        return status;
+    if (!isfinite(lambda))
+        return NT_E_NOT_FINITE;
+    complete.cohesive_stress = lambda / nt_maugis_lambda(&complete);
+    return prepare(maugis, &complete, complete.work_of_adhesion > 0.0 ? lambda : HUGE_VAL);
 }
 
 /* Hertz: w = 0, or so far in that adhesion is below the last bit. */
@@ -213,9 +232,9 @@ nt_status nt_maugis_indentation(const nt_maugis *maugis, double force, nt_branch
         *indentation = d * maugis->indentation_scale;
         return NT_OK;
     }
-    nt_maugis_equilibrium fold, point;
-    nt_maugis_equilibrium_at(maugis->lambda, maugis->load_fold_y, &fold);
-    const nt_maugis_goal goal = {NT_GIVEN_LOAD, P, &fold, unstable};
+    const nt_maugis_equilibrium fold = {.y = maugis->load_fold_y, .a = folds->pull_off_radius, .P = folds->pull_off_load};
+    nt_maugis_equilibrium point;
+    const nt_maugis_goal goal = {NT_GIVEN_LOAD, P, &fold, unstable, 0.0};
     const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
     if (status != NT_OK)
         return status;

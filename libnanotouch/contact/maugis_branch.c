@@ -25,90 +25,53 @@
 
 #include <math.h>
 
-#include "nanotouch/material.h"
+#include "contact/maugis_shape.h"
 
-/* The functions of y alone. h_ is a derivative divided by y. */
+void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point)
+{
+    *point = nt_maugis_equilibrium_of(lambda, nt_maugis_shape_at(y));
+}
+
+/* With N = lambda/2 h1 b + 4/3 lambda^2 h2, so that b1 = -b N/D, and D D' = B B' + lambda g1'. */
+double nt_maugis_equilibrium_curvature(double lambda, const nt_maugis_equilibrium *point)
+{
+    const nt_maugis_shape f = nt_maugis_shape_at(point->y);
+    const double linear = 4.0 / 3.0 * lambda * lambda, y = f.y, b = point->b, b1 = point->b1, w = 1.0 + y * y;
+    const double root = sqrt(w), rho = 1.0 / (y + root);
+    const double h1_y = 4.0 / (w * w), h2_y = rho / w * (1.0 / root + 2.0 * y / w);
+    const double B = linear * f.g2, D = sqrt(B * B + 2.0 * lambda * f.g1);
+    const double N = 0.5 * lambda * f.h1 * b + linear * f.h2;
+    const double b_y = y * b1, D_y = y * (B * linear * f.h2 + lambda * f.h1) / D;
+    const double N_y = 0.5 * lambda * (h1_y * b + f.h1 * b_y) + linear * h2_y;
+    const double b1_y = (-b_y * N - b * N_y + b * N * D_y / D) / D;
+    return 2.0 * b_y * point->a1 + 2.0 * b * (3.0 * b_y + y * y * b1_y) - 4.0 / 3.0 * lambda * b1_y;
+}
+
 typedef struct {
-    double g1, g2, g3, h1, h2, h3, e1, e2;
-} shape;
+    double e1, e2;
+} energy_shape;
 
-/* A(z) = (sqrt z - atan sqrt z)/z^1.5 for 0 <= z <= 1: rational, relative error 2e-18 (tools/atan_remainder.py);
- * all coefficients are positive, so no digit is lost. */
-static double atan_remainder(double z)
+static energy_shape energy_shape_at(double y)
 {
-    static const double p[] = {0.33333333333333333269, 0.89753142249164606048, 0.90255503950262442214,
-                               0.41962484723364303455, 0.090347769522929705136, 0.0078225122517582919307,
-                               0.00017783239716051294998};
-    static const double q[] = {1.0, 3.2925942674749374172, 4.2546502504214592304, 2.7338861963678550326,
-                               0.91275764028099955614, 0.15046233412860960892, 0.010394739130883634284,
-                               0.00019430015082409358464};
-    const double numerator = p[0] + z * (p[1] + z * (p[2] + z * (p[3] + z * (p[4] + z * (p[5] + z * p[6])))));
-    const double denominator =
-        q[0] + z * (q[1] + z * (q[2] + z * (q[3] + z * (q[4] + z * (q[5] + z * (q[6] + z * q[7]))))));
-    return numerator / denominator;
-}
-
-static shape shape_below_one(double y)
-{
-    const double z = y * y, r = sqrt(1.0 + z), remainder = atan_remainder(z);
-    const double t = 0.5 * NT_PI - y * (1.0 - z * remainder);
-    const double rho = 1.0 / (y + r);
-    return (shape){
-        .g1 = y + (1.0 - z) * t,
-        .g2 = t - rho,
-        .g3 = y + (1.0 + z) * t,
-        .h1 = -2.0 * (t - y / (1.0 + z)),
-        .h2 = -rho / (1.0 + z),
-        .h3 = 2.0 * t,
-        .e1 = 0.75 * z * (y - z * t) - 0.5 * z * t + 0.25 * (y + t),
-        .e2 = (1.0 + z) * t - rho * rho * (2.0 * r + y) / 3.0,
-    };
-}
-
-static shape shape_above_one(double y)
-{
-    const double s = 1.0 / y, z = s * s, r = sqrt(1.0 + z), A = atan_remainder(z);
-    const double t = s * (1.0 - z * A);
+    const nt_maugis_shape f = nt_maugis_shape_at(y);
+    const double s = f.s, z = f.z, r = f.r, A = f.A, t = 0.5 * f.h3;
+    if (y <= 1.0) {
+        const double rho = 1.0 / (y + r);
+        return (energy_shape){
+            .e1 = 0.75 * z * (y - z * t) - 0.5 * z * t + 0.25 * (y + t),
+            .e2 = (1.0 + z) * t - rho * rho * (2.0 * r + y) / 3.0,
+        };
+    }
     const double rho = s / (1.0 + r);
-    return (shape){
-        .g1 = s * (1.0 + A * (1.0 - z)),
-        .g2 = s * (r / (1.0 + r) - z * A),
-        .g3 = y + (t + (y - s * A)),
-        .h1 = -2.0 * s * z * (1.0 / (1.0 + z) - A),
-        .h2 = -z * s / (r * r * (1.0 + r)),
-        .h3 = 2.0 * t,
+    return (energy_shape){
         .e1 = 0.25 * (y * (3.0 * A - 1.0) + s * (1.0 + 2.0 * A - z * A)),
         .e2 = y * (1.0 + z) * (1.0 - z * A) - rho * rho * (2.0 * r + 1.0) * y / 3.0,
     };
 }
 
-static shape shape_at(double y)
-{
-    return y <= 1.0 ? shape_below_one(y) : shape_above_one(y);
-}
-
-void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point)
-{
-    const shape f = shape_at(y);
-    const double linear = 4.0 / 3.0 * lambda * lambda;
-    const double B = linear * f.g2, D = sqrt(B * B + 2.0 * lambda * f.g1);
-    const double b = 2.0 / (B + D), a = b * y;
-    const double b1 = -b * (0.5 * lambda * f.h1 * b + linear * f.h2) / D; /* (db/dy)/y, by differentiating (Griffith) */
-    const double da = b + y * y * b1;
-    *point = (nt_maugis_equilibrium){
-        .y = y,
-        .a = a,
-        .b = b,
-        .P = a * a * a - lambda * b * b * f.g3,
-        .d = a * a - 4.0 / 3.0 * lambda * b,
-        .P1 = 3.0 * b * a * da - lambda * b * (2.0 * b1 * f.g3 + b * f.h3),
-        .d1 = 2.0 * b * da - 4.0 / 3.0 * lambda * b1,
-    };
-}
-
 double nt_maugis_equilibrium_energy(double lambda, const nt_maugis_equilibrium *point)
 {
-    const shape f = shape_at(point->y);
+    const energy_shape f = energy_shape_at(point->y);
     const double a = point->a, b = point->b, a2 = a * a, b2 = b * b;
     return 0.4 * a2 * a2 * a - 4.0 / 3.0 * lambda * b * a2 * a + 4.0 / 3.0 * lambda * lambda * b2 * b * f.e2 +
            lambda * b2 * b2 * f.e1 - (a2 + b2);

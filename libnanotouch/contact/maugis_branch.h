@@ -11,10 +11,14 @@ typedef struct nt_maugis_equilibrium {
     double a, b; /* radius of contact; b = sqrt(c^2 - a^2), c the outer radius of the cohesive zone */
     double P, d; /* load, indentation */
     double P1, d1; /* (dP/dy)/y and (dd/dy)/y: both finite at y = 0, so that dP/dd = P1/d1 is too */
+    double a1, b1; /* da/dy and (db/dy)/y */
 } nt_maugis_equilibrium;
 
 /* The equilibrium at y >= 0; no iteration. */
 void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point);
+
+/* d(d1)/dy there: what curves d(y) at its fold, where d1 = 0. */
+double nt_maugis_equilibrium_curvature(double lambda, const nt_maugis_equilibrium *point);
 
 /* Its energy U, with dU/dd = P and U = 0 for bodies apart. */
 double nt_maugis_equilibrium_energy(double lambda, const nt_maugis_equilibrium *point);

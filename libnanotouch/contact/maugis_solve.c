@@ -11,12 +11,16 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/maugis_shape.h"
 #include "core/roots.h"
 
 enum { MAX_ITERATIONS = 100 };
 
 /* Residuals below this, relative to the larger term of d or P, are rounding: no improvement there ends it. */
 #define FLOOR (64.0 * DBL_EPSILON)
+
+/* After a step this small, relative to y, the error of Newton's method is below rounding. */
+#define QUADRATIC 3e-9
 
 typedef struct {
     double lambda;
@@ -87,12 +91,13 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
     const double Z = sqrt(fmax(goal->target - fold, 0.0));
     double bracket[2] = {goal->below ? 0.0 : y_fold, goal->below ? y_fold : HUGE_VAL};
     double y = y_fold;
-    if (Z > 0.0)
+    if (goal->guess > 0.0)
+        y = goal->guess;
+    else if (Z > 0.0)
         y = goal->below ? guess_below(lambda, goal, Z) : fmax(guess_above(lambda, goal, Z), 1.000001 * y_fold);
-    double best = HUGE_VAL, scale = 1.0;
+    double best = HUGE_VAL, scale = 1.0, step = HUGE_VAL;
     for (int i = 1; i <= MAX_ITERATIONS; i++) {
-        nt_maugis_equilibrium here;
-        nt_maugis_equilibrium_at(lambda, y, &here);
+        const nt_maugis_equilibrium here = nt_maugis_equilibrium_of(lambda, nt_maugis_shape_at(y));
         const double value = load ? here.P : here.d, residual = value - goal->target;
         const int stalled = fabs(residual) >= best && best <= FLOOR * scale;
         if (fabs(residual) < best) {
@@ -103,13 +108,14 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
         bracket[(residual > 0.0) != goal->below] = y;
         const double Z_here = sqrt(fmax(value - fold, 0.0));
         double next = newton_y(goal, &here, -residual / (Z_here + Z) * 2.0 * Z_here);
-        const int resolved = best <= FLOOR * scale && fabs(next - y) <= DBL_EPSILON * y;
+        const int resolved = best <= FLOOR * scale && (step <= QUADRATIC * y || fabs(next - y) <= DBL_EPSILON * y);
         if (info != NULL)
             *info = (nt_solve_info){i, best / scale};
         if (best <= 0.5 * DBL_EPSILON * scale || stalled || resolved || Z == 0.0)
             return NT_OK;
         if (!(next > bracket[0] && next < bracket[1]))
             next = bisected_y(y, bracket);
+        step = fabs(next - y);
         y = next;
     }
     return NT_E_NO_CONVERGENCE;

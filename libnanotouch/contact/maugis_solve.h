@@ -18,6 +18,7 @@ typedef struct nt_maugis_goal {
     double target;                     /* reduced d or P, not below the fold's */
     const nt_maugis_equilibrium *fold; /* of the same kind */
     int below;                         /* 1: the part of the branch with y < y_fold; 0: y > y_fold */
+    double guess;                      /* of y; 0: none */
 } nt_maugis_goal;
 
 nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_maugis_equilibrium *point,

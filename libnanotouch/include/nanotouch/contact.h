@@ -94,6 +94,8 @@ NT_API double nt_maugis_lambda(const nt_contact *contact);
 /* Checks the contact, computes scales and folds. w = 0 is allowed and makes the law Hertz. NT_E_RANGE where lambda is
  * outside its valid range. */
 NT_API nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact);
+/* The same with lambda given; the cohesive stress follows from it. NT_MAUGIS_LAMBDA_MAX makes it JKR. */
+NT_API nt_status nt_maugis_init_lambda(nt_maugis *maugis, const nt_contact *contact, double lambda);
 /* {U, F, k, a} at an indentation [m]. info may be NULL. Error < 1e-12 relative away from the folds; at a fold the result
  * is square-root conditioned (1 ulp of the indentation is 1e-8 of the force) and k, infinite there, is reported at the
  * nearest distance that a double resolves. *value is untouched on failure. */

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Maugis-Dugdale at one indentation, in tiers: see contact_table.h. */
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "contact/maugis_place.h"
+#include "contact/maugis_solve.h"
+#include "contact/reduced.h"
+
+/* What the table does not cover, or has in closed form. */
+static nt_status exact_eval(const nt_maugis_table *table, double indentation, nt_branch branch, nt_law_value *value)
+{
+    return nt_maugis_eval(&table->maugis, indentation, branch, value, NULL);
+}
+
+static int is_tabulated(const nt_maugis_table *table, double indentation, nt_branch branch)
+{
+    const int held = branch == NT_BRANCH_STABLE || branch == NT_BRANCH_APPROACH;
+    return held && table->cells != NULL && indentation <= table->largest_indentation && indentation >= -DBL_MAX;
+}
+
+/* U is the integral of F d(delta), delta = delta_start + Z^2, Z = (u - 1)/rate; k is dF/dZ/(2 Z). In the first cell the
+ * parts of dF/dZ that are of the order of Z are divided on their own, so that k has its limit at a = 0; at a fold it is
+ * infinite and reported at the nearest distance that a double resolves. */
+static nt_law_value table_value(const nt_maugis_table *table, const nt_maugis_cell *cell, nt_maugis_place place)
+{
+    const double s = place.s, *c = cell->F, w = cell->u - 1.0, rate = table->rate;
+    const double sum = w * c[0] + s * ((c[0] + w * c[1]) / 2.0 + s * ((c[1] + w * c[2]) / 3.0 +
+                                  s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
+    const double Z = fmax(place.Z, NT_FOLD_RESOLUTION * sqrt(fabs(table->start)));
+    const double bend = 2.0 * c[2] + 3.0 * c[3] * s;
+    return (nt_law_value){
+        .U = cell->U + 2.0 * s * sum / (rate * rate),
+        .F = nt_cubic(c, s),
+        .k = 0.5 * rate * (w == 0.0 ? c[1] / Z + rate * bend : (c[1] + s * bend) / Z),
+        .a = nt_cubic(cell->a, s),
+    };
+}
+
+static nt_maugis_rough rough_of(const nt_maugis_polish *polish, const nt_maugis_cell *cell, nt_maugis_place place,
+                                double indentation)
+{
+    nt_maugis_rough rough = nt_maugis_rough_of(polish, cell, place);
+    rough.d = indentation / polish->unit;
+    return rough;
+}
+
+/* All of it at rounding level takes a second evaluation, at the corrected y; what is left of d goes to first order. */
+static nt_law_value polished_value(const nt_maugis_table *table, const nt_maugis_cell *cell, nt_maugis_place place,
+                                   double indentation)
+{
+    const nt_maugis_polish polish = nt_maugis_polish_of(table);
+    const nt_maugis_rough rough = rough_of(&polish, cell, place, indentation);
+    const double s = place.s, Zs = polish.Zs;
+    const double y_Z = ((double)cell->y[1] + s * (2.0 * (double)cell->y[2] + s * 3.0 * (double)cell->y[3])) / Zs;
+    const double y_ZZ = (2.0 * (double)cell->y[2] + s * 6.0 * (double)cell->y[3]) / (Zs * Zs);
+    nt_maugis_equilibrium at;
+    nt_maugis_equilibrium_at(polish.lambda, rough.y, &at);
+    const double dZ = nt_maugis_polish_step(&polish, &rough, &at);
+    const double y = rough.y + dZ * (y_Z + 0.5 * y_ZZ * dZ);
+    nt_maugis_equilibrium_at(polish.lambda, y, &at);
+    const double rest = nt_maugis_polish_step(&polish, &rough, &at);
+    const double slope = rough.Z < polish.near ? rough.P_Z : 2.0 * (rough.Z - rest) * at.P1 / at.d1;
+    const nt_law_value reduced = {
+        .U = nt_maugis_equilibrium_energy(polish.lambda, &at) + at.P * (rough.d - at.d),
+        .F = at.P + slope * rest,
+        .k = at.P1 / at.d1,
+        .a = at.a + at.a1 * y_Z * rest,
+    };
+    const nt_reduced_units units = {table->maugis.load_scale, table->maugis.radius_scale, polish.unit};
+    nt_law_value value = nt_reduced_to_si(&reduced, &units);
+    if (rough.Z < polish.near)
+        value.k = table_value(table, cell, place).k;
+    return value;
+}
+
+nt_status nt_maugis_table_eval(const nt_maugis_table *table, nt_tier tier, double indentation, nt_branch branch,
+                               nt_law_value *value)
+{
+    if (tier != NT_TIER_TABLE && tier != NT_TIER_POLISHED && tier != NT_TIER_EXACT)
+        return NT_E_ARGUMENT;
+    if (tier == NT_TIER_EXACT || !is_tabulated(table, indentation, branch))
+        return exact_eval(table, indentation, branch, value);
+    const nt_maugis_grid grid = nt_maugis_grid_of(table, branch);
+    const nt_maugis_place place = nt_maugis_place_of(&grid, indentation);
+    const nt_maugis_cell *cell = &table->cells[place.cell];
+    if (place.cell < NT_CELL_CONTACT) {
+        const nt_status status = exact_eval(table, indentation, branch, value);
+        if (status == NT_OK)
+            value->F = nt_cubic(cell->F, place.s);
+        return status;
+    }
+    *value = tier == NT_TIER_TABLE ? table_value(table, cell, place) : polished_value(table, cell, place, indentation);
+    return NT_OK;
+}
+
+nt_status nt_maugis_force_find(const nt_maugis_table *table, const nt_maugis_query *query, double indentation,
+                               double *force)
+{
+    if (!is_tabulated(table, indentation, query->branch)) {
+        nt_law_value value;
+        const nt_status status = exact_eval(table, indentation, query->branch, &value);
+        if (status == NT_OK)
+            *force = value.F;
+        return status;
+    }
+    const nt_maugis_grid grid = nt_maugis_grid_of(table, query->branch);
+    const nt_maugis_place place = nt_maugis_place_of(&grid, indentation);
+    const nt_maugis_cell *cell = &table->cells[place.cell];
+    *force = nt_cubic(cell->F, place.s);
+    if (query->tier == NT_TIER_POLISHED && place.cell >= NT_CELL_CONTACT) {
+        const nt_maugis_polish polish = nt_maugis_polish_of(table);
+        const nt_maugis_rough rough = rough_of(&polish, cell, place, indentation);
+        *force = polish.load * nt_maugis_polished_load(&polish, &rough);
+    }
+    return NT_OK;
+}
+
+double nt_maugis_table_force(const nt_maugis_table *table, double indentation)
+{
+    const nt_maugis_query query = {NT_TIER_TABLE, NT_BRANCH_STABLE};
+    double force = NAN;
+    (void)nt_maugis_force_find(table, &query, indentation, &force);
+    return force;
+}
+
+double nt_maugis_table_polish(const nt_maugis_table *table, double indentation)
+{
+    const nt_maugis_query query = {NT_TIER_POLISHED, NT_BRANCH_STABLE};
+    double force = NAN;
+    (void)nt_maugis_force_find(table, &query, indentation, &force);
+    return force;
+}
