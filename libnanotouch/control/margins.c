@@ -8,13 +8,17 @@
 #include "nanotouch/control.h"
 #include "nanotouch/material.h"
 
-/* The stage's share of D = sup -Im C(jw)/w: 2 zeta/wn at w = 0, but below zeta = 1/sqrt(2) the resonance has more (the
- * bare stage nearly Q/wn). A notch damps only what the samples see (nt_stage_loop_make). */
+/* The stage's share of D = sup -Im C(jw)/w. At w = 0 it is the delay of notch and stage, 2 zeta/wn and, where samples
+ * are few, what the sampled notch adds; below zeta = 1/sqrt(2) the resonance has more, without a notch nearly Q/wn. */
 static double stage_lag(const nt_stage *stage, const nt_gains *gains)
 {
-    const double zeta = 2.0 * stage->resonance < gains->rate ? gains->stage_damping : 0.5 / stage->quality;
-    const double wn = 2.0 * NT_PI * stage->resonance;
-    return (2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * (1.0 - zeta * zeta)) : 2.0 * zeta) / wn;
+    const nt_stage_loop loop = nt_stage_loop_make(stage, gains);
+    const int notched = loop.a[2] != 0.0;
+    const double zeta = notched ? gains->stage_damping : 0.5 / stage->quality;
+    const double notch = (loop.b[1] + 2.0 * loop.b[2]) / (loop.b[0] + loop.b[1] + loop.b[2]) -
+                         (loop.a[1] + 2.0 * loop.a[2]) / (1.0 + loop.a[1] + loop.a[2]); /* [periods] */
+    const double delay = notch / gains->rate + 1.0 / (2.0 * NT_PI * stage->resonance * stage->quality);
+    return 2.0 * zeta * zeta < 1.0 ? delay / (4.0 * zeta * zeta * (1.0 - zeta * zeta)) : delay;
 }
 
 /* Standard deviation of the gauge behind the low-pass y += c (u - y), which passes c/(2 - c) of the variance. */

@@ -3,8 +3,8 @@
  * at the tip, alpha_f f_s dx_s/alpha_p, is by Eq. 12 and 17 (f_m - alpha_f f_s) dx = (m x'' + b x') dx/(1 + K_f): the
  * master's own damping, whatever the surface does. Holds and delays take from it; in a limit cycle nothing is left,
  * because the motor pays for the damping. So it is not enough that no energy comes out: a share of b v^2/(1 + K_f) must
- * be seen to go in. Where it is not, K_f backs off by 5 % and stays there: damping injection alone does not stop that
- * limit cycle (docs/control.md). The hand's port alone would not do: a surface that rises under a moving tip gives
+ * be seen to go in. Where it is not, K_f backs off by a fifth and stays there: damping injection alone does not stop
+ * that limit cycle (docs/control.md). The hand's port alone would not do: a surface that rises under a moving tip gives
  * energy to the operator, and that is the physics. What has been swallowed is forgotten beyond a small store, or it
  * would hide an instability that begins late. */
 #include <math.h>
@@ -12,9 +12,10 @@
 #include "nanotouch/control.h"
 #include "nanotouch/material.h"
 
-#define BACK_OFF 0.95
+#define BACK_OFF 0.8
 #define DUE_SHARE 0.2         /* of the damping; at the margin of 1.5 at which a loop may be armed a third is left */
 #define SPEED_BANDWIDTH 200.0 /* of the speed in b v^2 [Hz] */
+#define WRONG_SPEED 10.0      /* times what hand and motor can hold against the damping */
 #define LEAST_STEP 1e-3       /* sensors without steps still have noise: this share of the travel */
 
 nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
@@ -28,6 +29,8 @@ nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
                           .force_gain = gains->force_gain,
                           .speed_filter = filter,
                           .speed_floor = master_step * filter / T,
+                          .speed_limit =
+                              WRONG_SPEED * (rig->master.max_force + rig->master.gauge_range) / rig->master.damping,
                           .period = T};
 }
 
@@ -40,7 +43,8 @@ static double work(const nt_port *from, const nt_port *to)
 static double energy_due(const nt_passivity *passivity, nt_passivity_state *state, const nt_port *hand)
 {
     const double speed = (hand->position - state->last_hand.position) / passivity->period;
-    state->speed += passivity->speed_filter * (speed - state->speed);
+    const double likely = fmin(fmax(speed, -passivity->speed_limit), passivity->speed_limit);
+    state->speed += passivity->speed_filter * (likely - state->speed);
     const double floor = passivity->speed_floor;
     const double square = fmax(0.0, state->speed * state->speed - floor * floor);
     return passivity->due * square / (1.0 + state->gain * passivity->force_gain);

@@ -105,7 +105,7 @@ static void loop_delay_counts_holds_delays_and_stage(void **state)
         }
         const double expected = 2.0 * (0.5 + gains.delay) / gains.rate + supremum;
         const nt_margins margins = nt_margins_compute(&rig, &gains, 1e3);
-        assert_true(fabs(margins.loop_delay / expected - 1.0) < 1e-3);
+        assert_true(fabs(margins.loop_delay / expected - 1.0) < 1e-2); /* the notch is sampled */
         assert_true(fabs(margins.stability_limit * margins.loop_delay / rig.master.damping - 1.0) < 1e-14);
     }
 }

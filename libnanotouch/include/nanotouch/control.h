@@ -109,6 +109,7 @@ typedef struct nt_passivity {
     double force_gain;   /* K_f, which divides the damping that the operator feels [-] */
     double speed_filter; /* of the low-pass of the master's speed, per period [-] */
     double speed_floor;  /* what one step of the master seems to be [m/s] */
+    double speed_limit;  /* the master cannot be so fast, a reading is wrong [m/s] */
     double period;       /* T [s] */
 } nt_passivity;
 /* One side, at the operator's scale. */

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The loop taken apart: touch step and simulated rig joined by hand, so that a test can stand between them. */
+#ifndef TESTS_LOOP_FIXTURE_H
+#define TESTS_LOOP_FIXTURE_H
+
+#include "nanotouch/nanotouch.h"
+
+typedef struct loop {
+    nt_plan plan;
+    nt_touch touch;
+    nt_touch_state state;
+    nt_sim sim;
+    nt_sample sample;   /* as the touch step has seen it */
+    nt_command command; /* as the touch step has given it */
+} loop;
+
+/* Rig and settings are those of setup; the scene's plan for the force limit. The loop must not be moved afterwards
+ * (sim.plan). */
+static inline nt_status loop_open(loop *l, const nt_session_setup *setup)
+{
+    nt_demand demand = setup->demand;
+    demand.maximum_load = setup->settings.limits.force;
+    nt_status status = nt_plan_make(&l->plan, &setup->scene, &demand, setup->surface, NULL);
+    if (status == NT_OK)
+        status = nt_touch_make(&l->touch, &setup->rig, &setup->settings, setup->mode, NULL);
+    if (status != NT_OK)
+        return status;
+    const nt_sim_setup sim = {.plan = &l->plan,
+                              .rig = &l->touch.rig,
+                              .period = l->touch.period,
+                              .x = setup->x,
+                              .y = setup->y,
+                              .clearance = setup->clearance,
+                              .master_position = -0.4 * setup->rig.master.travel,
+                              .seed = setup->seed,
+                              .delay = (int)setup->settings.gains.delay};
+    l->state = nt_touch_start(&l->touch, sim.master_position, setup->x, setup->y);
+    return nt_sim_init(&l->sim, &sim);
+}
+
+/* Spoils a sample on its way, or does nothing. */
+typedef void (*loop_fault)(nt_sample *sample, void *context);
+
+static inline nt_status loop_tick(loop *l, loop_fault fault, void *context)
+{
+    nt_status status = nt_sim_read(&l->sim, &l->sample);
+    if (status != NT_OK)
+        return status;
+    if (fault)
+        fault(&l->sample, context);
+    nt_touch_step(&l->touch, &l->state, &l->sample, &l->command);
+    return nt_sim_write(&l->sim, &l->command);
+}
+
+static inline void loop_push(loop *l, double force, double duration)
+{
+    const nt_hand_target target = {.force = force, .duration = duration};
+    nt_sim_aim_hand(&l->sim, &target);
+}
+
+#endif
