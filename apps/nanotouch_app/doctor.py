@@ -13,7 +13,7 @@ from importlib import metadata
 from typing import Any
 
 import nanotouch
-from nanotouch import _core
+from nanotouch import hal
 from nanotouch.errors import Error
 
 from nanotouch_app import view
@@ -53,7 +53,7 @@ def findings() -> list[str]:
     ]
     sections = {
         "extras": [_extra(name, packages) for name, packages in EXTRAS.items()],
-        "compiled parts": [("core", OK, f"nanotouch._core {_core.version}"), _fit()],
+        "compiled parts": [("core", OK, f"nanotouch._core {nanotouch.__version__}"), _fit()],
         "backends": [("simulated", OK, "always there"), _gpio()],
         "view": [_display(), _vtk()],
     }
@@ -96,17 +96,14 @@ def _fit() -> tuple[str, str, str]:
 
 
 def _gpio() -> tuple[str, str, str]:
-    gpio_lines = getattr(_core, "gpio_lines", None)
-    if gpio_lines is None:
-        return "gpio", MISSING, "built without libgpiod: install libgpiod 2.1 or newer, then install nanotouch again"
     try:
-        found: list[tuple[str, int, str, str]] = gpio_lines()
+        found = hal.gpio_lines()
     except Error as error:
         return "gpio", MISSING, str(error)
     if not found:
         return "gpio", MISSING, "no chip that may be opened (/dev/gpiochip*): nothing is connected, or no permission"
-    named = [f"{name} ({chip}:{offset})" for chip, offset, name, _ in found if name]
-    chips = len({chip for chip, *_ in found})
+    named = [f"{line.name} ({line.chip}:{line.offset})" for line in found if line.name]
+    chips = len({line.chip for line in found})
     return "gpio", OK, f"{chips} chips, {len(found)} lines; named: {', '.join(named) or 'none'}"
 
 

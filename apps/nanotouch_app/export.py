@@ -13,12 +13,10 @@ from typing import Any
 
 import numpy as np
 from nanotouch import curves, record
-from nanotouch._files import checked_path
 from nanotouch.errors import InvalidValue, require
 
 from nanotouch_app.output import progress_bar
 
-MCAP_MAGIC = b"\x89MCAP0\r\n"
 HDF5_ENDINGS = (".h5", ".hdf5")
 CHANNELS = {"time": "s", "z": "m", "deflection": "m", "force": "N"}
 
@@ -38,10 +36,8 @@ def run(args: argparse.Namespace) -> int:
     ending = args.out.suffix.lower()
     if ending not in (".csv", *HDF5_ENDINGS):
         raise InvalidValue(f"--out {args.out}: the ending must be .csv, .h5 or .hdf5")
-    with checked_path(args.file).open("rb") as file:
-        is_recording = file.read(len(MCAP_MAGIC)) == MCAP_MAGIC
     with progress_bar("exporting") as progress:
-        export = _export_recording if is_recording else _export_curves
+        export = _export_recording if record.is_recording(args.file) else _export_curves
         what = export(args.file, args.out, ending == ".csv", progress)
     print(f"{args.out}: {what}")
     return 0

@@ -8,9 +8,9 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch import _core
 from nanotouch.plots import adhesion
 from nanotouch.record import STATES, Recording
+from nanotouch.session import REASONS
 
 
 def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
@@ -100,4 +100,4 @@ def _number(value: float) -> float | None:
 
 def _reasons(recording: Recording) -> list[str]:
     bits = int(np.bitwise_or.reduce(recording.reasons)) if len(recording) else 0
-    return [name for bit, name in enumerate(_core.reasons) if bits >> bit & 1]
+    return [name for bit, name in enumerate(REASONS) if bits >> bit & 1]

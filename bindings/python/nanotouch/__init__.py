@@ -25,7 +25,7 @@ _HOMES = {
     "Surface": "surface",
 }
 _MODULES = (
-    "contact", "curves", "errors", "fit", "forces", "images", "materials", "operator", "plots", "presets", "record",
+    "contact", "curves", "errors", "fit", "forces", "hal", "images", "materials", "operator", "plots", "presets", "record",
     "scene", "session", "surface", "units",
 )  # fmt: skip
 

@@ -21,8 +21,10 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nanotouch._files import checked_path
 from nanotouch.errors import Error, InvalidValue, ReadError, require
 
+MCAP_MAGIC = b"\x89MCAP0\r\n"
 TOPIC = "nanotouch/touch"
 ENCODING = "nanotouch.columns"
 LAYOUT = "one message is one block of rows: the columns in the order listed, each contiguous and little-endian"
@@ -230,6 +232,12 @@ def write(path: str | os.PathLike[str], recording: Recording) -> None:
     with Writer(path, recording.metadata) as writer:
         for start in range(0, len(recording), BLOCK_ROWS):
             writer.append(recording[start : start + BLOCK_ROWS].columns)
+
+
+def is_recording(path: str | os.PathLike[str]) -> bool:
+    """Whether the file begins as an MCAP file does."""
+    with checked_path(path).open("rb") as file:
+        return file.read(len(MCAP_MAGIC)) == MCAP_MAGIC
 
 
 def read(path: str | os.PathLike[str]) -> Recording:

@@ -21,6 +21,8 @@ from nanotouch.surface import Surface
 
 Mode = Literal["point", "scan", "topography"]
 MODES: tuple[Mode, ...] = get_args(Mode)
+#: names of the bits of a recording's ``reasons``
+REASONS: tuple[str, ...] = _core.reasons
 BLOCK_TICKS = 5000
 INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
 ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
