@@ -103,7 +103,8 @@ static nt_state judge_stuck(const nt_touch *touch, nt_supervisor_state *state, c
     const nt_probe *probe = &touch->rig.probe;
     if (!(probe->noise > 6.0 * probe->resolution))
         return NT_RUN;
-    if (sample->deflection != state->stuck_deflection) {
+    const int saturated = fabs(sample->deflection) >= nt_probe_deflection_range(probe); /* shows no noise */
+    if (saturated || sample->deflection != state->stuck_deflection) {
         state->stuck_deflection = sample->deflection;
         state->stuck_position = sample->stage_position;
         state->stuck_run = 0;
