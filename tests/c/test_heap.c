@@ -184,6 +184,35 @@ static void open_session_uses_no_heap(void **unused)
     assert_int_equal(count, 6000);
 }
 
+/* The touch step in each state, both modes, good samples and bad. */
+static void touch_step_uses_no_heap(void **unused)
+{
+    (void)unused;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    unsigned states = 0;
+    nt_status status = NT_OK;
+    for (int mode = NT_MODE_TOUCH; mode <= NT_MODE_TOPOGRAPHY && status == NT_OK; mode++) {
+        nt_touch touch;
+        nt_command command = {0};
+        status = nt_touch_make(&touch, &rig, &settings, (nt_mode)mode, NULL);
+        nt_touch_state state = nt_touch_start(&touch, 0.0, 0.0, 0.0);
+        for (int i = 0; i < 400 && status == NT_OK; i++) {
+            nt_sample sample = {
+                .stage_position = command.stage_position, .operator_force = 0.1, .deflection = i * 1e-12};
+            sample.flags = i % 100 > 90 ? NT_SAMPLE_INVALID : i > 350 ? NT_SAMPLE_EMERGENCY_STOP : 0u;
+            status = nt_touch_aim(&touch, &state, 1e-6, i * 1e-9, 0.1);
+            nt_touch_step(&touch, &state, &sample, &command);
+            states |= 1u << command.state;
+            if (i % 100 == 99 && i < 350)
+                status = nt_touch_arm(&state, 1);
+        }
+    }
+    assert_int_equal(calls_so_far(), 0);
+    assert_int_equal(status, NT_OK);
+    assert_int_equal(states, 15); /* RUN, HOLD, RETRACT, LATCHED */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -191,6 +220,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(laws_use_no_heap, arm, disarm),
         cmocka_unit_test_setup_teardown(surface_and_interaction_use_no_heap, arm, disarm),
         cmocka_unit_test_setup_teardown(problems_are_printed_without_heap, arm, disarm),
+        cmocka_unit_test_setup_teardown(touch_step_uses_no_heap, arm, disarm),
         cmocka_unit_test_setup_teardown(open_session_uses_no_heap, arm, disarm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
