@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Electric double layers of a sphere and a flat in an electrolyte (Hogg, Healy, Fuerstenau, Trans. Faraday Soc. 62 (1966)
- * 1638, at constant potential; Wiese, Healy, Trans. Faraday Soc. 66 (1970) 490, at constant charge): linear
+ * Electric double layers of a sphere and a flat in an electrolyte (Hogg, Healy, Fuerstenau, Trans. Faraday Soc. 62
+ * (1966) 1638, at constant potential; Wiese, Healy, Trans. Faraday Soc. 66 (1970) 490, at constant charge): linear
  * Poisson-Boltzmann, |psi| below some 25 mV; Derjaguin, R >> debye_length.
- * With x = h/debye_length, S = (psi_1 + psi_2)^2, D = (psi_1 - psi_2)^2 both read U = C [A ln(1 + e^-x) + B ln(1 - e^-x)],
- * C = pi eps R: A = S, B = D at constant potential, A = -D, B = -S at constant charge. */
+ * With x = h/debye_length, S = (psi_1 + psi_2)^2, D = (psi_1 - psi_2)^2 both read U = C [A ln(1 + e^-x) + B ln(1 -
+ * e^-x)], C = pi eps R: A = S, B = D at constant potential, A = -D, B = -S at constant charge. */
 #include <math.h>
 #include <stddef.h>
 

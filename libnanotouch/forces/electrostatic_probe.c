@@ -6,7 +6,8 @@
  * infinite body of the same slope that meets the plane; for the cone that is exact,
  * E = U/(x tan(theta) ln cot(theta/2)) at height x. Their integral over the cone is taken here to its finite height
  * without dropping what is small against it, so that an energy exists.
- * Lever: a plate tilted by beta, in the exact field U/(beta r) of the wedge that it makes with the plane; edges neglected. */
+ * Lever: a plate tilted by beta, in the exact field U/(beta r) of the wedge that it makes with the plane; edges
+ * neglected. */
 #include <math.h>
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Short-range solvation in water, empirical (Israelachvili, Intermolecular and Surface Forces, 3rd ed. 2011, ch. 15): the
- * energy of plates is W(h) = W_1 exp(-h/l_1) + W_2 exp(-h/l_2), hydration where W > 0 (3..30 mJ/m^2, 0.6..1.1 nm between
- * mica), hydrophobic where W < 0 (W = -2 gamma, gamma = 10..50 mJ/m^2, 1..2 nm). Sphere and flat by Derjaguin, R >> l:
- * F = 2 pi R W(h). Finite at h = 0. */
+ * Short-range solvation in water, empirical (Israelachvili, Intermolecular and Surface Forces, 3rd ed. 2011, ch. 15):
+ * the energy of plates is W(h) = W_1 exp(-h/l_1) + W_2 exp(-h/l_2), hydration where W > 0 (3..30 mJ/m^2, 0.6..1.1 nm
+ * between mica), hydrophobic where W < 0 (W = -2 gamma, gamma = 10..50 mJ/m^2, 1..2 nm). Sphere and flat by Derjaguin,
+ * R >> l: F = 2 pi R W(h). Finite at h = 0. */
 #include <math.h>
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A rigid sphere before a rigid half-space whose surfaces attract and repel with the Lennard-Jones 9-3 wall, the traction
- * of two half-spaces at distance z: sigma(z) = 8w/(3 z0) [(z0/z)^9 - (z0/z)^3]. Summed over the paraboloid of the sphere
- * it is 2 pi R times the energy of the walls (Bradley, Phil. Mag. 13 (1932) 853; Derjaguin, Kolloid-Z. 69 (1934) 155):
- * R >> z0. Far away it is the van der Waals law with H = 16 pi w z0^2. */
+ * A rigid sphere before a rigid half-space whose surfaces attract and repel with the Lennard-Jones 9-3 wall, the
+ * traction of two half-spaces at distance z: sigma(z) = 8w/(3 z0) [(z0/z)^9 - (z0/z)^3]. Summed over the paraboloid of
+ * the sphere it is 2 pi R times the energy of the walls (Bradley, Phil. Mag. 13 (1932) 853; Derjaguin, Kolloid-Z. 69
+ * (1934) 155): R >> z0. Far away it is the van der Waals law with H = 16 pi w z0^2. */
 #include <stddef.h>
 
 #include "forces/law.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Polymer brushes that are pressed together (Alexander, J. Phys. France 38 (1977) 983; de Gennes, Adv. Colloid Interface
- * Sci. 27 (1987) 189): the pressure between plates is p = kT/s^3 [(T/h)^(9/4) - (h/T)^(3/4)] for h < T, with s the distance
- * of grafted chains and T the thickness at which the brushes meet (2L where both bodies bear one, L where one does).
- * Sphere and flat by Derjaguin, R >> T: F = 2 pi R Int_h^T p. Beyond T nothing. Scaling law: its factor is of order one. */
+ * Polymer brushes that are pressed together (Alexander, J. Phys. France 38 (1977) 983; de Gennes, Adv. Colloid
+ * Interface Sci. 27 (1987) 189): the pressure between plates is p = kT/s^3 [(T/h)^(9/4) - (h/T)^(3/4)] for h < T, with
+ * s the distance of grafted chains and T the thickness at which the brushes meet (2L where both bodies bear one, L
+ * where one does). Sphere and flat by Derjaguin, R >> T: F = 2 pi R Int_h^T p. Beyond T nothing. Scaling law: its
+ * factor is of order one. */
 #include <math.h>
 #include <stddef.h>
 
@@ -32,7 +33,7 @@ static double pressure_scale(const nt_steric *steric)
     return NT_BOLTZMANN * steric->temperature / steric->spacing / steric->spacing / steric->spacing;
 }
 
-/* Sum of weight exp(rate t) of two or three terms without its constant and, where they cancel, its lower powers of t. */
+/* Sum of weight exp(rate t) of two or three terms, without its powers of t below `first`, which cancel. */
 typedef struct exponentials {
     double weight[3], rate[3];
     int first; /* the lowest power of t that is left */
@@ -56,8 +57,8 @@ static double exponentials_at(const exponentials *sum, double t)
     return value;
 }
 
-/* With h = T exp(-t): p = scale [exp(9t/4) - exp(-3t/4)]; its integral from T to h, T scale 4/35 [7 exp(5t/4) + 5 exp(-7t/4)
- * - 12], is of second order in t, that of it again of third. */
+/* With h = T exp(-t): p = scale [exp(9t/4) - exp(-3t/4)]; its integral from T to h, T scale 4/35 [7 exp(5t/4) + 5
+ * exp(-7t/4) - 12], is of second order in t, that of it again of third. */
 nt_law_value nt_steric_eval(const nt_steric *steric, double gap)
 {
     static const exponentials pressure = {{1.0, -1.0, 0.0}, {2.25, -0.75, 0.0}, 1};

@@ -29,9 +29,9 @@ static inline void assert_within(double value, double expected, double bound)
         fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
 }
 
-/* F = -dU/dh and k = -dF/dh between two gaps: five points with step 2e-3 h, truncation (2e-3)^4 times the fifth derivative,
- * some hundred for the steepest power law (an exponential: to gaps of some ten decay lengths); rounding 1e-16/2e-3 of the
- * largest term. `scale` U, F, k: what counts as 0. */
+/* F = -dU/dh and k = -dF/dh between two gaps: five points with step 2e-3 h, truncation (2e-3)^4 times the fifth
+ * derivative, some hundred for the steepest power law (an exponential: to gaps of some ten decay lengths); rounding
+ * 1e-16/2e-3 of the largest term. `scale` U, F, k: what counts as 0. */
 static inline void assert_slopes(const force_law *law, const double gaps[2], nt_law_value scale)
 {
     for (double gap = gaps[0]; gap < gaps[1]; gap *= 1.37) {

@@ -43,7 +43,7 @@ static void unknown_names(void **state)
     assert_null(nt_material_find(NULL));
 }
 
-/* Engineering constants of a cubic crystal along <100>, of a layered one across its layers, from its stiffnesses [GPa]. */
+/* Engineering constants of a cubic crystal along <100>, of a layered one across its layers, from stiffnesses [GPa]. */
 static void crystals_agree_with_their_stiffnesses(void **state)
 {
     (void)state;
@@ -65,8 +65,8 @@ static void crystals_agree_with_their_stiffnesses(void **state)
     }
 }
 
-/* w = H/(12 pi D0^2), D0 = 0.165 nm, ties both columns where only dispersion forces act (Israelachvili, Table 13.4 finds
- * polystyrene 32..33 mJ/m^2, PDMS 21..22); twice the surface energy of a metal or a crystal it is not. */
+/* w = H/(12 pi D0^2), D0 = 0.165 nm, ties both columns where only dispersion forces act (Israelachvili, Table 13.4
+ * finds polystyrene 32..33 mJ/m^2, PDMS 21..22); twice the surface energy of a metal or a crystal it is not. */
 static void surface_energy_of_polymers_follows_from_the_hamaker_constant(void **state)
 {
     (void)state;

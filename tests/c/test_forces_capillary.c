@@ -72,8 +72,8 @@ static void rules(void **state)
     assert_true(nt_capillary_eval(&water, 0.0).F == at.F && nt_capillary_eval(&water, -5e-324).k == 0.0);
 }
 
-/* There and back: nothing until the films touch at 2e = 10 nm, then a bridge until 2e + 2 r1 = 12.12 nm; the work that is
- * lost in a cycle is that of pulling the bridge apart, half of 4 pi gamma R times 2 r1. */
+/* There and back: nothing until the films touch at 2e = 10 nm, then a bridge until 2e + 2 r1 = 12.12 nm; the work that
+ * is lost in a cycle is that of pulling the bridge apart, half of 4 pi gamma R times 2 r1. */
 static void bridge_forms_and_ruptures(void **state)
 {
     (void)state;

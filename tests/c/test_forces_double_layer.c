@@ -20,9 +20,9 @@ static const force_law laws[] = {
     {nt_double_layer_charge_eval_at, nt_double_layer_charge_eval_over, &water, 0.2e-9},
 };
 
-/* The pressure between plates at x = h/debye_length [Pa]: psi'' = kappa^2 psi by finite differences of second order on N
- * cells, with the potentials held, or their slopes (the charges); then P = eps kappa^2/2 (psi^2 - psi'^2) in the middle of
- * the first cell, the same everywhere. Richardson takes out the error of second order. */
+/* The pressure between plates at x = h/debye_length [Pa]: psi'' = kappa^2 psi by finite differences of second order on
+ * N cells, with the potentials held, or their slopes (the charges); then P = eps kappa^2/2 (psi^2 - psi'^2) in the
+ * middle of the first cell, the same everywhere. Richardson takes out the error of second order. */
 static double pressure_on_grid(int charge, double x, int N)
 {
     enum { MOST = 1601 };
@@ -45,11 +45,11 @@ static double pressure_on_grid(int charge, double x, int N)
         here = (right[i] - (i == 0 ? wing : -1.0) * next) / diagonal[i];
     }
     const double middle = 0.5 * (here + next), slope = (next - here) / step;
-    const double stiffness = NT_VACUUM_PERMITTIVITY * water.relative_permittivity / water.debye_length / water.debye_length;
-    return 0.5 * stiffness * (middle * middle - slope * slope);
+    const double kappa = 1.0 / water.debye_length;
+    return 0.5 * NT_VACUUM_PERMITTIVITY * water.relative_permittivity * kappa * kappa * (middle * middle - slope * slope);
 }
 
-/* k = 2 pi R P: the curvature of the sphere's energy is the pressure of the plates. The finite differences leave 1e-6. */
+/* k = 2 pi R P: the curvature of the sphere's energy is the pressure of the plates. Finite differences leave 1e-6. */
 static void is_the_linear_poisson_boltzmann_equation(void **state)
 {
     (void)state;
@@ -75,8 +75,9 @@ static void far_field(void **state)
     }
 }
 
-/* Close up: at constant potential unlike plates are capacitors, P = -eps (psi_1 - psi_2)^2/(2 h^2); at constant charge ions
- * are squeezed, P = +eps kappa^2 (psi_1 + psi_2)^2/(2 x^2). Equal potentials leave a finite force, 2 pi eps kappa R psi^2. */
+/* Close up: at constant potential unlike plates are capacitors, P = -eps (psi_1 - psi_2)^2/(2 h^2); at constant charge
+ * ions are squeezed, P = +eps kappa^2 (psi_1 + psi_2)^2/(2 x^2). Equal potentials leave a finite force, 2 pi eps kappa
+ * R psi^2. */
 static void close_up(void **state)
 {
     (void)state;
@@ -92,12 +93,13 @@ static void close_up(void **state)
     assert_within(nt_double_layer_potential_eval(&equal, 1e-12).F, F, 1e-4 * F); /* first order in x */
 }
 
-/* Opposite potentials attract at constant charge as well, until the layers are squeezed; swapping the bodies is no change. */
+/* Opposite potentials attract at constant charge as well, until the layers are squeezed; swapping the bodies is no
+ * change. */
 static void signs(void **state)
 {
     (void)state;
-    const nt_double_layer opposite = {30e-9, 9.6e-9, 78.5, 0.020, -0.012, 0.2e-9}, swapped = {30e-9, 9.6e-9, 78.5, -0.012,
-                                                                                           0.020, 0.2e-9};
+    const nt_double_layer opposite = {30e-9, 9.6e-9, 78.5, 0.020, -0.012, 0.2e-9};
+    const nt_double_layer swapped = {30e-9, 9.6e-9, 78.5, -0.012, 0.020, 0.2e-9};
     for (double h = 0.2e-9; h < 1e-7; h *= 1.5) {
         assert_true(nt_double_layer_potential_eval(&opposite, h).F < 0.0);
         assert_true(nt_double_layer_charge_eval(&water, h).F > nt_double_layer_potential_eval(&water, h).F);
@@ -107,8 +109,8 @@ static void signs(void **state)
     assert_true(nt_double_layer_charge_eval(&opposite, 0.2e-9).F > 0.0);
 }
 
-/* Israelachvili: 0.304/sqrt(c) nm for a 1:1 salt of c mol/l in water at 25 C; 2:2 has four times the ionic strength. The 0.304 has three
- * digits. */
+/* Israelachvili: 0.304/sqrt(c) nm for a 1:1 salt of c mol/l in water at 25 C; 2:2 has four times the ionic strength.
+ * The 0.304 has three digits. */
 static void debye_lengths_of_water(void **state)
 {
     (void)state;
@@ -136,7 +138,8 @@ static void rules(void **state)
     assert_keeps_the_rules(&laws[0]);
     assert_keeps_the_rules(&laws[1]);
     assert_int_equal(nt_double_layer_check(&water, NULL), NT_OK);
-    assert_int_equal(nt_double_layer_check(&(nt_double_layer){30e-9, 9.6e-9, 0.5, 0.0, 0.0, 1e-10}, &problem), NT_E_RANGE);
+    assert_int_equal(nt_double_layer_check(&(nt_double_layer){30e-9, 9.6e-9, 0.5, 0.0, 0.0, 1e-10}, &problem),
+                     NT_E_RANGE);
     assert_string_equal(problem.field, "relative_permittivity");
     assert_int_equal(nt_double_layer_check(&(nt_double_layer){30e-9, NAN, 78.5, 0.0, 0.0, 1e-10}, &problem),
                      NT_E_NOT_FINITE);

@@ -67,7 +67,8 @@ static void plate_law_of_the_paper_is_wrong_as_stated(void **state)
 FORCE_LAW(nt_electrostatic, nt_electrostatic_eval)
 FORCE_LAW(nt_electrostatic_plate, nt_electrostatic_plate_eval)
 
-/* The plate of 1 cm^2 at 1 mm and 1 kV of the textbooks: eps0 A U^2/(2 d^2) = 0.443 mN, half the charge times the field. */
+/* The plate of 1 cm^2 at 1 mm and 1 kV of the textbooks: eps0 A U^2/(2 d^2) = 0.443 mN, half the charge times the
+ * field. */
 static void rules(void **state)
 {
     (void)state;

@@ -29,8 +29,8 @@ static double field_of_cone(double theta)
     return (log(tan(0.5 * (theta + step))) - log(tan(0.5 * (theta - step)))) / (2.0 * step) * scale;
 }
 
-/* So the force on the part of it between two distances is exact; in the law: what a longer cone pulls more, where apex and
- * gap are too small to matter. Pressure eps0 E^2/2, of which sin(theta) is vertical, on 2 pi r sin(theta) dr. */
+/* So the force on the part of it between two distances is exact; in the law: what a longer cone pulls more, where apex
+ * and gap are too small to matter. Pressure eps0 E^2/2, of which sin(theta) is vertical, on 2 pi r sin(theta) dr. */
 static void long_cone_is_exact(void **state)
 {
     (void)state;
@@ -70,11 +70,12 @@ static void is_hudlets_tip(void **state)
         if (h > 300e-9)
             continue;
         const double flank = log(tip.height / (h + c)) - 1.0 + R * pow(cos(theta), 2.0) / sin(theta) / (h + c);
-        assert_within(F, sphere - unit * share * flank, 0.07 * unit * share); /* the paper's: terms (h + R)/height dropped */
+        assert_within(F, sphere - unit * share * flank, 0.07 * unit * share); /* the paper drops (h + R)/height */
     }
 }
 
-/* Without cone and with no angle it is the sphere of nt_electrostatic_eval, whose apex loses sin(theta) = 0.01 of itself. */
+/* Without cone and with no angle it is the sphere of nt_electrostatic_eval, whose apex loses sin(theta) = 0.01 of
+ * itself. */
 static void without_cone_is_the_sphere(void **state)
 {
     (void)state;
@@ -86,8 +87,8 @@ static void without_cone_is_the_sphere(void **state)
     }
 }
 
-/* Pressure eps0 E^2/2 with the wedge's field E = U/(beta r) on the plate from r1 = D/sin(beta), vertical part, by Simpson in
- * ln r; that E solves Laplace's equation, U phi/beta, and both boundaries. */
+/* Pressure eps0 E^2/2 with the wedge's field E = U/(beta r) on the plate from r1 = D/sin(beta), vertical part, by
+ * Simpson in ln r; that E solves Laplace's equation, U phi/beta, and both boundaries. */
 static void lever_is_a_plate_of_the_wedge(void **state)
 {
     (void)state;
@@ -137,8 +138,8 @@ static void rules(void **state)
     assert_int_equal(nt_electrostatic_tip_check(&(nt_electrostatic_tip){20e-9, 0.0, 1e-5, 1.0, 1e-10}, &problem),
                      NT_E_RANGE);
     assert_string_equal(problem.field, "half_angle");
-    assert_int_equal(nt_electrostatic_lever_check(&(nt_electrostatic_lever){1e-4, NAN, 0.2, 1e-5, 1.0, 1e-10}, &problem),
-                     NT_E_NOT_FINITE);
+    const nt_electrostatic_lever no = {1e-4, NAN, 0.2, 1e-5, 1.0, 1e-10};
+    assert_int_equal(nt_electrostatic_lever_check(&no, &problem), NT_E_NOT_FINITE);
     assert_string_equal(problem.field, "width");
 }
 

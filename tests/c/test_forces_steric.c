@@ -51,8 +51,8 @@ static void is_the_integral_of_the_pressure(void **state)
     }
 }
 
-/* Where the brushes only just touch, t = 1 - h/T << 1: p = 3 t kT/s^3, so F/(2 pi R T) = 3 t^2/2 and U/(2 pi R T^2) = t^3/2;
- * the terms of the closed form cancel there to 1e-8 and 1e-12 of themselves. */
+/* Where the brushes only just touch, t = 1 - h/T << 1: p = 3 t kT/s^3, so F/(2 pi R T) = 3 t^2/2 and U/(2 pi R T^2) =
+ * t^3/2; the terms of the closed form cancel there to 1e-8 and 1e-12 of themselves. */
 static void just_touching(void **state)
 {
     (void)state;

@@ -102,7 +102,8 @@ static void derjaguin_form_overestimates_as_stated(void **state)
     (void)state;
     assert_within(nt_vdw_derjaguin_eval(&gold, 0.198e-9).F, -25.89e-9, 0.01e-9);
     assert_within(nt_vdw_derjaguin_eval(&gold, 12e-9).F, -0.0070e-9, 0.0001e-9);
-    const double gap[] = {0.2e-9, 1e-9, 3e-9, 10e-9, 30e-9, 100e-9}, excess[] = {0.007, 0.034, 0.1025, 0.36, 1.25, 6.11};
+    const double gap[] = {0.2e-9, 1e-9, 3e-9, 10e-9, 30e-9, 100e-9};
+    const double excess[] = {0.007, 0.034, 0.1025, 0.36, 1.25, 6.11};
     for (size_t i = 0; i < sizeof gap / sizeof *gap; i++) {
         const double ratio = nt_vdw_derjaguin_eval(&gold, gap[i]).F / nt_vdw_eval(&gold, gap[i]).F;
         assert_within(ratio - 1.0, excess[i], 0.02 * excess[i] + 0.0005);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Non-contact forces between a tip and a flat, at gap h of the undeformed bodies (paper, Eq. 1, corrected: docs/errata.md;
- * in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F = -dU/dh, k = -dF/dh. Below
- * minimum_gap F stays at its value there and U goes on linearly. nt_x_eval_n is nt_x_eval over arrays.
- * All functions: thread-safe, real-time safe; NaN in, NaN out; an infinite gap gives 0. Parameters are checked once by
- * nt_x_check(). What adds, is added by the caller; erratum E5b says what may be added to a contact law. */
+ * Non-contact forces between a tip and a flat, at gap h of the undeformed bodies (paper, Eq. 1, corrected:
+ * docs/errata.md; in liquid: docs/forces.md). Each law returns {U, F, k, a = 0}: U is 0 at infinite gap, F = -dU/dh,
+ * k = -dF/dh. Below minimum_gap F stays at its value there and U goes on linearly. nt_x_eval_n is nt_x_eval over
+ * arrays. All functions: thread-safe, real-time safe; NaN in, NaN out; an infinite gap gives 0. Parameters are checked
+ * once by nt_x_check(). What adds, is added by the caller; erratum E5b says what may be added to a contact law. */
 #ifndef NANOTOUCH_FORCES_H
 #define NANOTOUCH_FORCES_H
 
@@ -51,8 +51,8 @@ typedef struct nt_capillary {
     double film_thickness;  /* e of the film on each surface [m], >= 0 */
 } nt_capillary;
 NT_API nt_status nt_capillary_check(const nt_capillary *capillary, nt_problem *problem);
-/* The force of a standing bridge, F = -4 pi gamma_L R [1 - (h - 2e)/(2 r1)], the bracket clamped to [0, 1] (erratum E3):
- * constant below 2e, 0 beyond 2e + 2 r1. */
+/* The force of a standing bridge, F = -4 pi gamma_L R [1 - (h - 2e)/(2 r1)], the bracket clamped to [0, 1] (erratum
+ * E3): constant below 2e, 0 beyond 2e + 2 r1. */
 NT_API nt_law_value nt_capillary_eval(const nt_capillary *capillary, double gap);
 NT_API void nt_capillary_eval_n(const nt_capillary *capillary, const nt_strided *arrays);
 
@@ -66,7 +66,8 @@ NT_API int nt_capillary_advance(const nt_capillary *capillary, int bridged, doub
 NT_API void nt_capillary_trace_n(const nt_capillary *capillary, int *bridged, const nt_strided *arrays);
 
 /* Kelvin radius of a meniscus: -gamma_L V_m/(R_gas T ln(RH)), relative_humidity in (0, 1), temperature [K]. */
-NT_API double nt_kelvin_radius(double surface_tension, double molar_volume, double temperature, double relative_humidity);
+NT_API double nt_kelvin_radius(double surface_tension, double molar_volume, double temperature,
+                               double relative_humidity);
 
 /* --- Electrostatic force of conductors at a potential difference U --- */
 
@@ -81,8 +82,8 @@ NT_API nt_status nt_electrostatic_check(const nt_electrostatic *electrostatic, n
 NT_API nt_law_value nt_electrostatic_eval(const nt_electrostatic *electrostatic, double gap);
 NT_API void nt_electrostatic_eval_n(const nt_electrostatic *electrostatic, const nt_strided *arrays);
 
-/* Parallel plates, the paper's form: F = -eps0 S U^2/(2 h^2). The paper's S = 4 pi R r1 is the area of a meniscus and makes
- * it 10.8 times too large at a0, 0.28 times at 10 nm (erratum E5); it is right for an area S that is really flat. */
+/* Parallel plates, the paper's form: F = -eps0 S U^2/(2 h^2). The paper's S = 4 pi R r1 is the area of a meniscus and
+ * makes it 10.8 times too large at a0, 0.28 times at 10 nm (erratum E5); it is right for an area S that is flat. */
 typedef struct nt_electrostatic_plate {
     double area;        /* S [m^2], >= 0 */
     double potential;   /* U [V] */
