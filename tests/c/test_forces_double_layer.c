@@ -45,8 +45,8 @@ static double pressure_on_grid(int charge, double x, int N)
         here = (right[i] - (i == 0 ? wing : -1.0) * next) / diagonal[i];
     }
     const double middle = 0.5 * (here + next), slope = (next - here) / step;
-    const double kappa = 1.0 / water.debye_length;
-    return 0.5 * NT_VACUUM_PERMITTIVITY * water.relative_permittivity * kappa * kappa * (middle * middle - slope * slope);
+    const double permittivity = NT_VACUUM_PERMITTIVITY * water.relative_permittivity, kappa = 1.0 / water.debye_length;
+    return 0.5 * permittivity * kappa * kappa * (middle * middle - slope * slope);
 }
 
 /* k = 2 pi R P: the curvature of the sphere's energy is the pressure of the plates. Finite differences leave 1e-6. */
