@@ -49,8 +49,9 @@ def write_json(path: Path, data: Mapping[str, Any]) -> None:
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[[float], None]]:
-    """A bar on the terminal, for what takes longer than a second; called with the fraction done."""
+    """A bar on the terminal, for what takes longer than a second; called with the fraction done. None in a log."""
     tqdm = require("tqdm", "app").tqdm
     layout = "{l_bar}{bar}| {elapsed}<{remaining}"
-    with tqdm(total=1.0, desc=title, delay=1.0, bar_format=layout, leave=False, file=sys.stderr) as bar:
+    options = {"desc": title, "delay": 1.0, "bar_format": layout, "leave": False, "file": sys.stderr}
+    with tqdm(total=1.0, disable=not sys.stderr.isatty(), **options) as bar:
         yield lambda fraction: bar.update(fraction - bar.n)

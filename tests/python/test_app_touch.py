@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from nanotouch import record
 from nanotouch.surface import grating
-from nanotouch_app import touch, view
+from nanotouch_app import output, touch, view
 from nanotouch_app.main import main
 from synthetic import write_ibw_image, write_matrix
 
@@ -204,6 +206,23 @@ def test_as_a_command(tmp_path: Path) -> None:
     assert done.stderr == ""
     assert names(tmp_path / "nanotouch-out") == ALWAYS
     assert done.stdout.splitlines()[-1].startswith("written to nanotouch-out/: recording.mcap, summary.json, ")
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(("stream", "shown"), [(Terminal(), True), (io.StringIO(), False)])
+def test_progress_bar_on_a_terminal_only(stream: io.StringIO, shown: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", stream)
+    with output.progress_bar("touching") as progress:
+        progress(0.1)
+        assert stream.getvalue() == ""  # nothing in the first second
+        time.sleep(1.1)
+        progress(0.5)
+        progress(1.0)
+    assert ("touching:  50%" in stream.getvalue()) == shown
 
 
 def test_promised_files_are_listed_once() -> None:
