@@ -91,9 +91,7 @@ def _refuse_hopeless(file: Path) -> None:
         with guarded(file, "zipfile"), zipfile.ZipFile(file) as archive:
             unpacked = sum(item.file_size for item in archive.infolist())
         if unpacked > MAX_UNPACKED:
-            raise ReadError(
-                f"{file}: unpacks to {unpacked / 2**20:.0f} MiB; up to {MAX_UNPACKED >> 20} MiB are read"
-            )
+            raise ReadError(f"{file}: unpacks to {unpacked / 2**20:.0f} MiB; up to {MAX_UNPACKED >> 20} MiB are read")
 
 
 def _loaded(file: Path, given: Mapping[str, float | None]) -> list[Any]:

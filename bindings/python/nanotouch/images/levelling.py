@@ -179,9 +179,7 @@ def _small_groups(suspect: NDArray[np.bool_], cv2: object) -> NDArray[np.bool_]:
     return np.asarray(small[labels], dtype=bool)
 
 
-def _apart(
-    z: NDArray[np.float32], suspect: NDArray[np.bool_], threshold: float, cv2: object
-) -> NDArray[np.bool_]:
+def _apart(z: NDArray[np.float32], suspect: NDArray[np.bool_], threshold: float, cv2: object) -> NDArray[np.bool_]:
     """Where a pixel lies beyond all its unsuspected neighbours by more than `threshold`."""
     ring = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], dtype=np.uint8)
     big = np.float32(4.0)  # beyond any normalised height
@@ -227,9 +225,7 @@ def _digit(steps: NDArray[np.float64], height_range: float) -> float:
     return smallest if smallest < 0.05 * height_range else 0.0
 
 
-def _gentle(
-    difference: NDArray[np.float64], counted: NDArray[np.bool_], floor: float
-) -> NDArray[np.bool_]:
+def _gentle(difference: NDArray[np.float64], counted: NDArray[np.bool_], floor: float) -> NDArray[np.bool_]:
     """Where a height difference from pixel to pixel is no more than noise and the digitiser's steps explain."""
     size = np.abs(difference)
     ups = size[counted]
@@ -249,9 +245,7 @@ def _cut(flat: NDArray[np.bool_], used: NDArray[np.bool_]) -> tuple[NDArray[np.i
     return new_label[labels], int(kept.sum())
 
 
-def _fit_change(
-    z: NDArray[np.float64], slope: NDArray[np.float64], labels: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _fit_change(z: NDArray[np.float64], slope: NDArray[np.float64], labels: NDArray[np.int32]) -> NDArray[np.float64]:
     """Change of the common slope by Huber-weighted least squares with a free height for each piece.
 
     The least-norm solution leaves a direction alone in which no piece extends.

@@ -241,9 +241,7 @@ def _height_scale(stated: str | None, given: str | None, file: Path, name: str) 
     return _LENGTHS[given]
 
 
-def _filled(
-    values: NDArray[np.float64], file: Path
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _filled(values: NDArray[np.float64], file: Path) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Fill missing (not finite) pixels by the mean of their known neighbours, from the rim of each hole inwards."""
     missing = ~np.isfinite(values)
     count = int(np.count_nonzero(missing))
