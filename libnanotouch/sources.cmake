@@ -27,10 +27,12 @@ set(nanotouch_sources_contact
     contact/dmt.c
     contact/hertz.c
     contact/jkr.c
+    contact/jump.c
     contact/law.c
     contact/material.c
     contact/maugis.c
     contact/maugis_branch.c
+    contact/maugis_control.c
     contact/maugis_kernel.c
     contact/maugis_solve.c
     contact/maugis_table.c

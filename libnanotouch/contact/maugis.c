@@ -16,8 +16,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "contact/maugis_apart.h"
 #include "contact/maugis_solve.h"
-#include "contact/reduced.h"
 #include "nanotouch/material.h"
 
 static nt_reduced_units units_of(const nt_maugis *maugis)
@@ -25,24 +25,27 @@ static nt_reduced_units units_of(const nt_maugis *maugis)
     return (nt_reduced_units){maugis->load_scale, maugis->radius_scale, maugis->indentation_scale};
 }
 
-/* c at the displacement fold of the non-contact branch. */
-static double non_contact_fold(double lambda)
-{
-    return 8.0 / (3.0 * NT_PI) * lambda;
-}
-
 /* (non-contact) at d between the fold and the end of the branch; the larger c is the stable one. */
 static nt_law_value non_contact_eval(const nt_maugis *maugis, double d, int stable)
 {
-    const double lambda = maugis->lambda, c_fold = non_contact_fold(lambda);
+    const double c_fold = nt_maugis_apart_fold(maugis->lambda);
     const double beyond_onset = d - maugis->folds.onset_indentation;
     const double root = sqrt(fmax(c_fold * c_fold + 2.0 * beyond_onset, 0.0));
     const double c = stable ? c_fold + root : -2.0 * beyond_onset / (c_fold + root);
-    const double P = -0.5 * NT_PI * lambda * c * c;
+    return nt_maugis_apart_value(maugis, c, stable ? root : -root);
+}
+
+nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilibrium *point, int stable)
+{
+    nt_maugis_equilibrium slope = *point;
+    const double resolution = (stable ? NT_FOLD_RESOLUTION : -NT_FOLD_RESOLUTION) * maugis->fold_y;
+    if (fabs(point->y - maugis->fold_y) < fabs(resolution))
+        nt_maugis_equilibrium_at(maugis->lambda, maugis->fold_y + resolution, &slope);
     return (nt_law_value){
-        .U = lambda * c * c * c * (4.0 / 9.0 * lambda - NT_PI / 8.0 * c),
-        .F = P,
-        .k = (stable ? -NT_PI : NT_PI) * lambda * c / fmax(root, NT_FOLD_RESOLUTION * sqrt(fabs(d))),
+        .U = nt_maugis_equilibrium_energy(maugis->lambda, point),
+        .F = point->P,
+        .k = slope.P1 / slope.d1,
+        .a = point->a,
     };
 }
 
@@ -56,16 +59,7 @@ static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_
     const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
     if (status != NT_OK)
         return status;
-    nt_maugis_equilibrium slope = point;
-    const double resolution = (stable ? NT_FOLD_RESOLUTION : -NT_FOLD_RESOLUTION) * fold.y;
-    if (fabs(point.y - fold.y) < fabs(resolution))
-        nt_maugis_equilibrium_at(maugis->lambda, fold.y + resolution, &slope);
-    *reduced = (nt_law_value){
-        .U = nt_maugis_equilibrium_energy(maugis->lambda, &point),
-        .F = point.P,
-        .k = slope.P1 / slope.d1,
-        .a = point.a,
-    };
+    *reduced = nt_maugis_value_of(maugis, &point, stable);
     return NT_OK;
 }
 
@@ -95,7 +89,7 @@ static nt_status folds_find(nt_maugis *maugis)
         return status;
     maugis->fold_y = grip.y;
     maugis->load_fold_y = pull_off.y;
-    const double onset = -2.0 / (NT_PI * lambda), c = non_contact_fold(lambda);
+    const double onset = -2.0 / (NT_PI * lambda), c = nt_maugis_apart_fold(lambda);
     *folds = (nt_maugis_folds){
         .pull_off_load = pull_off.P,
         .pull_off_radius = pull_off.a,
@@ -195,8 +189,7 @@ nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch 
     }
     const double d = fmax(indentation / maugis->indentation_scale, folds->grip_indentation); /* rounding only */
     nt_law_value reduced;
-    if (folds->grip_in_contact ? !stable && d >= folds->touch_indentation
-                               : !stable || d < folds->touch_indentation)
+    if (folds->grip_in_contact ? !stable && d >= folds->touch_indentation : !stable || d < folds->touch_indentation)
         reduced = non_contact_eval(maugis, d, stable);
     else {
         const nt_status status = contact_eval(maugis, d, stable, &reduced, info);
@@ -205,40 +198,6 @@ nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch 
     }
     const nt_reduced_units units = units_of(maugis);
     *value = nt_reduced_to_si(&reduced, &units);
-    return NT_OK;
-}
-
-nt_status nt_maugis_indentation(const nt_maugis *maugis, double force, nt_branch branch, double *indentation,
-                                nt_solve_info *info)
-{
-    const nt_maugis_folds *folds = &maugis->folds;
-    const int unstable = branch == NT_BRANCH_UNSTABLE;
-    if (info != NULL)
-        *info = (nt_solve_info){0};
-    if (!nt_branch_is_known(branch))
-        return NT_E_ARGUMENT;
-    if (!isfinite(force))
-        return NT_E_NOT_FINITE;
-    if (force < -nt_maugis_pull_off_force(maugis) || (unstable && force >= 0.0))
-        return NT_E_NO_SOLUTION;
-    if (maugis->load_scale == 0.0 || force / maugis->load_scale > NT_REDUCED_HERTZ * sqrt(NT_REDUCED_HERTZ)) {
-        *indentation = nt_hertz_indentation(&maugis->contact, force);
-        return NT_OK;
-    }
-    const double P = fmax(force / maugis->load_scale, folds->pull_off_load); /* rounding only */
-    if (unstable && P > folds->touch_load) {
-        const double c = sqrt(-P / (0.5 * NT_PI * maugis->lambda));
-        const double d = 0.5 * c * c - non_contact_fold(maugis->lambda) * c + folds->onset_indentation;
-        *indentation = d * maugis->indentation_scale;
-        return NT_OK;
-    }
-    const nt_maugis_equilibrium fold = {.y = maugis->load_fold_y, .a = folds->pull_off_radius, .P = folds->pull_off_load};
-    nt_maugis_equilibrium point;
-    const nt_maugis_goal goal = {NT_GIVEN_LOAD, P, &fold, unstable, 0.0};
-    const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
-    if (status != NT_OK)
-        return status;
-    *indentation = point.d * maugis->indentation_scale;
     return NT_OK;
 }
 

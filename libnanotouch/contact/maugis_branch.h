@@ -7,9 +7,9 @@
 
 /* One equilibrium in reduced units (reduced.h). */
 typedef struct nt_maugis_equilibrium {
-    double y;    /* a/b, the branch parameter */
-    double a, b; /* radius of contact; b = sqrt(c^2 - a^2), c the outer radius of the cohesive zone */
-    double P, d; /* load, indentation */
+    double y;      /* a/b, the branch parameter */
+    double a, b;   /* radius of contact; b = sqrt(c^2 - a^2), c the outer radius of the cohesive zone */
+    double P, d;   /* load, indentation */
     double P1, d1; /* (dP/dy)/y and (dd/dy)/y: both finite at y = 0, so that dP/dd = P1/d1 is too */
     double a1, b1; /* da/dy and (db/dy)/y */
 } nt_maugis_equilibrium;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Maugis-Dugdale over arrays: the table, and the table polished.
  *
- * Blocks small enough for the first cache go through in steps: place in the table, then the cubic (then the exact branch).
- * The steps are plain loops without calls and branches, which compilers turn into vector code; where the toolchain can,
- * they are compiled for several instruction sets, of which the machine picks one. There is no fused multiply-add in any
+ * Blocks small enough for the first cache go through in steps: place in the table, then the cubic (then the exact
+ * branch). The steps are plain loops without calls and branches, which compilers turn into vector code; where the
+ * toolchain can, they are compiled for several instruction sets, of which the machine picks one. There is no fused
+ * multiply-add in any
  * (-ffp-contract=off), so that all give the same bits. Only the cubic needs help: four cells are loaded whole and
  * transposed, which beats gathering their numbers one by one. */
 #include <float.h>
@@ -12,7 +13,7 @@
 #include "contact/maugis_place.h"
 
 /* glibc resolves the variants at load time; sanitizers come too late for that. */
-#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && defined(__x86_64__) && defined(__gnu_linux__) && \
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && defined(__x86_64__) && defined(__gnu_linux__) &&     \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define VARIANTS __attribute__((target_clones("default", "arch=x86-64-v2", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
@@ -50,8 +51,10 @@ static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], co
     memcpy(&q2, cells[cell[2]].F, sizeof q2);
     memcpy(&q3, cells[cell[3]].F, sizeof q3);
     memcpy(&x, s, sizeof x);
-    const four even_01 = __builtin_shufflevector(q0, q1, 0, 4, 2, 6), odd_01 = __builtin_shufflevector(q0, q1, 1, 5, 3, 7);
-    const four even_23 = __builtin_shufflevector(q2, q3, 0, 4, 2, 6), odd_23 = __builtin_shufflevector(q2, q3, 1, 5, 3, 7);
+    const four even_01 = __builtin_shufflevector(q0, q1, 0, 4, 2, 6),
+               odd_01 = __builtin_shufflevector(q0, q1, 1, 5, 3, 7);
+    const four even_23 = __builtin_shufflevector(q2, q3, 0, 4, 2, 6),
+               odd_23 = __builtin_shufflevector(q2, q3, 1, 5, 3, 7);
     const four c0 = __builtin_shufflevector(even_01, even_23, 0, 1, 4, 5);
     const four c1 = __builtin_shufflevector(odd_01, odd_23, 0, 1, 4, 5);
     const four c2 = __builtin_shufflevector(even_01, even_23, 2, 3, 6, 7);
@@ -78,7 +81,7 @@ VARIANTS static int table_find(const nt_maugis_table *table, nt_branch branch, c
         const nt_maugis_place place = nt_maugis_place_of(&grid, indentation[i]);
         at.cell[i] = place.cell;
         at.s[i] = place.s;
-        outside |= -(int64_t) !(indentation[i] <= largest && indentation[i] >= -DBL_MAX);
+        outside |= -(int64_t)!(indentation[i] <= largest && indentation[i] >= -DBL_MAX);
     }
     if (outside)
         return 0;
@@ -88,7 +91,8 @@ VARIANTS static int table_find(const nt_maugis_table *table, nt_branch branch, c
 }
 
 /* The same, polished; outside of contact the table is closed-form already. */
-VARIANTS static int polished_find(const nt_maugis_table *table, nt_branch branch, const double *indentation, double *force)
+VARIANTS static int polished_find(const nt_maugis_table *table, nt_branch branch, const double *indentation,
+                                  double *force)
 {
     block at;
     const nt_maugis_grid grid = nt_maugis_grid_of(table, branch);
@@ -147,8 +151,8 @@ static nt_status force_n(const nt_maugis_table *table, const nt_maugis_query *qu
     return first == NT_OK ? status : first;
 }
 
-nt_status nt_maugis_table_force_n(const nt_maugis_table *table, nt_branch branch, const double *indentation, double *force,
-                                  long count)
+nt_status nt_maugis_table_force_n(const nt_maugis_table *table, nt_branch branch, const double *indentation,
+                                  double *force, long count)
 {
     const nt_maugis_query query = {NT_TIER_TABLE, branch};
     return force_n(table, &query, indentation, force, count);

@@ -75,7 +75,8 @@ typedef struct nt_maugis_place {
 /* NaN keeps to s and so to every result; beyond the end is the last cell, which is NaN. */
 static inline nt_maugis_place nt_maugis_place_of(const nt_maugis_grid *grid, double indentation)
 {
-    const int64_t held = -(int64_t)(indentation >= grid->first), contact = held & -(int64_t)(indentation >= grid->start);
+    const int64_t held = -(int64_t)(indentation >= grid->first),
+                  contact = held & -(int64_t)(indentation >= grid->start);
     double above = indentation - (contact ? grid->start : grid->grip);
     above = above < 0.0 ? 0.0 : above;
     const double Z = sqrt(above);

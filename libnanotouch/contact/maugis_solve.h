@@ -21,6 +21,9 @@ typedef struct nt_maugis_goal {
     double guess;                      /* of y; 0: none */
 } nt_maugis_goal;
 
+/* {U, F, k, a} of a point of the contact branch, reduced; stable says from which side the displacement fold is seen. */
+nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilibrium *point, int stable);
+
 nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_maugis_equilibrium *point,
                                nt_solve_info *info);
 

@@ -124,8 +124,9 @@ static void hermite(const double value[2], const double slope[2], double width, 
 static double work(const nt_maugis_cell *cell, double s, double rate)
 {
     const double *c = cell->F, w = cell->u - 1.0;
-    const double sum = w * c[0] + s * ((c[0] + w * c[1]) / 2.0 + s * ((c[1] + w * c[2]) / 3.0 +
-                                  s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
+    const double sum =
+        w * c[0] + s * ((c[0] + w * c[1]) / 2.0 +
+                        s * ((c[1] + w * c[2]) / 3.0 + s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
     return 2.0 * s * sum / (rate * rate);
 }
 
@@ -134,8 +135,8 @@ static void cell_fill(const nt_maugis_table *table, const border ends[2], double
     const double Zs = 1.0 / (table->rate * sqrt(table->maugis.indentation_scale));
     const double load = table->maugis.load_scale, radius = table->maugis.radius_scale;
     double c[4];
-    hermite((double[]){ends[0].P * load, ends[1].P * load}, (double[]){ends[0].P_Z * Zs * load, ends[1].P_Z * Zs * load},
-            width, cell->F);
+    hermite((double[]){ends[0].P * load, ends[1].P * load},
+            (double[]){ends[0].P_Z * Zs * load, ends[1].P_Z * Zs * load}, width, cell->F);
     hermite((double[]){ends[0].a * radius, ends[1].a * radius},
             (double[]){ends[0].a_Z * Zs * radius, ends[1].a_Z * Zs * radius}, width, cell->a);
     hermite((double[]){ends[0].y, ends[1].y}, (double[]){ends[0].y_Z * Zs, ends[1].y_Z * Zs}, width, c);
@@ -201,7 +202,8 @@ static void measure(nt_maugis_table *table)
             nt_maugis_equilibrium point;
             nt_maugis_equilibrium_at(maugis->lambda, maugis->fold_y + nt_cubic_y(cell->y, s), &point);
             const double exact = point.P * maugis->load_scale, indentation = point.d * unit;
-            const double force[2] = {nt_maugis_table_force(table, indentation), nt_maugis_table_polish(table, indentation)};
+            const double force[2] = {nt_maugis_table_force(table, indentation),
+                                     nt_maugis_table_polish(table, indentation)};
             const int away = indentation - table->start > AWAY_FROM_FOLD * unit;
             for (int tier = NT_TIER_TABLE; tier <= (away ? NT_TIER_POLISHED : NT_TIER_TABLE); tier++)
                 worst[tier] = fmax(worst[tier], error_of(force[tier], exact, pull_off));

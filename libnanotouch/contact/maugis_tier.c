@@ -26,8 +26,9 @@ static int is_tabulated(const nt_maugis_table *table, double indentation, nt_bra
 static nt_law_value table_value(const nt_maugis_table *table, const nt_maugis_cell *cell, nt_maugis_place place)
 {
     const double s = place.s, *c = cell->F, w = cell->u - 1.0, rate = table->rate;
-    const double sum = w * c[0] + s * ((c[0] + w * c[1]) / 2.0 + s * ((c[1] + w * c[2]) / 3.0 +
-                                  s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
+    const double sum =
+        w * c[0] + s * ((c[0] + w * c[1]) / 2.0 +
+                        s * ((c[1] + w * c[2]) / 3.0 + s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
     const double Z = fmax(place.Z, NT_FOLD_RESOLUTION * sqrt(fabs(table->start)));
     const double bend = 2.0 * c[2] + 3.0 * c[3] * s;
     return (nt_law_value){

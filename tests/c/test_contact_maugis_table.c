@@ -93,7 +93,8 @@ static void the_fold_is_no_exception(void **state)
 static void the_table_is_a_potential(void **state)
 {
     (void)state;
-    static const double node[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
+    static const double node[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                   0.9061798459386640};
     static const double weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                      0.2369268850561891};
     for (int i = 0; i < LAMBDAS; i += 3) {
@@ -160,10 +161,12 @@ static void beyond_the_table_is_the_exact_law(void **state)
             assert_true(nt_maugis_table_force(&table, outside[i]) == exact.F);
         }
     const double apart = table.maugis.folds.grip_indentation;
-    assert_true(at(&table, NT_TIER_TABLE, nextafter(apart, -9e9)).F == 0.0 && at(&table, NT_TIER_POLISHED, -1e9).U == 0.0);
+    assert_true(at(&table, NT_TIER_TABLE, nextafter(apart, -9e9)).F == 0.0 &&
+                at(&table, NT_TIER_POLISHED, -1e9).U == 0.0);
     nt_law_value value = {.F = 7.0}, exact;
     assert_int_equal(nt_maugis_table_eval(&table, NT_TIER_TABLE, table.maugis.folds.onset_indentation - 0.1,
-                                          NT_BRANCH_APPROACH, &value), NT_OK);
+                                          NT_BRANCH_APPROACH, &value),
+                     NT_OK);
     assert_true(value.F == 0.0);
     assert_int_equal(nt_maugis_table_eval(&table, NT_TIER_TABLE, apart + 0.01, NT_BRANCH_UNSTABLE, &value), NT_OK);
     assert_int_equal(nt_maugis_eval(&table.maugis, apart + 0.01, NT_BRANCH_UNSTABLE, &exact, NULL), NT_OK);
@@ -211,7 +214,8 @@ static void refuses_bad_input(void **state)
     nt_law_value value = {.F = 7.0};
     const double bad[] = {NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < COUNT(bad); i++) {
-        assert_int_equal(nt_maugis_table_eval(&table, NT_TIER_TABLE, bad[i], NT_BRANCH_STABLE, &value), NT_E_NOT_FINITE);
+        assert_int_equal(nt_maugis_table_eval(&table, NT_TIER_TABLE, bad[i], NT_BRANCH_STABLE, &value),
+                         NT_E_NOT_FINITE);
         assert_true(isnan(nt_maugis_table_force(&table, bad[i])) && isnan(nt_maugis_table_polish(&table, bad[i])));
     }
     assert_int_equal(nt_maugis_table_eval(&table, (nt_tier)9, 0.0, NT_BRANCH_STABLE, &value), NT_E_ARGUMENT);
@@ -227,14 +231,10 @@ static void refuses_bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_what_the_table_says),
-        cmocka_unit_test(the_fold_is_no_exception),
-        cmocka_unit_test(the_table_is_a_potential),
-        cmocka_unit_test(values_agree_with_the_exact_law),
-        cmocka_unit_test(beyond_the_table_is_the_exact_law),
-        cmocka_unit_test(scales_from_atoms_to_metres),
-        cmocka_unit_test(no_work_of_adhesion_is_hertz),
-        cmocka_unit_test(refuses_bad_input),
+        cmocka_unit_test(errors_are_what_the_table_says),    cmocka_unit_test(the_fold_is_no_exception),
+        cmocka_unit_test(the_table_is_a_potential),          cmocka_unit_test(values_agree_with_the_exact_law),
+        cmocka_unit_test(beyond_the_table_is_the_exact_law), cmocka_unit_test(scales_from_atoms_to_metres),
+        cmocka_unit_test(no_work_of_adhesion_is_hertz),      cmocka_unit_test(refuses_bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,11 @@
  * Faster Maugis-Dugdale: the same law from a table, in tiers of measured error (docs/contact.md).
  *
  * A table is made once per contact (some microseconds), of cubic polynomials in Z = sqrt(delta - delta_fold), in which
- * the fold is no singularity; cells grow with Z, and the cell is read off the bits of the float u = 1 + Z/Zs. JKR is the
- * table of a large lambda (nt_maugis_init_lambda), and faster than its own closed form.
- * Within a table F = dU/d(delta) and k = dF/d(delta) hold exactly: U is the integral of the tabulated F. The non-contact
- * branch is closed-form in every tier. Beyond the last tabulated indentation, and on the unstable branch, every tier is
- * the exact solver: nothing is extrapolated. */
+ * the fold is no singularity; cells grow with Z, and the cell is read off the bits of the float u = 1 + Z/Zs. JKR is
+ * the table of a large lambda (nt_maugis_init_lambda), and faster than its own closed form. Within a table F =
+ * dU/d(delta) and k = dF/d(delta) hold exactly: U is the integral of the tabulated F. The non-contact branch is
+ * closed-form in every tier. Beyond the last tabulated indentation, and on the unstable branch, every tier is the exact
+ * solver: nothing is extrapolated. */
 #ifndef NANOTOUCH_CONTACT_TABLE_H
 #define NANOTOUCH_CONTACT_TABLE_H
 

@@ -4,6 +4,7 @@
 #define NANOTOUCH_NANOTOUCH_H
 
 #include "nanotouch/contact.h"
+#include "nanotouch/contact_control.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/control.h"
 #include "nanotouch/dynamics.h"

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The non-contact branch of Maugis-Dugdale (maugis.c has its equations): surfaces apart, a disc of radius c inside the
+ * range of the stress. Private to contact/; reduced. */
+#ifndef NANOTOUCH_CONTACT_MAUGIS_APART_H
+#define NANOTOUCH_CONTACT_MAUGIS_APART_H
+
+#include <math.h>
+
+#include "contact/reduced.h"
+#include "nanotouch/material.h"
+
+/* c at its displacement fold. */
+static inline double nt_maugis_apart_fold(double lambda)
+{
+    return 8.0 / (3.0 * NT_PI) * lambda;
+}
+
+static inline double nt_maugis_apart_indentation(const nt_maugis *maugis, double c)
+{
+    return 0.5 * c * c - nt_maugis_apart_fold(maugis->lambda) * c + maugis->folds.onset_indentation;
+}
+
+/* c at a load. */
+static inline double nt_maugis_apart_radius(const nt_maugis *maugis, double P)
+{
+    return sqrt(-P / (0.5 * NT_PI * maugis->lambda));
+}
+
+/* {U, F, k, a} at c; beyond_fold = c - c_fold, which the caller has without cancellation. */
+static inline nt_law_value nt_maugis_apart_value(const nt_maugis *maugis, double c, double beyond_fold)
+{
+    const double lambda = maugis->lambda;
+    const double resolution = NT_FOLD_RESOLUTION * sqrt(fabs(nt_maugis_apart_indentation(maugis, c)));
+    return (nt_law_value){
+        .U = lambda * c * c * c * (4.0 / 9.0 * lambda - NT_PI / 8.0 * c),
+        .F = -0.5 * NT_PI * lambda * c * c,
+        .k = -NT_PI * lambda * c / copysign(fmax(fabs(beyond_fold), resolution), beyond_fold),
+    };
+}
+
+#endif
