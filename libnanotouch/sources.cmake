@@ -27,6 +27,7 @@ set(nanotouch_sources_contact
     contact/dmt.c
     contact/hertz.c
     contact/jkr.c
+    contact/jkr_shape.c
     contact/jump.c
     contact/law.c
     contact/material.c
@@ -38,7 +39,13 @@ set(nanotouch_sources_contact
     contact/maugis_table.c
     contact/maugis_tier.c
     contact/reduced.c
-    contact/sneddon.c)
+    contact/rim.c
+    contact/shape.c
+    contact/sneddon.c
+    contact/sphere.c
+    contact/stage_displacement.c
+    contact/tabor.c
+    contact/validity.c)
 set(nanotouch_sources_surface surface/dilation.c surface/dots.c surface/grating.c surface/height_field.c)
 set(nanotouch_sources_scene scene/interaction.c scene/plan.c scene/scene.c)
 set(nanotouch_sources_hal hal/hal.c)

@@ -32,6 +32,7 @@ USES = {
 # The layer that each public header belongs to, where it is not named after it (contact.h, contact_table.h).
 HEADERS = {
     **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
+    "geometry": "contact",
     "plan": "scene",
     "sim": "hal/sim",
     "hal_linux": "hal/linux",

@@ -10,6 +10,7 @@
 #include "nanotouch/dynamics.h"
 #include "nanotouch/field.h"
 #include "nanotouch/forces.h"
+#include "nanotouch/geometry.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
 #include "nanotouch/material.h"

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""High-precision contact of rigid shapes without adhesion, independent of the library: makes geometry_table.h.
+
+Nothing but Galin's two integrals over the slope f'(r) of the shape, integrated numerically with 40 digits,
+
+    delta = a Int_0^a f'(r)/sqrt(a^2 - r^2) dr,     F = 2 E* Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr,
+
+and the contact radius found from the indentation by the secant method. The energy is the integral over the one-dimensional
+profile (Galin 1961), again numerically; that F is its slope the C tests show by differences. Inputs are exact doubles,
+E* = 1; results are rounded to 20 digits.
+
+Run: python geometry_oracle.py > geometry_table.h     (mpmath 1.3 or newer; a few minutes on two cores)
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from mpmath import asin, cosh, cot, inf, mp, mpf, nstr, pi, quad, sin, sqrt, tanh
+
+mp.dps = 40
+
+
+@dataclass(frozen=True)
+class Shape:
+    """kind as in nt_shape_kind; radius of sphere, cap or flat end; half angle of the flank; radius of the transition."""
+
+    kind: str
+    radius: float
+    half_angle: float
+    transition: float
+
+    def rim(self) -> mpf:
+        """Where the slope has a kink; infinite if nowhere."""
+        if self.kind == "SPHERE":
+            return inf
+        if self.kind == "TRUNCATED":
+            return mpf(self.radius)
+        return mpf(self.transition) or self.radius * cot(mpf(self.half_angle))
+
+    def slope(self, r: mpf) -> mpf:
+        """Slope f'(r) of the profile."""
+        if self.kind == "SPHERE":
+            return r / sqrt((self.radius - r) * (self.radius + r))
+        if r > self.rim():
+            return cot(mpf(self.half_angle))
+        return r / self.radius if self.kind == "BLUNTED" else mpf(0)
+
+
+def galin(shape: Shape, a: mpf, weight: Callable[[mpf], mpf]) -> mpf:
+    """Int_0^(pi/2) f'(a sin t) weight(sin t) dt, cut at the rim and towards the edge."""
+    cuts = {mpf(0), pi / 2} | {pi / 2 - pi / 2 / 8**i for i in range(1, 6) if shape.kind == "SPHERE"}
+    if a > shape.rim():
+        cuts.add(asin(shape.rim() / a))
+    return quad(lambda t: shape.slope(a * sin(t)) * weight(sin(t)), sorted(cuts))
+
+
+def depth(shape: Shape, a: mpf) -> mpf:
+    """Indentation at a contact radius."""
+    return a * galin(shape, a, lambda s: mpf(1))
+
+
+def force(shape: Shape, a: mpf) -> mpf:
+    """Force at a contact radius, E* = 1."""
+    return 2 * a * a * galin(shape, a, lambda s: s * s)
+
+
+def radius_at(shape: Shape, indentation: float, start: mpf) -> mpf:
+    """Contact radius at an indentation, by the secant method on the depth from a start that belongs to it to a rounding."""
+    previous, a = start * (1 + mpf(10) ** -12), start
+    error = depth(shape, previous) - indentation
+    for _ in range(8):
+        last, error = error, depth(shape, a) - indentation
+        if abs(error) < mpf(10) ** -33 * indentation or error == last:
+            return a
+        previous, a = a, a - error * (a - previous) / (error - last)
+    raise ArithmeticError(f"no contact radius for {shape} at {indentation}")
+
+
+def energy_at(shape: Shape, a: mpf) -> mpf:
+    """E* Int_0^a (delta - g(x))^2 dx, g the depth at which the contact radius is x."""
+    indentation = depth(shape, a)
+    cuts = [mpf(0), shape.rim(), a] if a > shape.rim() else [mpf(0), a]
+    with mp.workdps(25):
+        return indentation**2 * quad(lambda x: (1 - depth(shape, x) / indentation) ** 2, cuts)
+
+
+def row(case: tuple[Shape, mpf]) -> str:
+    """One line of the table: the indentation is the double nearest to that of the contact radius asked for."""
+    shape, start = case
+    indentation = float(depth(shape, start))
+    a = radius_at(shape, indentation, start)
+    values = ", ".join(nstr(v, 20) for v in (a, force(shape, a), energy_at(shape, a)))
+    given = f"{shape.radius!r}, {shape.half_angle!r}, {shape.transition!r}"
+    return f"    {{{{NT_SHAPE_{shape.kind}, 0, {given}}}, {indentation!r}, {values}}},"
+
+
+def cases() -> list[tuple[Shape, mpf]]:
+    """All shapes and contact radii of the table."""
+    found = [(Shape("SPHERE", 1.0, 0.0, 0.0), tanh(mpf(u))) for u in
+             ("1e-6", "1e-3", "0.01", "0.1", "0.3", "0.54", "0.56", "0.8", "0.99", "1.1", "2", "4")]  # fmt: skip
+    for angle in (0.35, 1.2):
+        tangent = float(cot(mpf(angle)))
+        for shape in (
+            Shape("TRUNCATED", 1.0, angle, 0.0),
+            Shape("BLUNTED", 1.0, angle, 0.0),
+            Shape("BLUNTED", 1.0, angle, 0.5 * tangent),
+        ):
+            beyond = [cosh(mpf(w)) for w in ("1e-4", "0.05", "0.5", "0.87", "0.9", "2", "5", "12")]
+            inside = [mpf("0.3")] if shape.kind == "BLUNTED" else []
+            found += [(shape, shape.rim() * ratio) for ratio in inside + beyond]
+    return found
+
+
+def main() -> None:
+    """Print the header."""
+    print("/* SPDX-License-Identifier: BSD-3-Clause")
+    print(" * Generated by geometry_oracle.py: shape, indentation, contact radius, force, energy for E* = 1. */")
+    print('#include "nanotouch/geometry.h"\n')
+    print("static const struct {\n    nt_shape shape;\n    double indentation, a, F, U;\n} geometry_table[] = {")
+    with multiprocessing.Pool(2) as pool:
+        print("\n".join(pool.imap(row, cases())))
+    print("};")
+
+
+if __name__ == "__main__":
+    main()
