@@ -56,6 +56,7 @@ typedef struct nt_sim {
     double x, y;
     uint32_t flags; /* NT_SAMPLE_* put into every sample: faults and buttons */
     nt_truth truth;
+    nt_law_value law; /* of the interaction, at truth.gap */
 } nt_sim;
 
 /* A rig at rest, clear of the surface. All state is inside *sim: copying it is a snapshot. */
