@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import nanotouch as nt
 
-COMMANDS = ("touch", "info", "curve", "fit", "export", "doctor")
+COMMANDS = ("touch", "info", "curve", "fit", "export", "reproduce", "doctor")
 
 
 def build_parser() -> argparse.ArgumentParser:
