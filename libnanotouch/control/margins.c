@@ -44,7 +44,18 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     };
     margins.stability_limit = rig->master.damping / margins.loop_delay; /* R1 */
     margins.margin = margins.stability_limit / margins.loop_stiffness;
+    const double hop = 0.5 * T + gains->delay * T;
+    const double servo = gains->height_gain * k_eff / k_c * (margins.loop_delay - hop); /* integral gain times lag */
+    margins.height_margin = fmin(1.0 / servo, rig->master.damping / (hop * gains->height_stiffness));
     return margins;
+}
+
+double nt_margins_force_overshoot(const nt_rig *rig, const nt_settings *settings, double slope)
+{
+    const nt_limits *limits = &settings->limits;
+    const double speed = limits->stage_speed + slope * limits->lateral_speed;
+    const double delay = nt_margins_compute(rig, &settings->gains, INFINITY).loop_delay;
+    return rig->probe.spring_constant * speed * delay + 6.0 * nt_probe_force_noise(&rig->probe);
 }
 
 double nt_margins_jury_limit(const nt_master *master, double period)

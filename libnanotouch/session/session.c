@@ -104,8 +104,10 @@ static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_
     if (status != NT_OK)
         return status;
     session->margins = nt_margins_compute(&setup->rig, &setup->settings.gains, session->plan.maximum_stiffness);
-    if (setup->mode == NT_MODE_TOUCH && !(session->margins.margin >= setup->minimum_margin))
-        return refuse(problem, "stability margin", "", session->margins.margin, setup->minimum_margin, INFINITY);
+    const int touching = setup->mode == NT_MODE_TOUCH;
+    const double margin = touching ? session->margins.margin : session->margins.height_margin;
+    if (!(margin >= setup->minimum_margin))
+        return refuse(problem, "stability margin", "", margin, setup->minimum_margin, INFINITY);
     status = make_sim(session, setup);
     if (status != NT_OK)
         return status;

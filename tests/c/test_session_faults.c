@@ -252,11 +252,8 @@ static void no_hand_can_break_the_force_limit(void **state)
     nt_random random = nt_random_seed(33);
     double worst = 0.0;
     int stopped = 0;
-    const nt_limits *limits = &pressed.touch.settings.limits;
-    const nt_probe *probe = &pressed.touch.rig.probe;
-    const double delay = nt_margins_compute(&pressed.touch.rig, &pressed.touch.settings.gains, 1e9).loop_delay;
-    const double bound =
-        limits->force + probe->spring_constant * limits->stage_speed * delay + 6.0 * nt_probe_force_noise(probe);
+    const nt_limits *limits = &begun.touch.settings.limits;
+    const double bound = limits->force + nt_margins_force_overshoot(&begun.touch.rig, &begun.touch.settings, 0.0);
     for (int n = 0; n < 60; n++) {
         l = begun;
         l.sim.plan = &l.plan;
@@ -275,6 +272,46 @@ static void no_hand_can_break_the_force_limit(void **state)
                   1e9 * limits->force, 1e9 * bound, stopped);
     assert_true(worst < bound);
     assert_true(stopped > 0 && worst > 0.9 * limits->force); /* they did try */
+}
+
+enum { N = 96 };
+
+/* Pressed at nine tenths of the limit and driven sideways, as fast as allowed, against a wall of 300 nm. */
+static void a_wall_does_not_break_the_force_limit(void **state)
+{
+    (void)state;
+    static double heights[N * N], coefficients[N * N];
+    static loop l;
+    nt_surface surface;
+    for (int i = 0; i < N * N; i++)
+        heights[i] = 150e-9 * (1.0 + tanh((i % N - 48) / 2.0));
+    const nt_height_map map = {heights, N, N, 20e-9, 20e-9};
+    assert_int_equal(nt_surface_init(&surface, &map, coefficients), NT_OK);
+    double slope = 0.0;
+    for (double x = 0.0; x < 1.9e-6; x += 1e-9)
+        slope = fmax(slope, nt_surface_eval(&surface, x, 0.3e-6).zx);
+    nt_session_setup setup = nt_session_defaults();
+    setup.surface = &surface;
+    setup.x = setup.y = 0.3e-6;
+    setup.clearance = 20e-9;
+    setup.settings.gains.alpha_f *= 0.5;
+    assert_int_equal(loop_open(&l, &setup), NT_OK);
+    const nt_limits *limits = &l.touch.settings.limits;
+    loop_push(&l, 0.9 * limits->force * setup.settings.gains.alpha_f, 0.5);
+    for (int i = 0; i < 30000; i++)
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+    assert_int_equal(l.command.state, NT_RUN);
+    assert_int_equal(nt_touch_aim(&l.touch, &l.state, 1.7e-6, 0.3e-6, 0.0), NT_OK);
+    double worst = 0.0;
+    for (int i = 0; i < 3000; i++) {
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+        worst = fmax(worst, l.sim.truth.tip_force);
+    }
+    const double overshoot = nt_margins_force_overshoot(&l.touch.rig, &l.touch.settings, slope);
+    print_message("slope %.1f: worst force %.0f nN, limit %.0f nN, bound %.0f nN\n", slope, 1e9 * worst,
+                  1e9 * limits->force, 1e9 * (limits->force + overshoot));
+    assert_true(worst > limits->force && worst < limits->force + overshoot);
+    assert_int_equal(l.command.state, NT_RETRACT);
 }
 
 /* The stage of the rig itself fails while the operator draws away, which needs 0.1 um in some 0.1 s. Stuck: found by
@@ -313,6 +350,7 @@ int main(void)
         cmocka_unit_test(every_fault_has_its_reaction),
         cmocka_unit_test(every_pair_of_faults_ends_as_its_worse_one),
         cmocka_unit_test(no_hand_can_break_the_force_limit),
+        cmocka_unit_test(a_wall_does_not_break_the_force_limit),
         cmocka_unit_test(a_stage_that_fails_is_found),
     };
     return cmocka_run_group_tests(tests, press, NULL);

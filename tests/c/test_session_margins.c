@@ -169,6 +169,46 @@ static void what_is_unstable_is_calmed_or_held(void **state)
     }
 }
 
+/* Topography on a hard flat: the force's ripple in the last of four seconds, relative to the set force. */
+static double topography_ripple(const nt_session_setup *setup)
+{
+    static loop l;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    assert_int_equal(loop_open(&l, setup), NT_OK);
+    for (double t = 0.0; t < 4.0; t += l.touch.period) {
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+        if (t > 3.0) {
+            low = fmin(low, l.sim.truth.tip_force);
+            high = fmax(high, l.sim.truth.tip_force);
+        }
+    }
+    return (high - low) / setup->settings.gains.set_point;
+}
+
+/* An integrator g behind a lag L turns over between g L = 1, which is refused, and 2; a margin of 1.5 is calm. */
+static void the_height_servo_has_its_margin(void **state)
+{
+    (void)state;
+    for (double rate = 1e3; rate < 20e3; rate *= sqrt(10.0)) {
+        nt_session_setup setup = ideal_setup(rate, 1.0);
+        nt_gains *gains = &setup.settings.gains;
+        setup.mode = NT_MODE_TOPOGRAPHY;
+        const double found = nt_margins_compute(&setup.rig, gains, (double)INFINITY).height_margin;
+        const double gain = gains->height_gain * found; /* at a margin of 1 */
+        gains->height_gain = gain / 1.5;
+        assert_true(fabs(nt_margins_compute(&setup.rig, gains, (double)INFINITY).height_margin - 1.5) < 1e-9);
+        const double calm = topography_ripple(&setup);
+        gains->height_gain = 2.5 * gain;
+        const double wild = topography_ripple(&setup);
+        print_message("%5.0f Hz: ripple %.2g of the set force at margin 1.5, %.2g at 0.4\n", rate, calm, wild);
+        assert_true(calm < 1e-3 && wild > 0.1);
+        nt_session *session = NULL;
+        nt_problem problem = {0};
+        assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_RANGE);
+        assert_string_equal(problem.field, "stability margin");
+    }
+}
+
 enum { N = 64 };
 
 /* Dragged over hills of 20 nm a steady hand is lifted and lowered: energy comes from the surface, no trip. */
@@ -213,6 +253,7 @@ int main(void)
         cmocka_unit_test(r1_is_on_the_safe_side_of_the_simulated_limit),
         cmocka_unit_test(a_margin_of_one_and_a_half_is_calm),
         cmocka_unit_test(what_is_unstable_is_calmed_or_held),
+        cmocka_unit_test(the_height_servo_has_its_margin),
         cmocka_unit_test(topography_trips_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
