@@ -7,14 +7,13 @@
  * multiply-add in any
  * (-ffp-contract=off), so that all give the same bits. Only the cubic needs help: four cells are loaded whole and
  * transposed, which beats gathering their numbers one by one. */
-#include <float.h>
 #include <stddef.h>
 
 #include "contact/maugis_place.h"
 
 /* glibc resolves the variants at load time; sanitizers come too late for that. */
-#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && defined(__x86_64__) && defined(__gnu_linux__) &&     \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(NANOTOUCH_ONE_VARIANT) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 &&                   \
+    defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define VARIANTS __attribute__((target_clones("default", "arch=x86-64-v2", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define VARIANTS
@@ -59,7 +58,7 @@ static inline void cubics(const nt_maugis_cell *cells, const int64_t cell[4], co
     const four c1 = __builtin_shufflevector(odd_01, odd_23, 0, 1, 4, 5);
     const four c2 = __builtin_shufflevector(even_01, even_23, 2, 3, 6, 7);
     const four c3 = __builtin_shufflevector(odd_01, odd_23, 2, 3, 6, 7);
-    const four result = c0 + x * (c1 + x * (c2 + x * c3));
+    const four result = (c0 + x * c1) + x * x * (c2 + x * c3); /* as nt_cubic */
     memcpy(force, &result, sizeof result);
 }
 #else
@@ -81,7 +80,7 @@ VARIANTS static int table_find(const nt_maugis_table *table, nt_branch branch, c
         const nt_maugis_place place = nt_maugis_place_of(&grid, indentation[i]);
         at.cell[i] = place.cell;
         at.s[i] = place.s;
-        outside |= -(int64_t)!(indentation[i] <= largest && indentation[i] >= -DBL_MAX);
+        outside |= -(int64_t)!(indentation[i] <= largest);
     }
     if (outside)
         return 0;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Maugis-Dugdale at one indentation, in tiers: see contact_table.h. */
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -17,7 +16,7 @@ static nt_status exact_eval(const nt_maugis_table *table, double indentation, nt
 static int is_tabulated(const nt_maugis_table *table, double indentation, nt_branch branch)
 {
     const int held = branch == NT_BRANCH_STABLE || branch == NT_BRANCH_APPROACH;
-    return held && table->cells != NULL && indentation <= table->largest_indentation && indentation >= -DBL_MAX;
+    return held && table->cells != NULL && indentation <= table->largest_indentation;
 }
 
 /* U is the integral of F d(delta), delta = delta_start + Z^2, Z = (u - 1)/rate; k is dF/dZ/(2 Z). In the first cell the
@@ -81,7 +80,7 @@ nt_status nt_maugis_table_eval(const nt_maugis_table *table, nt_tier tier, doubl
 {
     if (tier != NT_TIER_TABLE && tier != NT_TIER_POLISHED && tier != NT_TIER_EXACT)
         return NT_E_ARGUMENT;
-    if (tier == NT_TIER_EXACT || !is_tabulated(table, indentation, branch))
+    if (tier == NT_TIER_EXACT || isinf(indentation) || !is_tabulated(table, indentation, branch))
         return exact_eval(table, indentation, branch, value);
     const nt_maugis_grid grid = nt_maugis_grid_of(table, branch);
     const nt_maugis_place place = nt_maugis_place_of(&grid, indentation);

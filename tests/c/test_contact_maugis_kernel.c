@@ -74,11 +74,14 @@ static void bad_and_far_elements(void **state)
     for (size_t i = 0; i < COUNT(odd); i++) {
         fill(&table, 600);
         in[300] = odd[i];
-        const nt_status expected = isfinite(odd[i]) ? NT_OK : NT_E_NOT_FINITE;
+        const nt_status expected = odd[i] < 1e30 ? NT_OK : NT_E_NOT_FINITE;
         assert_int_equal(nt_maugis_table_force_n(&table, NT_BRANCH_STABLE, in, out, 600), expected);
         for (long n = 0; n < 600; n++)
             assert_true(same(out[n], nt_maugis_table_force(&table, in[n])));
-        assert_true(isfinite(odd[i]) ? out[300] == eval(&table.maugis, odd[i], NT_BRANCH_STABLE).F : isnan(out[300]));
+        if (isfinite(odd[i]))
+            assert_true(out[300] == eval(&table.maugis, odd[i], NT_BRANCH_STABLE).F);
+        else
+            assert_true(odd[i] < 0.0 ? out[300] == 0.0 : isnan(out[300]));
         assert_int_equal(nt_maugis_table_polish_n(&table, NT_BRANCH_STABLE, in, out, 600), expected);
         assert_true(same(out[300], nt_maugis_table_polish(&table, odd[i])));
     }

@@ -216,7 +216,10 @@ static void refuses_bad_input(void **state)
     for (size_t i = 0; i < COUNT(bad); i++) {
         assert_int_equal(nt_maugis_table_eval(&table, NT_TIER_TABLE, bad[i], NT_BRANCH_STABLE, &value),
                          NT_E_NOT_FINITE);
-        assert_true(isnan(nt_maugis_table_force(&table, bad[i])) && isnan(nt_maugis_table_polish(&table, bad[i])));
+        if (bad[i] < 0.0) /* as Hertz and DMT: infinitely far is apart */
+            assert_true(nt_maugis_table_force(&table, bad[i]) == 0.0 && nt_maugis_table_polish(&table, bad[i]) == 0.0);
+        else
+            assert_true(isnan(nt_maugis_table_force(&table, bad[i])) && isnan(nt_maugis_table_polish(&table, bad[i])));
     }
     assert_int_equal(nt_maugis_table_eval(&table, (nt_tier)9, 0.0, NT_BRANCH_STABLE, &value), NT_E_ARGUMENT);
     assert_int_equal(nt_maugis_table_eval(&table, NT_TIER_TABLE, 0.0, (nt_branch)9, &value), NT_E_ARGUMENT);

@@ -61,7 +61,8 @@ NT_API nt_status nt_maugis_table_init(nt_maugis_table *table, const nt_maugis *m
 /* As nt_maugis_eval, in a tier. */
 NT_API nt_status nt_maugis_table_eval(const nt_maugis_table *table, nt_tier tier, double indentation, nt_branch branch,
                                       nt_law_value *value);
-/* Force alone on the stable branch [N], from the table and polished; NaN for NaN and infinities. */
+/* Force alone on the stable branch [N], from the table and polished; NaN for NaN and +infinity, 0 for
+ * -infinity (apart). */
 NT_API double nt_maugis_table_force(const nt_maugis_table *table, double indentation);
 NT_API double nt_maugis_table_polish(const nt_maugis_table *table, double indentation);
 

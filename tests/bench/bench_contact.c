@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What contact laws cost, in nanoseconds and in multiples of an inlined Hertz of the same build: JSON on stdout.
+ *
+ * Each figure is the least of many runs, as whatever else a machine does only adds. Throughput is per element of an
+ * array of 4096 that stays in cache; latency feeds every result into the next argument, as a control loop does. */
+#define _POSIX_C_SOURCE 199309L
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "nanotouch/contact_table.h"
+#include "nanotouch/material.h"
+
+enum { COUNT = 4096, RUNS = 60, CELLS = 2000 };
+
+typedef struct {
+    nt_maugis maugis;
+    nt_maugis_table table;
+    double low, reach; /* of the indentations */
+    double in[COUNT], out[COUNT];
+} setting;
+
+static nt_maugis_cell cells[CELLS];
+static setting now;
+static volatile double sink;
+
+static double seconds(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static inline double hertz(double d)
+{
+    return d > 0.0 ? d * sqrt(d) : 0.0;
+}
+
+/* JKR in closed form: Ferrari's solution of s^4 - 4/sqrt(6) s = d (contact/jkr.c) over Cardano's of m^3 + d m = 1/3. */
+static inline double jkr_closed(double d)
+{
+    const double root = sqrt(1.0 / 36.0 + d * d * d / 27.0);
+    const double m = cbrt(1.0 / 6.0 + root) + cbrt(1.0 / 6.0 - root), r = sqrt(2.0 * m);
+    const double s = 0.5 * (r + sqrt(8.0 / 2.44948974278317809820 / r - 2.0 * m)), s3 = s * s * s;
+    return s3 * s3 - 2.44948974278317809820 * s3;
+}
+
+#define ARRAY(name, expression)                                                                                        \
+    static void name(void)                                                                                             \
+    {                                                                                                                  \
+        for (int i = 0; i < COUNT; i++) {                                                                              \
+            const double d = now.in[i];                                                                                \
+            now.out[i] = (expression);                                                                                 \
+        }                                                                                                              \
+    }
+/* The next argument depends on the last result, by less than rounding leaves of it; in contact throughout, as a state
+ * that is known beforehand would break the chain. */
+#define CHAIN(name, expression)                                                                                        \
+    static void name(void)                                                                                             \
+    {                                                                                                                  \
+        double d = fabs(now.in[0]), F = 0.0;                                                                           \
+        for (int i = 0; i < COUNT; i++) {                                                                              \
+            F = (expression);                                                                                          \
+            d = fabs(now.in[i]) + 1e-18 * F;                                                                           \
+        }                                                                                                              \
+        sink = F;                                                                                                      \
+    }
+
+static double exact(double d)
+{
+    nt_law_value value = {.F = NAN};
+    (void)nt_maugis_eval(&now.maugis, d, NT_BRANCH_STABLE, &value, NULL);
+    return value.F;
+}
+
+ARRAY(hertz_array, hertz(d))
+CHAIN(hertz_chain, hertz(d))
+ARRAY(jkr_closed_array, jkr_closed(d))
+CHAIN(jkr_closed_chain, jkr_closed(d))
+ARRAY(exact_array, exact(d))
+CHAIN(exact_chain, exact(d))
+CHAIN(table_chain, nt_maugis_table_force(&now.table, d))
+CHAIN(polished_chain, nt_maugis_table_polish(&now.table, d))
+
+static void table_array(void)
+{
+    (void)nt_maugis_table_force_n(&now.table, NT_BRANCH_STABLE, now.in, now.out, COUNT);
+}
+
+static void polished_array(void)
+{
+    (void)nt_maugis_table_polish_n(&now.table, NT_BRANCH_STABLE, now.in, now.out, COUNT);
+}
+
+static void values_of(nt_tier tier)
+{
+    static double U[COUNT], k[COUNT], a[COUNT];
+    const nt_strided arrays = {now.in, U, now.out, k, a, COUNT, 1, 1};
+    (void)nt_maugis_table_eval_n(&now.table, tier, NT_BRANCH_STABLE, &arrays);
+}
+
+static void table_values(void)
+{
+    values_of(NT_TIER_TABLE);
+}
+
+static void polished_values(void)
+{
+    values_of(NT_TIER_POLISHED);
+}
+
+static void load_array(void)
+{
+    for (int i = 0; i < COUNT; i++)
+        (void)nt_maugis_indentation(&now.maugis, now.in[i] * sqrt(fabs(now.in[i])), NT_BRANCH_STABLE, &now.out[i],
+                                    NULL);
+}
+
+/* Least time of one call [s]. */
+static double least(void (*work)(void))
+{
+    double best = HUGE_VAL;
+    for (int i = 0; i < RUNS; i++) {
+        const double start = seconds();
+        work();
+        best = fmin(best, seconds() - start);
+    }
+    sink = now.out[COUNT / 2];
+    return best;
+}
+
+static void set(double lambda, double lowest)
+{
+    const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.0};
+    if (nt_maugis_init_lambda(&now.maugis, &contact, lambda) != NT_OK ||
+        nt_maugis_table_init(&now.table, &now.maugis, NULL, cells, CELLS) != NT_OK)
+        exit(1);
+    unsigned random = 1;
+    for (int i = 0; i < COUNT; i++) {
+        random = random * 1664525u + 1013904223u;
+        now.in[i] = lowest + 10.0 * (double)(random >> 8) / 16777216.0;
+    }
+}
+
+static nt_contact made = {1.0, 0.75, 1.0 / NT_PI, 0.0};
+
+static void folds(void)
+{
+    made.cohesive_stress = 0.5 * now.maugis.lambda;
+    (void)nt_maugis_init(&now.maugis, &made);
+}
+
+static void folds_and_table(void)
+{
+    folds();
+    (void)nt_maugis_table_init(&now.table, &now.maugis, NULL, cells, CELLS);
+}
+
+typedef struct {
+    const char *name;
+    void (*work)(void);
+    void (*unit)(void); /* what its ratio is to */
+} benchmark;
+
+static void print(const char *name, double lambda, double ns, double ratio)
+{
+    static const char *separator = "";
+    printf("%s\n    {\"name\": \"%s\", \"lambda\": %g, \"ns\": %.4g, \"hertz\": %.4g}", separator, name, lambda, ns,
+           ratio);
+    separator = ",";
+}
+
+static void run(double lambda)
+{
+    static const benchmark all[] = {
+        {"hertz array", hertz_array, hertz_array},
+        {"hertz latency", hertz_chain, hertz_chain},
+        {"maugis table array", table_array, hertz_array},
+        {"maugis table latency", table_chain, hertz_chain},
+        {"maugis table array U F k a", table_values, hertz_array},
+        {"maugis polished array", polished_array, hertz_array},
+        {"maugis polished latency", polished_chain, hertz_chain},
+        {"maugis polished array U F k a", polished_values, hertz_array},
+        {"maugis exact array", exact_array, hertz_array},
+        {"maugis exact latency", exact_chain, hertz_chain},
+        {"maugis exact indentation array", load_array, hertz_array},
+        {"jkr closed form array", jkr_closed_array, hertz_array},
+        {"jkr closed form latency", jkr_closed_chain, hertz_chain},
+    };
+    set(lambda, lambda >= 1e9 ? -0.9 : -1.0);
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        const double time = least(all[i].work), unit = least(all[i].unit);
+        print(all[i].name, lambda, time / COUNT * 1e9, time / unit);
+    }
+    const double unit = least(hertz_array) / COUNT;
+    double time = least(folds);
+    print("maugis folds", lambda, time * 1e9, time / unit);
+    time = least(folds_and_table);
+    print("maugis folds and table", lambda, time * 1e9, time / unit);
+}
+
+int main(int count, char **arguments)
+{
+    static const double lambdas[] = {0.27, 1.0, 5.8, 1e9};
+    printf("{\n  \"instructions\": \"%s\",\n  \"benchmarks\": [", count > 1 ? arguments[1] : "dispatched");
+    for (size_t i = 0; i < sizeof lambdas / sizeof lambdas[0]; i++)
+        run(lambdas[i]);
+    printf("\n  ]\n}\n");
+    return 0;
+}
