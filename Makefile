@@ -26,11 +26,10 @@ fuzz:  ## random input to the C library, with sanitizers; about a minute
 	@cmake --build --preset fuzz
 	@ctest --preset fuzz -j $(JOBS)
 
-bench:  ## what one call costs on this machine, as JSON
+bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test
 	@cmake --preset release --log-level WARNING >/dev/null
-	@cmake --build --preset release --target bench_core >/dev/null
-	@build/release/tests/bench/bench_core
+	@cmake --build --preset release --target bench
 
 C_FILES = $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 
