@@ -12,6 +12,8 @@
 #include "core/roots.h"
 #include "nanotouch/geometry.h"
 
+#define SMALLEST 1e-100 /* [m]; below it the terms of (balance) lose digits to denormals */
+
 typedef struct {
     const nt_shape *shape;
     double effective_modulus, q, displacement;
@@ -42,6 +44,8 @@ nt_status nt_stage_displacement_solve(const nt_shape *shape, double effective_mo
         *solved = (nt_stage_displacement){0};
         return NT_OK;
     }
+    if (displacement < SMALLEST)
+        return NT_E_RANGE;
     const balance b = {shape, effective_modulus, cos(lever->angle) / lever->spring_constant, displacement};
     const double bracket[2] = {(1.0 - 1e-9) * end_of_bracket(&b, 0.5 * displacement),
                                (1.0 + 1e-9) * end_of_bracket(&b, displacement)};

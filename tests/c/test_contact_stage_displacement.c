@@ -109,6 +109,7 @@ static void refuses_what_is_no_lever(void **state)
     assert_int_equal(nt_stage_displacement_solve(&sphere, 0.0, &lever, 1e-9, &solved), NT_E_RANGE);
     assert_int_equal(nt_stage_displacement_solve(&sphere, 1e9, &none, 1e-9, &solved), NT_E_NOT_FINITE);
     assert_int_equal(nt_stage_displacement_solve(&sphere, 1e9, &lever, NAN, &solved), NT_E_NOT_FINITE);
+    assert_int_equal(nt_stage_displacement_solve(&sphere, 1e9, &lever, 1e-310, &solved), NT_E_RANGE);
     assert_true(solved.indentation == 7.0);
     assert_true(solve(sphere, 1e9, lever, -1e-9).indentation == 0.0 && solve(sphere, 1e9, lever, 0.0).deflection == 0.0);
 }

@@ -5,9 +5,9 @@ Nothing but Galin's two integrals over the slope f'(r) of the shape, integrated 
 
     delta = a Int_0^a f'(r)/sqrt(a^2 - r^2) dr,     F = 2 E* Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr,
 
-and the contact radius found from the indentation by the secant method. The energy is the integral over the one-dimensional
-profile (Galin 1961), again numerically; that F is its slope the C tests show by differences. Inputs are exact doubles,
-E* = 1; results are rounded to 20 digits.
+and the contact radius found from the indentation by the secant method. The energy is the integral over the
+one-dimensional profile (Galin 1961), again numerically; that F is its slope the C tests show by differences. Inputs are
+exact doubles, E* = 1; results are rounded to 20 digits.
 
 Run: python geometry_oracle.py > geometry_table.h     (mpmath 1.3 or newer; a few minutes on two cores)
 """
@@ -25,7 +25,7 @@ mp.dps = 40
 
 @dataclass(frozen=True)
 class Shape:
-    """kind as in nt_shape_kind; radius of sphere, cap or flat end; half angle of the flank; radius of the transition."""
+    """Kind as in nt_shape_kind; radius of sphere, cap or flat end; half angle of the flank; transition radius."""
 
     kind: str
     radius: float
@@ -68,7 +68,7 @@ def force(shape: Shape, a: mpf) -> mpf:
 
 
 def radius_at(shape: Shape, indentation: float, start: mpf) -> mpf:
-    """Contact radius at an indentation, by the secant method on the depth from a start that belongs to it to a rounding."""
+    """Contact radius at an indentation, by the secant method on the depth; start belongs to it to a rounding."""
     previous, a = start * (1 + mpf(10) ** -12), start
     error = depth(shape, previous) - indentation
     for _ in range(8):

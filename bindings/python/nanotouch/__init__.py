@@ -25,8 +25,8 @@ _HOMES = {
     "Surface": "surface",
 }
 _MODULES = (
-    "contact", "curves", "errors", "fit", "forces", "hal", "images", "materials", "operator", "plots", "presets",
-    "record", "scene", "session", "surface", "units",
+    "contact", "curves", "errors", "fit", "forces", "geometry", "hal", "images", "materials", "operator", "plots",
+    "presets", "record", "scene", "session", "surface", "units",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]

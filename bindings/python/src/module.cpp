@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, module) {
     module.attr("version") = nt_version();
     bind_contact(module);
     bind_forces(module);
+    bind_geometry(module);
     bind_materials(module);
     bind_surface(module);
     bind_descriptions(module);

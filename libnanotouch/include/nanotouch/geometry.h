@@ -140,7 +140,8 @@ typedef struct nt_stage_displacement {
 /* Solves Delta = delta + cos(alpha) P(delta)/k_c (Eq. 5 with P = k_c zeta) for a checked shape without adhesion. For a
  * paraboloid this is Eq. 6; for a cone Eq. 7 corrected (errata E6, E7):
  *     Delta = delta + cos(alpha) 2 E* tan(psi) delta^2/(pi k_c).
- * displacement Delta beyond first touch [m]; all 0 for Delta <= 0. NT_E_NOT_FINITE, NT_E_RANGE (lever, modulus). */
+ * displacement Delta beyond first touch [m]; all 0 for Delta <= 0. NT_E_NOT_FINITE; NT_E_RANGE (lever, modulus,
+ * 0 < Delta < 1e-100). */
 NT_API nt_status nt_stage_displacement_solve(const nt_shape *shape, double effective_modulus, const nt_lever *lever,
                                              double displacement, nt_stage_displacement *solved);
 /* Eq. 8: delta = k_c Delta/(k_c + K cos(alpha) sqrt(2 Delta R)), the contact radius taken as sqrt(2 Delta R) with the
