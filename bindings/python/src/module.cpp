@@ -7,6 +7,7 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "The C library of nanotouch. Use the Python modules of the package; this one has no promises.";
     module.attr("version") = nt_version();
     bind_contact(module);
+    bind_contact_reduced(module);
     bind_forces(module);
     bind_geometry(module);
     bind_materials(module);

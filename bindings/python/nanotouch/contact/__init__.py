@@ -8,6 +8,7 @@ far away meets, ``"unstable"`` the equilibrium between the folds that no grip ca
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -77,7 +78,8 @@ class Contact:
         return self.law("maugis").maugis_lambda
 
 
-def _branch(branch: Branch) -> int:
+def branch_index(branch: Branch) -> int:
+    """The number of a branch in the C library."""
     if branch not in BRANCHES:
         raise InvalidValue(f"branch {branch!r}: valid are {', '.join(BRANCHES)}")
     return BRANCHES.index(branch)
@@ -85,7 +87,7 @@ def _branch(branch: Branch) -> int:
 
 def evaluate(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> Law:
     """Energy [J], force [N], stiffness [N/m] and contact radius [m] at an indentation [m], broadcast over arrays."""
-    return as_law(contact.law(model).eval(as_floats(indentation, "indentation"), _branch(branch)))
+    return as_law(contact.law(model).eval(as_floats(indentation, "indentation"), branch_index(branch)))
 
 
 def force(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> Any:
@@ -95,7 +97,7 @@ def force(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch
 
 def indentation(model: Model, force: ArrayLike, contact: Contact, branch: Branch = "stable") -> Any:
     """Indentation [m] at a force [N]; NaN where the branch does not reach it (below minus the pull-off force)."""
-    return plain(contact.law(model).indentation(as_floats(force, "force"), _branch(branch)))
+    return plain(contact.law(model).indentation(as_floats(force, "force"), branch_index(branch)))
 
 
 def pull_off_force(model: Model, contact: Contact) -> float:
@@ -132,3 +134,9 @@ def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> La
     check_between("effective_modulus", effective_modulus, "Pa", above=0.0)
     check_between("radius", radius, "m", above=0.0)
     return as_law(_core.punch_eval(effective_modulus, radius, as_floats(indentation, "indentation")))
+
+
+def __getattr__(name: str) -> Any:
+    if name == "reduced":
+        return importlib.import_module("nanotouch.contact.reduced")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
