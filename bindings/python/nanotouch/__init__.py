@@ -26,7 +26,7 @@ _HOMES = {
 }
 _MODULES = (
     "contact", "curves", "errors", "fit", "forces", "geometry", "hal", "images", "materials", "operator", "plots",
-    "presets", "record", "scene", "session", "surface", "units",
+    "presets", "record", "reference", "scene", "session", "surface", "units",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]
