@@ -15,7 +15,7 @@ PRESS_FORCE = 2.0  # [N]
 SCAN_FORCE = 0.4  # [N]
 RETRACT_FORCE = 0.3  # [N]
 LIMIT_SHARE = 0.6  # of the force limit, at the hand
-SCAN_TIMES = (5.0, 60.0)  # shortest and longest default scan [s]
+SCAN_TIMES = (10.0, 60.0)  # shortest and longest default scan [s]
 
 
 class Input(NamedTuple):

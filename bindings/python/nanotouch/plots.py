@@ -169,7 +169,7 @@ def line(
     figure = _figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     across, wide = engineering("m", distance)
-    up, high = engineering("m", np.ptp(heights[0]))
+    up, high = engineering("m", [np.ptp(height) for height in heights])
     strong, scale = engineering("N", part.slave_force)
     for label, (height, colour, style) in lines.items():
         _signal(upper, (distance * wide, height * high), colour, style, label)
