@@ -33,7 +33,9 @@ OK, MISSING = "ok", "--"
 def add_parser(subparsers: Any) -> None:
     """Add ``doctor`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "doctor", help="what is installed and works here, and what to install for the rest"
+        "doctor",
+        help="what is installed and works here, and what to install for the rest",
+        description="Say what is installed and works here, and what to install for the rest.",
     )
     parser.set_defaults(run=run)
 

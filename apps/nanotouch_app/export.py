@@ -24,7 +24,9 @@ CHANNELS = {"time": "s", "z": "m", "deflection": "m", "force": "N"}
 def add_parser(subparsers: Any) -> None:
     """Add ``export`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "export", help="a recording or a force curve as CSV or HDF5, with units"
+        "export",
+        help="a recording or a force curve as CSV or HDF5, with units",
+        description="Write a recording or a force curve as CSV or HDF5, with the units in the headers.",
     )
     parser.add_argument("file", type=Path, metavar="RECORDING|CURVE", help="recording.mcap, or a force curve file")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="table to write: .csv, .h5 or .hdf5")

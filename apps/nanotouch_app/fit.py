@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch fit``: read a force curve, find baseline, contact point, snap-in and pull-off, fit a contact model."""
+"""Read a force curve, find baseline, contact point, snap-in and pull-off, fit a contact model."""
 
 from __future__ import annotations
 

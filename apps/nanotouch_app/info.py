@@ -17,7 +17,9 @@ _LISTED = 20  # curves of a map that are listed one by one
 def add_parser(subparsers: Any) -> None:
     """Add ``info`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "info", help="what a file holds: channels, size, units; segments, points, spring constant"
+        "info",
+        help="what a file holds: channels, size, units; segments, points, spring constant",
+        description="Say what an AFM image or a force curve file holds.",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image or a force curve file")
     parser.set_defaults(run=run)
