@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measure speed and accuracy of every contact model and tier on this machine, over lambda and load."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from nanotouch.errors import InvalidValue, require
+from nanotouch.record import write_csv
+
+from nanotouch_app import output
+from nanotouch_app.tradeoff import drawing, errors, measure, page
+
+FILES = ("tradeoff.csv", "tradeoff.png", "errormap.csv", "errormap.png")
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "tradeoff", help="measure the speed and accuracy of every contact model and tier", description=__doc__
+    )
+    parser.add_argument(
+        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
+    )
+    parser.add_argument("--quick", action="store_true", help="few lambdas, few loads, rough timings: seconds")
+    parser.add_argument("--doc", type=Path, metavar="FILE.md", help="also write the page on accuracy")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    if args.doc and args.quick:
+        raise InvalidValue("--doc with --quick: the page is made of the full measurement only")
+    if args.doc:
+        page.check(args.doc)
+    require("matplotlib", "app")
+    out = output.folder(args.out)
+    output.clear(out, FILES)
+    with output.progress_bar("error maps") as progress:
+        maps = measure.maps(args.quick, progress)
+    with output.progress_bar("timing") as progress:
+        rows = measure.trade(args.quick, progress)
+    how = "nanotouch tradeoff" + (" --quick" if args.quick else "")
+    comments = {"command": how, **{f"loads, {name}": words for name, words in errors.WORDS.items()}}
+    write_csv(out / "tradeoff.csv", measure.trade_columns(rows), comments)
+    write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
+    drawing.save(drawing.trade(rows), out / "tradeoff.png")
+    drawing.save(drawing.maps(maps), out / "errormap.png")
+    if args.doc:
+        page.write(args.doc, maps, rows)
+    print(page.summary(rows))
+    print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
+    return 0
