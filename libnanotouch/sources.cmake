@@ -70,4 +70,11 @@ set(nanotouch_sources_sim hal/sim/sim.c)
 set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
 set(nanotouch_sources_session session/session.c)
-set(nanotouch_sources_fit fit/data.cpp fit/guess.cpp fit/model.cpp fit/options.cpp fit/problem.cpp fit/run.cpp)
+set(nanotouch_sources_fit
+    fit/branch.c
+    fit/data.cpp
+    fit/guess.cpp
+    fit/model.cpp
+    fit/options.cpp
+    fit/problem.cpp
+    fit/run.cpp)

@@ -68,9 +68,10 @@ double guess_contact_point(const Model &model, const std::vector<Sample> &sample
 double misfit(const Model &model, const std::vector<Sample> &sample)
 {
     double sum = 0.0;
+    Track track;
     for (const Sample &sampled : sample) {
         Point point;
-        if (model.at(sampled.position, sampled.force, &point) != NT_OK)
+        if (model.at(sampled.position, &track, &point) != NT_OK)
             return std::numeric_limits<double>::infinity();
         sum += std::fabs(point.force - sampled.force);
     }

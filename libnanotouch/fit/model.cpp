@@ -17,12 +17,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nanotouch {
 
 namespace {
 
 constexpr int max_iterations = 100;
+constexpr double linear = 1e-9;  // of s: over a step that small the branch is straight to the last bit
 
 nt_status indentation_at(const nt_contact_law &law, double force, double *indentation)
 {
@@ -42,22 +44,22 @@ nt_status indentation_at(const nt_contact_law &law, double force, double *indent
     return std::isfinite(*indentation) ? NT_OK : NT_E_NO_SOLUTION;
 }
 
-// Lambda of (scaling) [N], from a point on the contact branch.
-double range_derivative(const nt_maugis &maugis, double indentation, const nt_law_value &value)
+}  // namespace
+
+double Track::predict(double position, double otherwise) const
 {
-    const double lambda = maugis.lambda;
-    const double a = value.a / maugis.radius_scale, d = indentation / maugis.indentation_scale;
-    const double P = value.F / maugis.load_scale, k = value.k * maugis.indentation_scale / maugis.load_scale;
-    const double b = (a * a - d) / (4.0 / 3.0 * lambda), y = a / b;
-    const double g2 = std::atan2(1.0, y) - 1.0 / (y + std::sqrt(1.0 + y * y));
-    const double q = std::clamp(4.0 / 3.0 * lambda * lambda * g2 * b, 0.0, 1.0);  // rounding only
-    const double r = (1.0 + q) / (2.0 - q);
-    const double load = P * (1.0 - 2.0 * r) - a * a * a * (1.0 + r);
-    const double depth = d * (1.0 - r) - a * a * (1.0 + r);
-    return maugis.load_scale * (load - k * depth);
+    const double travel = position - position_;
+    return known_ ? s_ + travel * (slope_ + 0.5 * travel * bend_) : otherwise;
 }
 
-}  // namespace
+void Track::add(double position, double s, double slope)
+{
+    bend_ = known_ && position != position_ ? (slope - slope_) / (position - position_) : 0.0;
+    known_ = true;
+    position_ = position;
+    s_ = s;
+    slope_ = slope;
+}
 
 nt_status Model::law_value(double indentation, nt_law_value *value) const
 {
@@ -66,44 +68,25 @@ nt_status Model::law_value(double indentation, nt_law_value *value) const
 
 nt_status Model::travel(double force, double *travel) const
 {
-    double indentation;
+    double indentation = 0.0;
     const nt_status status = indentation_at(law_, force, &indentation);
     if (status == NT_OK)
         *travel = indentation + compliance_ * force;
     return status;
 }
 
-void Model::differentiate(double indentation, const nt_law_value &value, Point *point) const
+void Model::differentiate(const nt_fit_state &state, double stiffness, Point *point) const
 {
-    const double range = law_.model == NT_MAUGIS ? range_derivative(law_.maugis, indentation, value) : 0.0;
-    const double elastic = 2.0 / 3.0 * (value.k * indentation - range);
-    const double softening = 1.0 / (1.0 + compliance_ * value.k);
-    point->force = value.F + value_[NT_FIT_FORCE_OFFSET];
-    point->indentation = indentation;
+    const double elastic = 2.0 / 3.0 * (stiffness * state.indentation - state.range);
+    const double softening = 1.0 / (1.0 + compliance_ * stiffness);
+    point->force = state.F + value_[NT_FIT_FORCE_OFFSET];
+    point->indentation = state.indentation;
     point->gradient[NT_FIT_EFFECTIVE_MODULUS] = softening * elastic;
-    point->gradient[NT_FIT_WORK_OF_ADHESION] = softening * (value.F - elastic);
-    point->gradient[NT_FIT_COHESIVE_RANGE] = softening * -range;
-    point->gradient[NT_FIT_CONTACT_POINT] = softening * -value.k;
+    point->gradient[NT_FIT_WORK_OF_ADHESION] = softening * (state.F - elastic);
+    point->gradient[NT_FIT_COHESIVE_RANGE] = softening * -state.range;
+    point->gradient[NT_FIT_CONTACT_POINT] = softening * -stiffness;
     point->gradient[NT_FIT_FORCE_OFFSET] = 1.0;
-    point->gradient[NT_FIT_COMPLIANCE] = softening * -value.k * value.F * compliance_;
-}
-
-nt_status Model::prepare_load_fold()
-{
-    nt_status status = NT_OK;
-    if (law_.model == NT_MAUGIS)
-        load_fold_indentation_ = law_.maugis.folds.pull_off_indentation * law_.maugis.indentation_scale;
-    else
-        status = indentation_at(law_, -nt_contact_law_pull_off_force(&law_), &load_fold_indentation_);
-    nt_law_value value;
-    if (status == NT_OK)
-        status = law_value(load_fold_indentation_, &value);
-    if (status != NT_OK)
-        return status;
-    value.k = 0.0;  // the law gives both but for rounding
-    value.F = -nt_contact_law_pull_off_force(&law_);
-    differentiate(load_fold_indentation_, value, &pull_off_);
-    return NT_OK;
+    point->gradient[NT_FIT_COMPLIANCE] = softening * -stiffness * state.F * compliance_;
 }
 
 nt_status Model::prepare(const nt_fit_options &options, const Parameters &value)
@@ -113,46 +96,62 @@ nt_status Model::prepare(const nt_fit_options &options, const Parameters &value)
         contact.work_of_adhesion = value[NT_FIT_WORK_OF_ADHESION];
     if (options.model == NT_MAUGIS)
         contact.cohesive_stress = value[NT_FIT_WORK_OF_ADHESION] / value[NT_FIT_COHESIVE_RANGE];
-    nt_status status = nt_contact_law_init(&law_, options.model, &contact);
+    const nt_status status = nt_contact_law_init(&law_, options.model, &contact);
     if (status != NT_OK)
         return status;
     value_ = value;
     compliance_ = options.spring_constant > 0.0 ? value[NT_FIT_COMPLIANCE] / options.spring_constant : 0.0;
-    return prepare_load_fold();
+    branch_ = nt_fit_branch_of(&law_);
+    nt_fit_state load_fold = nt_fit_branch_at(&branch_, branch_.start);
+    load_fold.F = -nt_contact_law_pull_off_force(&law_);  // the branch gives it but for rounding
+    differentiate(load_fold, 0.0, &pull_off_);
+    return NT_OK;
 }
 
-nt_status Model::at(double position, double near, Point *point) const
+// s at which delta + F c/k_c, which grows with s, is `base`; the state there.
+nt_status Model::search(double base, double start, double *s, nt_fit_state *state) const
 {
-    // h(delta) = delta + F c/k_c - base is increasing and convex between the load fold and `upper`, where it changes sign.
-    const double base = position - value_[NT_FIT_CONTACT_POINT];
-    const double upper = base + compliance_ * nt_contact_law_pull_off_force(&law_);
-    if (std::isnan(upper))
-        return NT_E_NOT_FINITE;
-    if (upper <= load_fold_indentation_) {
-        *point = pull_off_;
-        point->indentation = upper;
-        return NT_OK;
-    }
-
-    double lo = load_fold_indentation_, hi = upper;
-    double delta = std::clamp(base - compliance_ * (near - value_[NT_FIT_FORCE_OFFSET]), lo, hi);
-    nt_law_value value;
+    double lo = branch_.start, hi = std::numeric_limits<double>::infinity();
+    *s = std::max(start, lo);
     for (int i = 0; i < max_iterations; i++) {
-        const nt_status status = law_value(delta, &value);
-        if (status != NT_OK)
-            return status;
-        const double excess = delta - base + compliance_ * value.F;
-        (excess > 0.0 ? hi : lo) = delta;
-        const double newton = delta - excess / (1.0 + compliance_ * value.k);
-        const double next = newton >= lo && newton <= hi ? newton : 0.5 * (lo + hi);
-        if (std::fabs(next - delta) <= 1e-12 * (std::fabs(delta) + std::fabs(base))) {
-            value.F += value.k * (next - delta);  // the last step is so small that the law is linear over it
-            differentiate(next, value, point);
+        *state = nt_fit_branch_at(&branch_, *s);
+        const double excess = state->indentation + compliance_ * state->F - base;
+        const double step = -excess / (state->indentation1 + compliance_ * state->F1);
+        const double next = *s + step;
+        const double resolution = 1e-15 * (std::fabs(state->indentation) + std::fabs(base));
+        if (std::fabs(step) <= linear * *s || std::fabs(excess) <= resolution) {
+            state->F += state->F1 * step;
+            state->indentation += state->indentation1 * step;
             return NT_OK;
         }
-        delta = next;
+        (excess > 0.0 ? hi : lo) = *s;
+        if (next > lo && next < hi)
+            *s = next;
+        else
+            *s = std::isinf(hi) ? 4.0 * *s + branch_.unit : 0.5 * (lo + hi);
     }
     return NT_E_NO_CONVERGENCE;
+}
+
+nt_status Model::at(double position, Track *track, Point *point) const
+{
+    const double base = position - value_[NT_FIT_CONTACT_POINT];
+    const double excess = base + compliance_ * nt_contact_law_pull_off_force(&law_) - pull_off_.indentation;
+    if (std::isnan(excess))
+        return NT_E_NOT_FINITE;
+    if (excess <= 0.0) {
+        *point = pull_off_;
+        point->indentation += excess;
+        return NT_OK;
+    }
+    double s;
+    nt_fit_state state;
+    const nt_status status = search(base, track->predict(position, branch_.start + branch_.unit), &s, &state);
+    if (status != NT_OK)
+        return status;
+    track->add(position, s, 1.0 / (state.indentation1 + compliance_ * state.F1));
+    differentiate(state, state.F1 / state.indentation1, point);
+    return NT_OK;
 }
 
 }  // namespace nanotouch

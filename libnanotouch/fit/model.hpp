@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "fit/branch.h"
 #include "nanotouch/fit.h"
 
 namespace nanotouch {
@@ -23,13 +24,24 @@ struct Point {
     Parameters gradient;
 };
 
+// Where the points before lay on the branch: the next, mostly a neighbour, starts from there.
+class Track {
+public:
+    double predict(double position, double otherwise) const;
+    void add(double position, double s, double slope);
+
+private:
+    bool known_ = false;
+    double position_ = 0.0, s_ = 0.0, slope_ = 0.0, bend_ = 0.0;  // s, ds/dX, d2s/dX2 at X
+};
+
 class Model {
 public:
     // Makes the law ready for the given values (SI); NT_E_RANGE where it does not exist.
     nt_status prepare(const nt_fit_options &options, const Parameters &value);
 
-    // near: a force near the result, where the search starts [N]; the result does not depend on it.
-    nt_status at(double position, double near, Point *point) const;
+    // track: only where the search starts; the result does not depend on it.
+    nt_status at(double position, Track *track, Point *point) const;
 
     // Force and derivatives of the load fold: -pull-off force; the indentation there.
     const Point &pull_off() const { return pull_off_; }
@@ -41,13 +53,13 @@ public:
     nt_status law_value(double indentation, nt_law_value *value) const;
 
 private:
-    nt_status prepare_load_fold();
-    void differentiate(double indentation, const nt_law_value &value, Point *point) const;
+    nt_status search(double base, double start, double *s, nt_fit_state *state) const;
+    void differentiate(const nt_fit_state &state, double stiffness, Point *point) const;
 
     nt_contact_law law_{};
+    nt_fit_branch branch_{};
     Parameters value_{};
-    double compliance_ = 0.0;             // c/k_c [m/N]
-    double load_fold_indentation_ = 0.0;  // [m]
+    double compliance_ = 0.0;  // c/k_c [m/N]
     Point pull_off_{};
 };
 

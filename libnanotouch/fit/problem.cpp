@@ -67,9 +67,10 @@ bool Residuals::evaluate()
     if (model_.prepare(options_, value) != NT_OK)
         return false;
     Point point;
+    Track track;
     for (long i = 0; i < data_.count; i++) {
         const double force = data_.force[i * data_.force_stride];
-        if (model_.at(data_.position[i * data_.position_stride], force, &point) != NT_OK)
+        if (model_.at(data_.position[i * data_.position_stride], &track, &point) != NT_OK)
             return false;
         store(i, point.force - force, point, unit_);
     }
@@ -94,9 +95,9 @@ void Residuals::store(long i, double residual, const Point &point, double unit)
             point.gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * coordinates_.gradient_scale(j) / unit;
 }
 
-Residual::Residual(const Residuals &all, long index, int parameters) : all_(all), index_(index)
+Residual::Residual(const Residuals &all, long first, long count, int parameters) : all_(all), first_(first)
 {
-    set_num_residuals(1);
+    set_num_residuals(static_cast<int>(count));
     mutable_parameter_block_sizes()->push_back(parameters);
 }
 
@@ -104,9 +105,9 @@ bool Residual::Evaluate(double const *const *, double *residuals, double **jacob
 {
     if (!all_.valid())
         return false;
-    residuals[0] = all_.residual(index_);
+    std::copy_n(all_.residuals(first_), num_residuals(), residuals);
     if (jacobians && jacobians[0])
-        std::copy_n(all_.gradient(index_), parameter_block_sizes()[0], jacobians[0]);
+        std::copy_n(all_.gradient(first_), num_residuals() * parameter_block_sizes()[0], jacobians[0]);
     return true;
 }
 

@@ -38,7 +38,8 @@ public:
     long count() const { return count_; }       // of residuals
     long data_count() const { return data_.count; }  // the first of them; the rest are measured pull-off and calibration
     double unit() const { return unit_; }       // of the data's residuals [N]
-    double residual(long i) const { return residual_[static_cast<std::size_t>(i)]; }
+    const double *residuals(long first) const { return &residual_[static_cast<std::size_t>(first)]; }
+    double residual(long i) const { return *residuals(i); }
     const double *gradient(long i) const { return &gradient_[static_cast<std::size_t>(i * coordinates_.size())]; }
     const Model &model() const { return model_; }
     Parameters values() const { return coordinates_.values(x_.data()); }
@@ -58,15 +59,15 @@ private:
     bool valid_ = false;
 };
 
-// One residual out of Residuals, so that the loss acts on each point.
+// Some of Residuals as one block: a single point where a loss acts on each, all of them where none does.
 class Residual : public ceres::CostFunction {
 public:
-    Residual(const Residuals &all, long index, int parameters);
+    Residual(const Residuals &all, long first, long count, int parameters);
     bool Evaluate(double const *const *, double *residuals, double **jacobians) const override;
 
 private:
     const Residuals &all_;
-    const long index_;
+    const long first_;
 };
 
 }  // namespace nanotouch

@@ -70,9 +70,14 @@ void Fit::build(ceres::Problem *problem)
 {
     double *x = residuals_.x();
     problem->AddParameterBlock(x, coordinates_.size());
-    for (long i = 0; i < residuals_.count(); i++) {
-        costs_.emplace_back(residuals_, i, coordinates_.size());
-        problem->AddResidualBlock(&costs_.back(), i < data_.count ? loss_.get() : nullptr, x);
+    const long single = loss_ ? data_.count : 0;
+    for (long i = 0; i < single; i++) {
+        costs_.emplace_back(residuals_, i, 1, coordinates_.size());
+        problem->AddResidualBlock(&costs_.back(), loss_.get(), x);
+    }
+    if (single < residuals_.count()) {
+        costs_.emplace_back(residuals_, single, residuals_.count() - single, coordinates_.size());
+        problem->AddResidualBlock(&costs_.back(), nullptr, x);
     }
     for (int i = 0; i < coordinates_.size(); i++) {
         const nt_fit_start &bounds = options_.parameter[coordinates_.parameter(i)];
@@ -159,8 +164,9 @@ void Fit::fill_values(const ceres::Solver::Summary &summary, nt_fit_result *resu
     result->transition_parameter = options_.model == NT_MAUGIS ? model.law().maugis.lambda : not_a_number;
     result->pull_off_force = nt_contact_law_pull_off_force(&model.law());
     Point point;
+    Track track;
     nt_law_value there{};
-    if (model.at(deepest, 0.0, &point) == NT_OK)
+    if (model.at(deepest, &track, &point) == NT_OK)
         (void)model.law_value(point.indentation, &there);
     result->contact_radius = there.a;
     result->contact_stiffness = there.k;
@@ -306,6 +312,7 @@ nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_res
 using nanotouch::Model;
 using nanotouch::Parameters;
 using nanotouch::Point;
+using nanotouch::Track;
 
 nt_status nt_fit_run(const nt_fit_options *options, const nt_fit_data *data, nt_fit_result *result, nt_problem *problem)
 {
@@ -331,12 +338,13 @@ nt_status nt_fit_model_at(const nt_fit_options *options, const double value[NT_F
     Parameters values;
     std::copy_n(value, NT_FIT_PARAMETERS, values.begin());
     Model model;
+    Track track;
     Point found;
     nt_status status = nt_fit_check(options, nullptr);
     if (status == NT_OK)
         status = model.prepare(*options, values);
     if (status == NT_OK)
-        status = model.at(position, 0.0, &found);
+        status = model.at(position, &track, &found);
     if (status != NT_OK)
         return status;
     point->force = found.force;
@@ -361,12 +369,12 @@ nt_status nt_fit_model_n(const nt_fit_options *options, const double value[NT_FI
     nt_status status = nt_fit_check(options, nullptr);
     if (status == NT_OK)
         status = model.prepare(*options, values);
-    double near = 0.0;
+    Track track;
     for (long i = 0; i < data->count && status == NT_OK; i++) {
         Point point;
-        status = model.at(data->position[i * data->position_stride], near, &point);
+        status = model.at(data->position[i * data->position_stride], &track, &point);
         if (status == NT_OK)
-            force[i] = near = point.force;
+            force[i] = point.force;
     }
     return status;
 }
