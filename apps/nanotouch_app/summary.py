@@ -36,13 +36,24 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "loop_rate_Hz": session.rate,
         "steps": len(recording),
         "duration_s": len(recording) / session.rate,
-        "stability_margin": margins.margin,
+        "stability_margin": session.stability_margin,
+        "force_limit_N": session.settings.limits.force,
+        "force_overshoot_N": session.force_overshoot,
         "stability": margins._asdict(),
         "states": {name: int(np.count_nonzero(recording.state == code)) for code, name in enumerate(STATES)},
         "reasons": _reasons(recording),
         "seed": session.seed,
         "version": nt.__version__,
     }
+
+
+def guarantee(session: nt.Session) -> str:
+    """What holds before anything moves: the force limit and by how much it can be exceeded, the stability margin."""
+    limit, overshoot = session.settings.limits.force, session.force_overshoot
+    return (
+        f"limits: force on the sample {limit * 1e9:.0f} nN, plus at most {overshoot * 1e9:.0f} nN before a stop shows; "
+        f"stability margin {session.stability_margin:.1f} (1 is the limit)"
+    )
 
 
 def words(summary: dict[str, Any]) -> str:

@@ -71,6 +71,7 @@ def run(args: argparse.Namespace) -> int:
     out = output.folder(args.out)
     output.clear(out, FILES)
     print(describe(topography))
+    print(summary.guarantee(session))
     recording = _record(session, duration, out)
     facts = summary.summarise(session, recording)
     output.write_json(out / "summary.json", facts)

@@ -41,6 +41,8 @@ class Margins(NamedTuple):
     """b_m over the loop delay [N/m]"""
     margin: float
     """limit over stiffness; 1 is the limit"""
+    height_margin: float
+    """topography mode: of the height servo or of the master's spring, the smaller one"""
     quantisation_step: float
     """motor force of one step of stage or scaled master [N]"""
     force_noise: float
@@ -132,6 +134,19 @@ class Session:
         """Stability margins at the stiffest contact of the plan."""
         return Margins(**_core.margins(self.rig.core, self.settings.core, self.plan.maximum_stiffness))
 
+    @property
+    def stability_margin(self) -> float:
+        """The margin that counts in this mode; 1 is the limit."""
+        margins = self.margins()
+        return margins.height_margin if self.mode == "topography" else margins.margin
+
+    @property
+    def force_overshoot(self) -> float:
+        """How far the force on the sample may exceed the set limit before the reaction shows, on this path [N]."""
+        distance, height = self.path_heights()
+        slope = float(np.max(np.abs(np.gradient(height, distance)))) if distance[-1] > 0.0 else 0.0
+        return _core.force_overshoot(self.rig.core, self.settings.core, slope)
+
     def path_heights(self, points: int = 2001) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distance along the path [m] and height of the (dilated) surface there [m]."""
         corners = np.asarray(self.path)
@@ -221,7 +236,7 @@ class Session:
             "path": [list(point) for point in self.path],
             "seed": self.seed,
             "loop_rate": self.rate,
-            "stability_margin": self.margins().margin,
+            "stability_margin": self.stability_margin,
             "scene": self.scene.to_dict(),
             "rig": self.rig.to_dict(),
             "settings": self.settings.to_dict(),
