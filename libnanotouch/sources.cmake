@@ -32,7 +32,10 @@ set(nanotouch_sources_contact
     contact/law.c
     contact/material.c
     contact/maugis.c
+    contact/maugis_bank.c
+    contact/maugis_bank_eval.c
     contact/maugis_branch.c
+    contact/maugis_cells.c
     contact/maugis_control.c
     contact/maugis_kernel.c
     contact/maugis_solve.c

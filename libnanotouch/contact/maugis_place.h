@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "contact/maugis_shape.h"
+#include "contact/reduced.h"
 #include "nanotouch/contact_table.h"
 
 /* How a force is wanted. */
@@ -94,6 +95,26 @@ static inline nt_maugis_place nt_maugis_place_of(const nt_maugis_grid *grid, dou
 static inline double nt_cubic(const double c[4], double s)
 {
     return (c[0] + s * c[1]) + s * s * (c[2] + s * c[3]);
+}
+
+/* U is the integral of F d(delta), delta = delta_start + Z^2, Z = (u - 1)/rate; k is dF/dZ/(2 Z). In the first cell the
+ * parts of dF/dZ that are of the order of Z are divided on their own, so that k has its limit at a = 0; at a fold it is
+ * infinite and reported at the nearest distance that a double resolves. */
+static inline nt_law_value nt_maugis_cell_value(const nt_maugis_cell *cell, nt_maugis_place place, double rate,
+                                                double start)
+{
+    const double s = place.s, *c = cell->F, w = cell->u - 1.0;
+    const double sum =
+        w * c[0] + s * ((c[0] + w * c[1]) / 2.0 +
+                        s * ((c[1] + w * c[2]) / 3.0 + s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
+    const double Z = fmax(place.Z, NT_FOLD_RESOLUTION * sqrt(fabs(start)));
+    const double bend = 2.0 * c[2] + 3.0 * c[3] * s;
+    return (nt_law_value){
+        .U = cell->U + 2.0 * s * sum / (rate * rate),
+        .F = nt_cubic(c, s),
+        .k = 0.5 * rate * (w == 0.0 ? c[1] / Z + rate * bend : (c[1] + s * bend) / Z),
+        .a = nt_cubic(cell->a, s),
+    };
 }
 
 /* y above its value at the start of the table. */

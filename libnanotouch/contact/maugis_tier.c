@@ -19,25 +19,6 @@ static int is_tabulated(const nt_maugis_table *table, double indentation, nt_bra
     return held && table->cells != NULL && indentation <= table->largest_indentation;
 }
 
-/* U is the integral of F d(delta), delta = delta_start + Z^2, Z = (u - 1)/rate; k is dF/dZ/(2 Z). In the first cell the
- * parts of dF/dZ that are of the order of Z are divided on their own, so that k has its limit at a = 0; at a fold it is
- * infinite and reported at the nearest distance that a double resolves. */
-static nt_law_value table_value(const nt_maugis_table *table, const nt_maugis_cell *cell, nt_maugis_place place)
-{
-    const double s = place.s, *c = cell->F, w = cell->u - 1.0, rate = table->rate;
-    const double sum =
-        w * c[0] + s * ((c[0] + w * c[1]) / 2.0 +
-                        s * ((c[1] + w * c[2]) / 3.0 + s * ((c[2] + w * c[3]) / 4.0 + s * (c[3] / 5.0))));
-    const double Z = fmax(place.Z, NT_FOLD_RESOLUTION * sqrt(fabs(table->start)));
-    const double bend = 2.0 * c[2] + 3.0 * c[3] * s;
-    return (nt_law_value){
-        .U = cell->U + 2.0 * s * sum / (rate * rate),
-        .F = nt_cubic(c, s),
-        .k = 0.5 * rate * (w == 0.0 ? c[1] / Z + rate * bend : (c[1] + s * bend) / Z),
-        .a = nt_cubic(cell->a, s),
-    };
-}
-
 static nt_maugis_rough rough_of(const nt_maugis_polish *polish, const nt_maugis_cell *cell, nt_maugis_place place,
                                 double indentation)
 {
@@ -71,7 +52,7 @@ static nt_law_value polished_value(const nt_maugis_table *table, const nt_maugis
     const nt_reduced_units units = {table->maugis.load_scale, table->maugis.radius_scale, polish.unit};
     nt_law_value value = nt_reduced_to_si(&reduced, &units);
     if (rough.Z < polish.near)
-        value.k = table_value(table, cell, place).k;
+        value.k = nt_maugis_cell_value(cell, place, table->rate, table->start).k;
     return value;
 }
 
@@ -91,7 +72,8 @@ nt_status nt_maugis_table_eval(const nt_maugis_table *table, nt_tier tier, doubl
             value->F = nt_cubic(cell->F, place.s);
         return status;
     }
-    *value = tier == NT_TIER_TABLE ? table_value(table, cell, place) : polished_value(table, cell, place, indentation);
+    *value = tier == NT_TIER_TABLE ? nt_maugis_cell_value(cell, place, table->rate, table->start)
+                                   : polished_value(table, cell, place, indentation);
     return NT_OK;
 }
 

@@ -12,7 +12,7 @@
 #include "nanotouch/contact_table.h"
 #include "nanotouch/material.h"
 
-enum { COUNT = 4096, RUNS = 60, CELLS = 2000 };
+enum { COUNT = 4096, RUNS = 60, CELLS = 2000, PANELS = 60, BANK_CELLS = 2000 };
 
 typedef struct {
     nt_maugis maugis;
@@ -22,6 +22,10 @@ typedef struct {
 } setting;
 
 static nt_maugis_cell cells[CELLS];
+static nt_maugis_panel panels[PANELS];
+static nt_maugis_bank_cell bank_cells[BANK_CELLS];
+static nt_maugis_bank bank;
+static double lambdas[COUNT]; /* one for every element */
 static setting now;
 static volatile double sink;
 
@@ -110,6 +114,11 @@ static void polished_values(void)
     values_of(NT_TIER_POLISHED);
 }
 
+static void bank_array(void)
+{
+    (void)nt_maugis_bank_load_n(&bank, lambdas, now.in, now.out, COUNT);
+}
+
 static void load_array(void)
 {
     for (int i = 0; i < COUNT; i++)
@@ -185,6 +194,7 @@ static void run(double lambda)
         {"maugis exact array", exact_array, hertz_array},
         {"maugis exact latency", exact_chain, hertz_chain},
         {"maugis exact indentation array", load_array, hertz_array},
+        {"maugis bank array", bank_array, hertz_array},
         {"jkr closed form array", jkr_closed_array, hertz_array},
         {"jkr closed form latency", jkr_closed_chain, hertz_chain},
     };
@@ -202,10 +212,16 @@ static void run(double lambda)
 
 int main(int count, char **arguments)
 {
-    static const double lambdas[] = {0.27, 1.0, 5.8, 1e9};
+    static const double settings[] = {0.27, 1.0, 5.8, 1e9};
+    const nt_maugis_bank_memory memory = {panels, bank_cells, PANELS, BANK_CELLS};
+    const nt_maugis_bank_options options = nt_maugis_bank_defaults();
+    if (nt_maugis_bank_init(&bank, &options, &memory) != NT_OK)
+        return 1;
+    for (int i = 0; i < COUNT; i++)
+        lambdas[i] = 0.01 * pow(10.0, 4.0 * (i * 37 % COUNT) / COUNT);
     printf("{\n  \"instructions\": \"%s\",\n  \"benchmarks\": [", count > 1 ? arguments[1] : "dispatched");
-    for (size_t i = 0; i < sizeof lambdas / sizeof lambdas[0]; i++)
-        run(lambdas[i]);
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
+        run(settings[i]);
     printf("\n  ]\n}\n");
     return 0;
 }
