@@ -7,15 +7,20 @@
 
 from .levelling import DespeckleReport, LevelReport, despeckle, level, prepare
 from .reading import Channel, channels, read
+from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import Topography
 
 __all__ = [
     "Channel",
     "DespeckleReport",
     "LevelReport",
+    "Paraboloid",
+    "RoundedCone",
     "Topography",
     "channels",
     "despeckle",
+    "dilate",
+    "erode",
     "level",
     "prepare",
     "read",
