@@ -6,7 +6,6 @@ from __future__ import annotations
 import time
 
 import numpy as np
-
 from nanotouch import _fit
 from nanotouch.contact import MODELS
 

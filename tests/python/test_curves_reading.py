@@ -178,10 +178,6 @@ def test_what_cannot_be_trusted_is_refused_in_one_sentence(tmp_path: Path, spoil
 def test_other_refusals(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(ReadError, match="no such file"):
         curves.read(tmp_path / "nothing.ibw")
-    nanoscope = tmp_path / "curve.000"
-    nanoscope.write_bytes(b"\\*Force file list\r\n\\Version: 0x08150305\r\n")
-    with pytest.raises(ReadError, match="NanoScope"):
-        curves.read(nanoscope)
     unknown = tmp_path / "curve.xyz"
     unknown.write_text("1 2 3\n")
     with pytest.raises(ReadError, match=r"not a force curve file that afmformats reads \(.csv, "):
@@ -266,11 +262,3 @@ def test_real_curves(name: str, count: int, segments: list[tuple[str, int]], sti
     assert len(found) == count
     assert [(s.role, len(s)) for s in found[0].segments] == segments
     assert found[0].spring_constant == pytest.approx(stiffness, rel=2e-3)
-
-
-def test_real_nanoscope_is_refused_by_name() -> None:
-    path = synthetic.DATA / "curves" / "fsas" / "Test.000"
-    if not path.exists():
-        pytest.skip(f"real data not here: {path}")
-    with pytest.raises(ReadError, match="NanoScope"):
-        curves.read(path)

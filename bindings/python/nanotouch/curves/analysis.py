@@ -86,6 +86,8 @@ class CurveReport:
     sigma : mapping
         Standard uncertainties of ``contact_point``, ``snap_in_force``, ``pull_off_force``, ``contact_slope``:
         statistical, without those of the spring constant and the sensitivity.
+    notes : tuple of str
+        What the reader should know before using the numbers.
     """
 
     contact_point: float
@@ -98,12 +100,14 @@ class CurveReport:
     noise: float
     baselines: Mapping[str, Baseline]
     sigma: Mapping[str, float]
+    notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return (
             f"pull-off {_in_nn(self.pull_off_force, self.sigma['pull_off_force'])}, "
             f"snap-in {_in_nn(self.snap_in_force, self.sigma['snap_in_force'])}, "
             f"contact slope {self.contact_slope:.3g} N/m, noise {self.noise * 1e12:.3g} pN"
+            + "".join(f"; {note}" for note in self.notes)
         )
 
 
@@ -172,6 +176,14 @@ def analyse(curve: ForceCurve, *, baseline: Literal["line", "constant"] = "line"
             "pull_off_force": pull_off_sigma,
             "contact_slope": slope_sigma,
         },
+        notes=_notes(curve),
+    )
+
+
+def _notes(curve: ForceCurve) -> tuple[str, ...]:
+    return tuple(
+        f"the file's {name} ({curve.meta[name]:g}) is a placeholder: give the calibrated one to curves.read"
+        for name in curve.meta.get("placeholders", ())
     )
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Read force curves through afmformats, with segments where it marks none, and calibration that can be corrected.
+"""Read force curves through afmformats, with segments where it marks none, and calibration that can be corrected;
+Bruker's NanoScope files through :mod:`.nanoscope`.
 
 afmformats' heights ("height (measured)", "height (piezo)") already grow away from the sample, for Asylum (it negates
 ZSnsr and Raw there) as for JPK: they are z without a change of sign. :func:`_check_direction` refuses a file where
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 
 from .._files import checked_path, guarded
 from ..errors import InvalidValue, ReadError, require
+from . import nanoscope
 from .curve import ForceCurve, Role, Segment
 
 #: What is believed of a force curve; anything else is a damaged header or a wrong unit, and refused.
@@ -34,19 +36,20 @@ MIN_POINTS = 16  # per segment that is analysed
 MAX_UNPACKED = 1 << 31  # of a zip container [byte]
 
 _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
-_NANOSCOPE = (b"\\*File list", b"\\*Force file list", b"\\*Ciao")  # how Bruker's headers begin
+_PLACEHOLDERS = (0.999, 1.0)  # spring constants that instruments write where nobody calibrated [N/m]
 
 
 def read(
     path: str | PathLike[str], *, spring_constant: float | None = None, sensitivity: float | None = None
 ) -> list[ForceCurve]:
-    """Read every curve of a file in a format that afmformats reads.
+    """Read every curve of a file in a format that afmformats reads, or of a Bruker NanoScope force file.
 
     Parameters
     ----------
     path : str or path
         JPK ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``; Asylum ``.ibw``; NT-MDT and
-        Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; afmformats ``.h5``, ``.tab``.
+        Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; afmformats ``.h5``, ``.tab``. NanoScope ramps and force
+        volumes (``.000``, ``.spm``, any name; known by how they begin).
     spring_constant : float, optional
         k_c [N/m], 1e-4 .. 1e4, in place of the file's; forces are rescaled, deflections stay.
     sensitivity : float, optional
@@ -55,7 +58,8 @@ def read(
     Returns
     -------
     list of ForceCurve
-        In the order of the file; a map is one list.
+        In the order of the file; a map is one list. ``meta["placeholders"]`` names what the file states without
+        anybody having measured it (a spring constant of exactly 1 N/m, Bruker's 0.999 N/m).
 
     Raises
     ------
@@ -70,6 +74,9 @@ def read(
     _check_range("sensitivity", sensitivity, SENSITIVITY_RANGE, "m/V")
     file = checked_path(path)
     _refuse_hopeless(file)
+    if _is_nanoscope(file):
+        with guarded(file, "nanoscope"):
+            return [_from_ramp(ramp, given, file) for ramp in nanoscope.load(file)]
     with guarded(file, "afmformats"), _quiet_and_closed(file):
         curves = [_converted(data, given, file) for data in _loaded(file, given)]
     if not curves:
@@ -82,11 +89,14 @@ def _check_range(name: str, value: float | None, valid: tuple[float, float], uni
         raise InvalidValue(f"{name}: {value!r} {unit}, expected {valid[0]:g} .. {valid[1]:g} {unit}")
 
 
+def _is_nanoscope(file: Path) -> bool:
+    with file.open("rb") as stream:
+        return stream.read(32).startswith(nanoscope.SIGNATURES)
+
+
 def _refuse_hopeless(file: Path) -> None:
     with file.open("rb") as stream:
-        start = stream.read(32)
-    if start.startswith(_NANOSCOPE):
-        raise ReadError(f"{file}: a Bruker NanoScope file; its force curves are not read yet, export them as text")
+        start = stream.read(4)
     if start.startswith(b"PK\3\4"):
         with guarded(file, "zipfile"), zipfile.ZipFile(file) as archive:
             unpacked = sum(item.file_size for item in archive.infolist())
@@ -137,20 +147,47 @@ def _converted(data: Any, given: Mapping[str, float | None], file: Path) -> Forc
     has_time = "time" in data.columns
     columns["time"] = np.asarray(data["time"], np.float64) if has_time else np.full(columns["z"].size, np.nan)
     _check_values(columns, file, data.enum)
+    return _assembled(columns, _parts(data, columns["z"]), z_channel, meta, file)
+
+
+def _from_ramp(ramp: nanoscope.Ramp, given: Mapping[str, float | None], file: Path) -> ForceCurve:
+    meta = dict(ramp.meta)
+    per_volt = meta["spring constant"] * meta["sensitivity"]
+    columns = {"z": ramp.z, "time": ramp.time, "force": ramp.volts * per_volt * _corrected_scale(meta, given, file)}
+    low, high = SENSITIVITY_RANGE
+    if not low <= meta["sensitivity"] <= high:
+        raise ReadError(f"{file}: sensitivity {meta['sensitivity']:g} m/V, expected {low:g} .. {high:g} m/V; give it")
+    _check_values(columns, file, meta["enum"])
+    parts: list[tuple[Role, slice]] = [
+        ("approach", slice(0, ramp.approach)),
+        ("retract", slice(ramp.approach, ramp.z.size)),
+    ]
+    return _assembled(columns, parts, _Z_CHANNELS[1], meta, file)
+
+
+def _assembled(
+    columns: dict[str, NDArray[np.float64]],
+    parts: list[tuple[Role, slice]],
+    z_channel: str,
+    meta: dict[str, Any],
+    file: Path,
+) -> ForceCurve:
     stiffness = meta.get("spring constant")
     if stiffness is not None:
         columns["deflection"] = columns["force"] / stiffness
     segments = tuple(
         Segment(role, z_channel=z_channel, **{key: column[part] for key, column in columns.items()})
-        for role, part in _parts(data, columns["z"])
+        for role, part in parts
     )
-    _check_direction(segments, file, data.enum)
+    _check_direction(segments, file, meta.get("enum", 0))
     return ForceCurve(segments, meta, file.name)
 
 
 def _corrected_scale(meta: dict[str, Any], given: Mapping[str, float | None], file: Path) -> float:
     """Factor on the stored force for a corrected calibration (force = k_c x sensitivity x volts); updates `meta`."""
     scale = 1.0
+    if given["spring constant"] is None and meta.get("spring constant") in _PLACEHOLDERS:
+        meta["placeholders"] = ("spring constant",)
     for key, value in given.items():
         if value is None:
             continue

@@ -307,7 +307,7 @@ def _result(
     sign = np.where(np.array(names)[free] == "contact_point", -1.0, 1.0)
     identifiable = {names[i]: found["identifiable"][i] for i in free}
     misfit = found["residual_rms"] / report.noise if report.noise > 0.0 else np.inf
-    notes = given.notes + _notes(options, found, identifiable, misfit)
+    notes = given.notes + list(report.notes) + _notes(options, found, identifiable, misfit)
     if misfit > _MISFIT and found["residual_rms"] > _WRONG * float(np.ptp(points.force)):
         identifiable = dict.fromkeys(identifiable, False)
         notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
