@@ -54,7 +54,7 @@ def trade(quick: bool, progress: Callable[[float], None]) -> list[Row]:
     cells = [(lam, within) for lam in lambdas for within in RANGES]
     rows = []
     for number, (lam, within) in enumerate(cells):
-        rows += _rows(lam, within, 2 if quick else 5)
+        rows += _rows(lam, within, 2 if quick else 8)
         progress((number + 1) / len(cells))
     return rows
 
