@@ -6,8 +6,8 @@
 >>> report = nt.curves.analyse(curve)                                       # doctest: +SKIP
 """
 
-from .analysis import Baseline, CurveReport, analyse, force_gap
+from .analysis import Baseline, CurveReport, analyse, force_gap, sensitivity
 from .curve import ForceCurve, Segment
 from .reading import read
 
-__all__ = ["Baseline", "CurveReport", "ForceCurve", "Segment", "analyse", "force_gap", "read"]
+__all__ = ["Baseline", "CurveReport", "ForceCurve", "Segment", "analyse", "force_gap", "read", "sensitivity"]

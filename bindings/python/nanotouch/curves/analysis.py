@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidValue
+from . import contact_point as methods
 from .curve import ForceCurve, Segment
 
 _FAR = 0.5  # part of the travel taken for the first baseline
@@ -67,8 +68,11 @@ class CurveReport:
     Attributes
     ----------
     contact_point : float
-        z of the base [m] on the approach, coming out of contact: where the force crosses the baseline if there was a
-        snap-in, otherwise where it can no longer be told from the baseline (five times the noise).
+        z of the base [m] on the approach, coming out of contact: the median of `contact_points`. Its sigma contains
+        their standard deviation.
+    contact_points : mapping
+        By each of the methods of :mod:`nanotouch.curves.contact_point` that can say [m]; the first is where the force
+        crosses the baseline (``"crossing"``, after a snap-in) or can no longer be told from it (``"deviation"``).
     snap_in_force, pull_off_force : float
         Depth below the baseline on the approach and on the retraction [N], positive; 0 where no dip is deeper than five
         times the noise and three times the scatter of the baseline.
@@ -77,6 +81,10 @@ class CurveReport:
     contact_slope : float
         -dF/dz in hard contact (upper half of the load) [N/m]: at most the spring constant, and equal to it on a sample
         that does not yield.
+    contact_stiffness : float
+        k = k_c s/(k_c - s) of the contact itself, with s the contact slope [N/m]; NaN where s is not below k_c.
+    adhesion_work : float
+        Area of the retraction below its baseline, over z of the base [J]; 0 without pull-off.
     baseline_tilt : float
         Slope of the approach's baseline (the retraction's where there is no approach) [N/m].
     noise : float
@@ -84,7 +92,8 @@ class CurveReport:
     baselines : mapping
         The :class:`Baseline` of ``"approach"`` and ``"retract"``, as far as there are such segments.
     sigma : mapping
-        Standard uncertainties of ``contact_point``, ``snap_in_force``, ``pull_off_force``, ``contact_slope``:
+        Standard uncertainties of ``contact_point``, ``snap_in_force``, ``pull_off_force``, ``contact_slope``,
+        ``contact_stiffness``, ``adhesion_work``:
         statistical, without those of the spring constant and the sensitivity.
     notes : tuple of str
         What the reader should know before using the numbers.
@@ -96,10 +105,13 @@ class CurveReport:
     pull_off_force: float
     pull_off_z: float
     contact_slope: float
+    contact_stiffness: float
+    adhesion_work: float
     baseline_tilt: float
     noise: float
     baselines: Mapping[str, Baseline]
     sigma: Mapping[str, float]
+    contact_points: Mapping[str, float]
     notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
@@ -158,15 +170,20 @@ def analyse(curve: ForceCurve, *, baseline: Literal["line", "constant"] = "line"
     snap_in, snap_in_z, snap_in_sigma = dips.get("approach", nothing)
     pull_off, pull_off_z, pull_off_sigma = dips.get("retract", nothing)
     first = next(iter(branches))
-    contact, contact_sigma = _contact_point(branches[first], adhesive=dips[first][0] > 0)
+    stiffness = curve.spring_constant
+    contacts, contact_sigma = _contact_points(branches[first], stiffness, adhesive=dips[first][0] > 0)
     slope, slope_sigma = _contact_slope(branches[first])
+    softening = 1.0 - slope / stiffness if stiffness is not None and slope < stiffness else np.nan
+    work, work_sigma = _adhesion_work(branches["retract"], pull_off > 0) if "retract" in branches else (np.nan, np.nan)
     return CurveReport(
-        contact_point=contact,
+        contact_point=float(np.median(list(contacts.values()))) if contacts else np.nan,
         snap_in_force=snap_in,
         snap_in_z=snap_in_z,
         pull_off_force=pull_off,
         pull_off_z=pull_off_z,
         contact_slope=slope,
+        contact_stiffness=slope / softening,
+        adhesion_work=work,
         baseline_tilt=branches[first].baseline.slope,
         noise=float(np.mean([branch.noise for branch in branches.values()])),
         baselines={role: branch.baseline for role, branch in branches.items()},
@@ -175,9 +192,41 @@ def analyse(curve: ForceCurve, *, baseline: Literal["line", "constant"] = "line"
             "snap_in_force": snap_in_sigma,
             "pull_off_force": pull_off_sigma,
             "contact_slope": slope_sigma,
+            "contact_stiffness": slope_sigma / softening**2,
+            "adhesion_work": work_sigma,
         },
+        contact_points=contacts,
         notes=_notes(curve),
     )
+
+
+def sensitivity(curve: ForceCurve) -> tuple[float, float]:
+    """Deflection sensitivity from a contact that does not yield, where the tip follows the base.
+
+    Returns
+    -------
+    value, sigma : float
+        What the sensitivity [m/V] would have to be for a contact slope equal to the spring constant, and its standard
+        uncertainty: half the difference of approach and retraction (friction) where there are both.
+
+    Raises
+    ------
+    InvalidValue
+        If the curve states no sensitivity or spring constant, or shows no contact.
+    """
+    assumed, stiffness = curve.meta.get("sensitivity"), curve.spring_constant
+    if assumed is None or stiffness is None:
+        raise InvalidValue(f"{curve.name}: states no sensitivity or no spring constant; give it to curves.read")
+    slopes = []
+    for segment in (curve.approach, curve.retract):
+        if segment is not None and len(segment) >= 16:
+            slopes.append(_contact_slope(_branch(segment, "line", curve.name)))
+    slopes = [(slope, sigma) for slope, sigma in slopes if slope > 0.0]
+    if not slopes:
+        raise InvalidValue(f"{curve.name}: shows no contact whose slope could be taken")
+    found = np.array([float(assumed) * stiffness / slope for slope, _ in slopes])
+    statistical = max(float(assumed) * stiffness * sigma / slope**2 for slope, sigma in slopes)
+    return float(found.mean()), float(np.hypot(statistical, 0.5 * np.ptp(found)))
 
 
 def _notes(curve: ForceCurve) -> tuple[str, ...]:
@@ -279,8 +328,8 @@ def _dip(branch: _Branch) -> tuple[float, float, float]:
     return (depth, z, branch.sigma(z)) if depth > branch.visible else (0.0, np.nan, branch.sigma(z))
 
 
-def _contact_point(branch: _Branch, adhesive: bool) -> tuple[float, float]:
-    """Coming out of the strongest contact, where the force is down to the baseline, and its uncertainty [m].
+def _contact_points(branch: _Branch, stiffness: float | None, adhesive: bool) -> tuple[dict[str, float], float]:
+    """Coming out of the strongest contact, where the force is down to the baseline, and the uncertainty [m].
 
     Without adhesion the force leaves the baseline gradually: then it is the last point above what is visible.
     """
@@ -290,14 +339,34 @@ def _contact_point(branch: _Branch, adhesive: bool) -> tuple[float, float]:
     level = 0.0 if adhesive else branch.visible
     below = np.flatnonzero(force[peak:] <= level)
     if force[peak] <= branch.visible or below.size == 0:
-        return np.nan, np.nan
+        return {}, np.nan
     after = peak + int(below[0])
     before = after - 1
     crossing = float(z[before] + (z[after] - z[before]) * (force[before] - level) / (force[before] - force[after]))
     reach = max(5, z.size // 100)
     near = slice(max(peak, after - reach), min(after + reach, z.size))
     steepness = abs(float(np.polyfit(z[near] - crossing, force[near], 1)[0]))
-    return crossing, branch.sigma(crossing) / steepness if steepness > 0 else np.nan
+    outward = methods.Outward(z[peak:], force[peak:], after - peak, branch.visible, stiffness, adhesive)
+    found = {"crossing" if adhesive else "deviation": crossing} | methods.others(outward)
+    statistical = branch.sigma(crossing) / steepness if steepness > 0 else np.nan
+    return found, float(np.hypot(statistical, np.std(list(found.values()))))
+
+
+def _adhesion_work(branch: _Branch, adhesive: bool) -> tuple[float, float]:
+    """Area below the baseline from where the force crosses it to its last visible dip, and its uncertainty [J]."""
+    if not adhesive:
+        return 0.0, np.nan
+    order = np.argsort(branch.z, kind="stable")
+    z, force = branch.z[order], branch.force[order]
+    lowest = int(np.argmin(force))
+    positive = np.flatnonzero(force[:lowest] >= 0.0)
+    first = int(positive[-1]) + 1 if positive.size else 0
+    back = lowest + np.flatnonzero(force[lowest:] < -branch.visible)
+    part = slice(first, int(back[-1]) + 2)
+    steps = np.diff(z[part])
+    level = branch.baseline.sigma(float(z[lowest])) * float(np.ptp(z[part]))
+    area = float(np.sum(-0.5 * (force[part][1:] + force[part][:-1]) * steps))
+    return area, float(np.hypot(level, branch.noise * np.sqrt(float(steps @ steps))))
 
 
 def _contact_slope(branch: _Branch) -> tuple[float, float]:
