@@ -7,6 +7,7 @@
 
 from .levelling import DespeckleReport, LevelReport, despeckle, level, prepare
 from .reading import Channel, channels, read
+from .scars import ScarReport, repair_scars
 from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import Topography
 
@@ -16,6 +17,7 @@ __all__ = [
     "LevelReport",
     "Paraboloid",
     "RoundedCone",
+    "ScarReport",
     "Topography",
     "channels",
     "despeckle",
@@ -24,4 +26,5 @@ __all__ = [
     "level",
     "prepare",
     "read",
+    "repair_scars",
 ]

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scars: streaks along the fast axis where the tip jumped or slipped, repaired from the rows above and below."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._arrays import Floats
+from ..errors import require
+from .levelling import _MAD, _digit, _middle
+from .topography import Topography
+
+_HIGHEST = 3  # [row]; what is broader across the rows is a structure
+_SHORTEST = 17  # [pixel], odd for OpenCV; what is shorter along the row is a particle
+_GAP = 2  # [pixel]; noise may interrupt a scar for so long
+_STANDARD_DEVIATIONS = 3.0  # of the difference from row to row; seventeen in line do not come from noise
+_MOST = 0.05  # of the image; more is a texture
+
+
+@dataclass(frozen=True)
+class ScarReport:
+    """What the repair of scars replaced.
+
+    Attributes
+    ----------
+    scars : int
+        Number of scars repaired.
+    pixels : int
+        Number of pixels replaced.
+    threshold : float
+        Smallest jump between rows that counted [m].
+    largest : float
+        Largest change of a pixel [m].
+    lines : int
+        Streaks left as they are because they cross the whole image: a structure along the fast axis, or a row offset.
+    refused : bool
+        True if so much looked like scars that it must be a texture; nothing was repaired.
+    """
+
+    scars: int
+    pixels: int
+    threshold: float
+    largest: float
+    lines: int
+    refused: bool
+
+    def __str__(self) -> str:
+        if self.refused:
+            return "no scars repaired: too many to be anything but the surface"
+        kept = f"; {self.lines} lines across the whole image left" if self.lines else ""
+        return f"{self.scars} scars ({self.pixels} pixels) repaired, up to {self.largest * 1e9:.3g} nm removed{kept}"
+
+
+def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
+    """Replace streaks along the fast axis by what the rows above and below say.
+
+    A scar is one to three rows high and 17 pixels or longer, stands out on the same side of the row above it and of
+    that below by three standard deviations, and by more than those two differ from each other (so the edge of a step
+    is none). A streak across the whole image is never taken for a scar, and an image where more than 5 % look like
+    scars is returned as it is; both give a :class:`UserWarning`. The first and the last row are not repaired.
+
+    Returns
+    -------
+    topography : Topography
+        Repaired pixels are masked; all others keep their value.
+    report : ScarReport
+        What was replaced.
+    """
+    z = topography.heights
+    threshold = _threshold(z)
+    raised, sunk = _streaks(z, threshold), _streaks(-z, threshold)
+    (up, ups, lines), (down, downs, more) = _without_lines(raised), _without_lines(sunk)
+    scar, lines = up | down, lines + more
+    if lines:
+        warnings.warn(f"{lines} lines along the fast axis look like scars across the whole image: left", stacklevel=2)
+    if np.count_nonzero(scar) > _MOST * z.size:
+        share = 100 * np.count_nonzero(scar) / z.size
+        warnings.warn(f"{share:.3g} % of the image look like scars: taken for its texture and left", stacklevel=2)
+        return topography, ScarReport(0, 0, threshold, 0.0, lines, True)
+    heights = _bridged(z, scar)
+    largest = float(np.abs(heights - z).max())
+    report = ScarReport(ups + downs, int(np.count_nonzero(scar)), threshold, largest, lines, False)
+    return replace(topography, heights=heights, mask=topography.mask | scar), report
+
+
+def _threshold(z: Floats) -> float:
+    """What neither noise nor the digitiser's steps explain from row to row [m]."""
+    steps = np.diff(z, axis=0).ravel()
+    noise = _MAD * _middle(np.abs(steps - _middle(steps)))
+    height_range = float(np.ptp(z))
+    return max(_STANDARD_DEVIATIONS * noise, 1e-3 * height_range, _digit(steps, height_range))
+
+
+def _streaks(z: Floats, threshold: float) -> NDArray[np.uint8]:
+    """Where one to three rows stand above the row before and the row after, for long enough along the row."""
+    cv2 = require("cv2", "images")
+    found = np.zeros(z.shape, np.uint8)
+    flat = z - _middle(np.diff(z, axis=0).ravel()) * np.arange(len(z))[:, None]
+    for rows in range(1, min(_HIGHEST, len(z) - 2) + 1):
+        inner = np.lib.stride_tricks.sliding_window_view(flat[1:-1], rows, axis=0).min(axis=-1)
+        before, after = flat[: -rows - 1], flat[rows + 1 :]
+        excess = inner - np.maximum(before, after)
+        out = ((excess > threshold) & (excess > np.abs(before - after))).astype(np.uint8)
+        out = cv2.morphologyEx(out, cv2.MORPH_CLOSE, np.ones((1, _GAP + 1), np.uint8))
+        out = cv2.morphologyEx(out, cv2.MORPH_OPEN, np.ones((1, _SHORTEST), np.uint8))
+        for row in range(1, rows + 1):
+            found[row : row + len(out)] |= out
+    return found
+
+
+def _without_lines(found: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], int, int]:
+    """The streaks that do not cross the whole image, their number, and that of those that do."""
+    cv2 = require("cv2", "images")
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(found, connectivity=8)
+    across = stats[:, cv2.CC_STAT_WIDTH] >= found.shape[1] - 2 * _GAP
+    lines, streaks = int(across[1:].sum()), int((~across[1:]).sum())
+    kept = ~across
+    kept[0] = False
+    return np.asarray(kept[labels], dtype=bool), streaks, lines
+
+
+def _bridged(z: Floats, scar: NDArray[np.bool_]) -> Floats:
+    """Marked pixels from the nearest others above and below in their column, linearly."""
+    rows = np.arange(len(z))[:, None]
+    below = np.maximum.accumulate(np.where(scar, -1, rows), axis=0)
+    above = np.minimum.accumulate(np.where(scar, len(z), rows)[::-1], axis=0)[::-1]
+    j, i = np.nonzero(scar)
+    low, high = below[j, i], above[j, i]
+    share = (j - low) / (high - low)
+    heights = z.copy()
+    heights[j, i] = (1 - share) * z[low, i] + share * z[high, i]
+    return heights
