@@ -9,5 +9,16 @@
 from .analysis import Baseline, CurveReport, analyse, force_gap, sensitivity
 from .curve import ForceCurve, Segment
 from .reading import read
+from .synthesis import synthesise
 
-__all__ = ["Baseline", "CurveReport", "ForceCurve", "Segment", "analyse", "force_gap", "read", "sensitivity"]
+__all__ = [
+    "Baseline",
+    "CurveReport",
+    "ForceCurve",
+    "Segment",
+    "analyse",
+    "force_gap",
+    "read",
+    "sensitivity",
+    "synthesise",
+]

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Force curves whose answer is known."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import contact as laws
+from .._arrays import check_between
+from ..errors import InvalidValue
+from .curve import ForceCurve, Segment
+
+_TABLE = 20_001  # points of the law between which it is taken as straight: below 1e-8 of the force
+_FOLD = 1e-12  # of the depth, by which the table starts inside the displacement fold
+
+
+def synthesise(
+    contact: laws.Contact,
+    model: laws.Model = "maugis",
+    *,
+    spring_constant: float,
+    depth: float = 60e-9,
+    clearance: float = 450e-9,
+    contact_point: float = 300e-9,
+    points: int = 2000,
+    rate: float = 2000.0,
+    noise: float = 0.0,
+    offset: float = 0.0,
+    tilt: float = 0.0,
+    drift: float = 0.0,
+    sensitivity_error: float = 1.0,
+    spring_constant_error: float = 1.0,
+    seed: int = 0,
+) -> ForceCurve:
+    """What an instrument would record over a known contact.
+
+    The base moves evenly, slowly enough for equilibrium. On the approach the tip is free until the undeformed bodies
+    would touch and then on the stable branch of the law; on the retraction it follows that branch through its lowest
+    force until the cantilever of finite stiffness tears it off, where dF/d(delta) = -k_c or at the law's own fold.
+
+    Parameters
+    ----------
+    contact : Contact
+        Tip and sample.
+    model : {"maugis", "jkr", "dmt", "hertz"}
+        The law.
+    spring_constant : float
+        True k_c [N/m].
+    depth, clearance : float
+        How far the base goes below and above the contact point [m].
+    contact_point : float
+        z of the base where the undeformed bodies touch [m], at the deepest point of the curve if there is drift.
+    points : int
+        Of each branch.
+    rate : float
+        Samples per second [1/s].
+    noise : float
+        Standard deviation of the force, white [N].
+    offset, tilt : float
+        Of the detector: force [N] at the contact point and its change with z of the base [N/m].
+    drift : float
+        Speed with which the sample recedes from the recorded z [m/s].
+    sensitivity_error, spring_constant_error : float
+        Stated over true calibration; both spoil the force, the first also the deflection.
+    seed : int
+        Of the noise; the same arguments give the same curve.
+
+    Returns
+    -------
+    ForceCurve
+        ``meta["truth"]`` holds `contact`, `model`, `contact_point`, `spring_constant`.
+    """
+    for name, value, unit in (("spring_constant", spring_constant, "N/m"), ("depth", depth, "m"),
+                              ("clearance", clearance, "m"), ("rate", rate, "1/s"),
+                              ("sensitivity_error", sensitivity_error, ""),
+                              ("spring_constant_error", spring_constant_error, "")):  # fmt: skip
+        check_between(name, value, unit, above=0.0)
+    if points < 16:
+        raise InvalidValue(f"points: {points}, expected at least 16")
+    rng = np.random.default_rng(seed)
+    stated = spring_constant * spring_constant_error
+    height, force_there = _equilibria(contact, model, spring_constant, depth)
+
+    def branch(role: Literal["approach", "retract"], z: NDArray[np.float64], first: int) -> Segment:
+        time = (first + np.arange(points)) / rate
+        above = z - contact_point + drift * (time - (points - 1) / rate)
+        held = above <= (0.0 if role == "approach" else height[-1])
+        force = np.where(held, np.interp(above, height, force_there), 0.0)
+        shown = force + offset + tilt * (z - contact_point) + noise * rng.standard_normal(points)
+        deflection = shown / spring_constant * sensitivity_error
+        return Segment(role, time, z, "height (measured)", stated * deflection, deflection)
+
+    z = np.linspace(contact_point - depth, contact_point + clearance, points)
+    truth = {"contact": contact, "model": model, "contact_point": contact_point, "spring_constant": spring_constant}
+    meta = {"spring constant": stated, "rate": rate, "truth": truth}
+    return ForceCurve((branch("approach", z[::-1], 0), branch("retract", z, points)), meta, f"synthetic {model} {seed}")
+
+
+def _equilibria(
+    contact: laws.Contact, model: laws.Model, stiffness: float, depth: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Height of the base over first touch [m], growing up to where the tip is torn off, and the force there [N]."""
+    grip = contact.law(model).grip_indentation
+    reach = 1.2 * (depth + laws.pull_off_force(model, contact) / stiffness) - grip
+    delta = grip + (_FOLD + np.linspace(0.0, 1.0, _TABLE) ** 2) * reach  # dense where the law bends
+    force = np.asarray(laws.evaluate(model, delta, contact).F)
+    height = -delta - force / stiffness
+    torn = int(np.argmax(height))
+    return height[torn:][::-1], force[torn:][::-1]
