@@ -8,6 +8,7 @@
 from .levelling import DespeckleReport, LevelReport, despeckle, level, prepare
 from .reading import Channel, channels, read
 from .scars import ScarReport, repair_scars
+from .statistics import Roughness, roughness
 from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import Topography
 
@@ -16,6 +17,7 @@ __all__ = [
     "DespeckleReport",
     "LevelReport",
     "Paraboloid",
+    "Roughness",
     "RoundedCone",
     "ScarReport",
     "Topography",
@@ -27,4 +29,5 @@ __all__ = [
     "prepare",
     "read",
     "repair_scars",
+    "roughness",
 ]
