@@ -104,7 +104,7 @@ def test_the_same_seed_gives_the_same_curve_and_nonsense_is_refused() -> None:
 @pytest.mark.parametrize("model", MODELS)
 def test_coverage_of_the_95_percent_interval(model: Any) -> None:
     """200 curves: 190 expected within, standard deviation 3. Baseline and pull-off are found on the same curve, and
-    their own errors are not all in sigma: found are 179 (w) to 189 (E*), so 170, 85 %, is the alarm, not the promise."""
+    their own errors are not all in sigma: found are 179 (w) to 189 (E*); 170, 85 %, is the alarm, not the promise."""
     pytest.importorskip("nanotouch._fit", reason="built without Ceres")
     inside = dict.fromkeys(
         ["effective_modulus", "contact_point", "work_of_adhesion"][: 2 if model == "hertz" else 3], 0

@@ -10,15 +10,18 @@ from .analysis import Baseline, CurveReport, analyse, force_gap, sensitivity
 from .curve import ForceCurve, Segment
 from .reading import read
 from .synthesis import synthesise
+from .thermal import ThermalTune, thermal_tune
 
 __all__ = [
     "Baseline",
     "CurveReport",
     "ForceCurve",
     "Segment",
+    "ThermalTune",
     "analyse",
     "force_gap",
     "read",
     "sensitivity",
     "synthesise",
+    "thermal_tune",
 ]
