@@ -46,7 +46,8 @@ int main(void)
     for (int i = 0; i < POINTS; i++)
         position[i] = 80e-9 - 81e-9 * i / (POINTS - 1); /* out of contact, to just before the pull-off */
 
-    const nt_fit_data data = {.position = position, .force = force, .count = POINTS, .position_stride = 1, .force_stride = 1};
+    const nt_fit_data data = {
+        .position = position, .force = force, .count = POINTS, .position_stride = 1, .force_stride = 1};
     nt_status status = nt_fit_model_n(&options, truth, &data, force);
     for (int i = 0; i < POINTS; i++)
         force[i] += noise * nt_random_normal(&random);

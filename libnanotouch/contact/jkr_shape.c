@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * JKR adhesion of a cone (Maugis, Barquins, J. Phys. D 16 (1983) 1843) and of a flat punch (Kendall, J. Phys. D 4 (1971)
- * 1186); the paraboloid is jkr.c. At the edge, G = w gives delta = delta_0(a) - s, s = sqrt(2 pi w a/E*).
+ * JKR adhesion of a cone (Maugis, Barquins, J. Phys. D 16 (1983) 1843) and of a flat punch (Kendall, J. Phys. D 4
+ * (1971) 1186); the paraboloid is jkr.c. At the edge, G = w gives delta = delta_0(a) - s, s = sqrt(2 pi w a/E*).
  *
  * Cone: with a = a_f r^2, a_f = 2 w tan(psi)^2/(pi E*) the radius of the displacement fold,
  *
@@ -20,7 +20,7 @@
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) \
+#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
     {#path, unit, minimum, maximum, (unsigned)offsetof(nt_jkr_shape, path), doc}
 
 static const nt_field jkr_fields[] = {

@@ -7,7 +7,7 @@
 #include "nanotouch/field.h"
 #include "nanotouch/material.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) \
+#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
     {#path, unit, minimum, maximum, (unsigned)offsetof(nt_contact, path), doc}
 
 static const nt_field contact_fields[] = {

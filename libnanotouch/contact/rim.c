@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A cone whose apex is cut off flat or rounded by a paraboloid, both at the radius b of the rim; contact beyond the rim,
- * a >= b (Briscoe, Sebastian, Adams, J. Phys. D 27 (1994) 1156). Theirs
+ * A cone whose apex is cut off flat or rounded by a paraboloid, both at the radius b of the rim; contact beyond the
+ * rim, a >= b (Briscoe, Sebastian, Adams, J. Phys. D 27 (1994) 1156). Theirs
  *
  *     delta = (a/R)(a - s) + cot(psi) a phi,     s = sqrt(a^2 - b^2), phi = arccos(b/a)
  *
@@ -35,8 +35,8 @@ static double gudermann(double w)
     return 2.0 * atan(tanh(0.5 * w));
 }
 
-/* Int_0^w gd(v) dv: with q = tanh(w/2), 4 Sum_n (1 - 1/3 + .. +- 1/(2n+1)) q^(2n+2)/(2n+2); for q > sqrt(2) - 1 from the
- * other end, pi/2 w - 2 (Ti2(1) - Ti2(e)), Ti2(e) = e - e^3/9 + e^5/25 - ..., Ti2(1) Catalan's constant. */
+/* Int_0^w gd(v) dv: with q = tanh(w/2), 4 Sum_n (1 - 1/3 + .. +- 1/(2n+1)) q^(2n+2)/(2n+2); for q > sqrt(2) - 1 from
+ * the other end, pi/2 w - 2 (Ti2(1) - Ti2(e)), Ti2(e) = e - e^3/9 + e^5/25 - ..., Ti2(1) Catalan's constant. */
 static double gudermann_integral(double w)
 {
     const double q = tanh(0.5 * w), e = exp(-w);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Tips of several shapes on an elastic half-space without adhesion: which law is meant, in SI. Pyramids are cones of an
  * equivalent angle: by similarity F = C E* tan(psi) delta^2 exactly, and C is a number that depends on the sides alone.
- * Blunted and truncated pyramids take the same angle; that is exact for the pyramid far from the end, and at the end. */
+ * Blunted and truncated pyramids take the same angle; that is exact for the pyramid far from the end, and at the end.
+ */
 #include <math.h>
 #include <stddef.h>
 

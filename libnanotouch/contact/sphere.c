@@ -22,8 +22,8 @@
 
 enum { FRACTION_DEPTH = 11, MAX_TERMS = 60 };
 
-/* u - tanh(u) without cancellation: for u <= 1 from Lambert's fraction tanh(u) = u/(1 + q), q = u^2/(3 + u^2/(5 + ...)),
- * of which 11 levels give the last bit. */
+/* u - tanh(u) without cancellation: for u <= 1 from Lambert's fraction tanh(u) = u/(1 + q), q = u^2/(3 + u^2/(5 +
+ * ...)), of which 11 levels give the last bit. */
 static double above_tanh(double u)
 {
     if (u > 1.0)
@@ -89,8 +89,8 @@ static double force_residual(double u, const void *force)
     return reduced_force(u) - *(const double *)force;
 }
 
-/* lo is the root of the leading term; below SMALL that is all there is, and the residual would be lost in denormals. The
- * bracket is widened by more than rounding can move its ends. */
+/* lo is the root of the leading term; below SMALL that is all there is, and the residual would be lost in denormals.
+ * The bracket is widened by more than rounding can move its ends. */
 static double root_between(nt_scalar_function *f, double value, double lo, double hi)
 {
     double u = NAN;

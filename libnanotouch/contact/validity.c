@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Is a contact inside the range of its law? The laws return a number everywhere; this says when not to believe it. Where
- * each range comes from is in docs/geometry.md; erratum E13 is a case that it finds. */
+ * Is a contact inside the range of its law? The laws return a number everywhere; this says when not to believe it.
+ * Where each range comes from is in docs/geometry.md; erratum E13 is a case that it finds. */
 #include <math.h>
 
 #include "nanotouch/geometry.h"
@@ -47,7 +47,7 @@ nt_status nt_contact_validity_of(const nt_shape *shape, double contact_radius, d
     nt_contact_validity found = {.thickness_ratio = contact_radius / thickness};
     if (contact_radius > 0.0) {
         measure(shape, contact_radius, &found);
-        found.strain = shape->kind == NT_SHAPE_PUNCH ? TABOR_PUNCH * fabs(indentation) / contact_radius
+        found.strain = shape->kind == NT_SHAPE_PUNCH    ? TABOR_PUNCH * fabs(indentation) / contact_radius
                        : shape->kind == NT_SHAPE_SPHERE ? TABOR * found.radius_ratio
                                                         : TABOR * found.slope;
     }

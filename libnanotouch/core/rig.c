@@ -51,7 +51,8 @@ nt_rig nt_rig_defaults(void)
                 .stiffness = 1e6, /* not in the paper; with f_n it stands for a moving mass of 0.125 kg */
                 .travel = 100e-6, /* not in the paper; its alpha_p = 4e-3 (Fig. 17) asks for 80 um from a 2 cm master */
                 .resolution = 1e-9, /* open loop; the closed loop's 10 nm is what the paper found insufficient */
-                .command_resolution = 1e-10, /* a 20-bit converter over the travel: 1 nm steps make the resonance ring */
+                .command_resolution =
+                    1e-10,           /* a 20-bit converter over the travel: 1 nm steps make the resonance ring */
                 .max_speed = 100e-6, /* not in the paper; 10 nm per tick at 10 kHz */
             },
         .master =

@@ -7,8 +7,8 @@
 const char *nt_status_message(nt_status status)
 {
     switch (status) {
-#define NT_STATUS_CASE(code, message) \
-    case code:                        \
+#define NT_STATUS_CASE(code, message)                                                                                  \
+    case code:                                                                                                         \
         return message;
         NT_STATUS_LIST(NT_STATUS_CASE)
 #undef NT_STATUS_CASE

@@ -40,7 +40,8 @@ static nt_fit_state maugis_at(const nt_fit_branch *branch, double s)
     const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(lambda, shape);
     const double q = fmin(4.0 / 3.0 * lambda * lambda * shape.g2 * at.b, 1.0); /* rounding only */
     const double r = (1.0 + q) / (2.0 - q), a2 = at.a * at.a;
-    const double load = at.P * (1.0 - 2.0 * r) - a2 * at.a * (1.0 + r); /* lambda dP/dlambda, dd/dlambda at constant y */
+    const double load =
+        at.P * (1.0 - 2.0 * r) - a2 * at.a * (1.0 + r); /* lambda dP/dlambda, dd/dlambda at constant y */
     const double depth = at.d * (1.0 - r) - a2 * (1.0 + r);
     return (nt_fit_state){
         .F = branch->load * at.P,

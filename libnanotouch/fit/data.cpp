@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace nanotouch {
+namespace nanotouch
+{
 
-namespace {
+namespace
+{
 
-constexpr double largest_value = 1.0;  // m or N: beyond, the unit is surely not SI
+constexpr double largest_value = 1.0; // m or N: beyond, the unit is surely not SI
 
 Span span(const double *values, long count, long stride)
 {
@@ -42,7 +44,7 @@ nt_status check_column(const Column &column, long count, nt_problem *problem)
     return NT_E_RANGE;
 }
 
-}  // namespace
+} // namespace
 
 Span position_span(const nt_fit_data &data)
 {
@@ -78,4 +80,4 @@ nt_status check_data(const nt_fit_options &options, const nt_fit_data *data, nt_
     return status == NT_OK ? check_column(force, data->count, problem) : status;
 }
 
-}  // namespace nanotouch
+} // namespace nanotouch

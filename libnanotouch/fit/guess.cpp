@@ -10,9 +10,11 @@
 
 #include "nanotouch/material.h"
 
-namespace nanotouch {
+namespace nanotouch
+{
 
-namespace {
+namespace
+{
 
 constexpr int grid_per_decade = 1;
 constexpr long sample_size = 24;
@@ -42,7 +44,7 @@ double guess_work_of_adhesion(const nt_fit_options &options, const std::vector<S
     const double span = sample.back().force - sample.front().force;
     const double measured = options.pull_off_sigma > 0.0 ? options.pull_off_force : -sample.front().force;
     const double pull_off = std::max(measured, 1e-3 * span);
-    const double per_radius = options.model == NT_JKR ? 1.5 : options.model == NT_DMT ? 2.0 : 1.75;  // pi w R
+    const double per_radius = options.model == NT_JKR ? 1.5 : options.model == NT_DMT ? 2.0 : 1.75; // pi w R
     const nt_fit_start &bounds = options.parameter[NT_FIT_WORK_OF_ADHESION];
     return std::clamp(pull_off / (per_radius * NT_PI * options.radius), bounds.minimum, bounds.maximum);
 }
@@ -106,10 +108,11 @@ double range_at(const nt_fit_options &options, const Parameters &trial, double l
 {
     const nt_contact contact{options.radius, trial[NT_FIT_EFFECTIVE_MODULUS], trial[NT_FIT_WORK_OF_ADHESION], 1.0};
     const nt_fit_start &bounds = options.parameter[NT_FIT_COHESIVE_RANGE];
-    return std::clamp(trial[NT_FIT_WORK_OF_ADHESION] * nt_maugis_lambda(&contact) / lambda, bounds.minimum, bounds.maximum);
+    return std::clamp(trial[NT_FIT_WORK_OF_ADHESION] * nt_maugis_lambda(&contact) / lambda, bounds.minimum,
+                      bounds.maximum);
 }
 
-}  // namespace
+} // namespace
 
 nt_status guess(const nt_fit_options &options, const nt_fit_data &data, double lambda, Parameters *value)
 {
@@ -143,4 +146,4 @@ nt_status guess(const nt_fit_options &options, const nt_fit_data &data, double l
     return NT_OK;
 }
 
-}  // namespace nanotouch
+} // namespace nanotouch

@@ -2,15 +2,17 @@
 // The force at a position and its derivatives.
 //
 // Derivatives at constant delta. In Maugis' units F = S_P p(d; lambda), d = delta/S_d with S_P = pi w R,
-// S_d = (pi^2 w^2 R/K^2)^(1/3) and lambda = 2 (w/h0) (R/(pi w K^2))^(1/3), so that with Lambda = S_P lambda dp/dlambda|_d
+// S_d = (pi^2 w^2 R/K^2)^(1/3) and lambda = 2 (w/h0) (R/(pi w K^2))^(1/3), so that with Lambda = S_P lambda
+// dp/dlambda|_d
 //
-//     dF/d ln E* = 2/3 (k delta - Lambda)     dF/d ln w = F - 2/3 (k delta - Lambda)     dF/d ln h0 = -Lambda     (scaling)
+//     dF/d ln E* = 2/3 (k delta - Lambda)     dF/d ln w = F - 2/3 (k delta - Lambda)     dF/d ln h0 = -Lambda (scaling)
 //
 // for every model; Lambda = 0 without a range of adhesion. For Maugis-Dugdale, dp/dlambda|_d = p_lambda - k d_lambda at
 // constant branch parameter y. Differentiating (Griffith) of contact/maugis_branch.c by lambda gives, with
 // q = 4/3 lambda^2 g2 b and r = (1 + q)/(2 - q),
 //
-//     lambda b_lambda = -r b     lambda p_lambda = p (1 - 2r) - a^3 (1 + r)     lambda d_lambda = d (1 - r) - a^2 (1 + r)
+//     lambda b_lambda = -r b     lambda p_lambda = p (1 - 2r) - a^3 (1 + r)     lambda d_lambda = d (1 - r) - a^2 (1 +
+//     r)
 //
 // At constant position, (cantilever) of fit.h turns dF into (dF - k ddelta0 - k F c/k_c dln c)/(1 + c k/k_c).
 #include "model.hpp"
@@ -19,12 +21,14 @@
 #include <cmath>
 #include <limits>
 
-namespace nanotouch {
+namespace nanotouch
+{
 
-namespace {
+namespace
+{
 
 constexpr int max_iterations = 100;
-constexpr double linear = 1e-9;  // of s: over a step that small the branch is straight to the last bit
+constexpr double linear = 1e-9; // of s: over a step that small the branch is straight to the last bit
 
 nt_status indentation_at(const nt_contact_law &law, double force, double *indentation)
 {
@@ -44,7 +48,7 @@ nt_status indentation_at(const nt_contact_law &law, double force, double *indent
     return std::isfinite(*indentation) ? NT_OK : NT_E_NO_SOLUTION;
 }
 
-}  // namespace
+} // namespace
 
 double Track::predict(double position, double otherwise) const
 {
@@ -103,7 +107,7 @@ nt_status Model::prepare(const nt_fit_options &options, const Parameters &value)
     compliance_ = options.spring_constant > 0.0 ? value[NT_FIT_COMPLIANCE] / options.spring_constant : 0.0;
     branch_ = nt_fit_branch_of(&law_);
     nt_fit_state load_fold = nt_fit_branch_at(&branch_, branch_.start);
-    load_fold.F = -nt_contact_law_pull_off_force(&law_);  // the branch gives it but for rounding
+    load_fold.F = -nt_contact_law_pull_off_force(&law_); // the branch gives it but for rounding
     differentiate(load_fold, 0.0, &pull_off_);
     return NT_OK;
 }
@@ -154,4 +158,4 @@ nt_status Model::at(double position, Track *track, Point *point) const
     return NT_OK;
 }
 
-}  // namespace nanotouch
+} // namespace nanotouch

@@ -8,13 +8,13 @@
 #include "nanotouch/field.h"
 #include "nanotouch/fit.h"
 
-namespace {
+namespace
+{
 
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 // An enumerator from C may be any number; C++ must not look at it as an enumerator before it is checked.
-template <class Enumeration>
-int number_of(const Enumeration &enumerator)
+template <class Enumeration> int number_of(const Enumeration &enumerator)
 {
     static_assert(sizeof(Enumeration) == sizeof(int));
     int number;
@@ -24,31 +24,25 @@ int number_of(const Enumeration &enumerator)
 
 struct Description {
     const char *name, *unit;
-    double minimum, maximum;  // widest bounds
+    double minimum, maximum; // widest bounds
     const char *initial_name, *minimum_name, *maximum_name;
 };
 
-#define DESCRIBE(name, unit, minimum, maximum) \
+#define DESCRIBE(name, unit, minimum, maximum)                                                                         \
     {name, unit, minimum, maximum, name ".initial", name ".minimum", name ".maximum"}
 const Description descriptions[NT_FIT_PARAMETERS] = {
-    DESCRIBE("effective_modulus", "Pa", 1.0, 1e14),
-    DESCRIBE("work_of_adhesion", "J/m^2", 1e-9, 1e3),
-    DESCRIBE("cohesive_range", "m", 1e-12, 1e-5),
-    DESCRIBE("contact_point", "m", -1.0, 1.0),
-    DESCRIBE("force_offset", "N", -1.0, 1.0),
-    DESCRIBE("compliance", "", 0.1, 10.0),
+    DESCRIBE("effective_modulus", "Pa", 1.0, 1e14), DESCRIBE("work_of_adhesion", "J/m^2", 1e-9, 1e3),
+    DESCRIBE("cohesive_range", "m", 1e-12, 1e-5),   DESCRIBE("contact_point", "m", -1.0, 1.0),
+    DESCRIBE("force_offset", "N", -1.0, 1.0),       DESCRIBE("compliance", "", 0.1, 10.0),
 };
 #undef DESCRIBE
 
-#define FIELD(path, unit, minimum, maximum) \
+#define FIELD(path, unit, minimum, maximum)                                                                            \
     {#path, unit, minimum, maximum, static_cast<unsigned>(offsetof(nt_fit_options, path)), ""}
 const nt_field fields[] = {
-    FIELD(radius, "m", 1e-10, 1.0),
-    FIELD(spring_constant, "N/m", 0.0, 1e6),
-    FIELD(loss_scale, "N", 1e-18, 1.0),
-    FIELD(force_noise, "N", 0.0, 1.0),
-    FIELD(pull_off_force, "N", 0.0, 1.0),
-    FIELD(pull_off_sigma, "N", 0.0, 1.0),
+    FIELD(radius, "m", 1e-10, 1.0),        FIELD(spring_constant, "N/m", 0.0, 1e6),
+    FIELD(loss_scale, "N", 1e-18, 1.0),    FIELD(force_noise, "N", 0.0, 1.0),
+    FIELD(pull_off_force, "N", 0.0, 1.0),  FIELD(pull_off_sigma, "N", 0.0, 1.0),
     FIELD(compliance_sigma, "", 0.0, 1.0),
 };
 #undef FIELD
@@ -103,7 +97,7 @@ nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
     return NT_OK;
 }
 
-}  // namespace
+} // namespace
 
 const char *nt_fit_parameter_name(nt_fit_parameter parameter)
 {

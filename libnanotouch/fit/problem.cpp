@@ -7,9 +7,11 @@
 
 #include "data.hpp"
 
-namespace nanotouch {
+namespace nanotouch
+{
 
-Coordinates::Coordinates(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start) : start_(start)
+Coordinates::Coordinates(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start)
+    : start_(start)
 {
     scale_.fill(1.0);
     scale_[NT_FIT_CONTACT_POINT] = position_span(data).width();
@@ -111,4 +113,4 @@ bool Residual::Evaluate(double const *const *, double *residuals, double **jacob
     return true;
 }
 
-}  // namespace nanotouch
+} // namespace nanotouch

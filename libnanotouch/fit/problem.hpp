@@ -9,42 +9,82 @@
 
 #include "model.hpp"
 
-namespace nanotouch {
+namespace nanotouch
+{
 
 // Free parameters as numbers of order one, all 0 at the start: value = start exp(x), or start + scale x.
-class Coordinates {
-public:
+class Coordinates
+{
+  public:
     Coordinates(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start);
-    int size() const { return static_cast<int>(free_.size()); }
-    int parameter(int i) const { return free_[static_cast<std::size_t>(i)]; }
+    int size() const
+    {
+        return static_cast<int>(free_.size());
+    }
+    int parameter(int i) const
+    {
+        return free_[static_cast<std::size_t>(i)];
+    }
     Parameters values(const double *x) const;
     double inverse(int i, double value) const;
-    double slope(int i, const Parameters &value) const;  // d value/d x
-    double gradient_scale(int i) const;                  // what Model's gradient is multiplied by
+    double slope(int i, const Parameters &value) const; // d value/d x
+    double gradient_scale(int i) const;                 // what Model's gradient is multiplied by
 
-private:
+  private:
     std::vector<int> free_;
     Parameters start_, scale_;
 };
 
-// Evaluates all residuals and derivatives together, once per point of the search: preparing a law costs more than using it.
-class Residuals : public ceres::EvaluationCallback {
-public:
+// Evaluates all residuals and derivatives together, once per point of the search: preparing a law costs more than using
+// it.
+class Residuals : public ceres::EvaluationCallback
+{
+  public:
     Residuals(const nt_fit_options &options, const nt_fit_data &data, const Coordinates &coordinates);
     void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
-    double *x() { return x_.data(); }
-    bool valid() const { return valid_; }
-    long count() const { return count_; }       // of residuals
-    long data_count() const { return data_.count; }  // the first of them; the rest are measured pull-off and calibration
-    double unit() const { return unit_; }       // of the data's residuals [N]
-    const double *residuals(long first) const { return &residual_[static_cast<std::size_t>(first)]; }
-    double residual(long i) const { return *residuals(i); }
-    const double *gradient(long i) const { return &gradient_[static_cast<std::size_t>(i * coordinates_.size())]; }
-    const Model &model() const { return model_; }
-    Parameters values() const { return coordinates_.values(x_.data()); }
+    double *x()
+    {
+        return x_.data();
+    }
+    bool valid() const
+    {
+        return valid_;
+    }
+    long count() const
+    {
+        return count_;
+    } // of residuals
+    long data_count() const
+    {
+        return data_.count;
+    } // the first of them; the rest are measured pull-off and calibration
+    double unit() const
+    {
+        return unit_;
+    } // of the data's residuals [N]
+    const double *residuals(long first) const
+    {
+        return &residual_[static_cast<std::size_t>(first)];
+    }
+    double residual(long i) const
+    {
+        return *residuals(i);
+    }
+    const double *gradient(long i) const
+    {
+        return &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
+    }
+    const Model &model() const
+    {
+        return model_;
+    }
+    Parameters values() const
+    {
+        return coordinates_.values(x_.data());
+    }
 
-private:
+  private:
     bool evaluate();
     void store(long i, double residual, const Point &point, double unit);
 
@@ -60,14 +100,15 @@ private:
 };
 
 // Some of Residuals as one block: a single point where a loss acts on each, all of them where none does.
-class Residual : public ceres::CostFunction {
-public:
+class Residual : public ceres::CostFunction
+{
+  public:
     Residual(const Residuals &all, long first, long count, int parameters);
     bool Evaluate(double const *const *, double *residuals, double **jacobians) const override;
 
-private:
+  private:
     const Residuals &all_;
     const long first_;
 };
 
-}  // namespace nanotouch
+} // namespace nanotouch

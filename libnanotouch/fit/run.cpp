@@ -11,9 +11,11 @@
 #include "guess.hpp"
 #include "problem.hpp"
 
-namespace nanotouch {
+namespace nanotouch
+{
 
-namespace {
+namespace
+{
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -35,12 +37,13 @@ std::unique_ptr<ceres::LossFunction> loss_of(const nt_fit_options &options, doub
 
 struct Found {
     nt_fit_result result;
-    double variance, cost;  // of a residual, and the sum of all squares, in the residuals' unit
+    double variance, cost; // of a residual, and the sum of all squares, in the residuals' unit
 };
 
 // Nothing about the fit outlives this object.
-class Fit {
-public:
+class Fit
+{
+  public:
     Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start)
         : options_(options), data_(data), coordinates_(options, data, start), residuals_(options, data, coordinates_),
           loss_(loss_of(options, residuals_.unit()))
@@ -48,7 +51,7 @@ public:
     }
     nt_status run(Found *found);
 
-private:
+  private:
     void build(ceres::Problem *problem);
     bool solve(ceres::Problem *problem, ceres::Solver::Summary *summary);
     double noise_variance() const;
@@ -91,13 +94,13 @@ bool Fit::solve(ceres::Problem *problem, ceres::Solver::Summary *summary)
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.logging_type = ceres::SILENT;
-    solver.num_threads = 1;  // deterministic; the caller may run fits in parallel
+    solver.num_threads = 1; // deterministic; the caller may run fits in parallel
     solver.max_num_iterations = options_.max_iterations;
     solver.function_tolerance = 1e-12;
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-12;
     ceres::Solve(solver, problem, summary);
-    residuals_.PrepareForEvaluation(true, true);  // at the result, not at the last trial
+    residuals_.PrepareForEvaluation(true, true); // at the result, not at the last trial
     return summary->IsSolutionUsable() && residuals_.valid();
 }
 
@@ -197,8 +200,8 @@ void Fit::fill_uncertainties(const std::vector<double> &covariance, double varia
         for (int j = 0; j < size; j++) {
             const bool known = resolved[static_cast<std::size_t>(i)] && resolved[static_cast<std::size_t>(j)];
             result->covariance[p][coordinates_.parameter(j)] =
-                known ? scale * covariance[static_cast<std::size_t>(i * size + j)] * coordinates_.slope(i, value) *
-                            coordinates_.slope(j, value)
+                known    ? scale * covariance[static_cast<std::size_t>(i * size + j)] * coordinates_.slope(i, value) *
+                               coordinates_.slope(j, value)
                 : i == j ? infinity
                          : not_a_number;
         }
@@ -231,8 +234,9 @@ nt_status Fit::run(Found *found)
 void write_message(const nt_fit_options &options, nt_fit_result *result)
 {
     char *text = result->message;
-    int used = std::snprintf(text, NT_FIT_MESSAGE, result->converged ? "converged after %d iterations"
-                                                                     : "stopped after %d iterations without convergence",
+    int used = std::snprintf(text, NT_FIT_MESSAGE,
+                             result->converged ? "converged after %d iterations"
+                                               : "stopped after %d iterations without convergence",
                              result->iterations);
     const char *separator = "; not determined by these data: ";
     for (int p = 0; p < NT_FIT_PARAMETERS && used < NT_FIT_MESSAGE; p++) {
@@ -247,8 +251,8 @@ void write_message(const nt_fit_options &options, nt_fit_result *result)
 
 // Where the range h0 is to be found too, there can be several minima about as good: all are looked at, the best is
 // returned, and a parameter in which another good one differs is not determined.
-constexpr double transition_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0};  // Maugis' lambda to start from
-constexpr double as_good = 4.0;  // difference in chi^2, two standard deviations
+constexpr double transition_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0}; // Maugis' lambda to start from
+constexpr double as_good = 4.0;                                        // difference in chi^2, two standard deviations
 
 nt_status run_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Found *found)
 {
@@ -273,13 +277,14 @@ nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, n
     }
     if (all.empty())
         return NT_E_NO_CONVERGENCE;
-    Found best = *std::min_element(all.begin(), all.end(),
-                                   [](const Found &a, const Found &b) { return a.cost < b.cost; });
+    Found best =
+        *std::min_element(all.begin(), all.end(), [](const Found &a, const Found &b) { return a.cost < b.cost; });
     for (const Found &other : all) {
         if (other.cost - best.cost > as_good * best.variance)
             continue;
         for (int p = 0; p < NT_FIT_PARAMETERS; p++)
-            if (is_logarithmic(p) && std::fabs(std::log(other.result.value[p] / best.result.value[p])) > NT_FIT_IDENTIFIABLE)
+            if (is_logarithmic(p) &&
+                std::fabs(std::log(other.result.value[p] / best.result.value[p])) > NT_FIT_IDENTIFIABLE)
                 best.result.identifiable[p] = 0;
     }
     *result = best.result;
@@ -305,9 +310,9 @@ nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_res
     return status;
 }
 
-}  // namespace
+} // namespace
 
-}  // namespace nanotouch
+} // namespace nanotouch
 
 using nanotouch::Model;
 using nanotouch::Parameters;
@@ -353,7 +358,7 @@ nt_status nt_fit_model_at(const nt_fit_options *options, const double value[NT_F
         const auto p = static_cast<std::size_t>(i);
         point->gradient[i] = !nt_fit_model_has(options->model, static_cast<nt_fit_parameter>(i)) ? 0.0
                              : nanotouch::is_logarithmic(i) ? found.gradient[p] / values[p]
-                                                 : found.gradient[p];
+                                                            : found.gradient[p];
     }
     return NT_OK;
 }

@@ -9,9 +9,9 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define SPHERE(member, unit, minimum, maximum, doc) \
+#define SPHERE(member, unit, minimum, maximum, doc)                                                                    \
     NT_FORCE_FIELD(nt_electrostatic, member, unit, minimum, maximum, doc)
-#define PLATE(member, unit, minimum, maximum, doc) \
+#define PLATE(member, unit, minimum, maximum, doc)                                                                     \
     NT_FORCE_FIELD(nt_electrostatic_plate, member, unit, minimum, maximum, doc)
 
 static const nt_field sphere_fields[] = {

@@ -16,9 +16,9 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define TIP(member, unit, minimum, maximum, doc) \
+#define TIP(member, unit, minimum, maximum, doc)                                                                       \
     NT_FORCE_FIELD(nt_electrostatic_tip, member, unit, minimum, maximum, doc)
-#define LEVER(member, unit, minimum, maximum, doc) \
+#define LEVER(member, unit, minimum, maximum, doc)                                                                     \
     NT_FORCE_FIELD(nt_electrostatic_lever, member, unit, minimum, maximum, doc)
 
 static const nt_field tip_fields[] = {

@@ -6,7 +6,7 @@
 #include "nanotouch/types.h"
 
 /* One row of a table of fields, for a struct whose name is `type`. */
-#define NT_FORCE_FIELD(type, member, unit, minimum, maximum, doc) \
+#define NT_FORCE_FIELD(type, member, unit, minimum, maximum, doc)                                                      \
     {#member, unit, minimum, maximum, (unsigned)offsetof(type, member), doc}
 
 /* The gap at which a law is evaluated; NaN stays NaN. */
@@ -41,11 +41,11 @@ static inline void nt_law_store(const nt_strided *arrays, long i, nt_law_value v
 }
 
 /* Defines eval_n, the law `eval` of the parameters `type` over arrays. */
-#define NT_LAW_ARRAY(type, eval)                                                     \
-    void eval##_n(const type *law, const nt_strided *arrays)                         \
-    {                                                                                \
-        for (long i = 0; i < arrays->count; i++)                                     \
-            nt_law_store(arrays, i, eval(law, arrays->in[i * arrays->in_stride]));   \
+#define NT_LAW_ARRAY(type, eval)                                                                                       \
+    void eval##_n(const type *law, const nt_strided *arrays)                                                           \
+    {                                                                                                                  \
+        for (long i = 0; i < arrays->count; i++)                                                                       \
+            nt_law_store(arrays, i, eval(law, arrays->in[i * arrays->in_stride]));                                     \
     }
 
 #endif

@@ -64,9 +64,8 @@ nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap)
     const double R = tip->radius, H = tip->hamaker_constant, sine = sin(tip->half_angle), cosine = cos(tip->half_angle);
     const double s = nt_law_gap(gap, tip->minimum_gap) + 0.5 * tip->roughness, X = R * (1.0 - sine);
     const nt_law_value apex = cap(R, X, s), cone = frustum(R * cosine, sine / cosine, s + X, tip->height);
-    const nt_law_value value = {.U = -H / 6.0 * (apex.U + cone.U),
-                                .F = -H / 2.0 * (apex.F + cone.F),
-                                .k = -H / 2.0 * (apex.k + cone.k)};
+    const nt_law_value value = {
+        .U = -H / 6.0 * (apex.U + cone.U), .F = -H / 2.0 * (apex.F + cone.F), .k = -H / 2.0 * (apex.k + cone.k)};
     return nt_law_hold(value, tip->minimum_gap - gap);
 }
 

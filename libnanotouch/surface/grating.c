@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Square grating like TGZ-03 (the paper's Fig. 18): ideal steps, so that the picture's pixels and the tip round them. */
+ * Square grating like TGZ-03 (the paper's Fig. 18): ideal steps, so that the picture's pixels and the tip round them.
+ */
 #include "nanotouch/surface.h"
 
 #include <math.h>

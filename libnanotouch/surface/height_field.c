@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#define HEIGHT_MAX 1.0 /* [m] */
+#define HEIGHT_MAX 1.0                 /* [m] */
 #define POLE (-0.26794919243112270647) /* sqrt(3) - 2 */
 enum {
     PIXELS_MIN = 4,
@@ -53,7 +53,7 @@ typedef struct reach {
 /* u in pixels, clamped to the map; beyond it the surface is level across the border. */
 static reach reach_of(double u, long n)
 {
-    const double inside = u < 0.0 ? 0.0 : u > (double)(n - 1) ? (double)(n - 1) : u;
+    const double inside = u<0.0 ? 0.0 : u>(double)(n - 1) ? (double)(n - 1) : u;
     long i = (long)inside;
     if (i > n - 2)
         i = n - 2;

@@ -17,8 +17,8 @@ static nt_law_value wall_eval(void *context, double z)
 {
     const wall *w = context;
     const double depth = z < 0.0 ? -z : 0.0;
-    return (nt_law_value){.U = 0.5 * w->stiffness * depth * depth, .F = w->stiffness * depth,
-                          .k = z < 0.0 ? w->stiffness : 0.0};
+    return (nt_law_value){
+        .U = 0.5 * w->stiffness * depth * depth, .F = w->stiffness * depth, .k = z < 0.0 ? w->stiffness : 0.0};
 }
 
 static void wall_advance(void *context, double z)

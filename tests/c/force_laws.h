@@ -13,14 +13,14 @@ typedef struct force_law {
     double minimum_gap;
 } force_law;
 
-#define FORCE_LAW(type, eval)                                                  \
-    static nt_law_value eval##_at(const void *parameters, double gap)          \
-    {                                                                          \
-        return eval((const type *)parameters, gap);                            \
-    }                                                                          \
-    static void eval##_over(const void *parameters, const nt_strided *arrays)  \
-    {                                                                          \
-        eval##_n((const type *)parameters, arrays);                            \
+#define FORCE_LAW(type, eval)                                                                                          \
+    static nt_law_value eval##_at(const void *parameters, double gap)                                                  \
+    {                                                                                                                  \
+        return eval((const type *)parameters, gap);                                                                    \
+    }                                                                                                                  \
+    static void eval##_over(const void *parameters, const nt_strided *arrays)                                          \
+    {                                                                                                                  \
+        eval##_n((const type *)parameters, arrays);                                                                    \
     }
 
 static inline void assert_within(double value, double expected, double bound)

@@ -17,7 +17,6 @@ static void assert_within(double value, double expected, double bound)
         fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
 }
 
-
 static const nt_contact silicon = {20e-9, 76.9e9, 0.144, 7e8};
 
 /* Hertz under a constant pull 2 pi R w (paper, Eq. 9). */

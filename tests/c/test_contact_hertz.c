@@ -16,7 +16,6 @@ static void assert_within(double value, double expected, double bound)
         fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
 }
 
-
 static const nt_contact silicon = {20e-9, 76.9e9, 0.144, 7e8};
 
 /* F = K a delta, K = 4/3 E*, a^2 = R delta (paper, Eq. 4). */

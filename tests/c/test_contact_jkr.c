@@ -21,7 +21,6 @@ static void assert_within(double value, double expected, double bound)
         fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
 }
 
-
 static const nt_contact reduced = {1.0, 0.75, 1.0 / NT_PI, 0.0}; /* K = R = pi w = 1 */
 static const nt_contact silicon = {20e-9, 76.9e9, 0.144, 0.0};
 

@@ -26,8 +26,8 @@ static nt_law_value at(const nt_jkr_shape *contact, double indentation, nt_branc
     return value;
 }
 
-/* At the edge the energy release rate is w: K_I^2/(2 E*) = (F_0(a) - F)^2/(8 pi E* a^3), F_0 the load of the law without
- * adhesion at the same a (Maugis and Barquins 1978). Independent of the form that is implemented. */
+/* At the edge the energy release rate is w: K_I^2/(2 E*) = (F_0(a) - F)^2/(8 pi E* a^3), F_0 the load of the law
+ * without adhesion at the same a (Maugis and Barquins 1978). Independent of the form that is implemented. */
 static void releases_w_at_the_edge(void **state)
 {
     (void)state;
@@ -42,8 +42,8 @@ static void releases_w_at_the_edge(void **state)
         }
 }
 
-/* Published: F = -54 w^2 tan^3(psi)/(pi E*) (Maugis and Barquins 1983), sqrt(8 pi E* w a^3) (Kendall 1971). The cone's is
- * also the lowest force that a scan of the stable branch meets. */
+/* Published: F = -54 w^2 tan^3(psi)/(pi E*) (Maugis and Barquins 1983), sqrt(8 pi E* w a^3) (Kendall 1971). The cone's
+ * is also the lowest force that a scan of the stable branch meets. */
 static void pull_off_forces_are_the_published_ones(void **state)
 {
     (void)state;
@@ -71,7 +71,8 @@ static void force_and_stiffness_are_derivatives(void **state)
     for (int unstable = 0; unstable < 2; unstable++)
         for (double d = 0.99 * fold; d < (unstable ? 0.01 * fold : -30.0 * fold); d -= 0.03 * fold) {
             const nt_branch branch = unstable ? NT_BRANCH_UNSTABLE : NT_BRANCH_STABLE;
-            const nt_law_value value = at(&cone, d, branch), up = at(&cone, d + h, branch), down = at(&cone, d - h, branch);
+            const nt_law_value value = at(&cone, d, branch), up = at(&cone, d + h, branch),
+                               down = at(&cone, d - h, branch);
             assert_within((up.U - down.U) / (2.0 * h), value.F, 1e-7 * (scale + fabs(value.F)));
             assert_within((up.F - down.F) / (2.0 * h), value.k, 1e-6 * fabs(value.k) + 1e-6 * scale / -fold);
         }
@@ -120,7 +121,8 @@ static void inverse_returns(void **state)
     }
 }
 
-/* Without adhesion, or far above it, the laws are Sneddon's; to 2 sqrt(delta_f/delta) in a (a = a_f r^2, r = 1 + sqrt). */
+/* Without adhesion, or far above it, the laws are Sneddon's; to 2 sqrt(delta_f/delta) in a (a = a_f r^2, r = 1 + sqrt).
+ */
 static void without_adhesion_it_is_sneddon(void **state)
 {
     (void)state;
@@ -147,11 +149,13 @@ static void extremes_stay_finite(void **state)
                 assert_int_equal(nt_jkr_shape_check(&contact, NULL), NT_OK);
                 const double fold = nt_jkr_shape_pull_off_indentation(&contact);
                 for (double d = 1e-15; d < 1.0; d *= 1e3) {
-                    const nt_law_value up = at(&contact, d, NT_BRANCH_STABLE), down = at(&contact, -d, NT_BRANCH_STABLE);
+                    const nt_law_value up = at(&contact, d, NT_BRANCH_STABLE),
+                                       down = at(&contact, -d, NT_BRANCH_STABLE);
                     assert_true(isfinite(up.U + up.F + up.k + up.a) && isfinite(down.U + down.F + down.k + down.a));
                     assert_true((down.a == 0.0) == (-d < fold));
                 }
-                assert_true(isfinite(at(&contact, fold, NT_BRANCH_STABLE).k) && at(&contact, fold, NT_BRANCH_STABLE).k < 0.0);
+                assert_true(isfinite(at(&contact, fold, NT_BRANCH_STABLE).k) &&
+                            at(&contact, fold, NT_BRANCH_STABLE).k < 0.0);
             }
 }
 

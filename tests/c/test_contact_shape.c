@@ -160,7 +160,8 @@ static void sphere_goes_to_hertz_with_the_right_slope(void **state)
 static void blunted_goes_to_paraboloid_and_cone(void **state)
 {
     (void)state;
-    const nt_shape blunted = {NT_SHAPE_BLUNTED, 0, 1e-6, 0.4, 0.0}, paraboloid = {NT_SHAPE_PARABOLOID, 0, 1e-6, 0.0, 0.0};
+    const nt_shape blunted = {NT_SHAPE_BLUNTED, 0, 1e-6, 0.4, 0.0},
+                   paraboloid = {NT_SHAPE_PARABOLOID, 0, 1e-6, 0.0, 0.0};
     assert_true(nt_shape_eval(&blunted, 1e9, 1e-9).F == nt_shape_eval(&paraboloid, 1e9, 1e-9).F);
     for (double b = 1e-10; b > 1e-15; b /= 10.0) {
         const nt_shape flat = {NT_SHAPE_TRUNCATED, 0, b, 0.4, 0.0}, cone = {NT_SHAPE_CONE, 0, 0.0, 0.4, 0.0};
@@ -195,14 +196,16 @@ static void joins_without_a_step(void **state)
 static void blunted_cone_is_as_published(void **state)
 {
     (void)state;
-    const double E = 5e3, R = 50e-9, b = 20e-9, psi = atan(NT_PI * tan(0.35) / (2.0 * sqrt(2.0))), theta = 1.0 / tan(psi);
+    const double E = 5e3, R = 50e-9, b = 20e-9, psi = atan(NT_PI * tan(0.35) / (2.0 * sqrt(2.0))),
+                 theta = 1.0 / tan(psi);
     const nt_shape shape = {NT_SHAPE_BLUNTED, 0, R, psi, b};
     for (double d = 1.1 * b * b / R; d < 1e-6; d *= 2.0) {
         const nt_law_value value = nt_shape_eval(&shape, E, d);
         const double a = value.a, s = sqrt(a * a - b * b), phi = 0.5 * NT_PI - asin(b / a);
         assert_within(a / R * (a - s) + theta * a * phi, d, 1e-13 * d);
-        const double F = 2.0 * E * (a * d - 0.5 * theta * a * a * phi - a * a * a / (3.0 * R) +
-                                    s * (0.5 * theta * b + s * s / (3.0 * R)));
+        const double F =
+            2.0 * E *
+            (a * d - 0.5 * theta * a * a * phi - a * a * a / (3.0 * R) + s * (0.5 * theta * b + s * s / (3.0 * R)));
         assert_within(value.F, F, 1e-12 * F);
     }
 }
@@ -234,7 +237,8 @@ static void what_is_no_number_or_no_contact(void **state)
         assert_true(tiny >= 0.0 && tiny < 1e-290);
         assert_true(nt_shape_indentation(&tips[i], 1e9, 0.0) == 0.0);
         assert_true(nt_shape_indentation(&tips[i], 1e9, 1e-310) >= 0.0);
-        assert_true(isnan(nt_shape_indentation(&tips[i], 1e9, -1e-9)) && isnan(nt_shape_indentation(&tips[i], 1e9, NAN)));
+        assert_true(isnan(nt_shape_indentation(&tips[i], 1e9, -1e-9)) &&
+                    isnan(nt_shape_indentation(&tips[i], 1e9, NAN)));
         assert_true(isnan(nt_shape_indentation(&tips[i], 1e9, INFINITY)));
     }
 }

@@ -17,7 +17,6 @@ static void assert_within(double value, double expected, double bound)
         fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
 }
 
-
 /* Sneddon's integrals for a rigid profile f(r) of contact radius a:
  *     delta = a Int_0^a f'(r)/sqrt(a^2 - r^2) dr,     F = 2 E* Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr,
  * with r = a sin(t) the midpoint rule converges. For a cone f' = cot(psi). */
@@ -82,8 +81,8 @@ static void nothing_outside_and_nan_through(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cone_obeys_sneddons_integrals),  cmocka_unit_test(cone_radius_corrects_the_paper),
-        cmocka_unit_test(forces_are_slopes_of_energies),  cmocka_unit_test(punch_is_linear),
+        cmocka_unit_test(cone_obeys_sneddons_integrals),   cmocka_unit_test(cone_radius_corrects_the_paper),
+        cmocka_unit_test(forces_are_slopes_of_energies),   cmocka_unit_test(punch_is_linear),
         cmocka_unit_test(nothing_outside_and_nan_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

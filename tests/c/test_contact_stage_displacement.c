@@ -62,8 +62,8 @@ static void sphere_is_equation_6(void **state)
     }
 }
 
-/* Errata E6 and E7: Eq. 7 corrected is a quadratic, whose root is known. The printed term pi tan(psi) delta^2/(2 K k_c) is
- * no length: the ratio of it to the right one carries 1/K^2. */
+/* Errata E6 and E7: Eq. 7 corrected is a quadratic, whose root is known. The printed term pi tan(psi) delta^2/(2 K k_c)
+ * is no length: the ratio of it to the right one carries 1/K^2. */
 static void cone_is_equation_7_corrected(void **state)
 {
     (void)state;
@@ -86,10 +86,10 @@ static void equation_8_is_wrong_as_stated(void **state)
     (void)state;
     const nt_contact silicon = {.radius = 30e-9, .effective_modulus = 76.923e9};
     const nt_lever flat = {8.0, 0.0};
-    const double near = nt_stage_displacement_approximate(&silicon, &flat, 1e-9) /
-                        solve(sphere, 76.923e9, flat, 1e-9).indentation;
-    const double far = nt_stage_displacement_approximate(&silicon, &flat, 20e-9) /
-                       solve(sphere, 76.923e9, flat, 20e-9).indentation;
+    const double near =
+        nt_stage_displacement_approximate(&silicon, &flat, 1e-9) / solve(sphere, 76.923e9, flat, 1e-9).indentation;
+    const double far =
+        nt_stage_displacement_approximate(&silicon, &flat, 20e-9) / solve(sphere, 76.923e9, flat, 20e-9).indentation;
     assert_within(near, 0.18, 0.01);
     assert_within(far, 0.10, 0.01);
     /* where the sample gives way first the lever does not matter, and it is right: to K cos(alpha) a/k_c */
@@ -111,16 +111,15 @@ static void refuses_what_is_no_lever(void **state)
     assert_int_equal(nt_stage_displacement_solve(&sphere, 1e9, &lever, NAN, &solved), NT_E_NOT_FINITE);
     assert_int_equal(nt_stage_displacement_solve(&sphere, 1e9, &lever, 1e-310, &solved), NT_E_RANGE);
     assert_true(solved.indentation == 7.0);
-    assert_true(solve(sphere, 1e9, lever, -1e-9).indentation == 0.0 && solve(sphere, 1e9, lever, 0.0).deflection == 0.0);
+    assert_true(solve(sphere, 1e9, lever, -1e-9).indentation == 0.0 &&
+                solve(sphere, 1e9, lever, 0.0).deflection == 0.0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balances_for_every_shape),
-        cmocka_unit_test(sphere_is_equation_6),
-        cmocka_unit_test(cone_is_equation_7_corrected),
-        cmocka_unit_test(equation_8_is_wrong_as_stated),
+        cmocka_unit_test(balances_for_every_shape),     cmocka_unit_test(sphere_is_equation_6),
+        cmocka_unit_test(cone_is_equation_7_corrected), cmocka_unit_test(equation_8_is_wrong_as_stated),
         cmocka_unit_test(refuses_what_is_no_lever),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -87,7 +87,8 @@ static void thickness_limit_is_worth_thirteen_percent(void **state)
     assert_within(factor, 1.127, 0.001);
 }
 
-/* Erratum E13: "MD can be used for all cases": rubber of 0.6 MPa, w = 0.144, R = 30 nm rests at a = 132 nm, a/R = 4.4. */
+/* Erratum E13: "MD can be used for all cases": rubber of 0.6 MPa, w = 0.144, R = 30 nm rests at a = 132 nm, a/R = 4.4.
+ */
 static void finds_the_papers_rubber(void **state)
 {
     (void)state;

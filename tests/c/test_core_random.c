@@ -25,12 +25,16 @@ static void seeds_by_splitmix64(void **state)
 static void follows_xoshiro256pp(void **state)
 {
     (void)state;
-    static const uint64_t published[10] = {
-        UINT64_C(41943041),            UINT64_C(58720359),
-        UINT64_C(3588806011781223),    UINT64_C(3591011842654386),
-        UINT64_C(9228616714210784205), UINT64_C(9973669472204895162),
-        UINT64_C(14011001112246962877), UINT64_C(12406186145184390807),
-        UINT64_C(15849039046786891736), UINT64_C(10450023813501588000)};
+    static const uint64_t published[10] = {UINT64_C(41943041),
+                                           UINT64_C(58720359),
+                                           UINT64_C(3588806011781223),
+                                           UINT64_C(3591011842654386),
+                                           UINT64_C(9228616714210784205),
+                                           UINT64_C(9973669472204895162),
+                                           UINT64_C(14011001112246962877),
+                                           UINT64_C(12406186145184390807),
+                                           UINT64_C(15849039046786891736),
+                                           UINT64_C(10450023813501588000)};
     nt_random random = {{1, 2, 3, 4}};
     for (int i = 0; i < 10; i++) /* the upper 53 bits make the double, exactly */
         assert_true((uint64_t)ldexp(nt_random_uniform(&random), 53) == published[i] >> 11);

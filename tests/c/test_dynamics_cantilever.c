@@ -159,7 +159,7 @@ static void bridge_forms_and_breaks_with_its_history(void **state)
     for (; base > 0.5e-9; base -= 0.1e-9)
         assert_int_equal(nt_cantilever_settle(&now, &probe, &field, base, NULL), NT_OK);
     assert_true(b.made && now.tip_height < 0.0); /* pulled in: 8 (z - z_b) = -20 nN - 1000 z */
-    base += 0.1e-9; /* the last base that was set */
+    base += 0.1e-9;                              /* the last base that was set */
     assert_true(fabs(now.tip_height - (8.0 * base - 20e-9) / 1008.0) < 1e-19);
     for (; base < 8.4e-9; base += 0.1e-9) { /* breaks at z_b = 6 nm + 20 nN / (8 N/m) = 8.5 nm */
         assert_int_equal(nt_cantilever_settle(&now, &probe, &field, base, NULL), NT_OK);

@@ -121,9 +121,12 @@ static void nan_is_not_hidden(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(step_response_is_exact),           cmocka_unit_test(undamped_falls_freely),
-        cmocka_unit_test(half_steps_compose),               cmocka_unit_test(end_stops_are_hard_and_inelastic),
-        cmocka_unit_test(refuses_bad_masters_and_periods), cmocka_unit_test(nan_is_not_hidden),
+        cmocka_unit_test(step_response_is_exact),
+        cmocka_unit_test(undamped_falls_freely),
+        cmocka_unit_test(half_steps_compose),
+        cmocka_unit_test(end_stops_are_hard_and_inelastic),
+        cmocka_unit_test(refuses_bad_masters_and_periods),
+        cmocka_unit_test(nan_is_not_hidden),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static void noise_has_its_deviation(void **state)
         mean += error / N;
         variance += error * error / N;
     }
-    assert_true(fabs(mean) < 4.0 * 0.3 / sqrt(N));                     /* four standard errors */
+    assert_true(fabs(mean) < 4.0 * 0.3 / sqrt(N)); /* four standard errors */
     assert_true(fabs(variance / 0.09 - 1.0) < 4.0 * sqrt(2.0 / N));
 }
 

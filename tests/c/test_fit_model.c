@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * fit/model.cpp: the force at a position and its analytic derivatives. */
+#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include "nanotouch/fit.h"
 #include "nanotouch/material.h"
@@ -151,12 +151,9 @@ static void bad_values_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(obeys_cantilever_equation),
-        cmocka_unit_test(constant_below_load_fold),
-        cmocka_unit_test(gradient_matches_differences),
-        cmocka_unit_test(range_derivative_at_every_lambda),
-        cmocka_unit_test(maugis_tends_to_jkr),
-        cmocka_unit_test(bad_values_are_refused),
+        cmocka_unit_test(obeys_cantilever_equation),    cmocka_unit_test(constant_below_load_fold),
+        cmocka_unit_test(gradient_matches_differences), cmocka_unit_test(range_derivative_at_every_lambda),
+        cmocka_unit_test(maugis_tends_to_jkr),          cmocka_unit_test(bad_values_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

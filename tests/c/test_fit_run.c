@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * fit/run.cpp: known answers are recovered, uncertainties are calibrated, what cannot be known is said. */
 #define _POSIX_C_SOURCE 200809L /* dup2, fileno */
+#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "nanotouch/fit.h"
 #include "nanotouch/random.h"
@@ -81,8 +81,8 @@ static void exact_without_noise(void **state)
         }
 }
 
-/* The range of adhesion comes out of a curve without noise, but not out of a real one: w, delta0 and h0 together imitate
- * another range to about a piconewton. */
+/* The range of adhesion comes out of a curve without noise, but not out of a real one: w, delta0 and h0 together
+ * imitate another range to about a piconewton. */
 static void range_needs_an_exact_curve(void **state)
 {
     (void)state;
@@ -159,8 +159,9 @@ static void robust_loss_resists_outliers(void **state)
     assert_true(error < 0.1 * fabs(plain.value[0] - truth[0]));
 }
 
-/* Silicon on silicon under a cantilever of 0.2 N/m: the contact is 3000 times stiffer than the spring, and the deflection
- * sensitivity is known to 2 % only. Neither E* nor, without a measured pull-off, w can come out of such a curve. */
+/* Silicon on silicon under a cantilever of 0.2 N/m: the contact is 3000 times stiffer than the spring, and the
+ * deflection sensitivity is known to 2 % only. Neither E* nor, without a measured pull-off, w can come out of such a
+ * curve. */
 static void stiff_contact_is_not_determined(void **state)
 {
     (void)state;

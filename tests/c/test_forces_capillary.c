@@ -12,7 +12,6 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-
 static const nt_capillary water = {30e-9, 0.072, 1.06e-9, 5e-9}; /* the paper's Fig. 6 */
 
 /* The literal bracket inside its range, and erratum E3 outside: -152.6 nN at 0.198 nm is clamped to -27.14 nN, and

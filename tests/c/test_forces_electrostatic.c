@@ -12,7 +12,6 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-
 static const nt_electrostatic gold = {30e-9, 0.25, 0.165e-9}; /* the paper's Fig. 6 */
 
 /* A sphere at potential U before a grounded plane, by its image charges (Smythe): with cosh(alpha) = 1 + h/R,

@@ -123,8 +123,7 @@ static void slopes(void **state)
     (void)state;
     assert_slopes(&laws[0], (double[]){0.21e-9, 1e-2}, (nt_law_value){0});
     const nt_law_value at_contact = nt_electrostatic_lever_eval(&lever, 0.0); /* 12 um away: does not change with h */
-    assert_slopes(&laws[1], (double[]){1e-7, 1e-2},
-                  (nt_law_value){-at_contact.U, -at_contact.F, -at_contact.k, 0.0});
+    assert_slopes(&laws[1], (double[]){1e-7, 1e-2}, (nt_law_value){-at_contact.U, -at_contact.F, -at_contact.k, 0.0});
 }
 
 static void rules(void **state)

@@ -11,7 +11,6 @@
 #include "force_laws.h"
 #include "nanotouch/forces.h"
 
-
 static const nt_vdw gold = {30e-9, 2.03e-19, 0.0, 0.165e-9}; /* the paper's Fig. 6 */
 
 /* Hamaker's sum over the sphere, slice by slice: U = -H/6 Int (2Rx - x^2)/(s + x)^3 dx, F = -H/2 Int (..)/(s + x)^4 dx,

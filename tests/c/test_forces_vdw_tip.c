@@ -106,10 +106,8 @@ static void rules(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(is_hamakers_sum),
-        cmocka_unit_test(is_argento_and_frenchs_rounded_cone),
-        cmocka_unit_test(limits),
-        cmocka_unit_test(slopes),
+        cmocka_unit_test(is_hamakers_sum), cmocka_unit_test(is_argento_and_frenchs_rounded_cone),
+        cmocka_unit_test(limits),          cmocka_unit_test(slopes),
         cmocka_unit_test(rules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

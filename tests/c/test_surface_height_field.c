@@ -236,11 +236,16 @@ static void refuses_bad_maps_by_name(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(passes_through_every_pixel), cmocka_unit_test(smallest_maps_work_too),
-        cmocka_unit_test(cubics_are_exact_away_from_borders), cmocka_unit_test(slopes_are_the_derivatives),
-        cmocka_unit_test(curvature_is_continuous), cmocka_unit_test(orientation_is_as_documented),
-        cmocka_unit_test(continues_level_outside), cmocka_unit_test(flat_is_flat_everywhere),
-        cmocka_unit_test(nan_in_nan_out), cmocka_unit_test(refuses_bad_maps_by_name),
+        cmocka_unit_test(passes_through_every_pixel),
+        cmocka_unit_test(smallest_maps_work_too),
+        cmocka_unit_test(cubics_are_exact_away_from_borders),
+        cmocka_unit_test(slopes_are_the_derivatives),
+        cmocka_unit_test(curvature_is_continuous),
+        cmocka_unit_test(orientation_is_as_documented),
+        cmocka_unit_test(continues_level_outside),
+        cmocka_unit_test(flat_is_flat_everywhere),
+        cmocka_unit_test(nan_in_nan_out),
+        cmocka_unit_test(refuses_bad_maps_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,14 +16,14 @@ typedef struct law_case {
     double range[MOST][2]; /* of its parameters, in the order of the struct */
 } law_case;
 
-#define LAW(type, eval)                                              \
-    static nt_status eval##_checked(const void *parameters)          \
-    {                                                                \
-        return type##_check((const type *)parameters, NULL);         \
-    }                                                                \
-    static nt_law_value eval##_at(const void *parameters, double gap) \
-    {                                                                \
-        return eval((const type *)parameters, gap);                  \
+#define LAW(type, eval)                                                                                                \
+    static nt_status eval##_checked(const void *parameters)                                                            \
+    {                                                                                                                  \
+        return type##_check((const type *)parameters, NULL);                                                           \
+    }                                                                                                                  \
+    static nt_law_value eval##_at(const void *parameters, double gap)                                                  \
+    {                                                                                                                  \
+        return eval((const type *)parameters, gap);                                                                    \
     }
 #define BOTH(eval) eval##_checked, eval##_at
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Any shape, any indentation and force, with adhesion, on any lever: a status, or a finite answer that can be undone. */
+ * Any shape, any indentation and force, with adhesion, on any lever: a status, or a finite answer that can be undone.
+ */
 #include "input.h"
 #include "nanotouch/geometry.h"
 
@@ -41,7 +42,8 @@ static void check_lever(const nt_shape *shape, double modulus, const nt_lever *l
 
 static void check_adhesive(const nt_jkr_shape *contact, double indentation)
 {
-    if (nt_jkr_shape_check(contact, NULL) != NT_OK || (contact->work_of_adhesion > 0.0 && contact->work_of_adhesion < 1e-12))
+    if (nt_jkr_shape_check(contact, NULL) != NT_OK ||
+        (contact->work_of_adhesion > 0.0 && contact->work_of_adhesion < 1e-12))
         return;
     for (int branch = NT_BRANCH_STABLE; branch <= NT_BRANCH_UNSTABLE; branch++) {
         nt_law_value value;

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -214,13 +213,12 @@ def test_force_curves() -> None:
         plots.force_curves({})
 
 
-def test_a_minute_at_10_kHz_is_drawn_in_time(tmp_path: Path) -> None:
+def test_of_a_minute_at_10_kHz_few_points_are_drawn() -> None:
+    """What is drawn of 600 000 rows is bounded, whatever the record's length."""
     recording = touch(600_000)
-    plots.time(touch(2_000), save=tmp_path / "fonts.png")  # matplotlib builds its font cache once
     for draw in (plots.time, plots.force_gap):
-        start = time.process_time()
-        draw(recording, save=tmp_path / "long.png")
-        assert time.process_time() - start < 2.0  # measured 0.4 to 0.9 s
+        drawn = sum(len(line.get_xdata()) for panel in draw(recording).axes for line in panel.lines)
+        assert 1000 < drawn < 200_000
 
 
 def test_nothing_half_written(tmp_path: Path) -> None:

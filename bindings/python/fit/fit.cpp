@@ -6,20 +6,23 @@
 
 static Array column(const Array &values, const char *name)
 {
-    if (values.ndim() != 1) throw py::value_error(std::string(name) + " must have one dimension");
+    if (values.ndim() != 1)
+        throw py::value_error(std::string(name) + " must have one dimension");
     return values;
 }
 
 static nt_fit_data data_of(const Array &position, const Array &force)
 {
-    if (position.size() != force.size()) throw py::value_error("position and force differ in length");
+    if (position.size() != force.size())
+        throw py::value_error("position and force differ in length");
     return {position.data(), force.data(), static_cast<long>(position.size()), 1, 1};
 }
 
 static int index_of(const std::string &name)
 {
     for (int i = 0; i < NT_FIT_PARAMETERS; ++i)
-        if (name == nt_fit_parameter_name(static_cast<nt_fit_parameter>(i))) return i;
+        if (name == nt_fit_parameter_name(static_cast<nt_fit_parameter>(i)))
+            return i;
     throw py::key_error(name);
 }
 
@@ -61,7 +64,8 @@ static py::dict run(const nt_fit_options &options, const Array &position, const 
 // Force and indentation of the model at every position.
 static py::tuple evaluate(const nt_fit_options &options, const std::vector<double> &value, const Array &position)
 {
-    if (value.size() != NT_FIT_PARAMETERS) throw py::value_error("value must have one number for each parameter");
+    if (value.size() != NT_FIT_PARAMETERS)
+        throw py::value_error("value must have one number for each parameter");
     py::array_t<double> force(position.size()), indentation(position.size());
     double *F = force.mutable_data(), *delta = indentation.mutable_data();
     for (py::ssize_t i = 0; i < position.size(); ++i) {
@@ -86,23 +90,25 @@ PYBIND11_MODULE(_fit, module)
     });
     py::class_<nt_fit_options>(module, "Options")
         .def(py::init([](int model) { return nt_fit_defaults(static_cast<nt_model>(model)); }), py::arg("model"))
-        .def("start", [](nt_fit_options &o, const std::string &name, double value) {
-            o.parameter[index_of(name)].initial = value;
-        })
-        .def("hold", [](nt_fit_options &o, const std::string &name, double value) {
-            nt_fit_start &start = o.parameter[index_of(name)];
-            start.initial = value;
-            start.fixed = 1;
-        })
+        .def("start", [](nt_fit_options &o, const std::string &name,
+                         double value) { o.parameter[index_of(name)].initial = value; })
+        .def("hold",
+             [](nt_fit_options &o, const std::string &name, double value) {
+                 nt_fit_start &start = o.parameter[index_of(name)];
+                 start.initial = value;
+                 start.fixed = 1;
+             })
         .def("free", [](nt_fit_options &o, const std::string &name) { o.parameter[index_of(name)].fixed = 0; })
-        .def("bound", [](nt_fit_options &o, const std::string &name, double minimum, double maximum) {
-            o.parameter[index_of(name)].minimum = minimum;
-            o.parameter[index_of(name)].maximum = maximum;
-        })
-        .def("is_free", [](const nt_fit_options &o, const std::string &name) {
-            const int i = index_of(name);
-            return !o.parameter[i].fixed && nt_fit_model_has(o.model, static_cast<nt_fit_parameter>(i));
-        })
+        .def("bound",
+             [](nt_fit_options &o, const std::string &name, double minimum, double maximum) {
+                 o.parameter[index_of(name)].minimum = minimum;
+                 o.parameter[index_of(name)].maximum = maximum;
+             })
+        .def("is_free",
+             [](const nt_fit_options &o, const std::string &name) {
+                 const int i = index_of(name);
+                 return !o.parameter[i].fixed && nt_fit_model_has(o.model, static_cast<nt_fit_parameter>(i));
+             })
         .def_readwrite("radius", &nt_fit_options::radius)
         .def_readwrite("spring_constant", &nt_fit_options::spring_constant)
         .def_property(

@@ -29,8 +29,8 @@ void raise_on(nt_status status, const std::string &what);
 void raise_on(nt_status status, const nt_problem &problem, const std::string &what);
 
 // A law of one scalar applied to every element of an array: {U, F, k, a} of the same shape, without the GIL.
-template <class Law>
-py::tuple map_law(const Array &in, Law law) {
+template <class Law> py::tuple map_law(const Array &in, Law law)
+{
     const std::vector<py::ssize_t> shape(in.shape(), in.shape() + in.ndim());
     py::array_t<double> U(shape), F(shape), k(shape), a(shape);
     const double *x = in.data();

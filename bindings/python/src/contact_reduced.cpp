@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// contact_table.h, contact_control.h in Maugis' units: arrays of lambda and of what is given, of one length. Equal lambdas
-// should stand together (the Python side sorts): what is prepared for one serves its whole run.
+// contact_table.h, contact_control.h in Maugis' units: arrays of lambda and of what is given, of one length. Equal
+// lambdas should stand together (the Python side sorts): what is prepared for one serves its whole run.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +8,8 @@
 
 #include "chapters.h"
 
-namespace {
+namespace
+{
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Below this many elements of one lambda the exact solver costs less than making a table.
@@ -19,7 +20,8 @@ struct Prepared {
     nt_maugis maugis{};
     nt_status status;
 
-    explicit Prepared(double lambda) {
+    explicit Prepared(double lambda)
+    {
         const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.0};
         status = nt_maugis_init_lambda(&maugis, &contact, lambda);
     }
@@ -29,28 +31,33 @@ struct Table {
     std::vector<nt_maugis_cell> cells;
     nt_maugis_table table;
 
-    explicit Table(const nt_maugis &maugis) {
+    explicit Table(const nt_maugis &maugis)
+    {
         const nt_maugis_table_options options = nt_maugis_table_defaults();
         cells.resize(static_cast<size_t>(nt_maugis_table_cells(&maugis, &options)));
-        raise_on(nt_maugis_table_init(&table, &maugis, &options, cells.data(), static_cast<int>(cells.size())), "table");
+        raise_on(nt_maugis_table_init(&table, &maugis, &options, cells.data(), static_cast<int>(cells.size())),
+                 "table");
     }
 };
 
 // Calls work(prepared, first, count) for each run of equal lambdas; `lambda` has one element for all or one for each.
-template <class Work>
-void for_each_run(const Array &lambda, py::ssize_t count, Work work) {
+template <class Work> void for_each_run(const Array &lambda, py::ssize_t count, Work work)
+{
     const double *lambdas = lambda.data();
     const bool one = lambda.size() == 1;
     for (py::ssize_t first = 0, end = 0; first < count; first = end) {
         const double current = lambdas[one ? 0 : first];
         end = count;
-        if (!one) end = std::find_if(lambdas + first, lambdas + count, [=](double l) { return l != current; }) - lambdas;
-        if (end == first) end = first + 1; // NaN is unequal to itself
+        if (!one)
+            end = std::find_if(lambdas + first, lambdas + count, [=](double l) { return l != current; }) - lambdas;
+        if (end == first)
+            end = first + 1; // NaN is unequal to itself
         work(Prepared(current), first, end - first);
     }
 }
 
-void force(const Array &lambda, const Array &d, int branch, int tier, Array &out) {
+void force(const Array &lambda, const Array &d, int branch, int tier, Array &out)
+{
     const double *in = d.data();
     double *F = out.mutable_data();
     const auto b = static_cast<nt_branch>(branch);
@@ -64,13 +71,15 @@ void force(const Array &lambda, const Array &d, int branch, int tier, Array &out
         }
         for (py::ssize_t i = first; i < first + count; ++i) {
             nt_law_value value{nan, nan, nan, nan};
-            if (made.status == NT_OK) (void)nt_maugis_eval(&made.maugis, in[i], b, &value, nullptr);
+            if (made.status == NT_OK)
+                (void)nt_maugis_eval(&made.maugis, in[i], b, &value, nullptr);
             F[i] = value.F;
         }
     });
 }
 
-py::tuple eval(const Array &lambda, const Array &d, int branch, int tier) {
+py::tuple eval(const Array &lambda, const Array &d, int branch, int tier)
+{
     py::array_t<double> U(d.size()), F(d.size()), k(d.size()), a(d.size());
     const double *in = d.data();
     double *out[4] = {U.mutable_data(), F.mutable_data(), k.mutable_data(), a.mutable_data()};
@@ -79,11 +88,13 @@ py::tuple eval(const Array &lambda, const Array &d, int branch, int tier) {
         for_each_run(lambda, d.size(), [&](const Prepared &made, py::ssize_t first, py::ssize_t count) {
             const auto b = static_cast<nt_branch>(branch);
             if (made.status != NT_OK) {
-                for (double *column : out) std::fill_n(column + first, count, nan);
+                for (double *column : out)
+                    std::fill_n(column + first, count, nan);
                 return;
             }
-            const nt_strided arrays = {in + first,     out[0] + first, out[1] + first, out[2] + first,
-                                       out[3] + first, static_cast<long>(count), 1, 1};
+            const nt_strided arrays = {
+                in + first, out[0] + first, out[1] + first, out[2] + first, out[3] + first, static_cast<long>(count), 1,
+                1};
             if (tier != NT_TIER_EXACT && count >= table_pays) {
                 const Table table(made.maugis);
                 (void)nt_maugis_table_eval_n(&table.table, static_cast<nt_tier>(tier), b, &arrays);
@@ -97,8 +108,8 @@ py::tuple eval(const Array &lambda, const Array &d, int branch, int tier) {
 }
 
 // States at loads or radii: {d, U, F, k, a}.
-template <class At>
-py::tuple states(const Array &lambda, const Array &given, At at) {
+template <class At> py::tuple states(const Array &lambda, const Array &given, At at)
+{
     std::vector<py::array_t<double>> columns;
     double *out[5];
     for (double *&column : out) {
@@ -111,9 +122,11 @@ py::tuple states(const Array &lambda, const Array &given, At at) {
         for_each_run(lambda, given.size(), [&](const Prepared &made, py::ssize_t first, py::ssize_t count) {
             for (py::ssize_t i = first; i < first + count; ++i) {
                 nt_contact_state state{nan, {nan, nan, nan, nan}};
-                if (made.status == NT_OK) (void)at(&made.maugis, in[i], &state); // untouched, so NaN, on failure
+                if (made.status == NT_OK)
+                    (void)at(&made.maugis, in[i], &state); // untouched, so NaN, on failure
                 const double row[5] = {state.indentation, state.value.U, state.value.F, state.value.k, state.value.a};
-                for (int j = 0; j < 5; ++j) out[j][i] = row[j];
+                for (int j = 0; j < 5; ++j)
+                    out[j][i] = row[j];
             }
         });
     }
@@ -121,35 +134,40 @@ py::tuple states(const Array &lambda, const Array &given, At at) {
 }
 
 // One row per lambda, in the order of Folds in contact/reduced.py; NaN for a lambda that is none.
-py::array_t<double> folds(const Array &lambda) {
+py::array_t<double> folds(const Array &lambda)
+{
     py::array_t<double> out({lambda.size(), py::ssize_t{8}});
     double *row = out.mutable_data();
     for_each_run(lambda, lambda.size(), [&](const Prepared &made, py::ssize_t, py::ssize_t count) {
         const nt_maugis_folds &f = made.maugis.folds;
-        const double values[8] = {f.pull_off_load,   f.pull_off_radius,
-                                  f.pull_off_indentation, static_cast<double>(f.grip_in_contact),
-                                  f.grip_indentation, f.grip_load,
-                                  f.zero_load_radius, f.zero_load_indentation};
+        const double values[8] = {
+            f.pull_off_load,    f.pull_off_radius, f.pull_off_indentation, static_cast<double>(f.grip_in_contact),
+            f.grip_indentation, f.grip_load,       f.zero_load_radius,     f.zero_load_indentation};
         for (py::ssize_t i = 0; i < count; ++i, row += 8)
-            for (int j = 0; j < 8; ++j) row[j] = made.status == NT_OK ? values[j] : nan;
+            for (int j = 0; j < 8; ++j)
+                row[j] = made.status == NT_OK ? values[j] : nan;
     });
     return out;
 }
 
 } // namespace
 
-void bind_contact_reduced(py::module_ &module) {
+void bind_contact_reduced(py::module_ &module)
+{
     module.def("reduced_force", &force, py::arg("lam"), py::arg("d"), py::arg("branch"), py::arg("tier"),
                py::arg("out").noconvert());
     module.def("reduced_eval", &eval, py::arg("lam"), py::arg("d"), py::arg("branch"), py::arg("tier"));
-    module.def("reduced_at_load", [](const Array &lambda, const Array &P, int branch) {
-        return states(lambda, P, [branch](const nt_maugis *maugis, double load, nt_contact_state *state) {
-            return nt_maugis_at_load(maugis, load, static_cast<nt_branch>(branch), state);
-        });
-    }, py::arg("lam"), py::arg("P"), py::arg("branch"));
-    module.def("reduced_at_radius",
-               [](const Array &lambda, const Array &a) { return states(lambda, a, nt_maugis_at_radius); },
-               py::arg("lam"), py::arg("a"));
+    module.def(
+        "reduced_at_load",
+        [](const Array &lambda, const Array &P, int branch) {
+            return states(lambda, P, [branch](const nt_maugis *maugis, double load, nt_contact_state *state) {
+                return nt_maugis_at_load(maugis, load, static_cast<nt_branch>(branch), state);
+            });
+        },
+        py::arg("lam"), py::arg("P"), py::arg("branch"));
+    module.def(
+        "reduced_at_radius", [](const Array &lambda, const Array &a) { return states(lambda, a, nt_maugis_at_radius); },
+        py::arg("lam"), py::arg("a"));
     module.def("reduced_folds", &folds, py::arg("lam"));
     module.attr("lambda_min") = NT_MAUGIS_LAMBDA_MIN;
     module.attr("lambda_max") = NT_MAUGIS_LAMBDA_MAX;

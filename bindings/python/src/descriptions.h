@@ -3,7 +3,6 @@
 #include "chapters.h"
 
 // A description with its table of fields: one binding serves scene, rig and settings.
-template <class T>
-struct Described {
+template <class T> struct Described {
     T value;
 };

@@ -6,8 +6,7 @@
 #include "chapters.h"
 
 // One law of the header, what messages call it, its check and its form for arrays.
-template <class Parameters>
-struct ForceLaw {
+template <class Parameters> struct ForceLaw {
     const char *what;
     nt_status (*check)(const Parameters *, nt_problem *);
     void (*over)(const Parameters *, const nt_strided *);
@@ -15,7 +14,8 @@ struct ForceLaw {
 
 // Parameters come as rows of numbers in the order of the struct: one row for all gaps, or one for each.
 template <class Parameters>
-static std::vector<Parameters> checked_rows(const ForceLaw<Parameters> &law, const Array &gap, const Array &rows) {
+static std::vector<Parameters> checked_rows(const ForceLaw<Parameters> &law, const Array &gap, const Array &rows)
+{
     static_assert(std::is_trivially_copyable_v<Parameters> && sizeof(Parameters) % sizeof(double) == 0);
     constexpr py::ssize_t width = sizeof(Parameters) / sizeof(double);
     if (rows.ndim() != 2 || rows.shape(1) != width || (rows.shape(0) != 1 && rows.shape(0) != gap.size()))
@@ -31,12 +31,19 @@ static std::vector<Parameters> checked_rows(const ForceLaw<Parameters> &law, con
 
 // {U, F, k, a} of the shape of the gaps, without the GIL.
 template <class Parameters>
-static py::tuple eval(const ForceLaw<Parameters> &law, const Array &gap, const Array &parameters) {
+static py::tuple eval(const ForceLaw<Parameters> &law, const Array &gap, const Array &parameters)
+{
     const std::vector<Parameters> rows = checked_rows(law, gap, parameters);
     const std::vector<py::ssize_t> shape(gap.shape(), gap.shape() + gap.ndim());
     py::array_t<double> U(shape), F(shape), k(shape), a(shape);
-    nt_strided arrays = {gap.data(), U.mutable_data(), F.mutable_data(), k.mutable_data(), a.mutable_data(),
-                         rows.size() == 1 ? static_cast<long>(gap.size()) : 1, 1, 1};
+    nt_strided arrays = {gap.data(),
+                         U.mutable_data(),
+                         F.mutable_data(),
+                         k.mutable_data(),
+                         a.mutable_data(),
+                         rows.size() == 1 ? static_cast<long>(gap.size()) : 1,
+                         1,
+                         1};
     {
         py::gil_scoped_release release;
         for (const Parameters &row : rows) {
@@ -47,20 +54,27 @@ static py::tuple eval(const ForceLaw<Parameters> &law, const Array &gap, const A
     return py::make_tuple(U, F, k, a);
 }
 
-template <class Parameters>
-static void bind(py::module_ &module, const char *name, const ForceLaw<Parameters> &law) {
+template <class Parameters> static void bind(py::module_ &module, const char *name, const ForceLaw<Parameters> &law)
+{
     module.def(name, [law](const Array &gap, const Array &parameters) { return eval(law, gap, parameters); });
 }
 
 // Gaps in the order in which they are visited; returns the law's columns and whether the bridge stands at the end.
-static py::tuple capillary_trace(const Array &gap, const Array &parameters, bool bridged) {
+static py::tuple capillary_trace(const Array &gap, const Array &parameters, bool bridged)
+{
     int state = bridged;
     const ForceLaw<nt_capillary> law = {"capillary force", &nt_capillary_check, nullptr};
     const nt_capillary capillary = checked_rows(law, gap, parameters).at(0);
     const std::vector<py::ssize_t> shape(gap.shape(), gap.shape() + gap.ndim());
     py::array_t<double> U(shape), F(shape), k(shape), a(shape);
-    const nt_strided arrays = {gap.data(), U.mutable_data(), F.mutable_data(), k.mutable_data(), a.mutable_data(),
-                               static_cast<long>(gap.size()), 1, 1};
+    const nt_strided arrays = {gap.data(),
+                               U.mutable_data(),
+                               F.mutable_data(),
+                               k.mutable_data(),
+                               a.mutable_data(),
+                               static_cast<long>(gap.size()),
+                               1,
+                               1};
     {
         py::gil_scoped_release release;
         nt_capillary_trace_n(&capillary, &state, &arrays);
@@ -68,19 +82,22 @@ static py::tuple capillary_trace(const Array &gap, const Array &parameters, bool
     return py::make_tuple(py::make_tuple(U, F, k, a), state != 0);
 }
 
-void bind_forces(py::module_ &module) {
+void bind_forces(py::module_ &module)
+{
     bind<nt_vdw>(module, "vdw_eval", {"van der Waals force", &nt_vdw_check, &nt_vdw_eval_n});
     bind<nt_vdw>(module, "vdw_derjaguin_eval", {"van der Waals force", &nt_vdw_check, &nt_vdw_derjaguin_eval_n});
     bind<nt_vdw_tip>(module, "vdw_tip_eval", {"van der Waals force", &nt_vdw_tip_check, &nt_vdw_tip_eval_n});
     bind<nt_capillary>(module, "capillary_eval", {"capillary force", &nt_capillary_check, &nt_capillary_eval_n});
     bind<nt_electrostatic>(module, "electrostatic_eval",
                            {"electrostatic force", &nt_electrostatic_check, &nt_electrostatic_eval_n});
-    bind<nt_electrostatic_plate>(module, "electrostatic_plate_eval",
-                                 {"electrostatic force", &nt_electrostatic_plate_check, &nt_electrostatic_plate_eval_n});
+    bind<nt_electrostatic_plate>(
+        module, "electrostatic_plate_eval",
+        {"electrostatic force", &nt_electrostatic_plate_check, &nt_electrostatic_plate_eval_n});
     bind<nt_electrostatic_tip>(module, "electrostatic_tip_eval",
                                {"electrostatic force", &nt_electrostatic_tip_check, &nt_electrostatic_tip_eval_n});
-    bind<nt_electrostatic_lever>(module, "electrostatic_lever_eval",
-                                 {"electrostatic force", &nt_electrostatic_lever_check, &nt_electrostatic_lever_eval_n});
+    bind<nt_electrostatic_lever>(
+        module, "electrostatic_lever_eval",
+        {"electrostatic force", &nt_electrostatic_lever_check, &nt_electrostatic_lever_eval_n});
     bind<nt_lennard_jones>(module, "lennard_jones_eval",
                            {"Lennard-Jones force", &nt_lennard_jones_check, &nt_lennard_jones_eval_n});
     bind<nt_double_layer>(module, "double_layer_potential_eval",

@@ -7,7 +7,8 @@
 
 static constexpr double missing = std::numeric_limits<double>::quiet_NaN(); // where there is no solution
 
-static nt_shape shape_of(int kind, int sides, double radius, double half_angle, double transition) {
+static nt_shape shape_of(int kind, int sides, double radius, double half_angle, double transition)
+{
     const nt_shape shape = {static_cast<nt_shape_kind>(kind), sides, radius, half_angle, transition};
     nt_problem problem{};
     raise_on(nt_shape_check(&shape, &problem), problem, "shape");
@@ -15,18 +16,21 @@ static nt_shape shape_of(int kind, int sides, double radius, double half_angle, 
 }
 
 // What numpy broadcasts before the call: arrays of the same shape.
-static py::ssize_t common_size(const Array &first, const Array &second) {
-    if (first.size() != second.size()) throw std::invalid_argument("arrays of different sizes");
+static py::ssize_t common_size(const Array &first, const Array &second)
+{
+    if (first.size() != second.size())
+        throw std::invalid_argument("arrays of different sizes");
     return first.size();
 }
 
-static py::array_t<double> like(const Array &array) {
+static py::array_t<double> like(const Array &array)
+{
     return py::array_t<double>(std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()));
 }
 
 // out_j[i] = f(first[i], second[i], out) for the N numbers that f writes, without the GIL.
-template <int N, class Function>
-static py::tuple map_pairs(const Array &first, const Array &second, Function f) {
+template <int N, class Function> static py::tuple map_pairs(const Array &first, const Array &second, Function f)
+{
     const py::ssize_t count = common_size(first, second);
     const double *x = first.data(), *y = second.data();
     py::array_t<double> arrays[N];
@@ -40,29 +44,35 @@ static py::tuple map_pairs(const Array &first, const Array &second, Function f) 
         for (py::ssize_t i = 0; i < count; ++i) {
             double numbers[N];
             f(x[i], y[i], numbers);
-            for (int j = 0; j < N; ++j) out[j][i] = numbers[j];
+            for (int j = 0; j < N; ++j)
+                out[j][i] = numbers[j];
         }
     }
     py::tuple columns(N);
-    for (int j = 0; j < N; ++j) columns[static_cast<std::size_t>(j)] = arrays[j];
+    for (int j = 0; j < N; ++j)
+        columns[static_cast<std::size_t>(j)] = arrays[j];
     return columns;
 }
 
-static void put(const nt_law_value &value, double *out) {
+static void put(const nt_law_value &value, double *out)
+{
     out[0] = value.U, out[1] = value.F, out[2] = value.k, out[3] = value.a;
 }
 
-static py::tuple eval(const nt_shape &shape, const Array &indentation, const Array &modulus) {
+static py::tuple eval(const nt_shape &shape, const Array &indentation, const Array &modulus)
+{
     return map_pairs<4>(indentation, modulus,
                         [&shape](double d, double E, double *out) { put(nt_shape_eval(&shape, E, d), out); });
 }
 
-static py::tuple indentation_at(const nt_shape &shape, const Array &force, const Array &modulus) {
+static py::tuple indentation_at(const nt_shape &shape, const Array &force, const Array &modulus)
+{
     return map_pairs<1>(force, modulus,
                         [&shape](double F, double E, double *out) { *out = nt_shape_indentation(&shape, E, F); });
 }
 
-static py::tuple validity(const nt_shape &shape, const Array &radius, const Array &indentation, double thickness) {
+static py::tuple validity(const nt_shape &shape, const Array &radius, const Array &indentation, double thickness)
+{
     return map_pairs<5>(radius, indentation, [&shape, thickness](double a, double d, double *out) {
         nt_contact_validity found = {missing, missing, missing, missing, 0};
         const bool judged = nt_contact_validity_of(&shape, a, d, thickness, &found) == NT_OK;
@@ -74,7 +84,8 @@ static py::tuple validity(const nt_shape &shape, const Array &radius, const Arra
 
 // Columns: indentation, deflection, then {U, F, k, a} of the tip.
 static py::tuple solve(const nt_shape &shape, const Array &displacement, const Array &modulus, double spring_constant,
-                       double angle) {
+                       double angle)
+{
     const nt_lever lever = {spring_constant, angle};
     return map_pairs<6>(displacement, modulus, [&](double D, double E, double *out) {
         nt_stage_displacement found = {missing, missing, {missing, missing, missing, missing}};
@@ -84,14 +95,16 @@ static py::tuple solve(const nt_shape &shape, const Array &displacement, const A
     });
 }
 
-static nt_jkr_shape jkr_of(const nt_shape &shape, double modulus, double work_of_adhesion) {
+static nt_jkr_shape jkr_of(const nt_shape &shape, double modulus, double work_of_adhesion)
+{
     const nt_jkr_shape contact = {shape, modulus, work_of_adhesion};
     nt_problem problem{};
     raise_on(nt_jkr_shape_check(&contact, &problem), problem, "adhesive shape");
     return contact;
 }
 
-static py::tuple jkr_eval(const nt_jkr_shape &contact, const Array &indentation, int branch) {
+static py::tuple jkr_eval(const nt_jkr_shape &contact, const Array &indentation, int branch)
+{
     return map_law(indentation, [&contact, branch](double d) {
         nt_law_value value = {missing, missing, missing, missing};
         (void)nt_jkr_shape_eval(&contact, d, static_cast<nt_branch>(branch), &value);
@@ -99,7 +112,8 @@ static py::tuple jkr_eval(const nt_jkr_shape &contact, const Array &indentation,
     });
 }
 
-static py::array_t<double> jkr_indentation(const nt_jkr_shape &contact, const Array &force, int branch) {
+static py::array_t<double> jkr_indentation(const nt_jkr_shape &contact, const Array &force, int branch)
+{
     py::array_t<double> out = like(force);
     const double *F = force.data();
     double *d = out.mutable_data();
@@ -112,7 +126,8 @@ static py::array_t<double> jkr_indentation(const nt_jkr_shape &contact, const Ar
     return out;
 }
 
-static void bind_adhesive(py::module_ &module) {
+static void bind_adhesive(py::module_ &module)
+{
     py::class_<nt_jkr_shape>(module, "JkrShape")
         .def(py::init(&jkr_of))
         .def("eval", &jkr_eval)
@@ -130,7 +145,8 @@ static void bind_adhesive(py::module_ &module) {
     module.def("effective_radius", &nt_effective_radius);
 }
 
-void bind_geometry(py::module_ &module) {
+void bind_geometry(py::module_ &module)
+{
     py::class_<nt_shape>(module, "Shape")
         .def(py::init(&shape_of))
         .def("eval", &eval)

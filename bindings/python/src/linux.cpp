@@ -4,7 +4,8 @@
 #include "chapters.h"
 #include "nanotouch/hal_linux.h"
 
-void bind_linux(py::module_ &module) {
+void bind_linux(py::module_ &module)
+{
     module.def("gpio_lines", [] {
         py::list lines;
         const long count = nt_gpio_line_count();

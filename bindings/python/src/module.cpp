@@ -3,7 +3,8 @@
 #include "chapters.h"
 #include "nanotouch/version.h"
 
-PYBIND11_MODULE(_core, module) {
+PYBIND11_MODULE(_core, module)
+{
     module.doc() = "The C library of nanotouch. Use the Python modules of the package; this one has no promises.";
     module.attr("version") = nt_version();
     bind_contact(module);

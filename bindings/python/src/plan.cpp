@@ -2,7 +2,8 @@
 // plan.h, scene.h: the plan as data, and the interaction along a path of gaps
 #include "descriptions.h"
 
-static nt_plan plan_of(const Described<nt_scene> &scene, double accuracy, double floor, double load) {
+static nt_plan plan_of(const Described<nt_scene> &scene, double accuracy, double floor, double load)
+{
     const nt_demand demand = {accuracy, floor, load};
     nt_plan plan;
     nt_problem problem{};
@@ -10,7 +11,8 @@ static nt_plan plan_of(const Described<nt_scene> &scene, double accuracy, double
     return plan;
 }
 
-static py::dict as_dict(const nt_plan &plan) {
+static py::dict as_dict(const nt_plan &plan)
+{
     static const char *const sources[] = {"none", "solid", "meniscus"};
     py::list terms;
     for (const nt_plan_term &term : plan.terms)
@@ -32,16 +34,19 @@ static py::dict as_dict(const nt_plan &plan) {
     return out;
 }
 
-void bind_plan(py::module_ &module) {
+void bind_plan(py::module_ &module)
+{
     py::class_<nt_plan>(module, "Plan")
-        .def(py::init(&plan_of), py::arg("scene"), py::arg("relative_accuracy"), py::arg("force_floor"), py::arg("maximum_load"))
+        .def(py::init(&plan_of), py::arg("scene"), py::arg("relative_accuracy"), py::arg("force_floor"),
+             py::arg("maximum_load"))
         .def("as_dict", &as_dict)
         .def(
             "run",
             [](const nt_plan &plan, const Array &gap, bool attached) {
                 nt_interaction_state state = {attached ? 1 : 0};
                 return map_law(gap, [&plan, &state](double h) {
-                    if (h == h) nt_interaction_advance(&plan, &state, h); // a NaN is no step of the path
+                    if (h == h)
+                        nt_interaction_advance(&plan, &state, h); // a NaN is no step of the path
                     return nt_interaction_eval_gap(&plan, &state, h);
                 });
             },

@@ -7,13 +7,17 @@
 #include "descriptions.h"
 #include "surface.h"
 
-namespace {
+namespace
+{
 
 struct Session {
     nt_session *handle = nullptr;
     std::shared_ptr<Surface> surface; // outlives the handle
     std::mutex one_at_a_time;
-    ~Session() { nt_session_close(handle); }
+    ~Session()
+    {
+        nt_session_close(handle);
+    }
 };
 
 struct Column {
@@ -38,7 +42,9 @@ constexpr Column columns[] = {
 };
 
 std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
-                              const Described<nt_settings> &settings, std::shared_ptr<Surface> surface, py::dict options) {
+                                      const Described<nt_settings> &settings, std::shared_ptr<Surface> surface,
+                                      py::dict options)
+{
     nt_session_setup setup = nt_session_defaults();
     setup.scene = scene.value;
     setup.rig = rig.value;
@@ -60,24 +66,27 @@ std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const De
 }
 
 // Python threads may share a session: one call at a time, waiting without the GIL.
-template <class Call>
-auto alone(Session &self, Call call) {
+template <class Call> auto alone(Session &self, Call call)
+{
     py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(self.one_at_a_time);
     return call(self.handle);
 }
 
-void advance_session(Session &self, long ticks) {
+void advance_session(Session &self, long ticks)
+{
     raise_on(alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); }), "advance");
 }
 
-py::dict read_records(Session &self, long count) {
+py::dict read_records(Session &self, long count)
+{
     std::vector<nt_record> records(static_cast<size_t>(count));
     const long got = alone(self, [&](nt_session *handle) { return nt_session_read(handle, records.data(), count); });
     py::dict out;
     for (const Column &column : columns) {
         py::array_t<double> values(got);
-        for (long i = 0; i < got; ++i) values.mutable_data()[i] = records[static_cast<size_t>(i)].*column.member;
+        for (long i = 0; i < got; ++i)
+            values.mutable_data()[i] = records[static_cast<size_t>(i)].*column.member;
         out[column.name] = values;
     }
     py::array_t<uint8_t> state(got);
@@ -93,26 +102,33 @@ py::dict read_records(Session &self, long count) {
 
 } // namespace
 
-void bind_session(py::module_ &module) {
+void bind_session(py::module_ &module)
+{
     py::class_<Session>(module, "Session")
-        .def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"), py::arg("options"))
-        .def("aim", [](Session &self, double force, double x, double y, double duration) {
-            const nt_input input = {force, x, y, duration};
-            raise_on(nt_session_aim(self.handle, &input), "operator input");
-        })
+        .def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"),
+             py::arg("options"))
+        .def("aim",
+             [](Session &self, double force, double x, double y, double duration) {
+                 const nt_input input = {force, x, y, duration};
+                 raise_on(nt_session_aim(self.handle, &input), "operator input");
+             })
         .def("advance", &advance_session)
         .def("read", &read_records)
-        .def("arm", [](Session &self, bool confirmed) {
-            raise_on(alone(self, [=](nt_session *handle) { return nt_session_arm(handle, confirmed); }), "arm");
-        })
-        .def("emergency_stop", [](Session &self, bool pressed) {
-            alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });
-        })
+        .def("arm",
+             [](Session &self, bool confirmed) {
+                 raise_on(alone(self, [=](nt_session *handle) { return nt_session_arm(handle, confirmed); }), "arm");
+             })
+        .def("emergency_stop",
+             [](Session &self, bool pressed) {
+                 alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });
+             })
         .def_property_readonly("plan", [](const Session &self) { return nt_plan(*nt_session_plan(self.handle)); })
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
-        .def_property_readonly("start_height", [](const Session &self) { return nt_session_start_height(self.handle); });
+        .def_property_readonly("start_height",
+                               [](const Session &self) { return nt_session_start_height(self.handle); });
     py::list reasons;
-    for (uint32_t bit = 1; nt_reason_name(bit)[0] != 0; bit <<= 1) reasons.append(nt_reason_name(bit));
+    for (uint32_t bit = 1; nt_reason_name(bit)[0] != 0; bit <<= 1)
+        reasons.append(nt_reason_name(bit));
     module.attr("reasons") = py::tuple(reasons);
 }

@@ -4,15 +4,19 @@
 
 #include <memory>
 
-static nt_height_map map_of(const Array &heights, double dy, double dx) {
-    if (heights.ndim() != 2) throw py::value_error("heights must be a 2-D array (ny, nx)");
-    const nt_height_map map = {heights.data(), static_cast<long>(heights.shape(1)), static_cast<long>(heights.shape(0)), dx, dy};
+static nt_height_map map_of(const Array &heights, double dy, double dx)
+{
+    if (heights.ndim() != 2)
+        throw py::value_error("heights must be a 2-D array (ny, nx)");
+    const nt_height_map map = {heights.data(), static_cast<long>(heights.shape(1)), static_cast<long>(heights.shape(0)),
+                               dx, dy};
     nt_problem problem{};
     raise_on(nt_height_map_check(&map, &problem), problem, "surface");
     return map;
 }
 
-static py::array_t<double> dilate(const Array &heights, double dy, double dx, double radius, double half_angle) {
+static py::array_t<double> dilate(const Array &heights, double dy, double dx, double radius, double half_angle)
+{
     const nt_height_map map = map_of(heights, dy, dx);
     const nt_tip_shape tip = {radius, half_angle};
     py::array_t<double> dilated({heights.shape(0), heights.shape(1)});
@@ -26,7 +30,8 @@ static py::array_t<double> dilate(const Array &heights, double dy, double dx, do
     return dilated;
 }
 
-static std::shared_ptr<Surface> make(const Array &heights, double dy, double dx) {
+static std::shared_ptr<Surface> make(const Array &heights, double dy, double dx)
+{
     const nt_height_map map = map_of(heights, dy, dx);
     auto made = std::make_shared<Surface>();
     made->coefficients.resize(static_cast<size_t>(heights.size()));
@@ -39,42 +44,53 @@ static std::shared_ptr<Surface> make(const Array &heights, double dy, double dx)
     return made;
 }
 
-static py::array_t<double> heights_at(const Surface &self, const Array &x, const Array &y) {
-    if (x.size() != y.size()) throw py::value_error("x and y must have the same shape");
+static py::array_t<double> heights_at(const Surface &self, const Array &x, const Array &y)
+{
+    if (x.size() != y.size())
+        throw py::value_error("x and y must have the same shape");
     py::array_t<double> out(std::vector<py::ssize_t>(x.shape(), x.shape() + x.ndim()));
     const double *xs = x.data(), *ys = y.data();
     double *z = out.mutable_data();
     const py::ssize_t count = x.size();
     {
         py::gil_scoped_release release;
-        for (py::ssize_t i = 0; i < count; ++i) z[i] = nt_surface_eval(&self.surface, xs[i], ys[i]).z;
+        for (py::ssize_t i = 0; i < count; ++i)
+            z[i] = nt_surface_eval(&self.surface, xs[i], ys[i]).z;
     }
     return out;
 }
 
 static py::array_t<double> sample(double (*height)(const void *, double, double), const void *what, long ny, long nx,
-                                  double dy, double dx) {
+                                  double dy, double dx)
+{
     py::array_t<double> out({static_cast<py::ssize_t>(ny), static_cast<py::ssize_t>(nx)});
     double *z = out.mutable_data();
     for (long j = 0; j < ny; ++j)
-        for (long i = 0; i < nx; ++i) z[j * nx + i] = height(what, static_cast<double>(i) * dx, static_cast<double>(j) * dy);
+        for (long i = 0; i < nx; ++i)
+            z[j * nx + i] = height(what, static_cast<double>(i) * dx, static_cast<double>(j) * dy);
     return out;
 }
 
-void bind_surface(py::module_ &module) {
+void bind_surface(py::module_ &module)
+{
     py::class_<Surface, std::shared_ptr<Surface>>(module, "Surface")
         .def(py::init(&make), py::arg("heights"), py::arg("dy"), py::arg("dx"))
         .def("heights", &heights_at, py::arg("x"), py::arg("y"));
     module.def("dilate", &dilate);
-    module.def("grating", [](long ny, long nx, double dy, double dx, double period, double height, double duty, double offset) {
-        const nt_grating grating = {period, height, duty, offset};
-        auto at = [](const void *g, double x, double y) { return nt_grating_height(static_cast<const nt_grating *>(g), x, y); };
-        return sample(at, &grating, ny, nx, dy, dx);
-    });
+    module.def("grating",
+               [](long ny, long nx, double dy, double dx, double period, double height, double duty, double offset) {
+                   const nt_grating grating = {period, height, duty, offset};
+                   auto at = [](const void *g, double x, double y) {
+                       return nt_grating_height(static_cast<const nt_grating *>(g), x, y);
+                   };
+                   return sample(at, &grating, ny, nx, dy, dx);
+               });
     module.def("dots", [](long ny, long nx, double dy, double dx, int count, double width, uint64_t seed) {
         nt_dots dots;
         raise_on(nt_dots_scatter(&dots, count, width, seed), "quantum dots");
-        auto at = [](const void *d, double x, double y) { return nt_dots_height(static_cast<const nt_dots *>(d), x, y); };
+        auto at = [](const void *d, double x, double y) {
+            return nt_dots_height(static_cast<const nt_dots *>(d), x, y);
+        };
         return sample(at, &dots, ny, nx, dy, dx);
     });
 }

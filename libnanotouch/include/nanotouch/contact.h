@@ -4,8 +4,8 @@
  * Every law returns {U, F, k, a} with F = dU/d(delta), k = dF/d(delta) (types.h). U is the energy relative to separated
  * bodies at rest; for DMT, whose tail has no range, relative to first touch (delta = 0).
  * Adhesive laws have branches: at one indentation there can be more than one equilibrium.
- * All functions: thread-safe, real-time safe, no state. NaN in the indentation gives NaN out (or NT_E_NOT_FINITE where a
- * status is returned). */
+ * All functions: thread-safe, real-time safe, no state. NaN in the indentation gives NaN out (or NT_E_NOT_FINITE where
+ * a status is returned). */
 #ifndef NANOTOUCH_CONTACT_H
 #define NANOTOUCH_CONTACT_H
 
@@ -30,9 +30,11 @@ NT_API nt_status nt_contact_check(const nt_contact *contact, nt_problem *problem
 
 /* Which equilibrium is meant where there are several. */
 typedef enum nt_branch {
-    NT_BRANCH_STABLE,   /* what retraction from contact meets under grips, down to its last fold; beyond it: apart (all 0) */
+    NT_BRANCH_STABLE, /* what retraction from contact meets under grips, down to its last fold; beyond it: apart (all 0)
+                       */
     NT_BRANCH_APPROACH, /* what approach from far away meets: apart until the jump-in, then as STABLE */
-    NT_BRANCH_UNSTABLE  /* the equilibrium between the two folds that no grip can hold; NT_E_NO_SOLUTION where there is none */
+    NT_BRANCH_UNSTABLE  /* the equilibrium between the two folds that no grip can hold; NT_E_NO_SOLUTION where there is
+                           none */
 } nt_branch;
 
 /* --- Hertz, 1881 (paper, Eq. 4): F = 4/3 E* sqrt(R) delta^1.5, a = sqrt(R delta); all 0 for delta <= 0. --- */
@@ -68,10 +70,11 @@ NT_API double nt_jkr_pull_off_indentation(const nt_contact *contact);
 typedef struct nt_maugis_folds {
     double pull_off_load, pull_off_radius, pull_off_indentation; /* load fold: dead weight falls off */
     double grip_load, grip_radius, grip_indentation;             /* displacement fold: grips let go */
-    int grip_in_contact; /* 1: the displacement fold lies on the contact branch (lambda > 0.9379); 0: on the non-contact one */
+    int grip_in_contact; /* 1: the displacement fold lies on the contact branch (lambda > 0.9379); 0: on the non-contact
+                            one */
     double zero_load_radius, zero_load_indentation;
     double touch_load, touch_indentation; /* the a = 0 end of the contact branch */
-    double onset_indentation; /* where attraction starts on approach: -2/(pi lambda) (gap = h0) */
+    double onset_indentation;             /* where attraction starts on approach: -2/(pi lambda) (gap = h0) */
 } nt_maugis_folds;
 
 /* A Maugis-Dugdale contact made ready: scales and folds. Immutable after nt_maugis_init; may be shared and copied. */
@@ -96,9 +99,9 @@ NT_API double nt_maugis_lambda(const nt_contact *contact);
 NT_API nt_status nt_maugis_init(nt_maugis *maugis, const nt_contact *contact);
 /* The same with lambda given; the cohesive stress follows from it. NT_MAUGIS_LAMBDA_MAX makes it JKR. */
 NT_API nt_status nt_maugis_init_lambda(nt_maugis *maugis, const nt_contact *contact, double lambda);
-/* {U, F, k, a} at an indentation [m]. info may be NULL. Error < 1e-12 relative away from the folds; at a fold the result
- * is square-root conditioned (1 ulp of the indentation is 1e-8 of the force) and k, infinite there, is reported at the
- * nearest distance that a double resolves. *value is untouched on failure. */
+/* {U, F, k, a} at an indentation [m]. info may be NULL. Error < 1e-12 relative away from the folds; at a fold the
+ * result is square-root conditioned (1 ulp of the indentation is 1e-8 of the force) and k, infinite there, is reported
+ * at the nearest distance that a double resolves. *value is untouched on failure. */
 NT_API nt_status nt_maugis_eval(const nt_maugis *maugis, double indentation, nt_branch branch, nt_law_value *value,
                                 nt_solve_info *info);
 /* Indentation [m] at a force [N] >= minus the pull-off force: STABLE above the load fold, UNSTABLE below it. */
@@ -137,7 +140,8 @@ typedef struct nt_contact_law {
     nt_maugis maugis; /* prepared for NT_MAUGIS; .contact holds the parameters for every model */
 } nt_contact_law;
 NT_API nt_status nt_contact_law_init(nt_contact_law *law, nt_model model, const nt_contact *contact);
-NT_API nt_status nt_contact_law_eval(const nt_contact_law *law, double indentation, nt_branch branch, nt_law_value *value);
+NT_API nt_status nt_contact_law_eval(const nt_contact_law *law, double indentation, nt_branch branch,
+                                     nt_law_value *value);
 /* Pull-off force under load control, positive [N]; 0 for Hertz. */
 NT_API double nt_contact_law_pull_off_force(const nt_contact_law *law);
 /* The last indentation that the STABLE branch holds under grips [m]; below it the bodies are apart. */

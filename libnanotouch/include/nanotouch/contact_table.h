@@ -101,8 +101,8 @@ typedef struct nt_maugis_bank_options {
     int panels_per_octave;      /* of the distance from 0.9379; 1, 2, 4 .. 64 */
     int cells_per_octave;       /* as in a table */
 } nt_maugis_bank_options;
-/* lambda 0.01 .. 100, indentation up to 100, 2 panels and 4 cells per octave: an error of 3e-5 in half a megabyte. 4 and
- * 8: 3e-6 in 2 MB. */
+/* lambda 0.01 .. 100, indentation up to 100, 2 panels and 4 cells per octave: an error of 3e-5 in half a megabyte. 4
+ * and 8: 3e-6 in 2 MB. */
 NT_API nt_maugis_bank_options nt_maugis_bank_defaults(void);
 
 /* The caller's memory. */

@@ -17,8 +17,8 @@ extern "C" {
 
 /* The force on the tip at height z_t, as a function that may be called at trial heights. */
 typedef struct nt_force_field {
-    nt_law_value (*eval)(void *context, double z_t);  /* pure: the force if the tip stood at z_t */
-    void (*advance)(void *context, double z_t);       /* commits history when the tip has moved to z_t; may be NULL */
+    nt_law_value (*eval)(void *context, double z_t); /* pure: the force if the tip stood at z_t */
+    void (*advance)(void *context, double z_t);      /* commits history when the tip has moved to z_t; may be NULL */
     void *context;
     double length; /* the shortest distance over which F changes shape [m] */
 } nt_force_field;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One table per description: the name, unit, valid range and meaning of each of its numbers. Checks, bindings, TOML keys
- * and the generated documentation all read the same table, so that they cannot disagree. */
+ * One table per description: the name, unit, valid range and meaning of each of its numbers. Checks, bindings, TOML
+ * keys and the generated documentation all read the same table, so that they cannot disagree. */
 #ifndef NANOTOUCH_FIELD_H
 #define NANOTOUCH_FIELD_H
 

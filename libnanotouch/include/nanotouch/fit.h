@@ -48,15 +48,16 @@ typedef enum nt_fit_loss { NT_LOSS_SQUARES, NT_LOSS_HUBER, NT_LOSS_SOFT_L1, NT_L
 
 typedef struct nt_fit_options {
     nt_model model;
-    double radius;           /* R of the tip [m] */
-    double spring_constant;  /* k_c [N/m]; 0: the position is the indentation */
+    double radius;          /* R of the tip [m] */
+    double spring_constant; /* k_c [N/m]; 0: the position is the indentation */
     nt_fit_start parameter[NT_FIT_PARAMETERS];
     nt_fit_loss loss;
-    double loss_scale;       /* residual at which the loss leaves the parabola [N]; read unless NT_LOSS_SQUARES */
-    double force_noise;      /* standard deviation of the force data [N]; 0: unknown, taken from the residuals */
-    double pull_off_force;   /* measured, positive [N]; a datum like the points, used if pull_off_sigma > 0 */
-    double pull_off_sigma;   /* its standard uncertainty [N]; needs force_noise */
-    double compliance_sigma; /* relative uncertainty of the deflection sensitivity; needs force_noise; used if c is free */
+    double loss_scale;     /* residual at which the loss leaves the parabola [N]; read unless NT_LOSS_SQUARES */
+    double force_noise;    /* standard deviation of the force data [N]; 0: unknown, taken from the residuals */
+    double pull_off_force; /* measured, positive [N]; a datum like the points, used if pull_off_sigma > 0 */
+    double pull_off_sigma; /* its standard uncertainty [N]; needs force_noise */
+    double
+        compliance_sigma; /* relative uncertainty of the deflection sensitivity; needs force_noise; used if c is free */
     int max_iterations;
 } nt_fit_options;
 /* Free: E*, w and delta0 (guessed). Fixed: h0 = 0.2 nm, F0 = 0, c = 1. R = 20 nm, k_c = 0, least squares, no noise
@@ -84,20 +85,20 @@ typedef struct nt_fit_result {
     double sigma[NT_FIT_PARAMETERS]; /* standard uncertainty, SI; 0 if fixed, +infinity in the null space */
     double covariance[NT_FIT_PARAMETERS][NT_FIT_PARAMETERS]; /* SI; 0 if fixed, NaN beside an infinite variance */
     int identifiable[NT_FIT_PARAMETERS];
-    double residual_rms;      /* of the force [N] */
-    double misfit;            /* reduced chi^2 against force_noise; NaN if that is 0. The covariance is scaled up by it
-                                 if > 1 */
+    double residual_rms; /* of the force [N] */
+    double misfit;       /* reduced chi^2 against force_noise; NaN if that is 0. The covariance is scaled up by it
+                            if > 1 */
     double transition_parameter; /* Maugis' lambda [-]; NaN for other models */
-    double pull_off_force;    /* of the fitted contact, positive [N] */
-    double contact_radius;    /* a at the deepest point [m] */
-    double contact_stiffness; /* k at the deepest point [N/m] */
+    double pull_off_force;       /* of the fitted contact, positive [N] */
+    double contact_radius;       /* a at the deepest point [m] */
+    double contact_stiffness;    /* k at the deepest point [N/m] */
     int iterations;
-    int converged;            /* 0: stopped at max_iterations; the values are the best so far */
+    int converged;                /* 0: stopped at max_iterations; the values are the best so far */
     char message[NT_FIT_MESSAGE]; /* one sentence; ends with what the data cannot determine, if any */
 } nt_fit_result;
 
-/* Fits. problem (NULL allowed) names what is wrong with options or data. The result is written on NT_OK only; fails with
- * NT_E_NO_CONVERGENCE if no contact law of this kind comes near the data, NT_E_NO_MEMORY. */
+/* Fits. problem (NULL allowed) names what is wrong with options or data. The result is written on NT_OK only; fails
+ * with NT_E_NO_CONVERGENCE if no contact law of this kind comes near the data, NT_E_NO_MEMORY. */
 NT_API nt_status nt_fit_run(const nt_fit_options *options, const nt_fit_data *data, nt_fit_result *result,
                             nt_problem *problem);
 
@@ -107,7 +108,8 @@ typedef struct nt_fit_point {
     double indentation;                 /* delta [m] */
     double gradient[NT_FIT_PARAMETERS]; /* d force/d parameter, SI */
 } nt_fit_point;
-/* The model at a position, parameter values in SI as in nt_fit_result; reads model, radius, spring constant of options. */
+/* The model at a position, parameter values in SI as in nt_fit_result; reads model, radius, spring constant of options.
+ */
 NT_API nt_status nt_fit_model_at(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double position,
                                  nt_fit_point *point);
 /* The force of the model at every position of data into force[i], i < data->count (data->force is not read). */

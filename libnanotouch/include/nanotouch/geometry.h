@@ -3,8 +3,8 @@
  *
  * A rigid shape on an elastic half-space without adhesion obeys Galin's and Sneddon's integrals
  *     delta = a Int_0^a f'(r)/sqrt(a^2 - r^2) dr,     F = 2 E* Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr
- * for its profile f(r); here in closed form for every shape, with the energy. Everywhere F = dU/d(delta) and k = 2 E* a.
- * All functions: thread-safe, real-time safe, no state. NaN in gives NaN out, or NT_E_NOT_FINITE where a status is
+ * for its profile f(r); here in closed form for every shape, with the energy. Everywhere F = dU/d(delta) and k = 2 E*
+ * a. All functions: thread-safe, real-time safe, no state. NaN in gives NaN out, or NT_E_NOT_FINITE where a status is
  * returned. */
 #ifndef NANOTOUCH_GEOMETRY_H
 #define NANOTOUCH_GEOMETRY_H
@@ -28,10 +28,10 @@ typedef enum nt_shape_kind {
 /* A tip. Fields that its kind does not name are not read. */
 typedef struct nt_shape {
     nt_shape_kind kind;
-    int sides;             /* CONE, BLUNTED, TRUNCATED: 0 round, 3 or 4 a regular pyramid */
-    double radius;         /* R of PARABOLOID, SPHERE, BLUNTED; of the flat for PUNCH, TRUNCATED [m] */
-    double half_angle;     /* psi between axis and flank (round) or axis and face (pyramid) [rad] */
-    double transition;     /* BLUNTED: radius b where the cap meets the flank; 0: where they are tangent, R cot psi [m] */
+    int sides;         /* CONE, BLUNTED, TRUNCATED: 0 round, 3 or 4 a regular pyramid */
+    double radius;     /* R of PARABOLOID, SPHERE, BLUNTED; of the flat for PUNCH, TRUNCATED [m] */
+    double half_angle; /* psi between axis and flank (round) or axis and face (pyramid) [rad] */
+    double transition; /* BLUNTED: radius b where the cap meets the flank; 0: where they are tangent, R cot psi [m] */
 } nt_shape;
 
 /* "paraboloid", "sphere", "cone", "punch", "blunted", "truncated". */
@@ -40,14 +40,14 @@ NT_API const char *nt_shape_name(nt_shape_kind kind);
  * *problem (NULL allowed). b may be at most R cot psi: a larger one would make the flank retreat behind the cap. */
 NT_API nt_status nt_shape_check(const nt_shape *shape, nt_problem *problem);
 
-/* A pyramid's law is that of the cone of this half angle [rad]: F = C E* tan(psi) delta^2 with C = 0.73762 (4 sides) and
- * 0.87960 (3 sides), from our own numerical solution, to 1e-4 (docs/geometry.md; the published approximations of
+/* A pyramid's law is that of the cone of this half angle [rad]: F = C E* tan(psi) delta^2 with C = 0.73762 (4 sides)
+ * and 0.87960 (3 sides), from our own numerical solution, to 1e-4 (docs/geometry.md; the published approximations of
  * Bilodeau 1992 are 0.7453 and 0.887, 1 % above). NaN unless sides is 0 (the angle itself), 3 or 4. */
 NT_API double nt_pyramid_equivalent_angle(int sides, double half_angle);
 
 /* {U, F, k, a} of a checked shape at an indentation [m]; all 0 for delta <= 0; all NaN for delta = +inf.
- * effective_modulus E* [Pa], > 0. For a pyramid a is the radius of the round contact of the same stiffness, k/(2 E*): 8 %
- * (4 sides) and 17 % (3 sides) larger than that of the circle of the contact's own area. */
+ * effective_modulus E* [Pa], > 0. For a pyramid a is the radius of the round contact of the same stiffness, k/(2 E*): 8
+ * % (4 sides) and 17 % (3 sides) larger than that of the circle of the contact's own area. */
 NT_API nt_law_value nt_shape_eval(const nt_shape *shape, double effective_modulus, double indentation);
 /* delta(F) [m] for F >= 0; NaN for F < 0 or infinite. */
 NT_API double nt_shape_indentation(const nt_shape *shape, double effective_modulus, double force);
@@ -78,7 +78,8 @@ NT_API double nt_jkr_shape_pull_off_indentation(const nt_jkr_shape *contact);
 
 /* --- Sphere on sphere --- */
 
-/* R of 1/R = 1/R1 + 1/R2 [m]. A flat is INFINITY; a hollow has a negative radius, larger in magnitude than the ball's. */
+/* R of 1/R = 1/R1 + 1/R2 [m]. A flat is INFINITY; a hollow has a negative radius, larger in magnitude than the ball's.
+ */
 NT_API double nt_effective_radius(double radius, double other_radius);
 typedef struct nt_ball {
     double radius; /* [m] */

@@ -31,8 +31,8 @@ typedef struct nt_material_entry {
     double hamaker_constant; /* H of the material against itself across vacuum [J], not retarded */
 } nt_material_entry;
 
-/* The material of that name or symbol, exactly as written; NULL if there is none. The table with its sources, and how far
- * they differ, is core/materials.c. Thread-safe. */
+/* The material of that name or symbol, exactly as written; NULL if there is none. The table with its sources, and how
+ * far they differ, is core/materials.c. Thread-safe. */
 NT_API const nt_material_entry *nt_material_find(const char *name);
 /* The materials by number, 0 .. ; NULL beyond the last. */
 NT_API const nt_material_entry *nt_material_at(int index);

@@ -20,7 +20,8 @@ typedef struct nt_random {
 NT_API nt_random nt_random_seed(uint64_t seed);
 /* Uniform in [0, 1), in steps of 2^-53. */
 NT_API NT_REALTIME double nt_random_uniform(nt_random *random);
-/* Standard normal, by Marsaglia's polar method; bounded: after 32 rejections (probability 4e-22) it gives the mean, 0. */
+/* Standard normal, by Marsaglia's polar method; bounded: after 32 rejections (probability 4e-22) it gives the mean, 0.
+ */
 NT_API NT_REALTIME double nt_random_normal(nt_random *random);
 
 #ifdef __cplusplus

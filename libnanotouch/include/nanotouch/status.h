@@ -19,17 +19,17 @@ extern "C" {
 #endif
 
 /* X(code, message) */
-#define NT_STATUS_LIST(X)                                                                 \
-    X(NT_OK, "no error")                                                                  \
-    X(NT_E_ARGUMENT, "an argument is NULL, inconsistent or not one of the allowed values") \
-    X(NT_E_NOT_FINITE, "a value is NaN or infinite")                                      \
-    X(NT_E_RANGE, "a value is outside its valid range")                                   \
-    X(NT_E_NO_SOLUTION, "the requested branch has no solution there")                     \
-    X(NT_E_NO_CONVERGENCE, "the solver did not converge")                                 \
-    X(NT_E_CAPACITY, "a fixed-size buffer is full")                                       \
-    X(NT_E_STATE, "the call is not allowed in this state")                                \
-    X(NT_E_NO_MEMORY, "out of memory")                                                    \
-    X(NT_E_DEVICE, "a device is missing or failed")                                       \
+#define NT_STATUS_LIST(X)                                                                                              \
+    X(NT_OK, "no error")                                                                                               \
+    X(NT_E_ARGUMENT, "an argument is NULL, inconsistent or not one of the allowed values")                             \
+    X(NT_E_NOT_FINITE, "a value is NaN or infinite")                                                                   \
+    X(NT_E_RANGE, "a value is outside its valid range")                                                                \
+    X(NT_E_NO_SOLUTION, "the requested branch has no solution there")                                                  \
+    X(NT_E_NO_CONVERGENCE, "the solver did not converge")                                                              \
+    X(NT_E_CAPACITY, "a fixed-size buffer is full")                                                                    \
+    X(NT_E_STATE, "the call is not allowed in this state")                                                             \
+    X(NT_E_NO_MEMORY, "out of memory")                                                                                 \
+    X(NT_E_DEVICE, "a device is missing or failed")                                                                    \
     X(NT_E_UNSUPPORTED, "this build or system does not support it")
 
 typedef enum nt_status {
@@ -43,9 +43,9 @@ NT_API const char *nt_status_message(nt_status status);
 
 /* What nt_x_check() found wrong with a description: the first offending field, its value and its valid range. */
 typedef struct nt_problem {
-    const char *field;      /* dotted name, "tip.radius"; static storage */
-    const char *unit;       /* SI unit of value, minimum, maximum; "" if none */
-    double value;           /* the value found */
+    const char *field;       /* dotted name, "tip.radius"; static storage */
+    const char *unit;        /* SI unit of value, minimum, maximum; "" if none */
+    double value;            /* the value found */
     double minimum, maximum; /* the valid range, both ends included */
 } nt_problem;
 

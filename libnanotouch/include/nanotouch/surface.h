@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The surface that is touched: a height field made C2 by cubic B-splines, so that curvature and force are continuous;
  * contact is computed on the tip-dilated surface (apex positions of first touch), because a tip touches with its flank
- * where the surface is steep. Row 0 lies at y = 0 (the lower edge of the picture), pixel (j, i) at x = i dx, y = j dy. */
+ * where the surface is steep. Row 0 lies at y = 0 (the lower edge of the picture), pixel (j, i) at x = i dx, y = j dy.
+ */
 #ifndef NANOTOUCH_SURFACE_H
 #define NANOTOUCH_SURFACE_H
 
@@ -58,8 +59,8 @@ typedef struct nt_tip_shape {
 /* Height of the tip's surface above its apex at a distance r >= 0 from its axis [m]. */
 NT_API double nt_tip_shape_height(const nt_tip_shape *tip, double r);
 /* Grey-scale dilation: dilated[j, i] = max over pixels p of heights[p] - tip(|p - (j, i)|): where the apex is at first
- * touch. dilated: nx * ny doubles, not the memory of map->heights. Exact on the grid; O(nx ny k^2), k = the reach of the
- * tip within the height range of the map. */
+ * touch. dilated: nx * ny doubles, not the memory of map->heights. Exact on the grid; O(nx ny k^2), k = the reach of
+ * the tip within the height range of the map. */
 NT_API nt_status nt_surface_dilate(const nt_height_map *map, const nt_tip_shape *tip, double *dilated);
 
 /* Built-in samples. */

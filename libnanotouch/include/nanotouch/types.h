@@ -26,7 +26,7 @@ typedef struct nt_law_value {
 /* Arrays of a law: out[i * out_stride] from in[i * in_stride]; in and out may be the same array. */
 typedef struct nt_strided {
     const double *in;
-    double *U, *F, *k, *a;      /* any may be NULL */
+    double *U, *F, *k, *a; /* any may be NULL */
     long count;
     long in_stride, out_stride; /* [elements] */
 } nt_strided;
@@ -58,14 +58,14 @@ enum {
 
 /* What the rig measured in one tick. */
 typedef struct nt_sample {
-    uint64_t tick;           /* counts control periods [-] */
-    double age;              /* time since the measurement [s] */
-    double master_position;  /* x_m, + towards the sample [m] */
-    double operator_force;   /* f_m, + towards the sample [N] */
-    double stage_position;   /* x_s, travel towards the sample [m] */
-    double deflection;       /* zeta, + away from the sample [m] */
-    double x, y;             /* lateral position of the tip [m] */
-    uint32_t flags;          /* NT_SAMPLE_* */
+    uint64_t tick;          /* counts control periods [-] */
+    double age;             /* time since the measurement [s] */
+    double master_position; /* x_m, + towards the sample [m] */
+    double operator_force;  /* f_m, + towards the sample [N] */
+    double stage_position;  /* x_s, travel towards the sample [m] */
+    double deflection;      /* zeta, + away from the sample [m] */
+    double x, y;            /* lateral position of the tip [m] */
+    uint32_t flags;         /* NT_SAMPLE_* */
 } nt_sample;
 
 /* Safety state of the loop, in rising order of severity. */
