@@ -41,9 +41,11 @@ constexpr Column columns[] = {
     {"surface_height", &nt_record::surface_height},
 };
 
-std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
-                                      const Described<nt_settings> &settings, std::shared_ptr<Surface> surface,
-                                      py::dict options)
+} // namespace
+
+static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
+                                             const Described<nt_settings> &settings, std::shared_ptr<Surface> surface,
+                                             py::dict options)
 {
     nt_session_setup setup = nt_session_defaults();
     setup.scene = scene.value;
@@ -66,19 +68,19 @@ std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const De
 }
 
 // Python threads may share a session: one call at a time, waiting without the GIL.
-template <class Call> auto alone(Session &self, Call call)
+template <class Call> static auto alone(Session &self, Call call)
 {
     py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(self.one_at_a_time);
     return call(self.handle);
 }
 
-void advance_session(Session &self, long ticks)
+static void advance_session(Session &self, long ticks)
 {
     raise_on(alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); }), "advance");
 }
 
-py::dict read_records(Session &self, long count)
+static py::dict read_records(Session &self, long count)
 {
     std::vector<nt_record> records(static_cast<size_t>(count));
     const long got = alone(self, [&](nt_session *handle) { return nt_session_read(handle, records.data(), count); });
@@ -99,8 +101,6 @@ py::dict read_records(Session &self, long count)
     out["reasons"] = reasons;
     return out;
 }
-
-} // namespace
 
 void bind_session(py::module_ &module)
 {
