@@ -7,9 +7,6 @@
 #include "descriptions.h"
 #include "surface.h"
 
-namespace
-{
-
 struct Session {
     nt_session *handle = nullptr;
     std::shared_ptr<Surface> surface; // outlives the handle
@@ -24,7 +21,7 @@ struct Column {
     const char *name;
     double nt_record::*member;
 };
-constexpr Column columns[] = {
+static constexpr Column columns[] = {
     {"time", &nt_record::time},
     {"x", &nt_record::x},
     {"y", &nt_record::y},
@@ -40,8 +37,6 @@ constexpr Column columns[] = {
     {"contact_radius", &nt_record::contact_radius},
     {"surface_height", &nt_record::surface_height},
 };
-
-} // namespace
 
 static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
                                              const Described<nt_settings> &settings, std::shared_ptr<Surface> surface,
