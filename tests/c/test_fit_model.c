@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * fit/model.cpp: the force at a position and its analytic derivatives. */
-#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include <cmocka.h>
 
 #include "nanotouch/fit.h"
 #include "nanotouch/material.h"

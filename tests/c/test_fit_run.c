@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * fit/run.cpp: known answers are recovered, uncertainties are calibrated, what cannot be known is said. */
 #define _POSIX_C_SOURCE 200809L /* dup2, fileno */
-#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+#include <cmocka.h>
 
 #include "nanotouch/fit.h"
 #include "nanotouch/random.h"
