@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "nanotouch/material.h"
+
 #define FIELD(path, unit, minimum, maximum, doc) {#path, unit, minimum, maximum, (unsigned)offsetof(nt_rig, path), doc}
 
 static const nt_field rig_fields[] = {
@@ -13,6 +15,10 @@ static const nt_field rig_fields[] = {
     FIELD(probe.range, "V", 1e-3, 1e3, "the electronics saturate at +- this"),
     FIELD(probe.noise, "V", 0.0, 1e2, "deflection noise, peak to peak (6 sigma)"),
     FIELD(probe.resolution, "V", 0.0, 1e2, "step of the deflection converter, 0 for none"),
+    FIELD(probe.resonance, "Hz", 1.0, 1e9, "free resonance f_0 of the cantilever"),
+    FIELD(probe.quality, "", 0.05, 1e7, "free quality factor Q of the cantilever"),
+    FIELD(probe.temperature, "K", 0.0, 5e3, "temperature of the dynamic cantilever's thermal motion, 0 for none"),
+    FIELD(probe.contact_viscosity, "Pa s", 0.0, 1e9, "viscosity eta of the contact: 2 m b_i = 2 eta a"),
     FIELD(stage.resonance, "Hz", 1.0, 1e6, "resonance f_n of the stage"),
     FIELD(stage.quality, "", 0.05, 1e6, "quality factor Q of the stage"),
     FIELD(stage.stiffness, "N/m", 1.0, 1e12, "stiffness k_stage of the stage against the tip force"),
@@ -20,14 +26,30 @@ static const nt_field rig_fields[] = {
     FIELD(stage.resolution, "m", 0.0, 1e-5, "step of the stage's read-out, 0 for none"),
     FIELD(stage.command_resolution, "m", 0.0, 1e-5, "step of the stage's command, 0 for none"),
     FIELD(stage.max_speed, "m/s", 1e-10, 1e1, "slew limit of the stage's command"),
+    FIELD(stage.noise, "m", 0.0, 1e-5, "standard deviation of the stage's read-out"),
+    FIELD(stage.hysteresis, "", 0.0, 0.4, "hysteresis of the stage at full stroke, over the stroke"),
+    FIELD(stage.creep, "", 0.0, 0.2, "creep of the stage per decade of time, over the step"),
     FIELD(master.mass, "kg", 1e-4, 1e2, "moving mass m_m of the master"),
     FIELD(master.damping, "N s/m", 0.0, 1e5, "damping b_m of the master"),
+    FIELD(master.friction, "N", 0.0, 1e2, "Coulomb friction of the master"),
     FIELD(master.travel, "m", 1e-5, 1e1, "travel of the master between its end stops"),
     FIELD(master.resolution, "m", 0.0, 1e-2, "step of the master's position sensor, 0 for none"),
     FIELD(master.max_force, "N", 1e-3, 1e3, "motor limit, +- this"),
+    FIELD(master.gauge, "", 0.0, 1.0, "1: an operator force sensor is fitted, 0: none"),
     FIELD(master.gauge_range, "N", 1e-3, 1e3, "the strain gauge saturates at +- this"),
     FIELD(master.gauge_noise, "N", 0.0, 1e2, "standard deviation of the strain gauge"),
     FIELD(master.gauge_resolution, "N", 0.0, 1e2, "step of the strain gauge, 0 for none"),
+    FIELD(hand.mass, "kg", 0.0, 1e2, "mass m_h that moves with the master"),
+    FIELD(hand.damping, "N s/m", 0.0, 1e5, "damping b_h of hand or finger pad"),
+    FIELD(hand.stiffness, "N/m", 0.0, 1e7, "stiffness k_h of hand or finger pad"),
+    FIELD(hand.relaxation, "s", 0.0, 1e3, "time in which the hand's rest position follows, 0 for never"),
+    FIELD(hand.random_force, "N", 0.0, 1e3, "adversarial random force, +- this"),
+    FIELD(hand.random_rate, "1/s", 0.0, 1e6, "changes of the random force per second"),
+    FIELD(converters.adc_bits, "", 0.0, 32.0, "bits of the sensors' converters, 0 for no step of their own"),
+    FIELD(converters.adc_rate, "Hz", 0.0, 1e9, "conversions per second, 0 for one in every period"),
+    FIELD(converters.adc_latency, "s", 0.0, 1.0, "age of a sample"),
+    FIELD(converters.dac_bits, "", 0.0, 32.0, "bits of the actuators' converters, 0 for no step of their own"),
+    FIELD(converters.dac_latency, "s", 0.0, 1.0, "time from a command to its effect"),
 };
 
 enum { RIG_FIELDS = (int)(sizeof rig_fields / sizeof rig_fields[0]) };
@@ -43,6 +65,9 @@ nt_rig nt_rig_defaults(void)
                 .range = 10.0,
                 .noise = 50e-3,
                 .resolution = 20.0 / 65536.0, /* a 16-bit converter over +-10 V: far below the noise */
+                .resonance = 100e3,           /* not in the paper, nor are Q and T: a lever of 8 N/m in air */
+                .quality = 100.0,
+                .temperature = 295.0,
             },
         .stage =
             {
@@ -62,6 +87,7 @@ nt_rig nt_rig_defaults(void)
                 .travel = 0.02,
                 .resolution = 4e-5,
                 .max_force = 5.0,
+                .gauge = 1.0,
                 .gauge_range = 5.0,
                 .gauge_noise = 0.02 / 6.0, /* the paper's 0.02 N include the noise: peak to peak within one step */
                 .gauge_resolution = 0.02,
@@ -79,6 +105,27 @@ const nt_field *nt_rig_fields(int *count)
     if (count != NULL)
         *count = RIG_FIELDS;
     return rig_fields;
+}
+
+nt_stage nt_stage_open_loop(void)
+{
+    nt_stage stage = nt_rig_defaults().stage;
+    stage.hysteresis = 0.15;
+    stage.creep = 0.01;
+    return stage;
+}
+
+nt_stage nt_stage_closed_loop(void)
+{
+    nt_stage stage = nt_rig_defaults().stage;
+    stage.resolution = stage.command_resolution = 10e-9;
+    return stage;
+}
+
+double nt_probe_effective_mass(const nt_probe *probe)
+{
+    const double rate = 2.0 * NT_PI * probe->resonance;
+    return probe->spring_constant / (rate * rate);
 }
 
 double nt_probe_deflection_range(const nt_probe *probe)

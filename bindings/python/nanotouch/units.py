@@ -24,6 +24,7 @@ UNITS: dict[str, dict[str, float]] = {
     "": {"": 1.0, "%": 0.01, "percent": 0.01},
     "m": _scaled("m", "munp"),
     "Pa": _scaled("Pa", "kMG"),
+    "Pa s": _scaled("Pas", "mkM"),
     "N": _scaled("N", "munp"),
     "J": _scaled("J", "fpaz"),
     "V": _scaled("V", "mu"),
