@@ -33,6 +33,7 @@ USES = {
 HEADERS = {
     **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
     "geometry": "contact",
+    **dict.fromkeys(["margins", "passivity", "scaling", "settings", "stage_loop", "supervisor", "touch"], "control"),
     "plan": "scene",
     "sim": "hal/sim",
     "hal_linux": "hal/linux",

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The stage follows a reference: notch on the resonance, integral action on the read-out. */
+#ifndef NANOTOUCH_STAGE_LOOP_H
+#define NANOTOUCH_STAGE_LOOP_H
+
+#include "nanotouch/settings.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct nt_stage_loop {
+    double b[3], a[3]; /* biquad in z^-1, a[0] = 1: zeros on the sampled poles of the stage */
+    double integral;   /* integral gain per period [-] */
+} nt_stage_loop;
+typedef struct nt_stage_loop_state {
+    double w[2];       /* filter memory [m] */
+    double correction; /* integral of the error [m] */
+} nt_stage_loop_state;
+NT_API nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *gains);
+NT_API NT_REALTIME double nt_stage_loop_step(const nt_stage_loop *loop, nt_stage_loop_state *state, double reference,
+                                             double measured);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
