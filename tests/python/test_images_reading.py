@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -260,7 +261,9 @@ def test_real_images(name: str, channel: str, shape: tuple[int, int], side: floa
     assert topography.channel == channel
     assert topography.shape == shape
     assert topography.size == pytest.approx((side * 1e-6, side * 1e-6), rel=1e-3)
-    clean, _ = images.prepare(topography)
+    with warnings.catch_warnings():  # what levelling says about rows is not the matter here
+        warnings.simplefilter("ignore")
+        clean, _ = images.prepare(topography)
     assert 1e-9 < clean.height_range < 500e-9
     assert abs(clean.heights[~clean.mask].mean()) < 1e-10
 

@@ -16,7 +16,21 @@ class InvalidValue(Error, ValueError):
 
 
 class ReadError(Error, OSError):
-    """A file cannot be read, or what it holds is not plausible; the message names file, reader and reason."""
+    """A file cannot be read, or what it holds is not plausible; the message names file, reason and reader.
+
+    Attributes
+    ----------
+    reader : str
+        What read the file, as ``"SurfaceTopography/gwy"``; empty where none was reached.
+    """
+
+    def __init__(self, message: str, reader: str = "") -> None:
+        super().__init__(message)
+        self.reader = reader
+
+    def __str__(self) -> str:
+        message = super().__str__()
+        return f"{message} (reader: {self.reader})" if self.reader and self.reader not in message else message
 
 
 class SolverError(Error, ArithmeticError):

@@ -7,6 +7,7 @@
 """
 
 from .analysis import Baseline, CurveReport, analyse, force_gap, sensitivity
+from .calibration import Calibration, CalibrationTable
 from .curve import ForceCurve, Segment
 from .reading import read
 from .synthesis import synthesise
@@ -14,6 +15,8 @@ from .thermal import ThermalTune, thermal_tune
 
 __all__ = [
     "Baseline",
+    "Calibration",
+    "CalibrationTable",
     "CurveReport",
     "ForceCurve",
     "Segment",

@@ -12,16 +12,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ReadError
+from .curve import ForceCurve, Segment
 
+NAME = "nanotouch/nanoscope"
 SIGNATURES = (b"\\*File list", b"\\*Force file list", b"\\*Ciao")  # how Bruker's headers begin
 _HEADER_LIMIT = 1 << 20  # byte; those seen have 40 KiB
 _DEFLECTION = ("DeflectionError", "Deflection")
@@ -29,29 +29,6 @@ _UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "~m/V": 1e-6, "pm/V"
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 _SCALED = re.compile(rf"V \[Sens\. ([^\]]+)\] \({_NUMBER} (m?V)/LSB\) {_NUMBER} (m?V)")
 _SENSITIVITY = re.compile(rf"V {_NUMBER} (\S+)")
-
-
-@dataclass(frozen=True, eq=False)
-class Ramp:
-    """One curve: approach and retraction in the order of time.
-
-    Attributes
-    ----------
-    time, z : ndarray, shape (n,)
-        Since the start of the ramp [s], NaN where the header does not tell; height of the base above its lowest [m].
-    volts : ndarray, shape (n,)
-        The detector's signal, + where tip and sample repel [V].
-    approach : int
-        How many points are the approach.
-    meta : mapping
-        Under afmformats' keys.
-    """
-
-    time: NDArray[np.float64]
-    z: NDArray[np.float64]
-    volts: NDArray[np.float64]
-    approach: int
-    meta: Mapping[str, Any]
 
 
 class _Section(dict[str, str]):
@@ -91,7 +68,7 @@ class _Section(dict[str, str]):
         raise ReadError(f"{self.file}: its header lacks {ending!r} with a scale in {self.name!r}")
 
 
-def load(file: Path) -> list[Ramp]:
+def read(file: Path) -> list[ForceCurve]:
     """All ramps of a NanoScope force file; ReadError if it is none, damaged, or of a kind not read."""
     sections = _sections(file)
     image = _deflection_image(file, sections)
@@ -104,10 +81,26 @@ def load(file: Path) -> list[Ramp]:
     size = ramp_volts * _sensitivity(file, sections, piezo)
     meta = _meta(file, sections, image) | {"sensitivity": _sensitivity(file, sections, sensor)}
     points = image.counts("Samps/line")
+    z, time, speeds = _ramp(ramp_list, points, size, ramp_volts)
+    meta |= speeds
+    deflection = raw * (volts_per_lsb * meta["sensitivity"])
+    deflection[:, : points[0]] = deflection[:, points[0] - 1 :: -1]  # into the order of time
+    force = deflection * meta["spring constant"]
     line = ramp_list.counts("force/line")[0] if len(raw) > 1 else 1
+    parts: tuple[tuple[Literal["approach", "retract"], slice], ...] = (
+        ("approach", slice(0, points[0])),
+        ("retract", slice(points[0], sum(points))),
+    )
     return [
-        _ramp(ramp_list, curve * volts_per_lsb, points, (size, ramp_volts), meta | _place(number, line, len(raw)))
-        for number, curve in enumerate(raw)
+        ForceCurve(
+            tuple(
+                Segment(role, time[part], z[part], "height (piezo)", force[number, part], deflection[number, part])
+                for role, part in parts
+            ),
+            meta | _place(number, line, len(raw)),
+            file.name,
+        )
+        for number in range(len(raw))
     ]
 
 
@@ -187,19 +180,16 @@ def _place(number: int, line: int, count: int) -> dict[str, Any]:
 
 
 def _ramp(
-    ramp_list: _Section,
-    volts: NDArray[np.float64],
-    points: list[int],
-    size: tuple[float, float],
-    meta: Mapping[str, Any],
-) -> Ramp:
-    """`volts` as stored; size of the ramp in m and in V, in which its velocities are given."""
+    ramp_list: _Section, points: list[int], size: float, volts: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, float]]:
+    """z [m] and time [s] of a ramp of this size in m and in V, in which its velocities are given; and its speeds.
+
+    Of a ramp that rests without recording, the time is NaN.
+    """
     near, far = points
-    z = np.concatenate([np.arange(near)[::-1] * (size[0] / near), np.arange(far) * (size[0] / far)])
-    durations = [size[1] / ramp_list.positive(key) for key in ("Forward vel.", "Reverse vel.")]
+    z = np.concatenate([np.arange(near)[::-1] * (size / near), np.arange(far) * (size / far)])
+    durations = [volts / ramp_list.positive(key) for key in ("Forward vel.", "Reverse vel.")]
     time = np.concatenate([np.arange(near) * durations[0] / near, durations[0] + np.arange(far) * durations[1] / far])
-    waits = [float(ramp_list.get(key, "0") or 0) for key in ("Ramp delay", "Reverse delay")]
-    if any(waits):  # a rest that is not recorded
+    if any(float(ramp_list.get(key, "0") or 0) for key in ("Ramp delay", "Reverse delay")):
         time = np.full(time.size, np.nan)
-    speeds = {"speed approach": size[0] / durations[0], "speed retract": size[0] / durations[1]}
-    return Ramp(time, z, np.concatenate([volts[:near][::-1], volts[near:]]), near, dict(meta) | speeds)
+    return z, time, {"speed approach": size / durations[0], "speed retract": size / durations[1]}

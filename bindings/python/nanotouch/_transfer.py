@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Results over a pipe from a process that is not trusted: JSON and plain arrays, nothing that could run (no pickle).
+
+A frame is the length of the JSON in eight bytes, the JSON, and the arrays' bytes. Only types listed here come out, and
+they check themselves on the way.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import struct
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import Error
+
+MAX_JSON = 1 << 26  # [byte]
+MAX_ARRAYS = 1 << 30  # of all arrays of an answer [byte]
+_DTYPES = ("<f8", "|b1")
+
+
+class BadAnswer(Error):
+    """What came over the pipe is not an answer."""
+
+
+def _types() -> dict[str, type]:
+    from .curves.curve import ForceCurve, Segment
+    from .images.channel import Channel
+    from .images.topography import Topography
+
+    return {kind.__name__: kind for kind in (Channel, ForceCurve, Segment, Topography)}
+
+
+def packed(value: Any) -> list[bytes]:
+    """The frame, in pieces."""
+    arrays: list[np.ndarray[Any, Any]] = []
+    tree = _flattened(value, arrays)
+    listed = [[a.dtype.str, list(a.shape)] for a in arrays]
+    text = json.dumps({"tree": tree, "arrays": listed}).encode()
+    return [struct.pack("<Q", len(text)), text, *(a.tobytes() for a in arrays)]
+
+
+def _flattened(value: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
+    if isinstance(value, np.ndarray):
+        arrays.append(value)
+        return {"array": len(arrays) - 1}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {f.name: _flattened(getattr(value, f.name), arrays) for f in dataclasses.fields(value)}
+        return {"type": type(value).__name__, "fields": fields}
+    if isinstance(value, Mapping):
+        return {"map": [[str(key), _flattened(item, arrays)] for key, item in value.items()]}
+    if isinstance(value, (list, tuple)):
+        items = [_flattened(item, arrays) for item in value]
+        return {"tuple": items} if isinstance(value, tuple) else items
+    if isinstance(value, np.generic):
+        return value.item()
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    return str(value)  # paths, dates
+
+
+def unpacked(read: Callable[[int], bytes], file: Path) -> Any:
+    """The value of a frame whose bytes `read` gives; :class:`BadAnswer` if it is not a frame within the limits."""
+    (length,) = struct.unpack("<Q", read(8))
+    if length > MAX_JSON:
+        raise BadAnswer(f"{file}: an answer of {length} bytes")
+    try:
+        frame = json.loads(read(length))
+        sizes = [(np.dtype(_known(dtype)), tuple(int(n) for n in shape)) for dtype, shape in frame["arrays"]]
+        if any(n < 0 for _, shape in sizes for n in shape):
+            raise ValueError("a negative size")
+        counts = [int(np.prod(shape, dtype=object)) if shape else 1 for _, shape in sizes]
+        total = sum(dtype.itemsize * count for (dtype, _), count in zip(sizes, counts, strict=True))
+        if total > MAX_ARRAYS:
+            raise ValueError(f"arrays of {total} bytes")
+        arrays = [
+            np.frombuffer(read(dtype.itemsize * count), dtype).reshape(shape)
+            for (dtype, shape), count in zip(sizes, counts, strict=True)
+        ]
+        return _restored(frame["tree"], arrays, _types())
+    except (KeyError, IndexError, TypeError, ValueError, RecursionError) as error:
+        raise BadAnswer(f"{file}: the answer is not valid: {error}") from error
+
+
+def _known(dtype: Any) -> str:
+    if dtype not in _DTYPES:
+        raise ValueError(f"an array of {dtype!r}")
+    return str(dtype)
+
+
+def _restored(tree: Any, arrays: list[np.ndarray[Any, Any]], types: Mapping[str, type]) -> Any:
+    if isinstance(tree, list):
+        return [_restored(item, arrays, types) for item in tree]
+    if not isinstance(tree, dict):
+        return tree
+    if "array" in tree:
+        return arrays[tree["array"]]
+    if "map" in tree:
+        return {str(key): _restored(item, arrays, types) for key, item in tree["map"]}
+    if "tuple" in tree:
+        return tuple(_restored(item, arrays, types) for item in tree["tuple"])
+    fields = {str(key): _restored(item, arrays, types) for key, item in tree["fields"].items()}
+    return types[tree["type"]](**fields)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The reader of most force curve formats, afmformats, with segments where it marks none.
+
+afmformats' heights ("height (measured)", "height (piezo)") already grow away from the sample, for Asylum (it negates
+ZSnsr and Raw there) as for JPK: they are z without a change of sign. A file where the base would rise during its
+approach is refused.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ReadError, require
+from .calibration import Calibration
+from .checks import MAX_POINTS, MIN_POINTS
+from .curve import ForceCurve, Role, Segment
+
+NAME = "afmformats"
+_Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
+
+
+def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
+    """All curves with the file's own calibration; `calibration` only where the file states none."""
+    with _quiet_and_closed(file):
+        return [_converted(data, file) for data in _loaded(file, calibration)]
+
+
+def _loaded(file: Path, calibration: Calibration) -> list[Any]:
+    afmformats = require("afmformats", "curves")
+    known = sorted(afmformats.formats.supported_extensions)
+    if file.suffix not in known:
+        raise ReadError(f"{file}: not a force curve file that afmformats reads ({', '.join(known)})")
+    given = calibration.given
+    try:
+        return list(afmformats.load_data(file))
+    except afmformats.errors.FileFormatNotSupportedError:
+        raise ReadError(f"{file}: its content is not that of a {file.suffix} force curve file") from None
+    except afmformats.errors.MissingMetaDataError as error:
+        missing = [key for key in error.meta_keys if given.get(key) is None]
+        if missing:
+            raise ReadError(f"{file}: states no {' and no '.join(missing)}; give it") from None
+        return list(afmformats.load_data(file, meta_override={key: given[key] for key in error.meta_keys}))
+
+
+@contextmanager
+def _quiet_and_closed(file: Path) -> Iterator[None]:
+    """Around afmformats: it logs the traceback of whatever it raises, and keeps JPK archives open by their path, so
+    that a file replaced under the same name would be read with the old contents."""
+    logger = logging.getLogger("afmformats.formats")
+    was_disabled, logger.disabled = logger.disabled, True
+    try:
+        yield
+    finally:
+        logger.disabled = was_disabled
+        jpk = sys.modules.get("afmformats.formats.fmt_jpk.jpk_reader")
+        archive = None if jpk is None else jpk.ArchiveCache.open_archives.pop(file, None)
+        if archive is not None:
+            archive.close()
+
+
+def _converted(data: Any, file: Path) -> ForceCurve:
+    meta = dict(data.metadata.items())
+    z_channel = next((c for c in _Z_CHANNELS if c in data.columns), None)
+    if z_channel is None or "force" not in data.columns:
+        raise ReadError(f"{file}: curve {data.enum} lacks a height or a force; it has {', '.join(data.columns)}")
+    z, force = np.asarray(data[z_channel], np.float64), np.asarray(data["force"], np.float64)
+    if z.ndim != 1 or z.shape != force.shape or not MIN_POINTS <= z.size <= MAX_POINTS:
+        raise ReadError(f"{file}: curve {data.enum} has {z.size} heights and {force.size} forces")
+    # Without a time column none is invented: the sampling rates in the headers do not always hold (Asylum's do not).
+    time = np.asarray(data["time"], np.float64) if "time" in data.columns else np.full(z.size, np.nan)
+    segments = tuple(Segment(role, time[part], z[part], z_channel, force[part]) for role, part in _parts(data, z))
+    return ForceCurve(segments, meta, file.name)
+
+
+def _parts(data: Any, z: NDArray[np.float64]) -> list[tuple[Role, slice]]:
+    """The segments as (role, run of points): as marked in the file, or cut at the deepest point where it marks one.
+
+    afmformats numbers them from 0: the first is the approach, the last the retraction, those between are pauses.
+    """
+    marks = np.asarray(data["segment"]).astype(int) if "segment" in data.columns else np.zeros(z.size, int)
+    edges = [0, *(np.flatnonzero(np.diff(marks)) + 1).tolist(), z.size]
+    runs = [slice(a, b) for a, b in pairwise(edges)]
+    if len(runs) == 1:
+        return _cut_at_deepest(z)
+    roles: list[Role] = ["approach", *["pause"] * (len(runs) - 2), "retract"]  # type: ignore[list-item]
+    return list(zip(roles, runs, strict=True))
+
+
+def _cut_at_deepest(z: NDArray[np.float64]) -> list[tuple[Role, slice]]:
+    """Cut a run that goes in and out at its lowest z; a run without a turn is one segment."""
+    deepest = int(np.argmin(z)) + 1
+    if deepest < MIN_POINTS:
+        return [("retract", slice(0, z.size))]
+    if z.size - deepest < MIN_POINTS:
+        return [("approach", slice(0, z.size))]
+    return [("approach", slice(0, deepest)), ("retract", slice(deepest, z.size))]

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Spring constant and deflection sensitivity: what a file states, what is given in its place, and what follows.
+
+The detector's volts u are what is measured: deflection = s u, force = k_c s u. A corrected s rescales both, a corrected
+k_c the force alone. z is the height of the base, which the stage moves: neither changes it. The tip, at z + deflection,
+moves with s.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fnmatch import fnmatch
+from os import PathLike
+from pathlib import Path
+
+from .._files import checked_path
+from ..errors import InvalidValue, ReadError
+from ..units import parse_quantity
+from .curve import ForceCurve
+
+SPRING_CONSTANT_RANGE = (1e-4, 1e4)  # [N/m]
+SENSITIVITY_RANGE = (1e-10, 1e-4)  # [m/V]
+#: What instruments write where nobody calibrated: 1 N/m, Bruker's 0.999 N/m; 1 m/V, 1 um/V, 1 nm/V, Asylum's 100 nm/V.
+PLACEHOLDERS: Mapping[str, tuple[float, ...]] = {
+    "spring constant": (0.999, 1.0),
+    "sensitivity": (1.0, 1e-6, 1e-9, 1e-7),
+}
+_UNITS = {"spring constant": "N/m", "sensitivity": "m/V"}
+_RANGES = {"spring constant": SPRING_CONSTANT_RANGE, "sensitivity": SENSITIVITY_RANGE}
+_COLUMNS = ("file", "spring_constant", "sensitivity")
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What is given in place of the file's own.
+
+    Attributes
+    ----------
+    spring_constant : float, optional
+        k_c [N/m], 1e-4 .. 1e4.
+    sensitivity : float, optional
+        Deflection sensitivity [m/V], 1e-10 .. 1e-4.
+    """
+
+    spring_constant: float | None = None
+    sensitivity: float | None = None
+
+    def __post_init__(self) -> None:
+        for key, value in self.given.items():
+            (low, high), unit = _RANGES[key], _UNITS[key]
+            if value is not None and not low <= value <= high:
+                name = key.replace(" ", "_")
+                raise InvalidValue(f"{name}: {value!r} {unit}, expected {low:g} .. {high:g} {unit}")
+
+    @property
+    def given(self) -> dict[str, float | None]:
+        """Under afmformats' keys."""
+        return {"spring constant": self.spring_constant, "sensitivity": self.sensitivity}
+
+    def over(self, other: Calibration) -> Calibration:
+        """These values, and `other`'s where there is none."""
+        return Calibration(
+            other.spring_constant if self.spring_constant is None else self.spring_constant,
+            other.sensitivity if self.sensitivity is None else self.sensitivity,
+        )
+
+
+@dataclass(frozen=True)
+class CalibrationTable:
+    """Calibrations of many files: pattern and values; the first pattern that matches a file counts.
+
+    A pattern without ``/`` is compared with the file's name (``day1-*.ibw``), one with it with the end of its path.
+    """
+
+    rows: tuple[tuple[str, Calibration], ...]
+
+    @classmethod
+    def from_csv(cls, path: str | PathLike[str]) -> CalibrationTable:
+        """Read a CSV file with the columns ``file``, ``spring_constant``, ``sensitivity``, values with their units.
+
+        An empty field leaves what the file says: ``day1-*.ibw,0.12N/m,`` corrects the spring constant alone.
+        """
+        file = checked_path(path)
+        try:
+            lines = file.read_text(encoding="utf-8-sig").splitlines()
+        except UnicodeDecodeError as error:
+            raise ReadError(f"{file}: not a text file: {error.reason}") from None
+        reader = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
+        names = [str(name).strip() for name in reader.fieldnames or ()]
+        if "file" not in names or len(names) != len(set(names)) or not set(names) <= set(_COLUMNS):
+            raise ReadError(f"{file}: columns {', '.join(names) or 'none'}; expected {', '.join(_COLUMNS)}")
+        reader.fieldnames = names
+        rows = []
+        for number, row in enumerate(reader, 1):
+            if None in row or not (row["file"] or "").strip():
+                raise ReadError(f"{file}: row {number} has no file pattern, or more fields than columns")
+            rows.append((str(row["file"]).strip(), _row_values(file, number, row)))
+        return cls(tuple(rows))
+
+    def of(self, file: str | PathLike[str]) -> Calibration:
+        """What the table gives for a file; nothing if no pattern matches."""
+        path = Path(file)
+        for pattern, calibration in self.rows:
+            name = path.as_posix() if "/" in pattern else path.name
+            if fnmatch(name, f"*/{pattern}" if "/" in pattern and not pattern.startswith("/") else pattern):
+                return calibration
+            if "/" in pattern and fnmatch(name, pattern):
+                return calibration
+        return Calibration()
+
+
+def _row_values(file: Path, number: int, row: Mapping[str, str | None]) -> Calibration:
+    values: dict[str, float | None] = {}
+    for key, unit in _UNITS.items():
+        text = (row.get(key.replace(" ", "_")) or "").strip()
+        try:
+            values[key.replace(" ", "_")] = parse_quantity(text, unit) if text else None
+        except InvalidValue as error:
+            raise ReadError(f"{file}: row {number}: {error}") from None
+    try:
+        return Calibration(**values)
+    except InvalidValue as error:
+        raise ReadError(f"{file}: row {number}: {error}") from None
+
+
+def calibrated(curve: ForceCurve, calibration: Calibration, file: Path) -> ForceCurve:
+    """The curve with what is given in place of what its file says, and a note of placeholders that remain."""
+    meta = dict(curve.meta)
+    scale = 1.0
+    for key, value in calibration.given.items():
+        if value is None:
+            continue
+        if meta.get(key) is None and key == "sensitivity":
+            raise ReadError(f"{file}: states no {key}, so its forces cannot be corrected for it")
+        if meta.get(key):
+            scale *= value / meta[key]
+        meta[key] = value
+    left = tuple(k for k, known in PLACEHOLDERS.items() if calibration.given[k] is None and meta.get(k) in known)
+    if left:
+        meta["placeholders"] = left
+    for key, (low, high) in _RANGES.items():
+        stated = meta.get(key)
+        if stated is not None and key not in left and not low <= stated <= high:
+            unit = _UNITS[key]
+            raise ReadError(f"{file}: {key} {stated:g} {unit}, expected {low:g} .. {high:g} {unit}; give it")
+    stiffness = meta.get("spring constant")
+    segments = []
+    for segment in curve.segments:
+        force = segment.force if segment.force is None or scale == 1.0 else segment.force * scale
+        deflection = segment.deflection if force is None or stiffness is None else force / stiffness
+        segments.append(replace(segment, force=force, deflection=deflection))
+    return ForceCurve(tuple(segments), meta, curve.name)

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which files are read, by what, and what to export from those that are not.
+
+One table, from which come the tables of the documentation (``python -m nanotouch.formats images``) and the sentence
+with which a known file is refused.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+Kind = Literal["images", "curves"]
+
+HDF5 = b"\x89HDF\r\n\x1a\n"
+HEAD = 1024  # bytes at the start of a file by which it is recognised
+
+_GWY = "open it in Gwyddion and save it as .gwy"
+_TEXT = "export it as text and build the curve with curves.ForceCurve and curves.Segment"
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of file.
+
+    Attributes
+    ----------
+    name : str
+        Vendor and format.
+    endings : tuple of str
+        Usual endings, lower case.
+    kind : {"images", "curves"}
+        What is wanted of it.
+    reader : str
+        What reads it; empty where it is refused.
+    tried : str
+        What reading was tested on: ``"real file"``, ``"file made by the tests"``, ``"not tried"``.
+    remedy : str
+        What to do instead, where it is refused.
+    signatures : tuple of (int, bytes)
+        Offset and bytes by which a refused file is known; without any, the ending decides.
+    """
+
+    name: str
+    endings: tuple[str, ...]
+    kind: Kind
+    reader: str = ""
+    tried: str = ""
+    remedy: str = ""
+    signatures: tuple[tuple[int, bytes], ...] = ()
+
+    def matches(self, file: Path, head: bytes) -> bool:
+        """Whether a file that begins with `head` is one of these."""
+        if self.signatures:
+            return any(head[at : at + len(mark)] == mark for at, mark in self.signatures)
+        return file.suffix.lower() in self.endings
+
+
+def _reads(name: str, endings: str, kind: Kind, reader: str, tried: str) -> Format:
+    return Format(name, tuple(endings.split()), kind, reader, tried)
+
+
+def _refuses(name: str, endings: str, kind: Kind, remedy: str, *signatures: tuple[int, bytes]) -> Format:
+    return Format(name, tuple(endings.split()), kind, remedy=remedy, signatures=signatures)
+
+
+_ST, _AF, _REAL, _MADE, _NOT = "SurfaceTopography", "afmformats", "real file", "file made by the tests", "not tried"
+
+FORMATS: tuple[Format, ...] = (
+    _reads("Bruker/Veeco/DI NanoScope", ".spm .000 .001 .di", "images", _ST, f"{_REAL}, {_MADE}"),
+    _reads("Asylum Research (Igor binary wave)", ".ibw", "images", _ST, f"{_REAL}, {_MADE}"),
+    _reads("JPK image (TIFF)", ".jpk .jpk-qi-image", "images", _ST, _NOT),
+    _reads("Park Systems", ".tiff", "images", _ST, _REAL),
+    _reads("Nanosurf easyScan", ".nid", "images", _ST, f"{_REAL}, {_MADE}"),
+    _reads("NT-MDT", ".mdt", "images", _ST, _NOT),
+    _reads("Agilent/Keysight PicoView", ".mi", "images", _ST, _REAL),
+    _reads("WSxM", ".stp .top", "images", _ST, f"{_REAL}, {_MADE}"),
+    _reads("Gwyddion", ".gwy", "images", _ST, _MADE),
+    _reads("text matrix with Gwyddion's header", ".txt .asc", "images", _ST, _MADE),
+    _reads("text of x, y, z", ".xyz", "images", _ST, _MADE),
+    _reads("bare HDF5 array", ".h5", "images", _ST, _MADE),
+    _reads("bare numpy array", ".npy .npz", "images", _ST, _MADE),
+    _reads("profilers: X3P, SDF, SUR, BCR, OPD, Keyence, Zygo ...", ".x3p .sdf .sur", "images", _ST, _NOT),
+    _refuses("Omicron/Scienta MATRIX", ".mtrx ._mtrx", "images", _GWY, (0, b"ONTMATRX")),
+    _refuses("Omicron SCALA", ".par .tf0", "images", _GWY),
+    _refuses("Nanonis", ".sxm", "images", _GWY, (0, b":NANONIS_VERSION:")),
+    _refuses("RHK", ".sm4 .sm3 .sm2", "images", _GWY, (2, "STiMage".encode("utf-16-le"))),
+    _refuses("ISO 28600 (SPM data transfer)", ".spm", "images", _GWY, (0, b"ISO/TC 201 SPM data transfer format")),
+    _refuses("Gwyddion Simple Field", ".gsf", "images", _GWY, (0, b"Gwyddion Simple Field")),
+    _refuses("Nanosurf HDF5", ".nhf", "images", "export it from the Nanosurf software as .nid, or " + _GWY),
+    _refuses("JPK HDF5 movie", ".h5-jpk", "images", "export single frames from the JPK software as .jpk"),
+    _refuses("Park SmartScan container", ".ps-ppt", "images", "export it from SmartScan as .tiff"),
+    _refuses("Asylum force map archive", ".ardf", "images", "export it from Igor as .ibw", (8, b"ARDF")),
+    _refuses("Igor packed experiment", ".pxp", "images", "save the wave in Igor as .ibw"),
+    _refuses("RIBM high-speed AFM", ".asd", "images", _GWY),
+    _refuses("Topometrix", ".tfr .ffr .zfr", "images", _GWY, (0, b"#R3"), (0, b"#R4"), (0, b"#R5")),
+    _refuses("a picture (PNG)", ".png", "images", "a picture holds colours, not heights: use the instrument's own file",
+             (0, b"\x89PNG")),
+    _refuses("a picture (JPEG)", ".jpg .jpeg", "images",
+             "a picture holds colours, not heights: use the instrument's own file", (0, b"\xff\xd8\xff")),
+    _reads("JPK force curve", ".jpk-force", "curves", _AF, f"{_REAL}, {_MADE}"),
+    _reads("JPK force map", ".jpk-force-map", "curves", _AF, _REAL),
+    _reads("JPK quantitative imaging", ".jpk-qi-data", "curves", _AF, _NOT),
+    _reads("JPK quantitative imaging, series", ".jpk-qi-series", "curves", _AF, _REAL),
+    _reads("Asylum Research (Igor binary wave)", ".ibw", "curves", _AF, f"{_REAL}, {_MADE}"),
+    _reads("Bruker NanoScope ramp", ".spm .000 .001", "curves", "nanotouch", f"{_REAL}, {_MADE}"),
+    _reads("Bruker NanoScope force volume", ".spm .003", "curves", "nanotouch", f"{_REAL}, {_MADE}"),
+    _reads("NT-MDT text", ".txt", "curves", _AF, _NOT),
+    _reads("AFM Workshop", ".csv .zip", "curves", _AF, _NOT),
+    _reads("Optics11 Chiaro text", ".txt", "curves", _AF, _NOT),
+    _reads("afmformats' own", ".h5 .tab", "curves", _AF, _MADE),
+    _refuses("Bruker PeakForce capture", ".pfc", "curves", "export the curves from NanoScope Analysis as ramps (.spm)"),
+    _refuses("Asylum force map archive", ".ardf", "curves", "export single curves from Igor as .ibw", (8, b"ARDF")),
+    _refuses("Igor packed experiment", ".pxp", "curves", "save the wave in Igor as .ibw"),
+    _refuses("Park Systems", ".tiff .ps-ppt", "curves", _TEXT, (0, b"II*\0"), (0, b"MM\0*")),
+    _refuses("Nanosurf", ".nid .nhf", "curves", _TEXT),
+    _refuses("NT-MDT", ".mdt", "curves", "export the curves from Nova as text", (0, b"\x01\xb0\x93\xff")),
+    _refuses("Nanonis spectroscopy", ".dat .3ds", "curves", _TEXT),
+    _refuses("Omicron/Scienta MATRIX", ".mtrx", "curves", _TEXT, (0, b"ONTMATRX")),
+    _refuses("WSxM curve", ".cur", "curves", _TEXT, (0, b"WSxM file copyright")),
+    _refuses("Gwyddion", ".gwy", "curves", _TEXT, (0, b"GWYP")),
+    _refuses("Agilent/Keysight PicoView", ".mi", "curves", _TEXT, (0, b"fileType ")),
+)  # fmt: skip
+
+
+def refusal(file: Path, head: bytes, kind: Kind) -> str | None:
+    """Why a known file of this kind is not read and what to do; None if it is not known as such."""
+    for known in FORMATS:
+        if known.kind == kind and not known.reader and known.matches(file, head):
+            return f"{known.name} files are not read as {kind}: {known.remedy}"
+    return None
+
+
+def markdown(kind: Kind) -> str:
+    """The table for the documentation."""
+    lines = ["| format | endings | read by | tried on, or what to do |", "|---|---|---|---|"]
+    for known in FORMATS:
+        if known.kind == kind:
+            endings = " ".join(f"`{ending}`" for ending in known.endings)
+            lines.append(f"| {known.name} | {endings} | {known.reader or 'refused'} | {known.tried or known.remedy} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print("\n\n".join(markdown("curves" if name == "curves" else "images") for name in sys.argv[1:] or ["images"]))

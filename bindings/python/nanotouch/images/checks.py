@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is believed of an AFM image; anything else is a damaged header or a wrong unit, and refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ReadError, require
+from .topography import Topography
+
+SIDE_RANGE = (1e-9, 1e-3)  # scan size [m]
+HEIGHT_RANGE = (1e-12, 1e-4)  # highest minus lowest [m]; also never more than the longer side
+OFFSET_LIMIT = 1e-2  # of any height from 0 [m]: a stage's travel
+PIXELS_PER_SIDE = (4, 16384)
+MAX_PIXELS = 1 << 26  # 512 MiB of doubles
+MAX_MISSING = 0.01  # fraction of pixels that may be filled from their neighbours
+MAX_PIXEL_ASPECT = 128.0  # of dy and dx: a square scan of few lines has oblong pixels
+
+LENGTHS = {
+    "m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "Å": 1e-10, "A": 1e-10, "pm": 1e-12,
+}  # fmt: skip
+
+
+def check_shape(file: Path, shape: tuple[int, ...]) -> None:
+    """Refuse what is no image of a size that is read, before anything is allocated."""
+    low, high = PIXELS_PER_SIDE
+    if len(shape) != 2 or not all(low <= n <= high for n in shape) or shape[0] * shape[1] > MAX_PIXELS:
+        raise ReadError(
+            f"{file}: {' x '.join(map(str, shape))} pixels; images of {low} .. {high} pixels per side and up to "
+            f"{MAX_PIXELS >> 20} million in all are read"
+        )
+
+
+def check_scale(topography: Topography, file: Path) -> None:
+    """Refuse a scan size, pixels or heights that no AFM image has."""
+    check_shape(file, topography.shape)
+    for side, length in zip("yx", topography.size, strict=True):
+        if not SIDE_RANGE[0] <= length <= SIDE_RANGE[1]:
+            raise ReadError(
+                f"{file}: a scan of {length:.3g} m along {side}; an AFM image measures {SIDE_RANGE[0]:g} .. "
+                f"{SIDE_RANGE[1]:g} m (damaged header or wrong unit?)"
+            )
+    dy, dx = topography.pixel_size
+    if not 1 / MAX_PIXEL_ASPECT <= dy / dx <= MAX_PIXEL_ASPECT:
+        raise ReadError(
+            f"{file}: pixels of {dx:.3g} x {dy:.3g} m; one side at most {MAX_PIXEL_ASPECT:g} times the other is "
+            "expected (damaged header?)"
+        )
+    height, limit = topography.height_range, min(HEIGHT_RANGE[1], max(topography.size))
+    if not HEIGHT_RANGE[0] <= height <= limit:
+        raise ReadError(
+            f"{file}: heights over a range of {height:.3g} m in channel {topography.channel!r}; expected "
+            f"{HEIGHT_RANGE[0]:g} .. {limit:.3g} m (damaged data or wrong unit?)"
+        )
+    if not np.abs(topography.heights).max() <= OFFSET_LIMIT:
+        raise ReadError(
+            f"{file}: heights of up to {np.abs(topography.heights).max():.3g} m in channel {topography.channel!r}; "
+            f"expected up to {OFFSET_LIMIT:g} m (damaged data or wrong unit?)"
+        )
+
+
+def filled(values: NDArray[np.float64], file: Path) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Fill missing (not finite) pixels by the mean of their known neighbours, from the rim of each hole inwards."""
+    missing = ~np.isfinite(values)
+    count = int(np.count_nonzero(missing))
+    if count > MAX_MISSING * values.size:
+        raise ReadError(
+            f"{file}: {100 * count / values.size:.3g} % of the pixels are missing (NaN); up to "
+            f"{100 * MAX_MISSING:g} % are filled from their neighbours, crop the image instead"
+        )
+    if count:
+        cv2 = require("cv2", "images")
+        todo = missing.copy()
+        values[todo] = 0.0  # OpenCV hides NaN, so none may reach it
+        while todo.any():
+            known = (~todo).astype(np.float64)
+            border = cv2.BORDER_CONSTANT
+            weight = cv2.boxFilter(known, -1, (3, 3), normalize=False, borderType=border)
+            total = cv2.boxFilter(values * known, -1, (3, 3), normalize=False, borderType=border)
+            rim = todo & (weight > 0.5)
+            values[rim] = total[rim] / weight[rim]
+            todo &= ~rim
+    return values, missing

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The reader of most image formats, SurfaceTopography, under the contract of :mod:`nanotouch._readers`.
+
+SurfaceTopography returns ``heights[x, y]`` with y counted from the top of the picture (shown right by
+``imshow(heights.T)``, as Gwyddion shows the file); ours is ``heights[y, x]`` with y counted from the bottom, hence
+``heights.T[::-1]``. Two kinds of file differ, see :func:`_upright`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._files import guarded
+from ..errors import ReadError, require
+from . import headers
+from .channel import Channel, Plane
+from .checks import LENGTHS, check_shape
+
+NAME = "SurfaceTopography"
+#: Names of height channels, best first: a calibrated sensor before the voltage of a piezo.
+_HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
+_OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "lateral", "potential", "current")
+_BACKWARD_NAMES = ("retrace", "backward", "reverse")
+#: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
+_CREDULOUS = ("hgt", "nms")
+
+
+def channels(file: Path) -> list[Channel]:
+    """The two-dimensional channels of a file."""
+    with _opened(file) as reader:
+        found = _images_in(reader, file)
+        default = _default_channel(found)
+        return [_described(info, info is default) for info in found]
+
+
+def read(file: Path, channel: str | None) -> Plane:
+    """One channel, the height channel if none is named."""
+    with _opened(file) as reader:
+        info = _chosen(_images_in(reader, file), channel, file)
+        check_shape(file, info.nb_grid_pts)
+        unsized = info.physical_sizes is None
+        loaded = info.topography(physical_sizes=info.nb_grid_pts if unsized else None)
+        lateral, vertical = _units(loaded.unit if loaded.unit is not None else info.unit)
+        raw = np.ma.filled(np.ma.asarray(loaded.heights(), dtype=np.float64), np.nan)
+        if raw.shape != tuple(info.nb_grid_pts):
+            raise ReadError(f"{file}: {raw.shape} values, but its header states {tuple(info.nb_grid_pts)} pixels")
+        values = _upright(raw, reader.format())
+        name, source = str(info.channel_id), f"{NAME}/{reader.format()}"
+        no_size = "states no scan size"
+        if not unsized and lateral not in LENGTHS:
+            no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
+        if unsized or lateral not in LENGTHS:
+            return Plane(name, values, vertical, None, source, no_size)
+        lx, ly = (float(s) * LENGTHS[lateral] for s in loaded.physical_sizes)
+        plane = Plane(name, values, vertical, (ly / values.shape[0], lx / values.shape[1]), source)
+        headers.cross_check(file, str(reader.format()), info.info.get("raw_metadata") or {}, plane)
+        return plane
+
+
+@contextmanager
+def _opened(file: Path) -> Iterator[Any]:
+    with guarded(file, NAME):
+        io: ModuleType = require("SurfaceTopography.IO", "images")
+        try:
+            reader = io.open_topography(str(file))
+        except io.CannotDetectFileFormat:
+            reader = None
+        if reader is None or reader.format() in _CREDULOUS:
+            raise ReadError(f"{file}: not an AFM image in any format that {NAME} recognises by content")
+        with reader, guarded(file, f"{NAME}/{reader.format()}"):
+            yield reader
+
+
+def _images_in(reader: Any, file: Path) -> list[Any]:
+    found = [info for info in reader.channels if info.dim == 2]
+    if not found:
+        raise ReadError(f"{file}: holds no image (no two-dimensional channel)")
+    return found
+
+
+def _chosen(found: list[Any], channel: str | None, file: Path) -> Any:
+    names = ", ".join(str(info.channel_id) for info in found)
+    if channel is None:
+        default = _default_channel(found)
+        if default is None:
+            raise ReadError(f"{file}: no height channel; it holds {names}")
+        return default
+    wanted = channel.casefold()
+    matches = [i for i in found if str(i.channel_id).casefold() == wanted]
+    if len(matches) != 1:
+        raise ReadError(f"{file}: no channel {channel!r}; it holds {names}")
+    return matches[0]
+
+
+def _default_channel(found: list[Any]) -> Any | None:
+    """The height channel: by name if a name tells, else the only or first one of a length that no name excludes."""
+
+    def rank(info: Any) -> tuple[int, bool]:
+        name = str(info.name).casefold()
+        known = [i for i, part in enumerate(_HEIGHT_NAMES) if part in name]
+        return (known[0] if known else len(_HEIGHT_NAMES), any(part in name for part in _BACKWARD_NAMES))
+
+    return min((info for info in found if _kind(info) == "height"), key=rank, default=None)
+
+
+def _kind(info: Any) -> str:
+    """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude."""
+    kind = str(info.data_kind.value)
+    name = str(info.name).casefold()
+    return next((part for part in _OTHER_NAMES if part in name), kind) if kind == "height" else kind
+
+
+def _described(info: Any, default: bool) -> Channel:
+    lateral, vertical = _units(info.unit)
+    if not info.is_height_channel:
+        vertical = info.data_unit
+    size = None
+    if info.physical_sizes is not None and lateral in LENGTHS:
+        lx, ly = (float(s) * LENGTHS[lateral] for s in info.physical_sizes)
+        size = (ly, lx)
+    shape = None if info.nb_grid_pts is None else (info.nb_grid_pts[1], info.nb_grid_pts[0])
+    return Channel(str(info.channel_id), shape, size, vertical, _kind(info), default)
+
+
+def _units(unit: Any) -> tuple[str | None, str | None]:
+    """SurfaceTopography's unit as (lateral, vertical): one string for both, or a pair."""
+    return (unit[0], unit[1]) if isinstance(unit, tuple) else (unit, unit)
+
+
+def _upright(values: NDArray[np.float64], format_: str) -> NDArray[np.float64]:
+    """SurfaceTopography's array as a writable ``[y, x]`` with row 0 at the bottom.
+
+    Bare arrays (numpy, HDF5) have no stated axes: they are taken as pictures, ``[row, column]`` from the top, where
+    SurfaceTopography takes ``[x, y]``. Point lists (xyz) carry their own y, which rises upwards already.
+    """
+    if format_ in ("npy", "npz", "h5"):
+        return np.array(values[::-1], order="C")
+    if format_ == "xyz":
+        return np.array(values.T, order="C")
+    return np.array(values.T[::-1], order="C")
