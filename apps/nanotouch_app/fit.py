@@ -30,6 +30,12 @@ def add_parser(subparsers: Any) -> None:
         "--sensitivity", metavar="SENSITIVITY", help="deflection sensitivity in place of the file's, as 40nm/V"
     )
     parser.add_argument(
+        "--calibration", metavar="FILE", help="CSV table of both for many files: file,spring_constant,sensitivity"
+    )
+    parser.add_argument(
+        "--untrusted", action="store_true", help="open CURVE in a worker with limits on memory, time and open files"
+    )
+    parser.add_argument(
         "--poisson-ratio", type=float, metavar="NU", help="of the sample: also gives its Young's modulus"
     )
     parser.add_argument("--scene", metavar="FILE", help="TOML file with tip, sample and adhesion")
@@ -44,6 +50,8 @@ def run(args: argparse.Namespace) -> int:
         args.curve,
         spring_constant=_quantity(args.spring_constant, "N/m"),
         sensitivity=_quantity(args.sensitivity, "m/V"),
+        calibration=args.calibration,
+        untrusted=args.untrusted,
     )
     if not 0 <= args.index < len(found):
         raise InvalidValue(f"--index {args.index}: {args.curve} holds the curves 0 .. {len(found) - 1}")

@@ -22,21 +22,24 @@ def add_parser(subparsers: Any) -> None:
         description="Say what an AFM image or a force curve file holds.",
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image or a force curve file")
+    parser.add_argument(
+        "--untrusted", action="store_true", help="open FILE in a worker with limits on memory, time and open files"
+    )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is neither image nor curve."""
-    print("\n".join(describe(args.file)))
+    print("\n".join(describe(args.file, args.untrusted)))
     return 0
 
 
-def describe(file: Path) -> list[str]:
+def describe(file: Path, untrusted: bool = False) -> list[str]:
     """The lines of the answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
     problems: list[ReadError | MissingExtra] = []
     for kind in (_describe_curves, _describe_image):
         try:
-            return kind(file)
+            return kind(file, untrusted)
         except (ReadError, MissingExtra) as error:
             problems.append(error)
     missing = [error for error in problems if isinstance(error, MissingExtra)]
@@ -48,8 +51,8 @@ def describe(file: Path) -> list[str]:
     raise ReadError(f"{file}: as a force curve: {reasons[0]}; as an image: {reasons[1]}")
 
 
-def _describe_image(file: Path) -> list[str]:
-    listed = images.channels(file)
+def _describe_image(file: Path, untrusted: bool) -> list[str]:
+    listed = images.channels(file, untrusted=untrusted)
     lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
     for channel in listed:
         shape = "? pixels" if channel.shape is None else f"{channel.shape[1]} x {channel.shape[0]} pixels"
@@ -58,7 +61,7 @@ def _describe_image(file: Path) -> list[str]:
         mark = "  <- read by default" if channel.default else ""
         lines.append(f"  {channel.name:24} {channel.kind:11} {shape}, {size}, unit {unit}{mark}")
     try:
-        topography = images.read(file)
+        topography = images.read(file, untrusted=untrusted)
     except ReadError as error:
         return [*lines, f"  cannot be touched as it is: {str(error).removeprefix(f'{file}: ')}"]
     low, high = topography.heights.min() * 1e9, topography.heights.max() * 1e9
@@ -69,8 +72,8 @@ def _describe_image(file: Path) -> list[str]:
     return lines
 
 
-def _describe_curves(file: Path) -> list[str]:
-    found = curves.read(file)
+def _describe_curves(file: Path, untrusted: bool) -> list[str]:
+    found = curves.read(file, untrusted=untrusted)
     first = found[0]
     lines = [f"{file.name}: {len(found)} force curve{'s' if len(found) > 1 else ''}, {first.meta.get('format', '')}"]
     for key, unit in _META:

@@ -52,6 +52,9 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument("--channel", metavar="NAME", help="channel of the image (nanotouch info lists them)")
     where.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
     where.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
+    where.add_argument(
+        "--untrusted", action="store_true", help="open IMAGE in a worker with limits on memory, time and open files"
+    )
     how = parser.add_argument_group("how it is touched")
     how.add_argument(
         "--scene", metavar="FILE", help="TOML file with scene, rig and gains (default: silicon in humid air)"
@@ -101,7 +104,7 @@ def _topography(args: argparse.Namespace) -> nt.Topography:
     if args.surface is not None:
         raise InvalidValue(f"give an IMAGE or --surface {args.surface}, not both")
     pixel_size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
-    raw = nt.images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit)
+    raw = nt.images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
     topography, reports = nt.images.prepare(raw)
     if raw.masked_pixels:
         print(f"{raw.masked_pixels} missing pixels filled from their neighbours")

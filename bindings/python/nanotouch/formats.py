@@ -80,6 +80,7 @@ FORMATS: tuple[Format, ...] = (
     _reads("Gwyddion", ".gwy", "images", _ST, _MADE),
     _reads("text matrix with Gwyddion's header", ".txt .asc", "images", _ST, _MADE),
     _reads("text of x, y, z", ".xyz", "images", _ST, _MADE),
+    _reads("HDF5 of nanotouch.images.write", ".h5 .hdf5", "images", "nanotouch", _MADE),
     _reads("bare HDF5 array", ".h5", "images", _ST, _MADE),
     _reads("bare numpy array", ".npy .npz", "images", _ST, _MADE),
     _reads("profilers: X3P, SDF, SUR, BCR, OPD, Keyence, Zygo ...", ".x3p .sdf .sur", "images", _ST, _NOT),

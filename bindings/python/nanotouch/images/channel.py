@@ -53,6 +53,8 @@ class Plane:
         ``(dy, dx)`` [m], scan size over the number of pixels; None where the file states no size.
     no_size : str
         Why there is no pixel size, as part of a sentence.
+    mask : ndarray, shape (ny, nx), bool, optional
+        True where the file says that a value was filled in, which stays as it is.
     source : str
         Reader and format, as ``"SurfaceTopography/ibw"``.
     """
@@ -63,3 +65,4 @@ class Plane:
     pixel_size: tuple[float, float] | None
     source: str
     no_size: str = "states no scan size"
+    mask: NDArray[np.bool_] | None = None

@@ -14,9 +14,8 @@ from .._files import checked_path, guarded, refuse_traps
 from .._readers import head_of, registered_for
 from ..errors import InvalidValue, ReadError
 from ..formats import refusal
-from . import surfacetopography
-from .channel import Channel as Channel
-from .channel import Plane
+from . import hdf5, surfacetopography
+from .channel import Channel, Plane
 from .checks import LENGTHS, check_scale, check_shape, filled
 from .topography import Topography
 
@@ -108,6 +107,8 @@ def _reader(file: Path) -> tuple[str, Any]:
     refused = refusal(file, head, "images")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")
+    if hdf5.recognises(file, head):
+        return hdf5.NAME, hdf5
     return surfacetopography.NAME, surfacetopography
 
 
@@ -119,6 +120,8 @@ def _checked(plane: Plane, file: Path, given_pixel: tuple[float, float] | None, 
     if not all(0.0 < side < np.inf for side in pixel_size):
         raise ReadError(f"{file}: pixels of {pixel_size[1]:g} x {pixel_size[0]:g} m (damaged header?)")
     heights, mask = filled(plane.values * _height_scale(plane, z_unit, file), file)
+    if plane.mask is not None:
+        mask |= plane.mask
     topography = Topography(heights, pixel_size, file.name, plane.name, plane.source, mask)
     check_scale(topography, file)
     return topography
