@@ -59,8 +59,14 @@ set(nanotouch_sources_dynamics
     dynamics/sensor.c
     dynamics/stage.c)
 set(nanotouch_sources_control
+    control/guarantee.c
     control/margins.c
+    control/modes.c
+    control/motor.c
     control/passivity.c
+    control/preflight.c
+    control/requests.c
+    control/rescale.c
     control/scaling.c
     control/servo.c
     control/settings.c
@@ -72,7 +78,9 @@ set(nanotouch_sources_sim hal/sim/sim.c)
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
-set(nanotouch_sources_session session/session.c)
+set(nanotouch_sources_session
+    session/run.c
+    session/session.c)
 set(nanotouch_sources_fit
     fit/branch.c
     fit/data.cpp

@@ -4,15 +4,19 @@
  * master's own damping, whatever the surface does. Holds and delays take from it; in a limit cycle nothing is left,
  * because the motor pays for the damping. So it is not enough that no energy comes out: a share of b v^2/(1 + K_f) must
  * be seen to go in. Where it is not, K_f backs off by a fifth and stays there: damping injection alone does not stop
- * that limit cycle (docs/control.md). The hand's port alone would not do: a surface that rises under a moving tip gives
- * energy to the operator, and that is the physics. What has been swallowed is forgotten beyond a small store, or it
- * would hide an instability that begins late. */
+ * that limit cycle (docs/control.md), so the motor adds damping only when there is no gain left to take. The hand's
+ * port alone would not do: a surface that rises under a moving tip gives energy to the operator, and that is the
+ * physics. What has been swallowed is forgotten beyond a small store, or it would hide an instability that begins late.
+ */
 #include <math.h>
 
-#include "nanotouch/control.h"
+#include "control/clamp.h"
 #include "nanotouch/material.h"
+#include "nanotouch/passivity.h"
 
 #define BACK_OFF 0.8
+#define LEAST_GAIN 0.05       /* below it damping is added */
+#define DAMPING_STEP 0.2      /* of the master's own, up to all of it */
 #define DUE_SHARE 0.2         /* of the damping; at the margin of 1.5 at which a loop may be armed a third is left */
 #define SPEED_BANDWIDTH 200.0 /* of the speed in b v^2 [Hz] */
 #define WRONG_SPEED 10.0      /* times what hand and motor can hold against the damping */
@@ -27,6 +31,7 @@ nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
     return (nt_passivity){.dead_zone = rig->master.gauge_range * fmax(master_step, stage_step),
                           .due = DUE_SHARE * rig->master.damping * T,
                           .force_gain = gains->force_gain,
+                          .damping = rig->master.damping,
                           .speed_filter = filter,
                           .speed_floor = master_step * filter / T,
                           .speed_limit =
@@ -43,10 +48,10 @@ static double work(const nt_port *from, const nt_port *to)
 static double energy_due(const nt_passivity *passivity, nt_passivity_state *state, const nt_port *hand)
 {
     const double speed = (hand->position - state->last_hand.position) / passivity->period;
-    const double likely = fmin(fmax(speed, -passivity->speed_limit), passivity->speed_limit);
+    const double likely = clamp(speed, -passivity->speed_limit, passivity->speed_limit);
     state->speed += passivity->speed_filter * (likely - state->speed);
     const double floor = passivity->speed_floor;
-    const double square = fmax(0.0, state->speed * state->speed - floor * floor);
+    const double square = greater(0.0, state->speed * state->speed - floor * floor);
     return passivity->due * square / (1.0 + state->gain * passivity->force_gain);
 }
 
@@ -55,13 +60,32 @@ double nt_passivity_step(const nt_passivity *passivity, nt_passivity_state *stat
 {
     const double due = energy_due(passivity, state, hand);
     const double swallowed = work(&state->last_hand, hand) - work(&state->last_tip, tip);
-    state->energy = fmin(state->energy + swallowed - due, NT_PASSIVITY_STORE * passivity->dead_zone);
+    state->energy = lesser(state->energy + swallowed - due, NT_PASSIVITY_STORE * passivity->dead_zone);
     state->last_hand = *hand;
     state->last_tip = *tip;
     if (state->energy < -passivity->dead_zone) {
-        state->gain *= BACK_OFF;
+        if (state->gain >= LEAST_GAIN)
+            state->gain *= BACK_OFF;
+        else
+            state->damping = lesser(1.0, state->damping + DAMPING_STEP);
         state->energy = 0.0;
         ++state->trips;
     }
     return state->gain;
+}
+
+double nt_passivity_hand_force(const nt_passivity *passivity, const nt_passivity_state *state, double motor_force)
+{
+    return passivity->damping * state->speed - motor_force;
+}
+
+double nt_passivity_damping_force(const nt_passivity *passivity, const nt_passivity_state *state)
+{
+    const int is_motion = fabs(state->speed) > passivity->speed_floor;
+    return is_motion ? -state->damping * passivity->damping * state->speed : 0.0;
+}
+
+int nt_passivity_is_exhausted(const nt_passivity_state *state)
+{
+    return state->gain < LEAST_GAIN && state->damping >= 1.0;
 }

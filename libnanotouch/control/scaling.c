@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Scaling factors between hand and tip (paper, Sec. IV-C). */
-#include "nanotouch/control.h"
+#include "nanotouch/scaling.h"
 
 nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction)
 {

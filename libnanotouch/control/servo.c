@@ -1,31 +1,101 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Motor laws of the master (paper, Eq. 17). */
+ * The three laws (paper, Eq. 16-17), and what they mean for the stability rules. */
+#include "nanotouch/servo.h"
+
 #include <math.h>
+#include <stddef.h>
 
-#include "control/servo.h"
+#include "control/clamp.h"
 
-/* Share of the master's own damping that the motor adds while it fades out; well below the sampled limit 2 b. */
-#define FADE_DAMPING 0.5
-
-double nt_servo_force(const nt_gains *gains, double gain_factor, double slave_force, double operator_force)
+/* tau_m = -alpha_f f_s - K_f (alpha_f f_s - f_m). At rest f_m = alpha_f f_s for any K_f (erratum E16). */
+static double reflect(const nt_gains *gains, const nt_signals *signals, double operator_force)
 {
-    const double reflected = gains->alpha_f * slave_force;
-    return -reflected - gain_factor * gains->force_gain * (reflected - operator_force);
+    const double reflected = signals->scaling.alpha_f * signals->slave_force;
+    return -reflected - signals->gain_factor * gains->force_gain * (reflected - operator_force);
 }
 
-double nt_servo_height(const nt_gains *gains, double height_position, double master_position)
+static double feed_forward(const nt_gains *gains, const nt_signals *signals)
 {
-    return gains->height_stiffness * (height_position - master_position);
+    return gains->velocity_feedforward * signals->master_damping * signals->smooth_speed;
 }
 
-double nt_servo_fade(const nt_master *master, double force, double speed)
+nt_effort nt_servo_default(void *unused, const nt_gains *gains, const nt_signals *signals)
 {
-    return force - FADE_DAMPING * master->damping * speed;
+    (void)unused;
+    const double force = reflect(gains, signals, signals->smooth_force);
+    return (nt_effort){force + feed_forward(gains, signals), signals->target};
 }
 
-double nt_servo_limit(const nt_limits *limits, double period, double last, double force)
+nt_effort nt_servo_paper(void *unused, const nt_gains *gains, const nt_signals *signals)
 {
-    const double step = limits->motor_rate * period;
-    const double slewed = fmin(fmax(force, last - step), last + step);
-    return fmin(fmax(slewed, -limits->motor_force), limits->motor_force);
+    (void)unused;
+    const double speed = signals->scaling.alpha_p * signals->master_speed - signals->stage_speed;
+    const double error = signals->target - signals->stage_position;
+    const double drive = gains->stage_derivative * speed + gains->stage_proportional * error;
+    return (nt_effort){reflect(gains, signals, signals->operator_force), drive};
+}
+
+nt_effort nt_servo_impedance(void *unused, const nt_gains *gains, const nt_signals *signals)
+{
+    (void)unused;
+    const double reflected = signals->gain_factor * signals->scaling.alpha_f * signals->slave_force;
+    return (nt_effort){feed_forward(gains, signals) - reflected, signals->target};
+}
+
+nt_servo_law nt_servo_law_of(const nt_control *control)
+{
+    switch (control->choice) {
+    case NT_CONTROL_DEFAULT:
+        return nt_servo_default;
+    case NT_CONTROL_PAPER:
+        return nt_servo_paper;
+    case NT_CONTROL_IMPEDANCE:
+        return nt_servo_impedance;
+    case NT_CONTROL_OWN:
+        return control->law;
+    }
+    return NULL;
+}
+
+/* alpha_f alpha_p k_eff: the contact, through the lever, at the operator's scale [N/m]. */
+static double reflected_stiffness(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+{
+    const double k_c = rig->probe.spring_constant;
+    return gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
+}
+
+/* The contact that would feel as this one does through the coupling. */
+static double softened(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+{
+    if (gains->coupling_stiffness == 0.0)
+        return contact_stiffness;
+    const double k_c = rig->probe.spring_constant;
+    const double k_r = reflected_stiffness(rig, gains, contact_stiffness);
+    const double k_eff = k_r / (1.0 + k_r / gains->coupling_stiffness) / (gains->alpha_f * gains->alpha_p);
+    return k_eff / (1.0 - k_eff / k_c);
+}
+
+nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness)
+{
+    nt_servo_shape shape = {*rig, settings->gains, contact_stiffness};
+    const nt_law_choice choice = settings->control.choice;
+    if (choice == NT_CONTROL_DEFAULT || choice == NT_CONTROL_IMPEDANCE)
+        shape.rig.master.damping *= 1.0 - settings->gains.velocity_feedforward;
+    if (choice == NT_CONTROL_IMPEDANCE || rig->master.gauge == 0.0)
+        shape.gains.force_gain = 0.0;
+    if (choice == NT_CONTROL_PAPER) {
+        shape.gains.stage_damping = 0.5 / rig->stage.quality; /* the notch does nothing then */
+        shape.gains.stage_integral = 0.0;
+    }
+    shape.gains.alpha_f *= greater(1.0, greater(shape.gains.alpha_f_approach, shape.gains.alpha_f_retract));
+    shape.contact_stiffness = softened(rig, &shape.gains, contact_stiffness);
+    return shape;
+}
+
+double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness, double delay)
+{
+    if (gains->coupling_stiffness == 0.0)
+        return INFINITY;
+    const double k_r = reflected_stiffness(rig, gains, contact_stiffness);
+    return greater(gains->coupling_stiffness / k_r, gains->coupling_damping / (k_r * delay));
 }

@@ -4,8 +4,8 @@
  * static gain is K_p/(1 + K_p), and stability at 3 ms holds K_p below 0.5. */
 #include <math.h>
 
-#include "nanotouch/control.h"
 #include "nanotouch/material.h"
+#include "nanotouch/stage_loop.h"
 
 /* z^2 - sum z + product: the poles of s^2 + 2 zeta wn s + wn^2 under a hold, z = exp(s T); angle = wn T. */
 typedef struct pole_pair {

@@ -1,42 +1,74 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What happens when something is wrong: RUN, HOLD, RETRACT, LATCHED as a pure function of sample, command and limits
  * (docs/safety.md holds the table). Jump-in and pull-off are the physics of the scene and trip nothing. */
+#include "nanotouch/supervisor.h"
+
 #include <math.h>
 
-#include "nanotouch/control.h"
+#include "control/clamp.h"
 
 #define STALE_HOLD_PERIODS 2.0
 #define STALE_RETRACT_PERIODS 5.0
+#define LATE_PERIODS 0.2
+#define LATE_TICKS 5u /* in a row: HOLD, until as many punctual ones have made up for them */
 #define STUCK_SAMPLES 200u
+#define STUCK_STEPS 5.0         /* of the stage's read-out */
+#define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */
+#define FREE_SIGMA 6.0          /* of the force noise: below it is free air */
 
 const char *nt_reason_name(uint32_t reason)
 {
-    switch (reason) {
-    case NT_REASON_INVALID:
-        return "invalid sample";
-    case NT_REASON_SATURATED:
-        return "deflection saturated";
-    case NT_REASON_FORCE_LIMIT:
-        return "force limit";
-    case NT_REASON_STALE:
-        return "stale sample";
-    case NT_REASON_STUCK:
-        return "sensor stuck";
-    case NT_REASON_FOLLOW:
-        return "stage does not follow";
-    case NT_REASON_UNSTABLE:
-        return "loop unstable";
-    case NT_REASON_EMERGENCY_STOP:
-        return "emergency stop";
-    case NT_REASON_LIMIT_SWITCH:
-        return "limit switch";
-    case NT_REASON_OPERATOR_CLIPPED:
-        return "operator force clipped";
-    case NT_REASON_COMMAND_LIMITED:
-        return "command limited";
-    default:
-        return "";
-    }
+    static const char *const names[] = {"invalid sample",
+                                        "deflection saturated",
+                                        "force limit",
+                                        "stale sample",
+                                        "sensor stuck",
+                                        "stage does not follow",
+                                        "loop unstable",
+                                        "emergency stop",
+                                        "limit switch",
+                                        "operator force clipped",
+                                        "command limited",
+                                        "ticks late",
+                                        "device lost",
+                                        "indentation limit",
+                                        "control law gave no number",
+                                        "gain backed off"};
+    for (uint32_t bit = 0; bit < sizeof names / sizeof *names; ++bit)
+        if (reason == 1u << bit)
+            return names[bit];
+    return "";
+}
+
+/* A step of the deflection's converter [m]. */
+static double deflection_step(const nt_rig *rig)
+{
+    const double bits = rig->converters.adc_bits;
+    const double step = bits > 0.0 ? 2.0 * rig->probe.range / exp2(bits) : 0.0;
+    return rig->probe.sensitivity * greater(rig->probe.resolution, step);
+}
+
+nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
+{
+    const nt_probe *probe = &rig->probe;
+    const double sigma = probe->sensitivity * probe->noise / 6.0; /* of the deflection [m] */
+    const double step = deflection_step(rig);
+    const int shows_noise = sigma > step; /* identical codes are normal where the noise is below one step */
+    const double travelled = STUCK_STEPS * greater(rig->stage.resolution, LEAST_STAGE_STEP);
+    return (nt_supervisor){.period = 1.0 / settings->gains.rate,
+                           .spring_constant = probe->spring_constant,
+                           .deflection_range = nt_probe_deflection_range(probe),
+                           .free_force = probe->spring_constant * (FREE_SIGMA * sigma + step),
+                           .master_range = rig->master.travel,
+                           .gauge_range = rig->master.gauge != 0.0 ? rig->master.gauge_range : 0.0,
+                           .stage_range = rig->stage.travel,
+                           .stuck_distance = shows_noise ? travelled : 0.0,
+                           .limits = settings->limits};
+}
+
+nt_supervisor_state nt_supervisor_start(void)
+{
+    return (nt_supervisor_state){.state = NT_RUN, .stuck_deflection = NAN, .surface = NAN}; /* nothing seen yet */
 }
 
 static nt_state worse(nt_state a, nt_state b)
@@ -52,122 +84,181 @@ static int is_within(double value, double range)
 
 /* Numbers that no sensor of this rig can give (twice its range) are as bad as no numbers. The deflection is judged by
  * its force. */
-static int is_valid(const nt_touch *touch, const nt_sample *sample)
+static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
 {
-    const nt_rig *rig = &touch->rig;
-    return !(sample->flags & NT_SAMPLE_INVALID) && is_within(sample->master_position, rig->master.travel) &&
-           is_within(sample->operator_force, 2.0 * rig->master.gauge_range) &&
-           is_within(sample->stage_position, rig->stage.travel) && isfinite(sample->deflection) &&
+    const double gauge = supervisor->gauge_range;
+    return !(sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST)) &&
+           is_within(sample->master_position, supervisor->master_range) &&
+           (gauge == 0.0 || is_within(sample->operator_force, 2.0 * gauge)) &&
+           is_within(sample->stage_position, supervisor->stage_range) && isfinite(sample->deflection) &&
            isfinite(sample->x) && isfinite(sample->y) && isfinite(sample->age) && sample->age >= 0.0;
 }
 
-/* One bad sample: hold, reuse nothing; the second in a row: retract. Never "zero force". */
-static nt_state judge_validity(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+static nt_state blame(nt_supervisor_state *state, uint32_t reason, nt_state verdict)
 {
-    if (is_valid(touch, sample)) {
+    state->reasons |= reason;
+    return verdict;
+}
+
+/* One bad sample: hold, reuse nothing; the second in a row: retract. Never "zero force". */
+static nt_state judge_validity(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    if (is_valid(supervisor, sample)) {
         state->invalid_run = 0;
         return NT_RUN;
     }
-    state->reasons |= NT_REASON_INVALID;
-    return ++state->invalid_run > 1 ? NT_RETRACT : NT_HOLD;
+    return blame(state, NT_REASON_INVALID, ++state->invalid_run > 1 ? NT_RETRACT : NT_HOLD);
 }
 
-static nt_state judge_force(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     nt_state verdict = NT_RUN;
-    if (fabs(sample->deflection) >= nt_probe_deflection_range(&touch->rig.probe)) {
-        state->reasons |= NT_REASON_SATURATED;
-        verdict = NT_RETRACT;
-    }
-    if (fabs(touch->rig.probe.spring_constant * sample->deflection) > touch->settings.limits.force) {
-        state->reasons |= NT_REASON_FORCE_LIMIT;
-        verdict = NT_RETRACT;
-    }
-    if (fabs(sample->operator_force) >= touch->rig.master.gauge_range)
+    if (sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection) >= supervisor->deflection_range)
+        verdict = blame(state, NT_REASON_SATURATED, NT_RETRACT);
+    if (fabs(supervisor->spring_constant * sample->deflection) > supervisor->limits.force)
+        verdict = blame(state, NT_REASON_FORCE_LIMIT, NT_RETRACT);
+    if (supervisor->gauge_range > 0.0 && fabs(sample->operator_force) >= supervisor->gauge_range)
         state->reasons |= NT_REASON_OPERATOR_CLIPPED;
     return verdict;
 }
 
-static nt_state judge_age(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+/* The tip's travel since it was last free. A surface that passes by below rises and falls: its travel is not counted.
+ */
+static nt_state judge_indentation(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
+                                  int moves_sideways)
 {
-    if (sample->age <= STALE_HOLD_PERIODS * touch->period)
-        return NT_RUN;
-    state->reasons |= NT_REASON_STALE;
-    return sample->age > STALE_RETRACT_PERIODS * touch->period ? NT_RETRACT : NT_HOLD;
+    const double travel = sample->stage_position - sample->deflection; /* of the tip, towards the sample */
+    const int is_free = fabs(supervisor->spring_constant * sample->deflection) <= supervisor->free_force;
+    if (is_free || isnan(state->surface))
+        state->surface = travel;
+    else if (moves_sideways)
+        state->surface = travel - state->indentation;
+    state->indentation = travel - state->surface;
+    return state->indentation > supervisor->limits.indentation ? blame(state, NT_REASON_INDENTATION, NT_RETRACT)
+                                                               : NT_RUN;
 }
 
-/* A live sensor shows its noise: identical codes while z moves mean that it is dead. Needs noise above one step. The
- * count stands at STUCK_SAMPLES until z has moved, so that HOLD comes before LATCHED. */
-static nt_state judge_stuck(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample)
+static nt_state judge_age(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const nt_probe *probe = &touch->rig.probe;
-    if (!(probe->noise > 6.0 * probe->resolution))
+    const double periods = sample->age / supervisor->period;
+    if (periods <= STALE_HOLD_PERIODS)
         return NT_RUN;
-    const int saturated = fabs(sample->deflection) >= nt_probe_deflection_range(probe); /* shows no noise */
+    return blame(state, NT_REASON_STALE, periods > STALE_RETRACT_PERIODS ? NT_RETRACT : NT_HOLD);
+}
+
+/* NaN is late. */
+static nt_state judge_lateness(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    const int is_late = !(sample->lateness <= LATE_PERIODS * supervisor->period);
+    const int held = state->late_run > LATE_TICKS;
+    if (is_late) {
+        ++state->late_ticks;
+        state->late_run = state->late_run + 1 < LATE_TICKS ? state->late_run + 1 : 2u * LATE_TICKS;
+    } else if (held) {
+        --state->late_run;
+    } else {
+        state->late_run = 0;
+    }
+    return state->late_run > LATE_TICKS ? blame(state, NT_REASON_LATE, NT_HOLD) : NT_RUN;
+}
+
+/* A live sensor shows its noise: identical codes while z moves mean that it is dead. HOLD steps the probe away
+ * (touch.c); if that changes nothing for as many samples again: LATCHED. The count stands at STUCK_SAMPLES until z has
+ * moved, so that HOLD comes first. */
+static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    if (supervisor->stuck_distance == 0.0)
+        return NT_RUN;
+    const int saturated = fabs(sample->deflection) >= supervisor->deflection_range; /* shows no noise */
     if (saturated || sample->deflection != state->stuck_deflection) {
         state->stuck_deflection = sample->deflection;
         state->stuck_position = sample->stage_position;
         state->stuck_run = 0;
         return NT_RUN;
     }
-    const int moved = fabs(sample->stage_position - state->stuck_position) > 5.0 * touch->rig.stage.resolution;
+    const int moved = fabs(sample->stage_position - state->stuck_position) > supervisor->stuck_distance;
     if (state->stuck_run < STUCK_SAMPLES || (moved && state->stuck_run < 2u * STUCK_SAMPLES))
         ++state->stuck_run;
     if (state->stuck_run < STUCK_SAMPLES || !moved)
         return NT_RUN;
-    state->reasons |= NT_REASON_STUCK;
-    return state->stuck_run < 2u * STUCK_SAMPLES ? NT_HOLD : NT_LATCHED;
+    return blame(state, NT_REASON_STUCK, state->stuck_run < 2u * STUCK_SAMPLES ? NT_HOLD : NT_LATCHED);
 }
 
 /* Off its command for half the allowed time: hold; for all of it: latched. */
-static nt_state judge_follow(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample,
+static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
                              double reference)
 {
-    const nt_limits *limits = &touch->settings.limits;
+    const nt_limits *limits = &supervisor->limits;
     if (fabs(sample->stage_position - reference) <= limits->follow_error) {
         state->follow_time = 0.0;
         return NT_RUN;
     }
-    state->follow_time += touch->period;
+    state->follow_time += supervisor->period;
     if (state->follow_time <= 0.5 * limits->follow_time)
         return NT_RUN;
-    state->reasons |= NT_REASON_FOLLOW;
-    return state->follow_time > limits->follow_time ? NT_LATCHED : NT_HOLD;
+    return blame(state, NT_REASON_FOLLOW, state->follow_time > limits->follow_time ? NT_LATCHED : NT_HOLD);
 }
 
 static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample)
 {
     nt_state verdict = NT_RUN;
-    if (sample->flags & NT_SAMPLE_LIMIT_SWITCH) {
-        state->reasons |= NT_REASON_LIMIT_SWITCH;
-        verdict = NT_RETRACT;
-    }
-    if (sample->flags & NT_SAMPLE_EMERGENCY_STOP) {
-        state->reasons |= NT_REASON_EMERGENCY_STOP;
-        verdict = NT_LATCHED;
-    }
+    if (sample->flags & NT_SAMPLE_LIMIT_SWITCH)
+        verdict = blame(state, NT_REASON_LIMIT_SWITCH, NT_RETRACT);
+    if (sample->flags & NT_SAMPLE_EMERGENCY_STOP)
+        verdict = blame(state, NT_REASON_EMERGENCY_STOP, NT_LATCHED);
+    if (sample->flags & NT_SAMPLE_DEVICE_LOST)
+        verdict = blame(state, NT_REASON_DEVICE, NT_LATCHED);
     return verdict;
 }
 
-nt_state nt_supervisor_step(const nt_touch *touch, nt_supervisor_state *state, const nt_sample *sample,
-                            double reference, int unstable)
+/* What only a valid sample can tell. */
+static nt_state judge_measured(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
+                               const nt_situation *situation)
 {
-    /* RETRACT and LATCHED keep the reason that led there */
-    if (state->state < NT_RETRACT)
-        state->reasons = 0;
-    nt_state verdict = judge_stops(state, sample);
-    const nt_state validity = judge_validity(touch, state, sample);
-    verdict = worse(verdict, validity);
-    if (validity == NT_RUN) {
-        verdict = worse(verdict, judge_force(touch, state, sample));
-        verdict = worse(verdict, judge_age(touch, state, sample));
-        verdict = worse(verdict, judge_stuck(touch, state, sample));
-        verdict = worse(verdict, judge_follow(touch, state, sample, reference));
-    }
-    if (unstable) {
-        state->reasons |= NT_REASON_UNSTABLE;
-        verdict = worse(verdict, NT_HOLD);
-    }
+    nt_state verdict = judge_force(supervisor, state, sample);
+    verdict = worse(verdict, judge_indentation(supervisor, state, sample, situation->moves_sideways));
+    verdict = worse(verdict, judge_age(supervisor, state, sample));
+    verdict = worse(verdict, judge_stuck(supervisor, state, sample));
+    return worse(verdict, judge_follow(supervisor, state, sample, situation->reference));
+}
+
+/* RETRACT and LATCHED are not left by themselves. */
+static nt_state take(nt_supervisor_state *state, nt_state verdict)
+{
     state->state = state->state >= NT_RETRACT ? worse(state->state, verdict) : verdict;
     return state->state;
+}
+
+nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
+                            const nt_situation *situation)
+{
+    if (state->state < NT_RETRACT) /* else the reason that led there stays */
+        state->reasons = 0;
+    nt_state verdict = judge_stops(state, sample);
+    const nt_state validity = judge_validity(supervisor, state, sample);
+    verdict = worse(verdict, validity);
+    if (validity == NT_RUN)
+        verdict = worse(verdict, judge_measured(supervisor, state, sample, situation));
+    verdict = worse(verdict, judge_lateness(supervisor, state, sample));
+    if (situation->unstable)
+        verdict = worse(verdict, blame(state, NT_REASON_UNSTABLE, NT_HOLD));
+    return take(state, verdict);
+}
+
+nt_state nt_supervisor_fail_law(nt_supervisor_state *state)
+{
+    return take(state, blame(state, NT_REASON_LAW, ++state->law_run > 1 ? NT_RETRACT : NT_HOLD));
+}
+
+nt_status nt_supervisor_arm(nt_supervisor_state *state, int confirmed)
+{
+    if (state->state == NT_LATCHED && !confirmed)
+        return NT_E_STATE;
+    nt_supervisor_state fresh = nt_supervisor_start();
+    fresh.stuck_deflection = state->stuck_deflection;
+    fresh.surface = state->surface;
+    fresh.indentation = state->indentation;
+    fresh.late_ticks = state->late_ticks;
+    *state = fresh;
+    return NT_OK;
 }

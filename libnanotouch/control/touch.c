@@ -1,13 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * One control period: supervisor, passivity, motor law, stage reference, stage loop. */
+ * One control period: supervisor, observation, mode and law, limits, stage loop. */
+#include "nanotouch/touch.h"
+
 #include <math.h>
 #include <stddef.h>
 
-#include "control/servo.h"
+#include "control/clamp.h"
+#include "control/modes.h"
+#include "control/motor.h"
 #include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
-#define FADE_TIME 0.05       /* outside RUN the force is gone after this [s] */
+#define PROBE_STEPS 20.0     /* a sensor that seems stuck is tried by stepping away by this many of the stage's steps */
+#define SPIKE_SIGMA 12.0     /* a reading may jump by this much noise and four times what stage and path can go */
+#define SPIKE_MOTION 4.0
 
 static double low_pass_factor(double bandwidth, double period)
 {
@@ -15,13 +21,17 @@ static double low_pass_factor(double bandwidth, double period)
 }
 
 /* No limit may promise more than the rig can keep: beyond saturation no force would be seen. */
-static nt_status check_against_rig(const nt_limits *limits, const nt_rig *rig, nt_problem *problem)
+static nt_status check_against_rig(const nt_settings *settings, const nt_rig *rig, nt_problem *problem)
 {
+    const nt_limits *limits = &settings->limits;
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
+    const int needs_gauge = settings->control.choice != NT_CONTROL_IMPEDANCE && settings->gains.force_gain > 0.0;
     const nt_problem promises[] = {
         {"limits.force", "N", limits->force, 0.0, saturation},
+        {"gains.set_point", "N", settings->gains.set_point, 0.0, limits->force},
         {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},
         {"limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force},
+        {"gains.force_gain", "", needs_gauge && rig->master.gauge == 0.0 ? settings->gains.force_gain : 0.0, 0.0, 0.0},
     };
     for (size_t i = 0; i < sizeof promises / sizeof promises[0]; ++i) {
         if (promises[i].value <= promises[i].maximum)
@@ -33,6 +43,14 @@ static nt_status check_against_rig(const nt_limits *limits, const nt_rig *rig, n
     return NT_OK;
 }
 
+/* More than probe, stage and path can do in a period, and more than noise [m]. */
+static double spike_of(const nt_rig *rig, const nt_settings *settings)
+{
+    const double motion = settings->limits.stage_speed + settings->limits.lateral_speed;
+    const double noise = rig->probe.sensitivity * hypot(rig->probe.noise / 6.0, rig->probe.resolution);
+    return SPIKE_SIGMA * noise + SPIKE_MOTION * motion / settings->gains.rate;
+}
+
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
                         nt_problem *problem)
 {
@@ -40,96 +58,129 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
     if (status == NT_OK)
         status = nt_settings_check(settings, problem);
     if (status == NT_OK)
-        status = check_against_rig(&settings->limits, rig, problem);
+        status = check_against_rig(settings, rig, problem);
     if (status != NT_OK)
         return status;
-    if (mode != NT_MODE_TOUCH && mode != NT_MODE_TOPOGRAPHY)
+    if (mode > NT_MODE_CURVE)
         return NT_E_ARGUMENT;
     const double period = 1.0 / settings->gains.rate;
+    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
     nt_touch made = {.rig = *rig,
                      .settings = *settings,
                      .mode = mode,
                      .period = period,
-                     .stage_loop = nt_stage_loop_make(&rig->stage, &settings->gains),
+                     .law = nt_servo_law_of(&settings->control),
+                     .stage_loop = nt_stage_loop_make(&rig->stage, &shape.gains),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
                      .speed_filter = low_pass_factor(SPEED_BANDWIDTH, period),
-                     .passivity = nt_passivity_make(rig, &settings->gains)};
+                     .spike = spike_of(rig, settings),
+                     .passivity = nt_passivity_make(&shape.rig, &shape.gains),
+                     .rescale = nt_rescale_make(rig, settings),
+                     .supervisor = nt_supervisor_make(rig, settings)};
+    made.passivity.damping = rig->master.damping; /* what the motor feeds forward is in its force already */
     *touch = made;
     return NT_OK;
 }
 
 nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, double x, double y)
 {
-    nt_touch_state state = {.passivity = {.gain = 1.0, .last_hand = {.position = master_position}},
-                            .last_position = master_position,
+    const nt_gains *gains = &touch->settings.gains;
+    const nt_scaling scaling = {gains->alpha_p, gains->alpha_f};
+    nt_touch_state state = {.mode = touch->mode,
+                            .wanted_mode = touch->mode,
+                            .supervisor = nt_supervisor_start(),
+                            .passivity = {.gain = 1.0, .last_hand = {.position = master_position}},
+                            .rescale = nt_rescale_start(&touch->rescale, &scaling),
+                            .signals = {.period = touch->period,
+                                        .master_position = master_position,
+                                        .master_damping = touch->rig.master.damping,
+                                        .gain_factor = 1.0},
                             .target_x = x,
                             .target_y = y,
                             .command = {.x = x, .y = y}};
-    state.offset = -touch->settings.gains.alpha_p * master_position; /* the stage begins at 0 */
-    state.supervisor.stuck_deflection = NAN;                         /* equal to no sample */
+    state.signals.scaling = state.rescale.now;
+    state.offset = -gains->alpha_p * master_position; /* the stage begins at 0 */
     return state;
+}
+
+/* A single reading that nothing real can have made gives way to the one between it and the last two; a true jump shows
+ * one period late. */
+static double without_spike(const nt_touch *touch, nt_touch_state *state, double deflection)
+{
+    const double last = state->deflections[0], before = state->deflections[1];
+    state->deflections[1] = last;
+    state->deflections[0] = deflection;
+    if (fabs(deflection - last) <= touch->spike)
+        return deflection;
+    return greater(lesser(deflection, last), lesser(greater(deflection, last), before));
+}
+
+/* Positions, and speeds by differences. */
+static void follow_motion(const nt_touch *touch, nt_signals *signals, const nt_sample *sample)
+{
+    const double rate = touch->settings.gains.rate;
+    signals->master_speed = (sample->master_position - signals->master_position) * rate;
+    signals->smooth_speed += touch->speed_filter * (signals->master_speed - signals->smooth_speed);
+    signals->stage_speed = (sample->stage_position - signals->stage_position) * rate;
+    signals->master_position = sample->master_position;
+    signals->stage_position = sample->stage_position;
+}
+
+/* A new alpha_p counts from where the master is: no bump. */
+static void rescale(const nt_touch *touch, nt_touch_state *state)
+{
+    nt_signals *signals = &state->signals;
+    const double alpha_p = state->rescale.now.alpha_p;
+    nt_rescale_step(&touch->rescale, &state->rescale, signals->slave_force, signals->stage_position,
+                    signals->smooth_speed);
+    signals->scaling = state->rescale.now;
+    state->offset += (alpha_p - signals->scaling.alpha_p) * signals->master_position;
+}
+
+/* What goes in at the hand, and what comes out at the tip at the operator's scale. */
+static void watch_energy(const nt_touch *touch, nt_touch_state *state, double stage_step)
+{
+    const nt_signals *signals = &state->signals;
+    const nt_scaling *scaling = &signals->scaling;
+    nt_passivity_state *passivity = &state->passivity;
+    const double hand_force = touch->rig.master.gauge != 0.0
+                                  ? signals->operator_force
+                                  : nt_passivity_hand_force(&touch->passivity, passivity, state->motor_force);
+    const nt_port hand = {hand_force, signals->master_position};
+    const nt_port tip = {scaling->alpha_f * signals->slave_force,
+                         passivity->last_tip.position + stage_step / scaling->alpha_p};
+    nt_passivity_step(&touch->passivity, passivity, &hand, &tip);
+    state->signals.gain_factor = passivity->gain;
 }
 
 static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
-    const double speed = (sample->master_position - state->last_position) / touch->period;
-    state->speed += touch->speed_filter * (speed - state->speed);
-    state->last_position = sample->master_position;
-    state->filtered_force += touch->force_filter * (sample->operator_force - state->filtered_force);
-    if (touch->mode != NT_MODE_TOUCH)
-        return; /* the height servo is meant to move the hand */
-    const nt_gains *gains = &touch->settings.gains;
-    const double slave_force = touch->rig.probe.spring_constant * sample->deflection;
-    const nt_port hand = {sample->operator_force, sample->master_position};
-    const nt_port tip = {gains->alpha_f * slave_force, sample->stage_position / gains->alpha_p};
-    nt_passivity_step(&touch->passivity, &state->passivity, &hand, &tip);
+    nt_signals *signals = &state->signals;
+    const double stage_step = sample->stage_position - signals->stage_position;
+    follow_motion(touch, signals, sample);
+    signals->operator_force = touch->rig.master.gauge != 0.0 ? sample->operator_force : 0.0;
+    signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
+    signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection);
+    rescale(touch, state);
+    if (state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
+        watch_energy(touch, state, stage_step);
 }
 
-/* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel. */
-static void move_reference(const nt_touch *touch, nt_touch_state *state, double wanted)
+static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
-    const double step = touch->settings.limits.stage_speed * touch->period;
-    const double end = 0.5 * touch->rig.stage.travel;
-    double reference = fmin(fmax(wanted, state->reference - step), state->reference + step);
-    reference = fmin(fmax(reference, -end), end);
-    if (reference != wanted)
-        state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
-    state->reference = reference;
+    const nt_situation situation = {.reference = state->reference,
+                                    .moves_sideways = state->target_time > 0.0,
+                                    .unstable =
+                                        state->mode == NT_MODE_TOUCH && nt_passivity_is_exhausted(&state->passivity)};
+    return nt_supervisor_step(&touch->supervisor, &state->supervisor, sample, &situation);
 }
 
-/* RUN: the operator moves the stage, or the height servo does; returns the motor force that is wanted. */
-static double run(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
+/* How far a stop lifts in all [m]. */
+static double lift_of(const nt_touch *touch, const nt_touch_state *state)
 {
-    const nt_gains *gains = &touch->settings.gains;
-    const double slave_force = touch->rig.probe.spring_constant * sample->deflection;
-    const double ramp = gains->ramp_time > 0.0 ? touch->period / gains->ramp_time : 1.0;
-    state->engaged = fmin(1.0, state->engaged + ramp);
-    if (touch->mode == NT_MODE_TOPOGRAPHY) {
-        const double error = (gains->set_point - slave_force) / touch->rig.probe.spring_constant;
-        move_reference(touch, state, state->reference + gains->height_gain * touch->period * error);
-        const double height_position = (state->reference - state->offset) / gains->alpha_p;
-        return state->engaged * nt_servo_height(gains, height_position, sample->master_position);
-    }
-    move_reference(touch, state, gains->alpha_p * sample->master_position + state->offset);
-    return state->engaged * nt_servo_force(gains, state->passivity.gain, slave_force, state->filtered_force);
-}
-
-/* Not RUN: nothing of the sample is used but what the supervisor found valid; the master is uncoupled. */
-static double stop(const nt_touch *touch, nt_touch_state *state, int lift)
-{
-    const nt_limits *limits = &touch->settings.limits;
-    if (lift && state->retracted < limits->retract_distance) {
-        const double step = fmin(limits->retract_speed * touch->period, limits->retract_distance - state->retracted);
-        state->retracted += step;
-        state->reference = fmax(state->reference - step, -0.5 * touch->rig.stage.travel);
-    }
-    state->offset = state->reference - touch->settings.gains.alpha_p * state->last_position;
-    const double engaged = fmax(0.0, state->engaged - touch->period / FADE_TIME);
-    if (!(engaged > 0.0))
-        return state->engaged = state->coupled_force = 0.0;
-    state->coupled_force *= engaged / state->engaged; /* linear in time */
-    state->engaged = engaged;
-    return nt_servo_fade(&touch->rig.master, state->coupled_force, state->speed);
+    if (state->supervisor.state >= NT_RETRACT)
+        return touch->settings.limits.retract_distance;
+    return state->supervisor.reasons & NT_REASON_STUCK ? PROBE_STEPS * touch->rig.stage.resolution : 0.0;
 }
 
 static void move_lateral(const nt_touch *touch, nt_touch_state *state)
@@ -138,7 +189,33 @@ static void move_lateral(const nt_touch *touch, nt_touch_state *state)
     const double share = left > touch->period ? touch->period / left : 1.0;
     state->command.x += share * (state->target_x - state->command.x);
     state->command.y += share * (state->target_y - state->command.y);
-    state->target_time = fmax(0.0, left - touch->period);
+    state->target_time = greater(0.0, left - touch->period);
+}
+
+/* Mode and law, or what a stop leaves; the motor force that is wanted. */
+static double act(const nt_touch *touch, nt_touch_state *state)
+{
+    if (state->supervisor.state == NT_RUN) {
+        const double force = nt_mode_run(touch, state);
+        if (isfinite(force)) {
+            state->supervisor.law_run = 0;
+            state->retracted = 0.0;
+            move_lateral(touch, state);
+            return force;
+        }
+        nt_supervisor_fail_law(&state->supervisor);
+    }
+    return nt_mode_stop(touch, state, lift_of(touch, state));
+}
+
+static void drive_motor(const nt_touch *touch, nt_touch_state *state, double wanted)
+{
+    const nt_limits *limits = &touch->settings.limits;
+    state->motor_force = nt_motor_limit(limits, limits->motor_rate * touch->period, state->motor_force, wanted,
+                                        state->signals.smooth_speed);
+    const int coupled = state->supervisor.state == NT_RUN && state->mode == state->wanted_mode && !state->clutch_open;
+    if (coupled && state->mode <= NT_MODE_TOPOGRAPHY)
+        state->coupled_force = state->motor_force;
 }
 
 /* A read-out that cannot be trusted (not RUN) or that follow_error calls a fault takes no part: the integral stands
@@ -150,7 +227,7 @@ static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt
     const double measured = trusted ? sample->stage_position : state->reference;
     const double wanted = nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
     const double end = 0.5 * touch->rig.stage.travel;
-    const double command = fmin(fmax(wanted, -end), end);
+    const double command = clamp(wanted, -end, end);
     if (command != wanted)
         state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
     return command;
@@ -158,54 +235,16 @@ static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt
 
 void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, nt_command *command)
 {
-    const int unstable = touch->mode == NT_MODE_TOUCH && state->passivity.gain < 0.05;
-    const nt_state verdict = nt_supervisor_step(touch, &state->supervisor, sample, state->reference, unstable);
-    const int valid = state->supervisor.invalid_run == 0;
-    if (valid)
+    supervise(touch, state, sample);
+    if (state->supervisor.invalid_run == 0)
         observe(touch, state, sample);
-    double motor_force;
-    if (verdict == NT_RUN) {
-        motor_force = run(touch, state, sample);
-        move_lateral(touch, state);
-    } else {
-        motor_force = stop(touch, state, verdict >= NT_RETRACT);
-    }
-    state->motor_force = nt_servo_limit(&touch->settings.limits, touch->period, state->motor_force, motor_force);
-    if (verdict == NT_RUN)
-        state->coupled_force = state->motor_force;
+    drive_motor(touch, state, act(touch, state));
     state->command.stage_position = drive_stage(touch, state, sample);
+    if (state->passivity.gain < 1.0)
+        state->supervisor.reasons |= NT_REASON_BACKED_OFF;
     state->command.motor_force = state->motor_force;
-    state->command.state = (uint32_t)verdict;
+    state->command.state = (uint32_t)state->supervisor.state;
     state->command.reasons = state->supervisor.reasons;
     ++state->ticks;
     *command = state->command;
-}
-
-nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)
-{
-    if (!isfinite(x) || !isfinite(y) || !isfinite(duration))
-        return NT_E_NOT_FINITE;
-    if (duration < 0.0)
-        return NT_E_RANGE;
-    const double distance = hypot(x - state->command.x, y - state->command.y);
-    state->target_x = x;
-    state->target_y = y;
-    state->target_time = fmax(duration, distance / touch->settings.limits.lateral_speed);
-    return NT_OK;
-}
-
-nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
-{
-    if (state->supervisor.state == NT_LATCHED && !confirmed)
-        return NT_E_STATE;
-    const double stuck_deflection = state->supervisor.stuck_deflection;
-    const nt_supervisor_state fresh = {.state = NT_RUN, .stuck_deflection = stuck_deflection};
-    state->supervisor = fresh;
-    state->passivity.gain = 1.0;
-    state->passivity.energy = 0.0;
-    state->retracted = 0.0;
-    state->target_x = state->command.x; /* the path that a stop has cut short does not go on by itself */
-    state->target_y = state->command.y;
-    state->target_time = 0.0;
-    return NT_OK;
 }

@@ -5,21 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/ring.h"
-
-struct nt_session {
-    nt_plan plan;
-    nt_touch touch;
-    nt_touch_state touch_state;
-    double master_start; /* [m] */
-    nt_margins margins;
-    nt_sim sim;
-    nt_hal hal;
-    nt_mailbox mailbox;
-    nt_input mailbox_memory[3];
-    nt_ring ring;
-    nt_record *records;
-};
+#include "session/state.h"
 
 nt_session_setup nt_session_defaults(void)
 {
@@ -32,7 +18,8 @@ nt_session_setup nt_session_defaults(void)
                               .clearance = 0.1e-6,
                               .seed = 1,
                               .ring_capacity = 65536,
-                              .minimum_margin = 1.5};
+                              .minimum_margin = 1.5,
+                              .preflight = 1};
     return setup;
 }
 
@@ -58,6 +45,8 @@ static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
     const double climb = setup->settings.gains.alpha_p * 0.8 * setup->rig.master.travel;
     if (!(setup->rise >= 0.0 && setup->rise <= setup->clearance + climb))
         return refuse(problem, "rise", "m", setup->rise, 0.0, setup->clearance + climb);
+    if (!(setup->slope >= 0.0 && setup->slope <= 1e3))
+        return refuse(problem, "slope", "", setup->slope, 0.0, 1e3);
     if (!isfinite(setup->x))
         return refuse(problem, "x", "m", setup->x, -1.0, 1.0);
     if (!isfinite(setup->y))
@@ -94,6 +83,55 @@ static nt_status make_sim(nt_session *session, const nt_session_setup *setup)
     return status == NT_OK ? nt_hal_open(&session->hal, nt_sim_backend(), &session->sim) : status;
 }
 
+/* Of this law at the stiffest contact of the plan; the margin that counts in a mode comes back. */
+double nt_session_margin(const nt_session *session, const nt_settings *settings, nt_margins *margins)
+{
+    const nt_servo_shape shape = nt_servo_shape_of(&session->touch.rig, settings, session->plan.maximum_stiffness);
+    *margins = nt_margins_compute(&shape.rig, &shape.gains, shape.contact_stiffness);
+    if (session->touch.mode == NT_MODE_TOUCH) {
+        const double coupling =
+            nt_servo_coupling_margin(&shape.rig, &shape.gains, session->plan.maximum_stiffness, margins->loop_delay);
+        return fmin(margins->margin, coupling);
+    }
+    return session->touch.mode == NT_MODE_CURVE ? (double)INFINITY : margins->height_margin;
+}
+
+static nt_status judge_margin(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
+{
+    const double margin = nt_session_margin(session, &setup->settings, &session->margins);
+    if (!(margin >= setup->minimum_margin))
+        return refuse(problem, "stability margin", "", margin, setup->minimum_margin, INFINITY);
+    session->minimum_margin = setup->minimum_margin;
+    const nt_hazard hazard = {.slope = setup->slope,
+                              .snap_in_force = session->plan.pull_off_force,
+                              .stiffness = session->plan.maximum_stiffness};
+    session->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
+    return NT_OK;
+}
+
+/* Tare and sign test, on the rig's own time. */
+static nt_status fly(nt_session *session, nt_problem *problem)
+{
+    const nt_preflight preflight = nt_preflight_make(&session->touch.rig, &session->touch.settings);
+    nt_preflight_state state = {.verdict = NT_PREFLIGHT_RUNNING};
+    nt_command command = {.x = session->sim.x, .y = session->sim.y};
+    nt_status status = NT_OK;
+    while (status == NT_OK && state.verdict == NT_PREFLIGHT_RUNNING) {
+        nt_sample sample;
+        status = nt_hal_read(&session->hal, &sample);
+        if (status == NT_OK && nt_preflight_step(&preflight, &state, &sample, &command) <= NT_PREFLIGHT_PASSED)
+            status = nt_hal_write(&session->hal, &command);
+    }
+    if (status == NT_OK && state.verdict != NT_PREFLIGHT_PASSED) {
+        if (problem)
+            *problem = nt_preflight_problem(&preflight, &state);
+        return NT_E_RANGE;
+    }
+    session->tare = state.tare;
+    session->first_tick = session->sim.tick;
+    return status;
+}
+
 static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
 {
     nt_demand demand = setup->demand;
@@ -101,18 +139,16 @@ static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_
     nt_status status = nt_touch_make(&session->touch, &setup->rig, &setup->settings, setup->mode, problem);
     if (status == NT_OK)
         status = nt_plan_make(&session->plan, &setup->scene, &demand, setup->surface, problem);
-    if (status != NT_OK)
-        return status;
-    session->margins = nt_margins_compute(&setup->rig, &setup->settings.gains, session->plan.maximum_stiffness);
-    const int touching = setup->mode == NT_MODE_TOUCH;
-    const double margin = touching ? session->margins.margin : session->margins.height_margin;
-    if (!(margin >= setup->minimum_margin))
-        return refuse(problem, "stability margin", "", margin, setup->minimum_margin, INFINITY);
-    status = make_sim(session, setup);
-    if (status != NT_OK)
-        return status;
-    session->touch_state = nt_touch_start(&session->touch, session->sim.master.position, setup->x, setup->y);
+    if (status == NT_OK)
+        status = judge_margin(session, setup, problem);
+    if (status == NT_OK)
+        status = make_sim(session, setup);
     session->master_start = session->sim.master.position;
+    if (status == NT_OK && setup->preflight)
+        status = fly(session, problem);
+    if (status != NT_OK)
+        return status;
+    session->touch_state = nt_touch_start(&session->touch, session->master_start, setup->x, setup->y);
     nt_mailbox_init(&session->mailbox, session->mailbox_memory, sizeof(nt_input));
     return NT_OK;
 }
@@ -156,116 +192,4 @@ void nt_session_close(nt_session *session)
     nt_hal_close(&session->hal);
     free(session->records);
     free(session);
-}
-
-nt_status nt_session_aim(nt_session *session, const nt_input *input)
-{
-    if (!isfinite(input->operator_force) || !isfinite(input->x) || !isfinite(input->y) || !isfinite(input->duration))
-        return NT_E_NOT_FINITE;
-    if (input->duration < 0.0)
-        return NT_E_RANGE;
-    if (session->plan.surface && !nt_surface_contains(session->plan.surface, input->x, input->y))
-        return NT_E_RANGE;
-    nt_mailbox_post(&session->mailbox, input);
-    return NT_OK;
-}
-
-static nt_status take_input(nt_session *session)
-{
-    nt_input input;
-    if (!nt_mailbox_take(&session->mailbox, &input))
-        return NT_OK;
-    const nt_hand_target target = {.force = input.operator_force, .duration = input.duration};
-    nt_sim_aim_hand(&session->sim, &target);
-    return nt_touch_aim(&session->touch, &session->touch_state, input.x, input.y, input.duration);
-}
-
-static nt_record record_of(const nt_session *session, const nt_sample *sample, const nt_command *command,
-                           const nt_truth *truth)
-{
-    nt_record record = {.tick = sample->tick,
-                        .time = (double)sample->tick * session->touch.period,
-                        .x = sample->x,
-                        .y = sample->y,
-                        .master_position = sample->master_position,
-                        .operator_force = sample->operator_force,
-                        .stage_position = sample->stage_position,
-                        .stage_command = command->stage_position,
-                        .deflection = sample->deflection,
-                        .slave_force = session->touch.rig.probe.spring_constant * sample->deflection,
-                        .motor_force = command->motor_force,
-                        .gap = truth->gap,
-                        .tip_force = truth->tip_force,
-                        .contact_radius = truth->contact_radius,
-                        .surface_height = truth->surface_height,
-                        .state = command->state,
-                        .reasons = command->reasons};
-    return record;
-}
-
-static nt_status step(nt_session *session)
-{
-    nt_sample sample;
-    nt_command command;
-    const nt_truth truth = session->sim.truth; /* at the moment of the sample */
-    nt_status status = take_input(session);
-    if (status == NT_OK)
-        status = nt_hal_read(&session->hal, &sample);
-    if (status != NT_OK)
-        return status;
-    nt_touch_step(&session->touch, &session->touch_state, &sample, &command);
-    const nt_record record = record_of(session, &sample, &command, &truth);
-    status = nt_ring_push(&session->ring, &record);
-    return status == NT_OK ? nt_hal_write(&session->hal, &command) : status;
-}
-
-nt_status nt_session_advance(nt_session *session, long ticks)
-{
-    if (ticks < 0)
-        return NT_E_RANGE;
-    if ((size_t)ticks > session->ring.capacity - nt_ring_count(&session->ring))
-        return NT_E_CAPACITY;
-    nt_status status = NT_OK;
-    for (long i = 0; i < ticks && status == NT_OK; ++i)
-        status = step(session);
-    return status;
-}
-
-long nt_session_read(nt_session *session, nt_record *records, long count)
-{
-    return count > 0 ? (long)nt_ring_pop(&session->ring, records, (size_t)count) : 0;
-}
-
-nt_status nt_session_arm(nt_session *session, int confirmed)
-{
-    return nt_touch_arm(&session->touch_state, confirmed);
-}
-
-void nt_session_emergency_stop(nt_session *session, int pressed)
-{
-    if (pressed)
-        session->sim.flags |= NT_SAMPLE_EMERGENCY_STOP;
-    else
-        session->sim.flags &= ~(uint32_t)NT_SAMPLE_EMERGENCY_STOP;
-}
-
-const nt_plan *nt_session_plan(const nt_session *session)
-{
-    return &session->plan;
-}
-const nt_touch *nt_session_touch(const nt_session *session)
-{
-    return &session->touch;
-}
-nt_margins nt_session_margins(const nt_session *session)
-{
-    return session->margins;
-}
-double nt_session_start_height(const nt_session *session)
-{
-    return session->sim.start_height;
-}
-double nt_session_master_start(const nt_session *session)
-{
-    return session->master_start;
 }

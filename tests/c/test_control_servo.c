@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: BSD-3-Clause */
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The laws alone, and in a small exact loop: a master under a hold, a stage that follows, a spring. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,74 +8,177 @@
 
 #include <cmocka.h>
 
-#include "control/servo.h"
 #include "nanotouch/random.h"
+#include "nanotouch/servo.h"
+
+static const nt_signals still = {.master_damping = 100.0, .scaling = {2e-5, 3e6}, .gain_factor = 1.0};
 
 /* tau + f_m = (1 + K_f)(f_m - alpha_f f_s): at rest, and only there, f_m = alpha_f f_s, whatever K_f (erratum E16). */
 static void rest_means_scaled_forces_agree(void **state)
 {
     (void)state;
+    static const nt_servo_law laws[] = {nt_servo_default, nt_servo_paper};
     nt_random random = nt_random_seed(1);
     for (int i = 0; i < 1000; i++) {
-        const nt_gains gains = {.force_gain = 100.0 * nt_random_uniform(&random),
-                                .alpha_f = pow(10.0, 3.0 + 5.0 * nt_random_uniform(&random))};
-        const double f_m = 5.0 * (2.0 * nt_random_uniform(&random) - 1.0), f_s = f_m / gains.alpha_f;
-        assert_true(fabs(nt_servo_force(&gains, 1.0, f_s, f_m) + f_m) < 1e-12);
-        const double other = 1.1 * f_s; /* off balance: the difference, amplified by 1 + K_f */
-        const double net = nt_servo_force(&gains, 1.0, other, f_m) + f_m;
-        assert_true(fabs(net - (1.0 + gains.force_gain) * (f_m - gains.alpha_f * other)) < 1e-12);
+        const nt_gains gains = {.force_gain = 100.0 * nt_random_uniform(&random)};
+        nt_signals s = still;
+        s.scaling.alpha_f = pow(10.0, 3.0 + 5.0 * nt_random_uniform(&random));
+        s.operator_force = s.smooth_force = 5.0 * (2.0 * nt_random_uniform(&random) - 1.0);
+        s.slave_force = s.operator_force / s.scaling.alpha_f;
+        assert_true(fabs(laws[i % 2](NULL, &gains, &s).motor_force + s.operator_force) < 1e-12);
+        s.slave_force *= 1.1; /* off balance: the difference, amplified by 1 + K_f */
+        const double difference = s.operator_force - s.scaling.alpha_f * s.slave_force;
+        const double net = laws[i % 2](NULL, &gains, &s).motor_force + s.operator_force;
+        assert_true(fabs(net - (1.0 + gains.force_gain) * difference) < 1e-12);
         /* the passivity observer takes K_f away, never the reflected force */
-        assert_true(fabs(nt_servo_force(&gains, 0.0, other, f_m) + gains.alpha_f * other) < 1e-12);
+        s.gain_factor = 0.0;
+        assert_true(fabs(laws[i % 2](NULL, &gains, &s).motor_force + s.scaling.alpha_f * s.slave_force) < 1e-12);
     }
 }
 
-static void height_is_a_spring(void **state)
+/* Eq. 17 by hand, every signal different. */
+static void the_papers_law_is_eq_17(void **state)
 {
     (void)state;
-    const nt_gains gains = {.height_stiffness = 3000.0};
-    assert_true(fabs(nt_servo_height(&gains, 1e-3, 0.0) - 3.0) < 1e-12); /* higher: draws on */
-    assert_true(fabs(nt_servo_height(&gains, 1e-3, 2e-3) + 3.0) < 1e-12);
+    const nt_gains gains = {
+        .force_gain = 10.0, .stage_proportional = 7.0, .stage_derivative = 1e-3, .velocity_feedforward = 0.5};
+    const nt_signals s = {.master_position = 1e-3,
+                          .master_speed = 2e-3,
+                          .smooth_speed = 9.0,
+                          .operator_force = 1.5,
+                          .smooth_force = 9.0,
+                          .slave_force = 0.4e-6,
+                          .stage_position = 13e-9,
+                          .stage_speed = 17e-9,
+                          .target = 15e-9,
+                          .scaling = {15e-6, 4e6},
+                          .master_damping = 100.0,
+                          .gain_factor = 1.0};
+    const nt_effort effort = nt_servo_paper(NULL, &gains, &s);
+    assert_true(fabs(effort.motor_force - (-1.6 - 10.0 * (1.6 - 1.5))) < 1e-12);
+    assert_true(fabs(effort.stage - (1e-3 * (15e-6 * 2e-3 - 17e-9) + 7.0 * (15e-9 - 13e-9))) < 1e-20);
+    assert_true(nt_servo_default(NULL, &gains, &s).stage == s.target);
 }
 
-static void fading_takes_energy_from_the_master(void **state)
+static void feed_forward_takes_its_share_of_the_drag(void **state)
 {
     (void)state;
-    const nt_master master = nt_rig_defaults().master;
-    for (double speed = -1.0; speed <= 1.0; speed += 0.25) {
-        const double force = nt_servo_fade(&master, 0.0, speed);
-        assert_true(force * speed <= 0.0 && fabs(force) <= master.damping * fabs(speed));
-        assert_true(nt_servo_fade(&master, 2.0, speed) == 2.0 + force);
+    const nt_gains gains = {.velocity_feedforward = 0.8};
+    nt_signals s = still;
+    s.smooth_speed = 5e-3;
+    assert_true(fabs(nt_servo_default(NULL, &gains, &s).motor_force - 0.4) < 1e-12);
+    assert_true(fabs(nt_servo_impedance(NULL, &gains, &s).motor_force - 0.4) < 1e-12);
+}
+
+static void impedance_reflects_and_asks_no_hand(void **state)
+{
+    (void)state;
+    const nt_gains gains = {.force_gain = 10.0};
+    nt_signals s = still;
+    s.slave_force = 1e-6;
+    s.operator_force = s.smooth_force = NAN;
+    assert_true(nt_servo_impedance(NULL, &gains, &s).motor_force == -3.0);
+    s.gain_factor = 0.5; /* backs off in what is reflected: there is nothing else */
+    assert_true(nt_servo_impedance(NULL, &gains, &s).motor_force == -1.5);
+}
+
+typedef struct loop {
+    nt_servo_law law;
+    nt_gains gains;
+    double k_r; /* the contact at the operator's scale [N/m] */
+    double x, v, tau;
+} loop;
+
+/* m = 0.1 kg, b = 100 N s/m, exactly under the hold of a period; the stage is where it shall be; touch at x = 0. */
+static void advance(loop *l, double push, int ticks)
+{
+    const double T = 1.0 / l->gains.rate, m = 0.1, b = 100.0, a = exp(-b * T / m);
+    for (int i = 0; i < ticks; i++) {
+        const double force = l->tau + push;
+        const double reached = l->x + m / b * (1.0 - a) * l->v + (T / b - m / (b * b) * (1.0 - a)) * force;
+        const double speed = a * l->v + (1.0 - a) / b * force;
+        nt_signals s = still;
+        s.period = T;
+        s.master_speed = s.smooth_speed = (reached - l->x) / T;
+        s.operator_force = s.smooth_force = push;
+        s.slave_force = l->k_r * reached / s.scaling.alpha_f;
+        l->x = reached, l->v = speed;
+        l->tau = l->law(NULL, &l->gains, &s).motor_force;
     }
 }
 
-static void rate_and_amplitude_are_limited(void **state)
+/* 1 000 sets of gains inside half of R1 (here D = T/2 + T, the stage being ideal): at rest f_m = alpha_f f_s. */
+static void a_thousand_gain_sets_come_to_rest_at_the_scaled_force(void **state)
 {
     (void)state;
-    const nt_limits limits = {.motor_force = 5.0, .motor_rate = 2000.0};
-    const double period = 1e-4, step = 0.2;
-    double force = 0.0;
-    for (int i = 0; i < 100; i++) {
-        const double next = nt_servo_limit(&limits, period, force, 1e9);
-        assert_true(next - force <= step * (1.0 + 1e-12) && next <= 5.0);
-        force = next;
+    static const nt_servo_law laws[] = {nt_servo_default, nt_servo_paper, nt_servo_impedance};
+    nt_random random = nt_random_seed(2);
+    double worst = 0.0;
+    for (int i = 0; i < 1000; i++) {
+        loop l = {.law = laws[i % 3]};
+        l.gains.rate = 1e3 * pow(20.0, nt_random_uniform(&random));
+        l.gains.force_gain = 100.0 * nt_random_uniform(&random);
+        l.gains.velocity_feedforward = i % 3 == 1 ? 0.0 : 0.8 * nt_random_uniform(&random);
+        const double K_f = i % 3 == 2 ? 0.0 : l.gains.force_gain,
+                     damping = 100.0 * (1.0 - l.gains.velocity_feedforward);
+        const double limit = damping / (1.5 / l.gains.rate) / (1.0 + K_f);
+        l.k_r = limit * (0.02 + 0.48 * nt_random_uniform(&random));
+        const double push = 0.1 + 4.9 * nt_random_uniform(&random);
+        const double slowest = 100.0 / ((1.0 + K_f) * l.k_r); /* b over kappa [s] */
+        advance(&l, push, (int)(l.gains.rate * (20.0 * slowest + 0.3)));
+        worst = fmax(worst, fabs(l.k_r * l.x - push) / push);
     }
-    assert_true(force == 5.0);
-    for (int i = 0; i < 100; i++) {
-        const double next = nt_servo_limit(&limits, period, force, -1e9);
-        assert_true(force - next <= step * (1.0 + 1e-12) && next >= -5.0);
-        force = next;
+    print_message("f_m = alpha_f f_s within %.1e of f_m\n", worst);
+    assert_true(worst < 1e-6);
+}
+
+static void a_shape_is_what_the_rules_need(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    settings.gains.velocity_feedforward = 0.6;
+    settings.gains.force_gain = 5.0;
+    settings.gains.alpha_f_retract = 3.0;
+    nt_servo_shape shape = nt_servo_shape_of(&rig, &settings, 100.0);
+    assert_true(shape.gains.force_gain == 5.0 && fabs(shape.rig.master.damping - 40.0) < 1e-12);
+    assert_true(shape.gains.alpha_f == 3.0 * settings.gains.alpha_f && shape.contact_stiffness == 100.0);
+    settings.control.choice = NT_CONTROL_IMPEDANCE;
+    shape = nt_servo_shape_of(&rig, &settings, 100.0);
+    assert_true(shape.gains.force_gain == 0.0 && fabs(shape.rig.master.damping - 40.0) < 1e-12);
+    settings.control.choice = NT_CONTROL_PAPER; /* has no feed-forward and no notch */
+    shape = nt_servo_shape_of(&rig, &settings, 100.0);
+    assert_true(shape.rig.master.damping == 100.0 && shape.gains.stage_damping == 0.5 / rig.stage.quality);
+}
+
+/* Springs in series: the contact at the operator's scale and the coupling. */
+static void a_coupling_softens_every_contact(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    settings.gains.coupling_stiffness = 300.0;
+    const double scale = settings.gains.alpha_f * settings.gains.alpha_p, k_c = rig.probe.spring_constant;
+    for (double k = 0.1; k < 1e6; k *= 10.0) {
+        const double softened = nt_servo_shape_of(&rig, &settings, k).contact_stiffness;
+        const double rigid = scale / (1.0 / k + 1.0 / k_c), felt = scale / (1.0 / softened + 1.0 / k_c);
+        assert_true(fabs(1.0 / felt - (1.0 / rigid + 1.0 / 300.0)) < 1e-9 / felt);
+        assert_true(felt < 300.0);
     }
-    assert_true(force == -5.0);
-    assert_true(nt_servo_limit(&limits, period, 1.0, 1.1) == 1.1); /* inside the limits: as wanted */
+    const double felt = scale / (1.0 / nt_servo_shape_of(&rig, &settings, INFINITY).contact_stiffness + 1.0 / k_c);
+    assert_true(fabs(1.0 / felt - (1.0 / (scale * k_c) + 1.0 / 300.0)) < 1e-9 / felt);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rest_means_scaled_forces_agree),
-        cmocka_unit_test(height_is_a_spring),
-        cmocka_unit_test(fading_takes_energy_from_the_master),
-        cmocka_unit_test(rate_and_amplitude_are_limited),
+        cmocka_unit_test(the_papers_law_is_eq_17),
+        cmocka_unit_test(feed_forward_takes_its_share_of_the_drag),
+        cmocka_unit_test(impedance_reflects_and_asks_no_hand),
+        cmocka_unit_test(a_thousand_gain_sets_come_to_rest_at_the_scaled_force),
+        cmocka_unit_test(a_shape_is_what_the_rules_need),
+        cmocka_unit_test(a_coupling_softens_every_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,7 +32,13 @@ static input healthy(nt_state state)
 {
     return (input){.sample = {.deflection = 1e-9, .stage_position = 1e-6},
                    .reference = 1e-6,
-                   .history = {.state = state, .stuck_deflection = NAN}};
+                   .history = {.state = state, .stuck_deflection = NAN, .surface = 1e-6}};
+}
+
+static nt_state step(input *in)
+{
+    const nt_situation situation = {.reference = in->reference, .unstable = in->unstable};
+    return nt_supervisor_step(&touch.supervisor, &in->history, &in->sample, &situation);
 }
 
 static void no_event(input *in)
@@ -121,6 +127,23 @@ static void limit_switch(input *in)
     in->sample.flags |= NT_SAMPLE_LIMIT_SWITCH;
 }
 
+static void fifth_late_tick(input *in)
+{
+    in->sample.lateness = 0.21 * touch.period;
+    in->history.late_run = 4;
+}
+
+static void device_gone(input *in)
+{
+    in->sample.flags |= NT_SAMPLE_DEVICE_LOST;
+}
+
+static void too_deep(input *in)
+{
+    in->history.surface = in->sample.stage_position - 1.05 * touch.settings.limits.indentation;
+    in->sample.deflection += 3e-9; /* in contact */
+}
+
 static void gauge_at_its_range(input *in)
 {
     in->sample.operator_force = -touch.rig.master.gauge_range;
@@ -139,7 +162,7 @@ static const event events[] = {
     {nan_force, NT_HOLD, NT_REASON_INVALID, 1, 0},
     {bad_frame_again, NT_RETRACT, NT_REASON_INVALID, 1, 0},
     {saturated, NT_RETRACT, NT_REASON_SATURATED | NT_REASON_FORCE_LIMIT, 2, 1},
-    {pulled_to_the_end, NT_RETRACT, NT_REASON_SATURATED | NT_REASON_FORCE_LIMIT, 2, 1},
+    {pulled_to_the_end, NT_RETRACT, NT_REASON_SATURATED | NT_REASON_FORCE_LIMIT | NT_REASON_INDENTATION, 2, 1},
     {above_force_limit, NT_RETRACT, NT_REASON_FORCE_LIMIT, 2, 1},
     {below_negative_limit, NT_RETRACT, NT_REASON_FORCE_LIMIT, 2, 1},
     {age_three_periods, NT_HOLD, NT_REASON_STALE, 3, 1},
@@ -151,6 +174,9 @@ static const event events[] = {
     {no_gain_left, NT_HOLD, NT_REASON_UNSTABLE, 5, 0},
     {emergency_stop, NT_LATCHED, NT_REASON_EMERGENCY_STOP, 6, 0},
     {limit_switch, NT_RETRACT, NT_REASON_LIMIT_SWITCH, 7, 0},
+    {fifth_late_tick, NT_HOLD, NT_REASON_LATE, 8, 0},
+    {device_gone, NT_LATCHED, NT_REASON_DEVICE | NT_REASON_INVALID, 1, 0},
+    {too_deep, NT_RETRACT, NT_REASON_INDENTATION, 2, 1},
     {gauge_at_its_range, NT_RUN, NT_REASON_OPERATOR_CLIPPED, 1, 1},
 };
 enum { EVENTS = (int)(sizeof events / sizeof *events) };
@@ -179,7 +205,7 @@ static void every_state_and_every_pair_of_events(void **unused)
                 const nt_state vb = invalid && b->measured ? NT_RUN : b->verdict;
                 const uint32_t reasons =
                     (invalid && a->measured ? 0 : a->reason) | (invalid && b->measured ? 0 : b->reason);
-                const nt_state found = nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, in.unstable);
+                const nt_state found = step(&in);
                 const nt_state verdict = worse(va, vb);
                 assert_int_equal(found, s >= NT_RETRACT ? worse((nt_state)s, verdict) : verdict);
                 assert_int_equal(in.history.state, found);
@@ -205,8 +231,8 @@ static void every_number_of_a_sample_is_checked(void **unused)
         for (int j = 0; j < 3; j++) {
             input in = healthy(NT_RUN);
             *(double *)(void *)((char *)&in.sample + fields[i]) = bad[j];
-            assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);
-            assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RETRACT);
+            assert_int_equal(step(&in), NT_HOLD);
+            assert_int_equal(step(&in), NT_RETRACT);
             assert_int_equal(in.history.reasons, NT_REASON_INVALID);
         }
     const double far[] = {1.01 * touch.rig.master.travel, 2.02 * touch.rig.master.gauge_range,
@@ -214,11 +240,11 @@ static void every_number_of_a_sample_is_checked(void **unused)
     for (int i = 0; i < 3; i++) {
         input in = healthy(NT_RUN);
         *(double *)(void *)((char *)&in.sample + fields[i + 1]) = -far[i];
-        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);
+        assert_int_equal(step(&in), NT_HOLD);
     }
     input in = healthy(NT_RUN);
     in.sample.age = -1e-9;
-    assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_HOLD);
+    assert_int_equal(step(&in), NT_HOLD);
 }
 
 static void a_good_sample_between_bad_ones_ends_the_run(void **unused)
@@ -227,8 +253,7 @@ static void a_good_sample_between_bad_ones_ends_the_run(void **unused)
     input in = healthy(NT_RUN);
     for (int i = 0; i < 100; i++) {
         in.sample.flags = i % 2 ? NT_SAMPLE_INVALID : 0u;
-        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0),
-                         i % 2 ? NT_HOLD : NT_RUN);
+        assert_int_equal(step(&in), i % 2 ? NT_HOLD : NT_RUN);
     }
 }
 
@@ -243,7 +268,7 @@ static void just_inside_every_limit_is_run(void **unused)
     in.sample.operator_force = 0.9999 * touch.rig.master.gauge_range;
     in.reference = in.sample.stage_position + 0.9999 * limits->follow_error;
     for (int i = 0; i < 10000; i++)
-        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RUN);
+        assert_int_equal(step(&in), NT_RUN);
     assert_int_equal(in.history.reasons, 0);
 }
 
@@ -253,7 +278,7 @@ static int ticks_until(input *in, nt_state wanted, double stage_speed)
     for (int tick = 1; tick < 100000; tick++) {
         in->sample.stage_position += stage_speed * touch.period;
         in->reference += stage_speed * touch.period;
-        if (nt_supervisor_step(&touch, &in->history, &in->sample, in->reference, in->unstable) >= wanted)
+        if (step(in) >= wanted)
             return tick;
     }
     return 0;
@@ -272,7 +297,7 @@ static void a_stuck_sensor_is_found_while_z_moves(void **unused)
     assert_int_equal(in.history.state, NT_HOLD);
     /* one different code: it lives */
     in.sample.deflection += 1e-11;
-    assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RUN);
+    assert_int_equal(step(&in), NT_RUN);
 }
 
 /* Gain -1, 0 and 0.1 of a stage that is told to move 10 um/s. */
@@ -287,7 +312,7 @@ static void a_stage_that_does_not_follow(void **unused)
             in.sample.deflection += 1e-12; /* alive */
             in.sample.stage_position += gains[i] * 10e-6 * touch.period;
             in.reference += 10e-6 * touch.period;
-            const nt_state found = nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0);
+            const nt_state found = step(&in);
             if (found >= NT_HOLD && held_after == 0.0)
                 held_after = tick * touch.period;
             if (found == NT_LATCHED)
@@ -302,16 +327,83 @@ static void a_stage_that_does_not_follow(void **unused)
     for (int i = 0; i < 10000; i++) {
         in.reference = in.sample.stage_position + (i % 200 ? 2.0 : 0.0) * touch.settings.limits.follow_error;
         in.sample.deflection += 1e-12;
-        assert_int_equal(nt_supervisor_step(&touch, &in.history, &in.sample, in.reference, 0), NT_RUN);
+        assert_int_equal(step(&in), NT_RUN);
     }
+}
+
+/* One late tick is counted, five in a row hold, five punctual ones let go; late ticks now and then never hold. */
+static void late_ticks_hold(void **unused)
+{
+    (void)unused;
+    input in = healthy(NT_RUN);
+    in.sample.lateness = 0.3 * touch.period;
+    for (int i = 1; i <= 20; i++)
+        assert_int_equal(step(&in), i < 5 ? NT_RUN : NT_HOLD);
+    in.sample.lateness = 0.0;
+    for (int i = 1; i <= 10; i++)
+        assert_int_equal(step(&in), i < 5 ? NT_HOLD : NT_RUN);
+    for (int i = 0; i < 1000; i++) {
+        in.sample.lateness = i % 5 ? touch.period : 0.0;
+        assert_int_equal(step(&in), NT_RUN);
+    }
+    assert_int_equal(in.history.late_ticks, 20 + 800);
+    in.sample.lateness = NAN;
+    for (int i = 1; i <= 5; i++)
+        step(&in);
+    assert_int_equal(in.history.state, NT_HOLD);
+}
+
+/* Past first touch 0.3 um and no more; what a rising surface does under a tip that goes sideways is not counted. */
+static void indentation_counts_from_first_touch(void **unused)
+{
+    (void)unused;
+    const double k_c = touch.rig.probe.spring_constant, limit = touch.settings.limits.indentation;
+    const double softness = 20e-9 / limit; /* deflection per indentation */
+    for (double surface = 0.5e-6; surface < 3e-6; surface += 0.7e-6) {
+        nt_supervisor_state state = nt_supervisor_start();
+        double indentation = 0.0;
+        for (double z = 0.0; state.state == NT_RUN && z < 5e-6; z += 1e-9) {
+            indentation = fmax(0.0, z - surface) / (1.0 + softness);
+            const nt_sample sample = {.stage_position = z,
+                                      .deflection = softness * indentation + 1e-12 * fmod(z, 2e-9)};
+            const nt_situation situation = {.reference = z};
+            nt_supervisor_step(&touch.supervisor, &state, &sample, &situation);
+        }
+        assert_int_equal(state.reasons, NT_REASON_INDENTATION);
+        /* first touch is seen when the force leaves the noise */
+        const double unseen = touch.supervisor.free_force / k_c / softness;
+        assert_true(indentation > limit && indentation < limit + unseen + 2e-9);
+    }
+    nt_supervisor_state state = nt_supervisor_start();
+    for (int i = 0; i < 3000; i++) { /* the stage draws back by 0.3 um to let the surface rise by 0.3 um, and returns */
+        const double hill = 0.3e-6 * sin(i * 1e-3 * 3.14159);
+        const nt_sample sample = {.stage_position = 1e-6 - hill, .deflection = 50e-9 + 1e-12 * (i % 2)};
+        const nt_situation situation = {.reference = 1e-6 - hill, .moves_sideways = 1};
+        assert_int_equal(nt_supervisor_step(&touch.supervisor, &state, &sample, &situation), NT_RUN);
+    }
+}
+
+static void a_law_without_numbers_holds_then_retracts(void **unused)
+{
+    (void)unused;
+    nt_supervisor_state state = nt_supervisor_start();
+    assert_int_equal(nt_supervisor_fail_law(&state), NT_HOLD);
+    assert_int_equal(nt_supervisor_fail_law(&state), NT_RETRACT);
+    assert_int_equal(state.reasons, NT_REASON_LAW);
+    assert_int_equal(nt_supervisor_arm(&state, 0), NT_OK);
+    state.state = NT_LATCHED;
+    assert_int_equal(nt_supervisor_arm(&state, 0), NT_E_STATE);
+    assert_int_equal(state.state, NT_LATCHED);
+    assert_int_equal(nt_supervisor_arm(&state, 1), NT_OK);
+    assert_int_equal(state.state, NT_RUN);
 }
 
 static void reasons_have_names(void **unused)
 {
     (void)unused;
-    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_COMMAND_LIMITED; bit <<= 1)
+    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_BACKED_OFF; bit <<= 1)
         assert_true(nt_reason_name(bit)[0] != 0);
-    assert_string_equal(nt_reason_name(NT_REASON_COMMAND_LIMITED << 1), "");
+    assert_string_equal(nt_reason_name(NT_REASON_BACKED_OFF << 1), "");
     assert_string_equal(nt_reason_name(0), "");
     assert_string_equal(nt_reason_name(NT_REASON_FORCE_LIMIT), "force limit");
 }
@@ -325,6 +417,9 @@ int main(void)
         cmocka_unit_test(just_inside_every_limit_is_run),
         cmocka_unit_test(a_stuck_sensor_is_found_while_z_moves),
         cmocka_unit_test(a_stage_that_does_not_follow),
+        cmocka_unit_test(late_ticks_hold),
+        cmocka_unit_test(indentation_counts_from_first_touch),
+        cmocka_unit_test(a_law_without_numbers_holds_then_retracts),
         cmocka_unit_test(reasons_have_names),
     };
     return cmocka_run_group_tests(tests, make_touch, NULL);

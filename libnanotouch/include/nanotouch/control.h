@@ -3,9 +3,12 @@
 #ifndef NANOTOUCH_CONTROL_H
 #define NANOTOUCH_CONTROL_H
 
+#include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/passivity.h"
+#include "nanotouch/preflight.h"
 #include "nanotouch/scaling.h"
+#include "nanotouch/servo.h"
 #include "nanotouch/settings.h"
 #include "nanotouch/stage_loop.h"
 #include "nanotouch/supervisor.h"

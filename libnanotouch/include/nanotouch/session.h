@@ -25,12 +25,15 @@ typedef struct nt_session_setup {
     double x, y;               /* where it starts [m] */
     double clearance;          /* L, height of the tip above the surface there [m] */
     double rise;               /* how far the surface rises above the start along the path [m], >= 0 */
+    double slope;              /* of the surface where it is steepest along the path [-], >= 0 */
     uint64_t seed;
     long ring_capacity;    /* records held between two reads; rounded up to a power of two */
     double minimum_margin; /* refuse to open below this stability margin (R1) [-] */
+    int preflight;         /* 1: tare and sign test before the first tick (preflight.h) */
 } nt_session_setup;
 
-/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5. */
+/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with
+ * preflight. */
 NT_API nt_session_setup nt_session_defaults(void);
 
 /* What the operator does next: hand force and tip position go there on a straight line, then stay. */
@@ -46,42 +49,58 @@ typedef struct nt_record {
     double time;            /* [s] */
     double x, y;            /* lateral position [m] */
     double master_position; /* x_m measured [m] */
-    double operator_force;  /* f_m measured [N] */
+    double operator_force;  /* f_m measured, tared [N] */
     double stage_position;  /* x_s measured, travel towards the sample [m] */
     double stage_command;   /* [m] */
-    double deflection;      /* zeta measured [m] */
+    double deflection;      /* zeta measured, tared [m] */
     double slave_force;     /* f_s = k_c zeta [N] */
     double motor_force;     /* tau_m commanded [N] */
     double gap;             /* truth: h [m] */
     double tip_force;       /* truth: F [N] */
     double contact_radius;  /* truth: a [m] */
     double surface_height;  /* truth: z_s under the tip, dilated [m] */
+    double age;             /* of the sample [s] */
+    double lateness;        /* of the tick [s] */
+    uint32_t flags;         /* NT_SAMPLE_* */
+    uint32_t phase;         /* nt_phase, of an approach or a curve */
     uint32_t state;         /* nt_state */
     uint32_t reasons;       /* NT_REASON_* */
 } nt_record;
 
 /* Opens a session. A fractional delay is simulated as the next whole one. NT_E_RANGE with problem->field "stability
- * margin" if the loop would run closer to its stability limit than minimum_margin. The session belongs to the caller:
- * nt_session_close. */
+ * margin" if the loop would run closer to its stability limit than minimum_margin, or with what preflight has found.
+ * The session belongs to the caller: nt_session_close. */
 NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
 /* Accepts NULL. */
 NT_API void nt_session_close(nt_session *session);
 
 /* Mailbox: the newest input counts from the next tick on. May be called from another thread than advance. */
 NT_API NT_REALTIME nt_status nt_session_aim(nt_session *session, const nt_input *input);
-/* Runs `ticks` periods. NT_E_CAPACITY, with nothing run, if the ring could not hold them: nothing is ever dropped. */
+/* Runs `ticks` periods. A device that fails (NT_E_DEVICE) is no error of this function: the state is LATCHED with
+ * NT_REASON_DEVICE in the same tick. NT_E_CAPACITY, with nothing run, if the ring could not hold them: nothing is ever
+ * dropped. */
 NT_API NT_REALTIME nt_status nt_session_advance(nt_session *session, long ticks);
 /* Moves up to `count` records out of the ring; returns how many. */
 NT_API NT_REALTIME long nt_session_read(nt_session *session, nt_record *records, long count);
 /* Back to RUN after a stop (nt_touch_arm). */
 NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
+/* Requests to the touch step between two ticks (touch.h). A new scale with which the loop would run closer to its limit
+ * than minimum_margin is refused with NT_E_RANGE. */
+NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode);
+NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling);
+NT_API void nt_session_clutch(nt_session *session, int open);
 /* Presses or releases the simulated emergency stop. */
 NT_API void nt_session_emergency_stop(nt_session *session, int pressed);
 
 /* Read-only views, valid until close. */
 NT_API const nt_plan *nt_session_plan(const nt_session *session);
 NT_API const nt_touch *nt_session_touch(const nt_session *session);
+NT_API const nt_touch_state *nt_session_touch_state(const nt_session *session);
 NT_API nt_margins nt_session_margins(const nt_session *session);
+/* What holds whatever the operator does; to be read before the first tick. */
+NT_API nt_guarantee nt_session_guarantee(const nt_session *session);
+/* What preflight has taken off the sensors. */
+NT_API nt_tare nt_session_tare(const nt_session *session);
 /* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. */
 NT_API double nt_session_start_height(const nt_session *session);
 /* x_m at the start [m]: the stage shall be at alpha_p (x_m - master_start). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the operator chooses: mode, gains and limits of the loop. */
+ * What the operator chooses: mode, law, gains and limits of the loop. */
 #ifndef NANOTOUCH_SETTINGS_H
 #define NANOTOUCH_SETTINGS_H
 
@@ -11,43 +11,76 @@ extern "C" {
 #endif
 
 typedef enum nt_mode {
-    NT_MODE_TOUCH,     /* the operator moves z and feels the force (point touch, tactile scan) */
-    NT_MODE_TOPOGRAPHY /* z is servoed to a constant force, the operator feels the height only */
+    NT_MODE_TOUCH,      /* the operator moves z and feels the force (point touch, tactile scan) */
+    NT_MODE_TOPOGRAPHY, /* z is servoed to a constant force, the operator feels the height only */
+    NT_MODE_APPROACH,   /* down at approach_speed until the set-point is felt, then held there */
+    NT_MODE_CURVE       /* down to the set-point, up again by curve_length, at approach_speed */
 } nt_mode;
 
+typedef enum nt_law_choice { NT_CONTROL_DEFAULT, NT_CONTROL_PAPER, NT_CONTROL_IMPEDANCE, NT_CONTROL_OWN } nt_law_choice;
+
+struct nt_signals;
+struct nt_effort;
+struct nt_gains;
+
+/* Which law (servo.h). All zero: the default one. */
+typedef struct nt_control {
+    nt_law_choice choice;
+    struct nt_effort (*law)(void *context, const struct nt_gains *gains, const struct nt_signals *signals); /* OWN */
+    void *context;                                                                                          /* OWN */
+} nt_control;
+
 typedef struct nt_gains {
-    double rate;             /* force loop, 1/T [Hz] */
-    double alpha_p;          /* [m/m] */
-    double alpha_f;          /* [N/N] */
-    double force_gain;       /* K_f of Eq. 17 [-] */
-    double force_filter;     /* low-pass of f_m [Hz] */
-    double stage_damping;    /* zeta that the notch leaves to the stage's resonance [-] */
-    double stage_integral;   /* integral gain of the stage loop [1/s] */
-    double ramp_time;        /* force fades in over this on engagement [s] */
-    double set_point;        /* force held in topography mode [N] */
-    double height_gain;      /* integral gain of the height servo [1/s] */
-    double height_stiffness; /* how hard the master is drawn to the height [N/m] */
-    double delay;            /* conversion and computing delay of the rig [periods] */
+    double rate;                 /* force loop, 1/T [Hz] */
+    double alpha_p;              /* stage over master [m/m] */
+    double alpha_f;              /* operator over tip [N/N] */
+    double alpha_f_approach;     /* factor on alpha_f before contact [-] */
+    double alpha_f_retract;      /* factor on alpha_f where the tip is held by adhesion [-] */
+    double force_gain;           /* K_f of Eq. 17 [-] */
+    double force_filter;         /* low-pass of f_m [Hz] */
+    double velocity_feedforward; /* beta, share of the master's damping that the motor takes over [-] */
+    double stage_damping;        /* zeta that the notch leaves to the stage's resonance [-] */
+    double stage_integral;       /* integral gain of the stage loop [1/s] */
+    double stage_proportional;   /* K_p of Eq. 17, the paper's law only [-] */
+    double stage_derivative;     /* K_v of Eq. 17, the paper's law only [s] */
+    double coupling_stiffness;   /* virtual coupling between master and stage, 0: rigid [N/m] */
+    double coupling_damping;     /* its damping [N s/m] */
+    double ramp_time;            /* force fades in over this on engagement, a new scale too [s] */
+    double set_point;            /* force held in topography mode, sought in approach and curve [N] */
+    double height_gain;          /* integral gain of the height servo [1/s] */
+    double height_stiffness;     /* how hard the master is drawn to the height [N/m] */
+    double approach_speed;       /* of the stage in approach and curve [m/s] */
+    double curve_length;         /* a curve draws back by this from where it turned [m] */
+    double delay;                /* conversion, computing and link delay of the rig [periods] */
 } nt_gains;
 
 typedef struct nt_limits {
     double force;            /* on the sample, either sign [N] */
+    double indentation;      /* of tip and sample past first touch [m] */
     double stage_speed;      /* [m/s] */
     double lateral_speed;    /* [m/s] */
     double motor_force;      /* [N] */
     double motor_rate;       /* [N/s] */
+    double motor_power;      /* that the motor may put into the hand [W] */
     double retract_distance; /* RETRACT lifts by this [m] */
     double retract_speed;    /* at this [m/s] */
     double follow_error;     /* the stage may be this far from its command [m] ... */
     double follow_time;      /* ... for this long [s] */
+    double deflection_bias;  /* what the tare may find at the deflection [m] ... */
+    double deflection_drift; /* ... and how fast it may change [m/s] */
+    double gauge_bias;       /* the same of the hand's gauge [N] ... */
+    double gauge_drift;      /* ... [N/s] */
 } nt_limits;
 
 typedef struct nt_settings {
     nt_gains gains;
     nt_limits limits;
+    nt_control control;
 } nt_settings;
-/* 10 kHz, K_f = 2, scaling by the heuristic rule for a slave path of 0.4 um, limits inside the rig's ranges. */
+/* 10 kHz, K_f = 2, scaling by the heuristic rule for a slave path of 0.4 um, limits inside the rig's ranges; the
+ * impedance law if the rig has no gauge. */
 NT_API nt_settings nt_settings_defaults(const nt_rig *rig);
+/* The table of gains and limits. */
 NT_API const nt_field *nt_settings_fields(int *count);
 NT_API nt_status nt_settings_check(const nt_settings *settings, nt_problem *problem);
 

@@ -3,6 +3,7 @@
 #ifndef NANOTOUCH_SUPERVISOR_H
 #define NANOTOUCH_SUPERVISOR_H
 
+#include "nanotouch/settings.h"
 #include "nanotouch/types.h"
 
 #ifdef __cplusplus
@@ -16,30 +17,63 @@ enum {
     NT_REASON_STALE = 1u << 3,    /* sample older than 2 T */
     NT_REASON_STUCK = 1u << 4,    /* the deflection does not change while z moves */
     NT_REASON_FOLLOW = 1u << 5,   /* the stage does not follow */
-    NT_REASON_UNSTABLE = 1u << 6, /* the passivity observer has taken all force gain away */
+    NT_REASON_UNSTABLE = 1u << 6, /* the passivity observer has used up what it had */
     NT_REASON_EMERGENCY_STOP = 1u << 7,
     NT_REASON_LIMIT_SWITCH = 1u << 8,
     NT_REASON_OPERATOR_CLIPPED = 1u << 9, /* the gauge is at its range: a flag, the state stays RUN */
-    NT_REASON_COMMAND_LIMITED = 1u << 10  /* stage speed or travel is at its limit: a flag */
+    NT_REASON_COMMAND_LIMITED = 1u << 10, /* stage speed or travel is at its limit: a flag */
+    NT_REASON_LATE = 1u << 11,            /* ticks late by more than T/5, in a row */
+    NT_REASON_DEVICE = 1u << 12,          /* a device is gone */
+    NT_REASON_INDENTATION = 1u << 13,     /* the indentation is at its limit */
+    NT_REASON_LAW = 1u << 14,             /* the control law gave no number */
+    NT_REASON_BACKED_OFF = 1u << 15       /* the passivity observer has taken gain away: a flag */
 };
 /* "force limit", ... of one reason bit; "" for none. */
 NT_API const char *nt_reason_name(uint32_t reason);
 
+/* All that does not change while it runs. */
+typedef struct nt_supervisor {
+    double period;           /* T [s] */
+    double spring_constant;  /* k_c [N/m] */
+    double deflection_range; /* [m] */
+    double free_force;       /* forces below this are the sensor's noise [N] */
+    double master_range;     /* readings beyond these cannot be [m] */
+    double gauge_range;      /* [N], 0 without a gauge */
+    double stage_range;      /* [m] */
+    double stuck_distance;   /* identical deflections over this travel are a dead sensor, 0: cannot be told [m] */
+    nt_limits limits;
+} nt_supervisor;
 typedef struct nt_supervisor_state {
     nt_state state;
     uint32_t reasons;
     uint32_t invalid_run;    /* invalid samples in a row */
+    uint32_t law_run;        /* laws without a number in a row */
+    uint32_t late_run;       /* late ticks less punctual ones, at least 0 */
+    uint32_t late_ticks;     /* all of them */
     uint32_t stuck_run;      /* identical deflections in a row */
     double stuck_deflection; /* [m] */
     double stuck_position;   /* x_s where they began [m] */
     double follow_time;      /* the stage has been off for this long [s] */
+    double surface;          /* travel of the tip at first touch [m] */
+    double indentation;      /* [m] */
 } nt_supervisor_state;
+/* What the supervisor has to know beside the sample. */
+typedef struct nt_situation {
+    double reference;   /* where the stage was told to be [m] */
+    int moves_sideways; /* the surface may rise and fall: the indentation is not followed */
+    int unstable;       /* the passivity observer has used up what it had */
+} nt_situation;
 
-struct nt_touch;
-/* One tick. reference: where the stage was told to be [m]. Returns the new state, never less severe than RETRACT or
- * LATCHED once reached (nt_touch_arm). */
-NT_API NT_REALTIME nt_state nt_supervisor_step(const struct nt_touch *touch, nt_supervisor_state *state,
-                                               const nt_sample *sample, double reference, int unstable);
+NT_API nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings);
+/* In RUN, nothing seen yet. */
+NT_API nt_supervisor_state nt_supervisor_start(void);
+/* One tick. Returns the new state, never less severe than RETRACT or LATCHED once reached (nt_supervisor_arm). */
+NT_API NT_REALTIME nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state *state,
+                                               const nt_sample *sample, const nt_situation *situation);
+/* The law gave no number in this tick: HOLD, the second time in a row RETRACT. */
+NT_API NT_REALTIME nt_state nt_supervisor_fail_law(nt_supervisor_state *state);
+/* Back to RUN after RETRACT; after LATCHED only with confirmed = 1 (a person at the rig), else NT_E_STATE. */
+NT_API nt_status nt_supervisor_arm(nt_supervisor_state *state, int confirmed);
 
 #ifdef __cplusplus
 }

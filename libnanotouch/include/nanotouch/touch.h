@@ -5,6 +5,8 @@
 #define NANOTOUCH_TOUCH_H
 
 #include "nanotouch/passivity.h"
+#include "nanotouch/scaling.h"
+#include "nanotouch/servo.h"
 #include "nanotouch/settings.h"
 #include "nanotouch/stage_loop.h"
 #include "nanotouch/supervisor.h"
@@ -17,32 +19,46 @@ extern "C" {
 typedef struct nt_touch {
     nt_rig rig;
     nt_settings settings;
-    nt_mode mode;
+    nt_mode mode;  /* to begin with */
     double period; /* T [s] */
+    nt_servo_law law;
     nt_stage_loop stage_loop;
-    double force_filter; /* of the low-pass, per period [-] */
+    double force_filter; /* of the low-pass of f_m, per period [-] */
     double speed_filter; /* of the master's speed estimate, per period [-] */
+    double spike;        /* a deflection that jumps by more than this may be a wrong reading [m] */
     nt_passivity passivity;
+    nt_rescale rescale;
+    nt_supervisor supervisor;
 } nt_touch;
+
+/* Of a mode that ends: approach and curve. */
+typedef enum nt_phase { NT_PHASE_DOWN, NT_PHASE_UP, NT_PHASE_DONE } nt_phase;
+
 typedef struct nt_touch_state {
+    nt_mode mode, wanted_mode; /* they differ while the force of the old one fades out */
+    nt_phase phase;
+    double turn; /* of a curve: where the stage has turned [m] */
     nt_supervisor_state supervisor;
     nt_passivity_state passivity;
+    nt_rescale_state rescale;
     nt_stage_loop_state stage_loop;
+    nt_signals signals;                     /* what the law is given */
+    double deflections[2];                  /* of the last two valid samples [m] */
     double reference;                       /* where the stage shall be [m] */
-    double offset;                          /* reference = alpha_p x_m + offset: re-indexed after every stop [m] */
+    double offset;                          /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
+    double yield;                           /* of the virtual coupling, at the operator's scale [m] */
+    int clutch_open;                        /* the master moves alone */
     double engaged;                         /* 0 .. 1, fades the force in and out [-] */
-    double filtered_force;                  /* f_m behind its low-pass [N] */
-    double speed;                           /* estimate of the master's speed [m/s] */
-    double last_position;                   /* x_m of the last valid sample [m] */
     double motor_force;                     /* last command [N] */
-    double coupled_force;                   /* what is left of the last command given in RUN [N] */
+    double coupled_force;                   /* what is left of the last command given while coupled [N] */
     double retracted;                       /* lifted so far [m] */
     double target_x, target_y, target_time; /* lateral set-point [m], time left to get there [s] */
     nt_command command;                     /* last command */
     uint64_t ticks;
 } nt_touch_state;
 
-/* Checks rig and settings, and that no limit promises more than the rig can keep. */
+/* Checks rig and settings, and that no limit promises more than the rig can keep; a law that needs f_m is refused
+ * without a gauge. */
 NT_API nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
                                nt_problem *problem);
 /* A loop at rest at (x, y), the stage at 0, the master at x_m (both finite), armed. */
@@ -56,6 +72,13 @@ NT_API NT_REALTIME nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state 
 /* Back to RUN after RETRACT; after LATCHED only with confirmed = 1 (a person at the rig). The force fades in again, the
  * tip stays where it is until the next nt_touch_aim. NT_E_STATE if LATCHED and not confirmed. */
 NT_API nt_status nt_touch_arm(nt_touch_state *state, int confirmed);
+/* Changes the mode, where the stage stands; the force fades in again. NT_E_ARGUMENT if there is no such mode. */
+NT_API NT_REALTIME nt_status nt_touch_set_mode(nt_touch_state *state, nt_mode mode);
+/* Changes the scales while running: without a bump, over ramp_time, and as far as it is passive (scaling.h). Not
+ * finite or not positive: refused. Whether the loop is still stable is for the caller to know (margins.h). */
+NT_API NT_REALTIME nt_status nt_touch_rescale(nt_touch_state *state, const nt_scaling *scaling);
+/* Open: master and stage are uncoupled, the stage stays, the force fades out. Closed: re-indexed, it fades in. */
+NT_API NT_REALTIME void nt_touch_clutch(nt_touch_state *state, int open);
 
 #ifdef __cplusplus
 }

@@ -53,13 +53,16 @@ typedef struct nt_pose {
 enum {
     NT_SAMPLE_EMERGENCY_STOP = 1u << 0, /* pressed, or its line is lost */
     NT_SAMPLE_LIMIT_SWITCH = 1u << 1,   /* the stage stands at its end switch */
-    NT_SAMPLE_INVALID = 1u << 2         /* the backend itself knows that the frame is bad (CRC, short transfer) */
+    NT_SAMPLE_INVALID = 1u << 2,        /* the backend itself knows that the frame is bad (CRC, short transfer) */
+    NT_SAMPLE_SATURATED = 1u << 3,      /* the deflection stood at the end of its range before the tare was taken off */
+    NT_SAMPLE_DEVICE_LOST = 1u << 4     /* a device is gone: nothing of this sample is a measurement */
 };
 
 /* What the rig measured in one tick. */
 typedef struct nt_sample {
     uint64_t tick;          /* counts control periods [-] */
     double age;             /* time since the measurement [s] */
+    double lateness;        /* of this tick against its deadline, 0 where nobody measures it [s] */
     double master_position; /* x_m, + towards the sample [m] */
     double operator_force;  /* f_m, + towards the sample [N] */
     double stage_position;  /* x_s, travel towards the sample [m] */

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Private to control/. fmin and fmax are calls where NaN must be minded; here it has been. */
+#ifndef NANOTOUCH_CONTROL_CLAMP_H
+#define NANOTOUCH_CONTROL_CLAMP_H
+
+static inline double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+static inline double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+static inline double clamp(double value, double minimum, double maximum)
+{
+    return lesser(greater(value, minimum), maximum);
+}
+
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * How far force and indentation can go past their limits (docs/safety.md). The sample that first shows too much is at
+ * most one period old; the command that answers it is held, delayed, and followed by the stage: all that is the loop's
+ * delay D of rule R1. Until then the tip goes on as fast as stage and surface may move, against at most the lever and
+ * the stiffest contact in series. */
+#include <math.h>
+
+#include "nanotouch/guarantee.h"
+#include "nanotouch/margins.h"
+#include "nanotouch/material.h"
+#include "nanotouch/servo.h"
+
+#define SIGMAS 6.0
+
+/* Largest amplitude at which the stage rings if its command goes to and fro at its limit of speed: the square wave's
+ * fundamental, times the gain of the resonance that the notch leaves [m]. */
+static double ringing_amplitude(const nt_stage *stage, double zeta, double speed)
+{
+    const double gain = 2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * sqrt(1.0 - zeta * zeta)) : 1.0;
+    return 4.0 / NT_PI * gain * speed / (2.0 * NT_PI * stage->resonance);
+}
+
+nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
+{
+    const nt_limits *limits = &settings->limits;
+    const nt_probe *probe = &rig->probe;
+    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, hazard->stiffness);
+    const double k_eff = probe->spring_constant / (1.0 + probe->spring_constant / hazard->stiffness);
+    const double integral = shape.gains.stage_integral * limits->follow_error; /* what the stage loop may add [m/s] */
+    const double vertical = limits->stage_speed + integral;
+    const double ringing = ringing_amplitude(&rig->stage, shape.gains.stage_damping, vertical);
+    const double step = probe->sensitivity * probe->resolution;
+    const double sigma = nt_probe_force_noise(probe) / probe->spring_constant;
+    nt_guarantee found = {.reaction_time = nt_margins_compute(&shape.rig, &shape.gains, hazard->stiffness).loop_delay};
+    const double closer = (vertical + hazard->slope * limits->lateral_speed) * found.reaction_time;
+    found.motion = k_eff * closer;
+    found.ringing = k_eff * ringing;
+    found.snap_in = hazard->snap_in_force;
+    found.noise = probe->spring_constant * (SIGMAS * sigma + step);
+    found.force = limits->force + found.motion + found.ringing + found.snap_in + found.noise;
+    /* first touch is noticed where the force leaves the noise, or after the tip has snapped in over what that stretched
+     * the lever by */
+    const double unseen = (2.0 * found.noise + hazard->snap_in_force) / probe->spring_constant;
+    found.indentation = limits->indentation + closer + ringing + unseen;
+    return found;
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The modes: who moves the stage, and what the operator feels of it. */
+#include "control/modes.h"
+
+#include <math.h>
+
+#include "control/clamp.h"
+#include "control/motor.h"
+
+#define FADE_TIME 0.05  /* uncoupled, the force is gone after this [s] */
+#define FOUND_SHARE 0.9 /* of the set-point: the surface is found */
+
+/* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel; 1 if it is there. */
+static int move_reference(const nt_touch *touch, nt_touch_state *state, double wanted)
+{
+    const double step = touch->settings.limits.stage_speed * touch->period;
+    const double end = 0.5 * touch->rig.stage.travel;
+    const double slewed = clamp(wanted, state->reference - step, state->reference + step);
+    state->reference = clamp(slewed, -end, end);
+    if (state->reference == wanted)
+        return 1;
+    state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
+    return 0;
+}
+
+static double step_of(const nt_touch *touch, double speed)
+{
+    return speed * touch->period;
+}
+
+/* A spring and a damper between master and stage: the stage yields to the force at the tip, so that the operator never
+ * feels a contact stiffer than the spring, and the loop never sees one. */
+static double coupling_yield(const nt_touch *touch, const nt_touch_state *state)
+{
+    const nt_gains *gains = &touch->settings.gains;
+    if (gains->coupling_stiffness == 0.0)
+        return 0.0;
+    const double damping = gains->coupling_damping * gains->rate; /* over a period [N/m] */
+    const double reflected = state->signals.scaling.alpha_f * state->signals.slave_force;
+    return (damping * state->yield + reflected) / (gains->coupling_stiffness + damping);
+}
+
+static void engage(const nt_touch *touch, nt_touch_state *state)
+{
+    const double ramp = touch->settings.gains.ramp_time;
+    state->engaged = ramp > 0.0 ? lesser(1.0, state->engaged + touch->period / ramp) : 1.0;
+}
+
+static double run_touch(const nt_touch *touch, nt_touch_state *state)
+{
+    nt_signals *signals = &state->signals;
+    state->yield = coupling_yield(touch, state);
+    signals->target = signals->scaling.alpha_p * (signals->master_position - state->yield) + state->offset;
+    const nt_effort effort = touch->law(touch->settings.control.context, &touch->settings.gains, signals);
+    if (!isfinite(effort.motor_force) || !isfinite(effort.stage))
+        return NAN;
+    move_reference(touch, state, effort.stage);
+    engage(touch, state);
+    return state->engaged * effort.motor_force + nt_passivity_damping_force(&touch->passivity, &state->passivity);
+}
+
+/* How far the height servo would go in this period towards the set-point [m]. */
+static double height_step(const nt_touch *touch, const nt_touch_state *state)
+{
+    const nt_gains *gains = &touch->settings.gains;
+    const double error = (gains->set_point - state->signals.slave_force) / touch->rig.probe.spring_constant;
+    return step_of(touch, gains->height_gain * error);
+}
+
+static double run_topography(const nt_touch *touch, nt_touch_state *state)
+{
+    move_reference(touch, state, state->reference + height_step(touch, state));
+    engage(touch, state);
+    const double height_position = (state->reference - state->offset) / state->signals.scaling.alpha_p;
+    return state->engaged * nt_motor_height(&touch->settings.gains, height_position, state->signals.master_position);
+}
+
+static double run_approach(const nt_touch *touch, nt_touch_state *state)
+{
+    const double most = step_of(touch, touch->settings.gains.approach_speed);
+    move_reference(touch, state, state->reference + clamp(height_step(touch, state), -most, most));
+    if (state->signals.slave_force >= FOUND_SHARE * touch->settings.gains.set_point)
+        state->phase = NT_PHASE_DONE;
+    return nt_mode_release(touch, state);
+}
+
+static double run_curve(const nt_touch *touch, nt_touch_state *state)
+{
+    const nt_gains *gains = &touch->settings.gains;
+    const double step = step_of(touch, gains->approach_speed);
+    if (state->phase == NT_PHASE_DOWN) {
+        const int moved = move_reference(touch, state, state->reference + step);
+        state->turn = state->reference;
+        if (!moved || state->signals.slave_force >= gains->set_point)
+            state->phase = NT_PHASE_UP;
+    } else if (state->phase == NT_PHASE_UP) {
+        const double end = state->turn - gains->curve_length;
+        const int moved = move_reference(touch, state, greater(end, state->reference - step));
+        if (!moved || state->reference <= end)
+            state->phase = NT_PHASE_DONE;
+    }
+    return nt_mode_release(touch, state);
+}
+
+/* A mode is left as a stop is: the force fades out where the stage stands. */
+static double leave(const nt_touch *touch, nt_touch_state *state)
+{
+    const double force = nt_mode_release(touch, state);
+    if (state->engaged > 0.0)
+        return force;
+    state->mode = state->wanted_mode;
+    state->phase = NT_PHASE_DOWN;
+    return force;
+}
+
+double nt_mode_run(const nt_touch *touch, nt_touch_state *state)
+{
+    if (state->mode != state->wanted_mode)
+        return leave(touch, state);
+    if (state->clutch_open)
+        return nt_mode_release(touch, state);
+    switch (state->mode) {
+    case NT_MODE_TOUCH:
+        return run_touch(touch, state);
+    case NT_MODE_TOPOGRAPHY:
+        return run_topography(touch, state);
+    case NT_MODE_APPROACH:
+        return run_approach(touch, state);
+    case NT_MODE_CURVE:
+        return run_curve(touch, state);
+    }
+    return NAN;
+}
+
+double nt_mode_release(const nt_touch *touch, nt_touch_state *state)
+{
+    const nt_signals *signals = &state->signals;
+    state->yield = 0.0;
+    state->offset = state->reference - signals->scaling.alpha_p * signals->master_position;
+    const double engaged = state->engaged - touch->period / FADE_TIME;
+    if (!(engaged > 0.0))
+        return state->engaged = state->coupled_force = 0.0;
+    state->coupled_force *= engaged / state->engaged; /* linear in time */
+    state->engaged = engaged;
+    return nt_motor_fade(&touch->rig.master, state->coupled_force, signals->smooth_speed);
+}
+
+double nt_mode_stop(const nt_touch *touch, nt_touch_state *state, double distance)
+{
+    if (state->retracted < distance) {
+        const double step = lesser(step_of(touch, touch->settings.limits.retract_speed), distance - state->retracted);
+        state->retracted += step;
+        state->reference = greater(state->reference - step, -0.5 * touch->rig.stage.travel);
+    }
+    return nt_mode_release(touch, state);
+}

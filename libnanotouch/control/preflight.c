@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Before arming: two halves of a tare, whose means give bias and drift; then the stage draws back, is read, and comes
+ * back. Drawing back is the safe direction: it needs neither model nor sensor. */
+#include "nanotouch/preflight.h"
+
+#include <math.h>
+
+#include "control/clamp.h"
+#include "nanotouch/material.h"
+
+#define TARE_HALF 0.05     /* [s] */
+#define LEAST_SAMPLES 25.0 /* of half a tare */
+#define MOVE_TIME 0.02     /* and at least ten periods of the resonance, which a smooth move then does not excite [s] */
+#define MOVE_OSCILLATIONS 10.0
+#define MOVE_STEPS 20.0  /* of the stage's read-out */
+#define LEAST_MOVE 10e-9 /* [m] */
+#define TOLERANCE 0.5    /* of the move that the read-out must show */
+
+void nt_tare_apply(const nt_tare *tare, const nt_probe *probe, nt_sample *sample)
+{
+    if (fabs(sample->deflection) >= nt_probe_deflection_range(probe))
+        sample->flags |= NT_SAMPLE_SATURATED;
+    sample->deflection -= tare->deflection;
+    sample->operator_force -= tare->operator_force;
+}
+
+nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings)
+{
+    const double rate = settings->gains.rate;
+    const double move = greater(MOVE_TIME, MOVE_OSCILLATIONS / rig->stage.resonance);
+    const double lag = settings->gains.delay + rig->converters.dac_latency * rate;
+    const double distance = greater(LEAST_MOVE, MOVE_STEPS * rig->stage.resolution);
+    return (nt_preflight){.rig = *rig,
+                          .limits = settings->limits,
+                          .period = 1.0 / rate,
+                          .ticks = (uint32_t)ceil(greater(LEAST_SAMPLES, TARE_HALF * rate)),
+                          .move = (uint32_t)ceil(greater(LEAST_SAMPLES, move * rate) + lag),
+                          .distance = lesser(distance, 0.25 * rig->stage.travel)};
+}
+
+static int is_good(const nt_preflight *preflight, const nt_sample *sample)
+{
+    const int measures_hand = preflight->rig.master.gauge != 0.0;
+    return sample->flags == 0u && isfinite(sample->deflection) && isfinite(sample->stage_position) &&
+           (!measures_hand || isfinite(sample->operator_force));
+}
+
+static nt_preflight_verdict judge(nt_preflight_state *state, double value, double limit, nt_preflight_verdict bad)
+{
+    if (fabs(value) <= limit)
+        return NT_PREFLIGHT_RUNNING;
+    state->measure = value;
+    return bad;
+}
+
+/* The means of the halves lie `ticks` apart. */
+static nt_preflight_verdict judge_tare(const nt_preflight *preflight, nt_preflight_state *state)
+{
+    const nt_limits *limits = &preflight->limits;
+    const double count = (double)preflight->ticks, apart = count * preflight->period;
+    const nt_tare *sums = state->sums;
+    state->tare.deflection = (sums[0].deflection + sums[1].deflection) / (2.0 * count);
+    state->tare.operator_force = (sums[0].operator_force + sums[1].operator_force) / (2.0 * count);
+    const struct {
+        double value, limit;
+        nt_preflight_verdict bad;
+    } rules[] = {
+        {state->tare.deflection, limits->deflection_bias, NT_PREFLIGHT_DEFLECTION_BIAS},
+        {(sums[1].deflection - sums[0].deflection) / (count * apart), limits->deflection_drift,
+         NT_PREFLIGHT_DEFLECTION_DRIFT},
+        {state->tare.operator_force, limits->gauge_bias, NT_PREFLIGHT_GAUGE_BIAS},
+        {(sums[1].operator_force - sums[0].operator_force) / (count * apart), limits->gauge_drift,
+         NT_PREFLIGHT_GAUGE_DRIFT},
+    };
+    nt_preflight_verdict verdict = NT_PREFLIGHT_RUNNING;
+    for (int i = 0; i < 4 && verdict == NT_PREFLIGHT_RUNNING; ++i)
+        verdict = judge(state, rules[i].value, rules[i].limit, rules[i].bad);
+    return verdict;
+}
+
+static void weigh(const nt_preflight *preflight, nt_preflight_state *state, const nt_sample *sample)
+{
+    nt_tare *sum = &state->sums[state->tick >= preflight->ticks];
+    sum->deflection += sample->deflection;
+    if (preflight->rig.master.gauge != 0.0)
+        sum->operator_force += sample->operator_force;
+    state->rest += sample->stage_position;
+}
+
+/* Where the stage shall be `tick` ticks after the tare: back, wait, forth, wait. */
+static double drawn_back(const nt_preflight *preflight, uint32_t tick)
+{
+    const double phase = (double)tick / preflight->move;
+    if (phase < 1.0)
+        return -0.5 * preflight->distance * (1.0 - cos(NT_PI * phase));
+    if (phase < 2.0)
+        return -preflight->distance;
+    return phase < 3.0 ? -0.5 * preflight->distance * (1.0 + cos(NT_PI * (phase - 2.0))) : 0.0;
+}
+
+static nt_preflight_verdict judge_move(const nt_preflight *preflight, nt_preflight_state *state)
+{
+    const double half = preflight->move / 2u; /* the last samples of the wait that were added up */
+    const double moved = state->lifted / half - state->rest / (2.0 * preflight->ticks);
+    return judge(state, moved + preflight->distance, TOLERANCE * preflight->distance, NT_PREFLIGHT_STAGE);
+}
+
+nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflight_state *state,
+                                       const nt_sample *sample, nt_command *command)
+{
+    if (state->verdict != NT_PREFLIGHT_RUNNING)
+        return state->verdict;
+    if (!is_good(preflight, sample))
+        return state->verdict = NT_PREFLIGHT_BAD_SAMPLE;
+    const uint32_t tare = 2u * preflight->ticks, move = preflight->move;
+    if (state->tick < tare)
+        weigh(preflight, state, sample);
+    if (state->tick + 1u == tare)
+        state->verdict = judge_tare(preflight, state);
+    if (state->tick >= tare + 2u * move - move / 2u && state->tick < tare + 2u * move)
+        state->lifted += sample->stage_position;
+    if (state->tick + 1u == tare + 2u * move)
+        state->verdict = judge_move(preflight, state);
+    command->stage_position = state->tick < tare ? 0.0 : drawn_back(preflight, state->tick - tare + 1u);
+    ++state->tick;
+    if (state->verdict == NT_PREFLIGHT_RUNNING && state->tick == tare + 4u * move)
+        state->verdict = NT_PREFLIGHT_PASSED;
+    return state->verdict;
+}
+
+nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_preflight_state *state)
+{
+    const nt_limits *limits = &preflight->limits;
+    const double moved = state->measure - preflight->distance, least = TOLERANCE * preflight->distance;
+    const double value = state->measure;
+    switch (state->verdict) {
+    case NT_PREFLIGHT_BAD_SAMPLE:
+        return (nt_problem){"a sample before arming", "", NAN, -INFINITY, INFINITY};
+    case NT_PREFLIGHT_DEFLECTION_BIAS:
+        return (nt_problem){"deflection bias", "m", value, -limits->deflection_bias, limits->deflection_bias};
+    case NT_PREFLIGHT_DEFLECTION_DRIFT:
+        return (nt_problem){"deflection drift", "m/s", value, -limits->deflection_drift, limits->deflection_drift};
+    case NT_PREFLIGHT_GAUGE_BIAS:
+        return (nt_problem){"gauge bias", "N", value, -limits->gauge_bias, limits->gauge_bias};
+    case NT_PREFLIGHT_GAUGE_DRIFT:
+        return (nt_problem){"gauge drift", "N/s", value, -limits->gauge_drift, limits->gauge_drift};
+    case NT_PREFLIGHT_STAGE:
+        return (nt_problem){"stage sign test", "m", moved, -least - preflight->distance, least - preflight->distance};
+    case NT_PREFLIGHT_RUNNING:
+    case NT_PREFLIGHT_PASSED:
+        break;
+    }
+    return (nt_problem){"", "", 0.0, 0.0, 0.0};
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What may be asked of a running touch from outside, between two steps. */
+#include <math.h>
+
+#include "control/clamp.h"
+#include "nanotouch/touch.h"
+
+nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)
+{
+    if (!isfinite(x) || !isfinite(y) || !isfinite(duration))
+        return NT_E_NOT_FINITE;
+    if (duration < 0.0)
+        return NT_E_RANGE;
+    const double distance = hypot(x - state->command.x, y - state->command.y);
+    state->target_x = x;
+    state->target_y = y;
+    state->target_time = greater(duration, distance / touch->settings.limits.lateral_speed);
+    return NT_OK;
+}
+
+nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
+{
+    const nt_status status = nt_supervisor_arm(&state->supervisor, confirmed);
+    if (status != NT_OK)
+        return status;
+    state->passivity.gain = 1.0;
+    state->passivity.damping = 0.0;
+    state->passivity.energy = 0.0;
+    state->retracted = 0.0;
+    state->phase = NT_PHASE_DOWN;
+    state->target_x = state->command.x; /* the path that a stop has cut short does not go on by itself */
+    state->target_y = state->command.y;
+    state->target_time = 0.0;
+    return NT_OK;
+}
+
+nt_status nt_touch_set_mode(nt_touch_state *state, nt_mode mode)
+{
+    if (mode > NT_MODE_CURVE)
+        return NT_E_ARGUMENT;
+    state->wanted_mode = mode;
+    if (mode == state->mode)
+        state->phase = NT_PHASE_DOWN; /* once more */
+    return NT_OK;
+}
+
+nt_status nt_touch_rescale(nt_touch_state *state, const nt_scaling *scaling)
+{
+    if (!isfinite(scaling->alpha_p) || !isfinite(scaling->alpha_f))
+        return NT_E_NOT_FINITE;
+    if (scaling->alpha_p <= 0.0 || scaling->alpha_f <= 0.0)
+        return NT_E_RANGE;
+    state->rescale.wanted = *scaling;
+    return NT_OK;
+}
+
+void nt_touch_clutch(nt_touch_state *state, int open)
+{
+    state->clutch_open = open;
+}

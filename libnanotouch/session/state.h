@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Private to session/: what a session holds. */
+#ifndef NANOTOUCH_SESSION_STATE_H
+#define NANOTOUCH_SESSION_STATE_H
+
+#include "core/ring.h"
+#include "nanotouch/session.h"
+
+struct nt_session {
+    nt_plan plan;
+    nt_touch touch;
+    nt_touch_state touch_state;
+    double master_start; /* [m] */
+    nt_margins margins;
+    nt_guarantee guarantee;
+    double minimum_margin;
+    nt_tare tare;
+    uint64_t first_tick; /* of the rig, after preflight */
+    int device_lost;
+    nt_sim sim;
+    nt_hal hal;
+    nt_mailbox mailbox;
+    nt_input mailbox_memory[3];
+    nt_ring ring;
+    nt_record *records;
+};
+
+/* The margin that counts in the session's mode, of these settings at the stiffest contact of the plan; all in *margins.
+ */
+double nt_session_margin(const nt_session *session, const nt_settings *settings, nt_margins *margins);
+
+#endif
