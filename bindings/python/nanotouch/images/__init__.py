@@ -5,18 +5,21 @@
 >>> topography, report = nt.images.prepare(nt.images.read("scan.ibw"))      # doctest: +SKIP
 """
 
+from .channel import Channel, Plane
 from .levelling import DespeckleReport, LevelReport, despeckle, level, prepare
-from .reading import Channel, channels, read
+from .reading import channels, read
 from .scars import ScarReport, repair_scars
 from .statistics import Roughness, roughness
 from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import Topography
+from .writing import write
 
 __all__ = [
     "Channel",
     "DespeckleReport",
     "LevelReport",
     "Paraboloid",
+    "Plane",
     "Roughness",
     "RoundedCone",
     "ScarReport",
@@ -30,4 +33,5 @@ __all__ = [
     "read",
     "repair_scars",
     "roughness",
+    "write",
 ]
