@@ -40,7 +40,12 @@ UNITS: dict[str, dict[str, float]] = {
     "N/s": _scaled("N", "mk", "/s"),
     "1/s": {"/s": 1.0},
     "N s/m": {"Ns/m": 1.0},
+    "m/m": {"m/m": 1.0, "um/mm": 1e-3, "nm/mm": 1e-6},
+    "N/N": {"N/N": 1.0, "N/uN": 1e6, "N/nN": 1e9},
+    "W": _scaled("W", "mk"),
     "m^3/mol": {"m3/mol": 1.0, "cm3/mol": 1e-6},
+    "C": _scaled("C", "munpfa"),
+    "mol/m^3": {"mol/m3": 1.0, "mM": 1.0, "M": 1e3},
     "periods": {"periods": 1.0, "": 1.0},
 }
 
