@@ -20,6 +20,7 @@ set(nanotouch_sources_forces
     forces/electrostatic_probe.c
     forces/hydration.c
     forces/lennard_jones.c
+    forces/point_charge.c
     forces/steric.c
     forces/vdw.c
     forces/vdw_tip.c)
@@ -33,7 +34,9 @@ set(nanotouch_sources_contact
     contact/material.c
     contact/maugis.c
     contact/maugis_bank.c
+    contact/maugis_bank_contact.c
     contact/maugis_bank_eval.c
+    contact/maugis_bank_panels.c
     contact/maugis_branch.c
     contact/maugis_cells.c
     contact/maugis_control.c
@@ -42,6 +45,7 @@ set(nanotouch_sources_contact
     contact/maugis_table.c
     contact/maugis_tier.c
     contact/reduced.c
+    contact/model_error.c
     contact/rim.c
     contact/shape.c
     contact/sneddon.c
@@ -50,12 +54,25 @@ set(nanotouch_sources_contact
     contact/tabor.c
     contact/validity.c)
 set(nanotouch_sources_surface surface/dilation.c surface/dots.c surface/grating.c surface/height_field.c)
-set(nanotouch_sources_scene scene/interaction.c scene/plan.c scene/scene.c)
+set(nanotouch_sources_scene
+    scene/adhesion.c
+    scene/choice.c
+    scene/contact.c
+    scene/facts.c
+    scene/interaction.c
+    scene/laws.c
+    scene/options.c
+    scene/plan.c
+    scene/scene.c
+    scene/warnings.c)
 set(nanotouch_sources_hal hal/hal.c)
 set(nanotouch_sources_dynamics
     dynamics/cantilever.c
+    dynamics/cantilever_dynamic.c
+    dynamics/cantilever_model.c
     dynamics/hand.c
     dynamics/master.c
+    dynamics/oscillator.c
     dynamics/sensor.c
     dynamics/stage.c)
 set(nanotouch_sources_control
@@ -78,14 +95,17 @@ set(nanotouch_sources_sim hal/sim/sim.c)
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
-set(nanotouch_sources_session
-    session/run.c
-    session/session.c)
+set(nanotouch_sources_session session/run.c session/session.c)
 set(nanotouch_sources_fit
     fit/branch.c
+    fit/contact_model.cpp
+    fit/custom_model.cpp
     fit/data.cpp
     fit/guess.cpp
+    fit/linear.cpp
     fit/model.cpp
     fit/options.cpp
     fit/problem.cpp
-    fit/run.cpp)
+    fit/run.cpp
+    fit/solve.cpp
+    fit/uncertainty.cpp)

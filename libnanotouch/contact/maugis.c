@@ -49,14 +49,20 @@ nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilib
     };
 }
 
-static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_law_value *reduced, nt_solve_info *info)
+nt_status nt_maugis_contact_find(const nt_maugis *maugis, double d, int stable, nt_maugis_equilibrium *point,
+                                 nt_solve_info *info)
 {
     const nt_maugis_folds *folds = &maugis->folds;
     const double lowest = folds->grip_in_contact ? folds->grip_indentation : folds->touch_indentation;
     const nt_maugis_equilibrium fold = {.y = maugis->fold_y, .a = folds->grip_radius, .d = lowest};
-    nt_maugis_equilibrium point;
     const nt_maugis_goal goal = {NT_GIVEN_INDENTATION, d, &fold, !stable, 0.0};
-    const nt_status status = nt_maugis_point_find(maugis->lambda, &goal, &point, info);
+    return nt_maugis_point_find(maugis->lambda, &goal, point, info);
+}
+
+static nt_status contact_eval(const nt_maugis *maugis, double d, int stable, nt_law_value *reduced, nt_solve_info *info)
+{
+    nt_maugis_equilibrium point;
+    const nt_status status = nt_maugis_contact_find(maugis, d, stable, &point, info);
     if (status != NT_OK)
         return status;
     *reduced = nt_maugis_value_of(maugis, &point, stable);

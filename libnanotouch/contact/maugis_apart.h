@@ -38,4 +38,10 @@ static inline nt_law_value nt_maugis_apart_value(const nt_maugis *maugis, double
     };
 }
 
+/* dU/dlambda at c, at constant indentation. */
+static inline double nt_maugis_apart_slope(double lambda, double c)
+{
+    return c * c * (1.0 / lambda - c * (4.0 / 9.0 * lambda + NT_PI / 8.0 * c));
+}
+
 #endif

@@ -19,6 +19,10 @@
  *     e1 = 3/4 (y^3 - y^4 t) - y^2 t/2 + y/4 + t/4
  *     e2 = (1 + y^2) t - rho^2 (2 sqrt(1 + y^2) + y)/3            rho = (c - a)/b = 1/(y + sqrt(1 + y^2))
  *
+ * Before (Griffith) is used, U is stationary in b at constant d; so at constant d only what stands beside b counts:
+ *
+ *     dU/dlambda = b^3 (b e1 + 4/3 lambda e3)         e3 = 2 e2 - g3                                 (energy slope)
+ *
  * None of the g, e is evaluated as written where that cancels: for y > 1 they are written in s = 1/y, z = s^2 and
  * A(z) = (s - atan s)/s^3, a smooth function. */
 #include "contact/maugis_branch.h"
@@ -48,7 +52,7 @@ double nt_maugis_equilibrium_curvature(double lambda, const nt_maugis_equilibriu
 }
 
 typedef struct {
-    double e1, e2;
+    double e1, e2, e3;
 } energy_shape;
 
 static energy_shape energy_shape_at(double y)
@@ -60,12 +64,14 @@ static energy_shape energy_shape_at(double y)
         return (energy_shape){
             .e1 = 0.75 * z * (y - z * t) - 0.5 * z * t + 0.25 * (y + t),
             .e2 = (1.0 + z) * t - rho * rho * (2.0 * r + y) / 3.0,
+            .e3 = (1.0 + z) * t - y - 2.0 / 3.0 * rho * rho * (2.0 * r + y),
         };
     }
     const double rho = s / (1.0 + r);
     return (energy_shape){
         .e1 = 0.25 * (y * (3.0 * A - 1.0) + s * (1.0 + 2.0 * A - z * A)),
         .e2 = y * (1.0 + z) * (1.0 - z * A) - rho * rho * (2.0 * r + 1.0) * y / 3.0,
+        .e3 = s * (1.0 - A * (1.0 + z) - 2.0 / 3.0 * (2.0 * r + 1.0) / ((1.0 + r) * (1.0 + r))),
     };
 }
 
@@ -75,6 +81,13 @@ double nt_maugis_equilibrium_energy(double lambda, const nt_maugis_equilibrium *
     const double a = point->a, b = point->b, a2 = a * a, b2 = b * b;
     return 0.4 * a2 * a2 * a - 4.0 / 3.0 * lambda * b * a2 * a + 4.0 / 3.0 * lambda * lambda * b2 * b * f.e2 +
            lambda * b2 * b2 * f.e1 - (a2 + b2);
+}
+
+double nt_maugis_equilibrium_energy_slope(double lambda, const nt_maugis_equilibrium *point)
+{
+    const energy_shape f = energy_shape_at(point->y);
+    const double b = point->b;
+    return b * b * b * (b * f.e1 + 4.0 / 3.0 * lambda * f.e3);
 }
 
 double nt_maugis_parameter_guess(double lambda, double a)

@@ -23,6 +23,9 @@ double nt_maugis_equilibrium_curvature(double lambda, const nt_maugis_equilibriu
 /* Its energy U, with dU/dd = P and U = 0 for bodies apart. */
 double nt_maugis_equilibrium_energy(double lambda, const nt_maugis_equilibrium *point);
 
+/* dU/dlambda there at constant d. */
+double nt_maugis_equilibrium_energy_slope(double lambda, const nt_maugis_equilibrium *point);
+
 /* y at a contact radius, within some 30 %: where the solvers start. */
 double nt_maugis_parameter_guess(double lambda, double a);
 

@@ -27,4 +27,8 @@ nt_law_value nt_maugis_value_of(const nt_maugis *maugis, const nt_maugis_equilib
 nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_maugis_equilibrium *point,
                                nt_solve_info *info);
 
+/* The contact branch at an indentation between its folds; reduced. */
+nt_status nt_maugis_contact_find(const nt_maugis *maugis, double d, int stable, nt_maugis_equilibrium *point,
+                                 nt_solve_info *info);
+
 #endif

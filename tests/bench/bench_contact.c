@@ -9,10 +9,11 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/material.h"
 
-enum { COUNT = 4096, RUNS = 60, CELLS = 2000, PANELS = 60, BANK_CELLS = 2000 };
+enum { COUNT = 4096, RUNS = 60, CELLS = 2000, PANELS = 120, BANK_CELLS = 7000 };
 
 typedef struct {
     nt_maugis maugis;

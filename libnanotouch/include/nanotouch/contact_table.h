@@ -77,65 +77,6 @@ NT_API nt_status nt_maugis_table_polish_n(const nt_maugis_table *table, nt_branc
 NT_API nt_status nt_maugis_table_eval_n(const nt_maugis_table *table, nt_tier tier, nt_branch branch,
                                         const nt_strided *arrays);
 
-/* --- A bank of tables over a range of lambda: for curved surfaces and grains of many sizes, where lambda changes at
- * every sample. Reduced units (contact.h). In panels of lambda every number of a cell is a cubic in lambda. The panels
- *     crowd towards lambda = 0.9379, where the branch changes its kind, and leave out 1 % around it. There, outside the
- *     range, beyond the largest indentation and on the unstable branch the exact solver answers (some microseconds).
- *     At constant lambda F = dU/dd and k = dF/dd hold exactly. --- */
-
-/* Coefficients of the cubics of nt_maugis_cell, each the divided differences of a cubic in lambda. */
-typedef struct nt_maugis_bank_cell {
-    double F[4][4], a[4][4], U[4];
-} nt_maugis_bank_cell;
-
-typedef struct nt_maugis_panel {
-    double low, high; /* of the distance max(lambda/0.9379, 0.9379/lambda) - 1 */
-    double start[8];  /* where the tabulated branch starts: divided differences */
-    double rate, u_end;
-    int first, count; /* its cells */
-} nt_maugis_panel;
-
-typedef struct nt_maugis_bank_options {
-    double lambda_min, lambda_max;
-    double largest_indentation; /* reduced */
-    int panels_per_octave;      /* of the distance from 0.9379; 1, 2, 4 .. 64 */
-    int cells_per_octave;       /* as in a table */
-} nt_maugis_bank_options;
-/* lambda 0.01 .. 100, indentation up to 100, 2 panels and 4 cells per octave: an error of 3e-5 in half a megabyte. 4
- * and 8: 3e-6 in 2 MB. */
-NT_API nt_maugis_bank_options nt_maugis_bank_defaults(void);
-
-/* The caller's memory. */
-typedef struct nt_maugis_bank_memory {
-    nt_maugis_panel *panels;
-    nt_maugis_bank_cell *cells;
-    int panel_capacity, cell_capacity;
-} nt_maugis_bank_memory;
-
-/* Refers to the memory it was made in; immutable after nt_maugis_bank_init, may be shared. */
-typedef struct nt_maugis_bank {
-    nt_maugis_bank_options options;
-    const nt_maugis_panel *panels;
-    const nt_maugis_bank_cell *cells;
-    int panel_count[2];   /* below 0.9379 and above it */
-    nt_accuracy accuracy; /* measured when it was made, between the lambdas it was made from; fold_shift reduced */
-} nt_maugis_bank;
-
-/* Sets the capacities that a bank needs. NT_E_RANGE for invalid options. Some milliseconds. */
-NT_API nt_status nt_maugis_bank_size(const nt_maugis_bank_options *options, nt_maugis_bank_memory *memory);
-/* Some ten milliseconds. NT_E_CAPACITY. */
-NT_API nt_status nt_maugis_bank_init(nt_maugis_bank *bank, const nt_maugis_bank_options *options,
-                                     const nt_maugis_bank_memory *memory);
-/* Reduced {U, F, k, a} at a lambda and reduced indentation. */
-NT_API nt_status nt_maugis_bank_eval(const nt_maugis_bank *bank, double lambda, double d, nt_branch branch,
-                                     nt_law_value *reduced);
-/* The same in SI for a contact, which is not checked (nt_contact_check); w = 0 is Hertz. */
-NT_API nt_status nt_maugis_bank_eval_contact(const nt_maugis_bank *bank, const nt_contact *contact, double indentation,
-                                             nt_branch branch, nt_law_value *value);
-/* load[i] on the stable branch; what fails is NaN and sets the status. */
-NT_API nt_status nt_maugis_bank_load_n(const nt_maugis_bank *bank, const double *lambda, const double *d, double *load,
-                                       long count);
-
 #ifdef __cplusplus
 }
 #endif

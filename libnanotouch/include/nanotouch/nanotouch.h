@@ -4,6 +4,7 @@
 #define NANOTOUCH_NANOTOUCH_H
 
 #include "nanotouch/contact.h"
+#include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_control.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/control.h"
@@ -13,6 +14,7 @@
 #include "nanotouch/geometry.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
+#include "nanotouch/interaction.h"
 #include "nanotouch/material.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/rig.h"
