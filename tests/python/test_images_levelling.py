@@ -108,8 +108,9 @@ def test_levelling_is_idempotent_and_masks() -> None:
     half[64:] = True
     folded = np.where(half, 1e-6, synthetic.tilted(heights, SIDE, 0.01, 0.02))
     assert images.level(topography(folded), mask=half)[1].tilt == pytest.approx((0.01, 0.02), rel=1e-9)
-    with pytest.raises(InvalidValue, match="method"):
-        images.level(once, method="rows")
+    for wrong in ("planes", "poly9", "plane+", ""):
+        with pytest.raises(InvalidValue, match="method"):
+            images.level(once, method=wrong)
     with pytest.raises(InvalidValue, match="mask: leaves 0 pixels"):
         images.level(once, mask=np.ones(heights.shape, bool))
 

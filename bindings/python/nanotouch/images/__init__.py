@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AFM images: read them in SI the right way up, level them without harming their steps, remove speckles.
+"""AFM images: read them in SI the right way up, level them without harming their steps, repair, measure.
 
 >>> import nanotouch as nt
 >>> topography, report = nt.images.prepare(nt.images.read("scan.ibw"))      # doctest: +SKIP
 """
 
+from .blind import TipEstimate, estimate_tip
 from .channel import Channel, Plane
-from .levelling import DespeckleReport, LevelReport, despeckle, level, prepare
+from .despeckling import DespeckleReport, despeckle
+from .filters import gaussian, median
+from .levelling import LevelReport, LevelStep, level, prepare
+from .particles import GrainTable, grains
+from .pyramid import MipLevel, mip_levels
 from .reading import channels, read
 from .scars import ScarReport, repair_scars
 from .statistics import Roughness, roughness
+from .terraces import Terrace
 from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import Topography
 from .writing import write
@@ -17,18 +23,28 @@ from .writing import write
 __all__ = [
     "Channel",
     "DespeckleReport",
+    "GrainTable",
     "LevelReport",
+    "LevelStep",
+    "MipLevel",
     "Paraboloid",
     "Plane",
     "Roughness",
     "RoundedCone",
     "ScarReport",
+    "Terrace",
+    "TipEstimate",
     "Topography",
     "channels",
     "despeckle",
     "dilate",
     "erode",
+    "estimate_tip",
+    "gaussian",
+    "grains",
     "level",
+    "median",
+    "mip_levels",
     "prepare",
     "read",
     "repair_scars",

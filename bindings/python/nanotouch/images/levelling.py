@@ -1,31 +1,54 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make an image touchable without inventing or erasing structure: take out the tilt, then isolated wrong pixels.
+"""Make an image touchable without inventing or erasing structure: take out tilt, bow and offsets from row to row.
 
-The tilt is what flat pieces of the surface agree on. A plane through all pixels is pulled by steps (a grating with
-unequal ridges and grooves keeps a false tilt), and aligning rows erases a grating that runs along them. So the image is
-cut along its steep places into terraces, and one common tilt is fitted with a height of its own for every terrace. On a
-surface without steps that is one piece and the ordinary (robust) plane. Rows are never aligned here.
+Every method is aware of steps. Tilt and bow are what the flat pieces of the surface agree on (terraces.py); offsets of
+rows are what does not last and what both halves of the image agree on (rows.py). Each says what it removed, and warns
+where it had to leave, or has taken, what may be a structure.
 """
 
 from __future__ import annotations
 
+import re
+import warnings
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidValue, require
+from .._arrays import Floats
+from ..errors import InvalidValue
+from . import rows, terraces
+from ._robust import block_means, digit, reduction, used_pixels
+from .despeckling import DespeckleReport, despeckle
+from .terraces import Terrace
 from .topography import Topography
 
-_ROUNDS = 4  # cutting and fitting alternate; two rounds settle a grating, the others are for rough films
-_STEEP = 4.0  # a place is steep where the slope differs from the tilt by more than this many standard deviations
-_SMALLEST_PIECE = 16  # [pixel]
-_ENOUGH = 1 << 17  # [pixel]
-_HUBER = 1.345  # 95 % efficiency on Gaussian noise
-_SPECKLE = 6.0  # standard deviations from the surroundings: one in 5e8 pixels of Gaussian noise
-_SPECKLE_SIZE = 2  # [pixel]; more pixels in one piece are a structure
-_MAD = 1.4826  # standard deviation over median absolute deviation, for Gaussian noise
+_METHOD = re.compile(r"plane|poly[2-6]|rows|medians|terraces")
+
+
+@dataclass(frozen=True)
+class LevelStep:
+    """What one method took away.
+
+    Attributes
+    ----------
+    method : str
+        "plane", "poly2", "rows", ...
+    removed_range : float
+        Highest minus lowest of what was removed [m].
+    removed_rms : float
+        Its root mean square about its mean [m].
+    note : str
+        What was found, in a sentence.
+    """
+
+    method: str
+    removed_range: float
+    removed_rms: float
+    note: str
+
+    def __str__(self) -> str:
+        return f"{self.method}: removed {self.removed_range * 1e9:.4g} nm; {self.note}"
 
 
 @dataclass(frozen=True)
@@ -36,234 +59,249 @@ class LevelReport:
     ----------
     method : str
         As given to :func:`level`.
+    steps : tuple of LevelStep
+        What each method removed, in order.
     tilt : tuple of float
         Slopes of the removed plane ``(dz/dy, dz/dx)`` [-].
     offset : float
         Removed mean height [m].
     removed_range : float
-        Highest minus lowest height of the removed plane over the image [m].
+        Highest minus lowest of all that was removed, over the image [m].
     range_before, range_after : float
         Highest minus lowest height of the image [m].
     pieces : int
-        Number of pieces the image was cut into along its steep places.
+        Number of pieces the image was cut into along its steep places; 1 where nothing was fitted.
+    terraces : tuple of Terrace
+        The levels of the surface, largest first; only of the method "terraces".
+    warnings : tuple of str
+        What may be a structure and was erased, or was left because it may be one.
     """
 
     method: str
+    steps: tuple[LevelStep, ...]
     tilt: tuple[float, float]
     offset: float
     removed_range: float
     range_before: float
     range_after: float
     pieces: int
+    terraces: tuple[Terrace, ...]
+    warnings: tuple[str, ...]
 
     def __str__(self) -> str:
-        degrees = np.degrees(np.arctan(np.hypot(*self.tilt)))
-        return (
-            f"{self.method} levelling removed a tilt of {degrees:.3g} degrees ({self.removed_range * 1e9:.4g} nm over "
-            f"the image); height range {self.range_before * 1e9:.4g} nm before, {self.range_after * 1e9:.4g} nm after"
-        )
-
-
-@dataclass(frozen=True)
-class DespeckleReport:
-    """What despeckling replaced.
-
-    Attributes
-    ----------
-    pixels : int
-        Number of pixels replaced by the median of their surroundings.
-    threshold : float
-        Smallest distance from the surroundings that counted as a speckle [m].
-    largest : float
-        Largest change of a pixel [m].
-    """
-
-    pixels: int
-    threshold: float
-    largest: float
-
-    def __str__(self) -> str:
-        if not self.pixels:
-            return f"no speckles above {self.threshold * 1e9:.3g} nm"
-        return f"{self.pixels} speckled pixels repaired, the worst {self.largest * 1e9:.3g} nm off its surroundings"
+        ranges = f"height range {self.range_before * 1e9:.4g} nm before, {self.range_after * 1e9:.4g} nm after"
+        lines = [f"{self.method} levelling: {ranges}", *(f"  {step}" for step in self.steps)]
+        return "\n".join(lines + [f"  warning: {text}" for text in self.warnings])
 
 
 def prepare(topography: Topography) -> tuple[Topography, tuple[LevelReport, DespeckleReport]]:
-    """Level by a plane and despeckle: what ``nanotouch touch`` does to an image before it is touched."""
-    levelled, level_report = level(topography)
+    """Level by plane and rows, and despeckle: what ``nanotouch touch`` does to an image before it is touched."""
+    levelled, level_report = level(topography, "plane+rows")
     clean, despeckle_report = despeckle(levelled)
     return clean, (level_report, despeckle_report)
 
 
 def level(
-    topography: Topography, method: str = "plane", *, mask: NDArray[np.bool_] | None = None
+    topography: Topography, method: str = "plane", mask: NDArray[np.bool_] | None = None
 ) -> tuple[Topography, LevelReport]:
-    """Take out the tilt and the mean height, keeping every step.
+    """Take out tilt, bow, offsets of rows and the mean height, keeping every step.
 
     Parameters
     ----------
     topography : Topography
         The image.
-    method : {"plane"}
-        The only method so far; rows are never aligned.
+    method : str
+        One of these, or several joined by ``+`` and done in that order, as ``"plane+rows"`` (after the rows the
+        background before them is fitted once more):
+
+        ==============  ==============================================================================================
+        ``plane``       the tilt that the flat pieces of the surface agree on
+        ``poly2``       a polynomial of total order 2 (up to ``poly6``) in the same way: the bow of a scanner
+        ``rows``        offsets from row to row, as far as they are no structure
+        ``medians``     every row to the same median, whatever that erases; warns where it is a structure
+        ``terraces``    as ``plane``; height 0 is the largest level, and the levels are listed in the report
+        ==============  ==============================================================================================
     mask : ndarray, shape (ny, nx), bool, optional
-        True where a pixel shall not take part in the fit; pixels that were filled in never do.
+        True where a pixel shall not take part; pixels that were filled in never do.
 
     Returns
     -------
     topography : Topography
-        Mean height 0.
+        Mean height of the pixels that took part 0 (with ``terraces``: the largest level).
     report : LevelReport
-        The plane that was removed.
+        What was removed; its warnings are given as :class:`UserWarning` too.
     """
-    if method != "plane":
-        raise InvalidValue(f"method: {method!r}, expected 'plane'")
-    z = topography.heights
-    used = ~topography.mask
-    if mask is not None:
-        if np.shape(mask) != z.shape:
-            raise InvalidValue(f"mask: shape {np.shape(mask)}, expected {z.shape}")
-        used &= ~np.asarray(mask, dtype=bool)
-    if np.count_nonzero(used) < _SMALLEST_PIECE:
-        raise InvalidValue(f"mask: leaves {np.count_nonzero(used)} pixels, expected at least {_SMALLEST_PIECE}")
-    slope_y, slope_x, pieces = _common_tilt(z, used)
-    ny, nx = z.shape
-    flat = z - slope_y * np.arange(ny)[:, None] - slope_x * np.arange(nx)
-    offset = float(flat[~topography.mask].mean())
-    levelled = replace(topography, heights=flat - offset)
-    dy, dx = topography.pixel_size
-    plane_mean = 0.5 * (slope_y * (ny - 1) + slope_x * (nx - 1))
-    return levelled, LevelReport(
-        method,
-        (slope_y / dy, slope_x / dx),
-        offset + plane_mean,
-        abs(slope_y) * (ny - 1) + abs(slope_x) * (nx - 1),
-        topography.height_range,
-        levelled.height_range,
-        pieces,
-    )
+    methods = method.split("+") if isinstance(method, str) else [""]
+    if not all(_METHOD.fullmatch(m) for m in methods):
+        raise InvalidValue(
+            f"method: {method!r}, expected plane, poly2 .. poly6, rows, medians or terraces, or several joined by +"
+        )
+    job = _Job(topography, used_pixels(topography, mask, terraces.SMALLEST_PIECE))
+    for name in methods:
+        job.take_out(name)
+    levelled, report = job.result(method)
+    for text in report.warnings:
+        warnings.warn(text, stacklevel=2)
+    return levelled, report
 
 
-def despeckle(topography: Topography) -> tuple[Topography, DespeckleReport]:
-    """Replace isolated wrong pixels by the median of their surroundings; edges, corners and lines stay.
+class _Job:
+    """An image while one method after the other is applied.
 
-    A pixel is a speckle when it lies more than six robust standard deviations off the 3 x 3 median, on the same side of
-    every neighbour that is not itself off, and in a group of at most two such pixels. (At the corner of a terrace
-    the pixels inward agree with it, and a line is a larger group.)
+    They work on strips, means over blocks along the rows; the image itself is touched once, at the end.
     """
-    cv2 = require("cv2", "images")
-    z = topography.heights
-    # OpenCV's median filter takes float32: remove what would cost digits first, the mean and the scale.
-    centre, scale = float(z.mean()), topography.height_range
-    if scale == 0:
-        return topography, DespeckleReport(0, 0.0, 0.0)
-    normal = ((z - centre) / scale).astype(np.float32)
-    smooth = cv2.medianBlur(normal, 3)
-    off = normal - smooth
-    # The floor keeps single steps of a coarsely digitised image from counting as speckles.
-    threshold = _SPECKLE * max(_MAD * float(np.median(np.abs(off))), 1e-3 * float(np.ptp(smooth)))
-    suspect = np.abs(off) > threshold
-    speckle = suspect & _small_groups(suspect, cv2) & _apart(normal, suspect, threshold, cv2)
-    count = int(np.count_nonzero(speckle))
-    heights = z.copy()
-    heights[speckle] = smooth[speckle].astype(np.float64) * scale + centre
-    largest = float(np.abs(heights - z).max()) if count else 0.0
-    report = DespeckleReport(count, threshold * scale, largest)
-    return replace(topography, heights=heights, mask=topography.mask | speckle), report
+
+    def __init__(self, topography: Topography, used: NDArray[np.bool_] | None) -> None:
+        z = topography.heights
+        self.topography, self.used = topography, used
+        self.width = reduction(z.shape[1])
+        known = z if used is None else np.where(used, z, np.nan)
+        self.strips = block_means(known, self.width, 1)
+        if used is not None and np.isnan(self.strips).all():
+            self.width, self.strips = 1, known
+        self.floor = digit(np.diff(known[:: len(z) // 64 | 1], axis=1), topography.height_range)
+        self.by_row, self.by_column = np.zeros(len(z)), np.zeros(z.shape[1])
+        self.curved: Floats | None = None
+        self.tilt = np.zeros(2)  # (dz/dy, dz/dx) [-]
+        self.steps: list[LevelStep] = []
+        self.warnings: list[str] = []
+        self.pieces = 1
+        self.background: tuple[str, terraces.Background] | None = None  # the last
+        self.terraces: tuple[Terrace, ...] = ()
+        self.zero: float | None = None  # [m]; the mean if None
+
+    def take_out(self, method: str) -> None:
+        """Apply one method to the strips and add to what is to be removed."""
+        if method in ("rows", "medians"):
+            self._take_out_rows(method)
+        else:
+            self._take_out_background(method)
+
+    def _take_out_background(self, method: str, again: terraces.Background | None = None) -> None:
+        shape = self.topography.shape
+        order = int(method[4:]) if method.startswith("poly") else 1
+        if again is None:
+            found = terraces.fit(self.strips, shape, order, self.floor)
+        else:
+            found = terraces.refit(self.strips, shape, again)
+        removed = found.values(shape, (1, self.width))
+        self.strips = self.strips - removed
+        plane_y, plane_x = found.plane(shape)
+        self.by_row += plane_y
+        self.by_column += plane_x
+        slopes = np.array([np.ptp(p) / (len(p) - 1) * np.sign(p[-1]) for p in (plane_y, plane_x)])
+        slopes /= self.topography.pixel_size
+        self.tilt += slopes
+        self.pieces, self.background = found.pieces, (method, found)
+        note = f"a tilt of {np.degrees(np.arctan(np.hypot(*slopes))):.3g} degrees"
+        note += f" on which {found.pieces} pieces agree" if found.pieces > 1 else ""
+        if order > 1:
+            bow = found.bow(shape)
+            self.curved = bow if self.curved is None else self.curved + bow
+            self._judge_bow(method, bow)
+            note += f" and a bow of {np.ptp(bow) * 1e9:.4g} nm"
+        if method == "terraces":
+            self.terraces, self.zero = terraces.levels(self.strips, found)
+            heights = ", ".join(f"{t.height * 1e9:.4g} nm ({100 * t.share:.3g} %)" for t in self.terraces[:6])
+            note += f"; levels at {heights}" + (", ..." if len(self.terraces) > 6 else "")
+        self._record(method, removed, note)
+
+    def _judge_bow(self, method: str, bow: Floats) -> None:
+        """A scanner bends a flat once. A background that turns again, by more than the roughness left, is a wave."""
+        rms = float(np.nanstd(self.strips))
+        for axis, name in ((0, "x"), (1, "y")):
+            turns = _turns(bow.mean(axis=axis), rms)
+            if turns > 1:
+                self.warnings.append(
+                    f"{method} removed a background that turns {turns} times along {name} by more than the "
+                    f"{rms * 1e9:.3g} nm rms left: a structure may have gone; use poly2 or a mask"
+                )
+
+    def _take_out_rows(self, method: str) -> None:
+        found = rows.analyse(self.strips)
+        removed = found.offsets if method == "rows" else rows.medians(self.strips)
+        self.strips = self.strips - removed[:, None]
+        self.by_row += removed
+        note, warning = (self._rows_verdict if method == "rows" else self._medians_verdict)(found)
+        if warning:
+            self.warnings.append(warning)
+        self._record(method, removed, note)
+        if removed.any() and self.background:  # which sees better now
+            self._take_out_background(*self.background)
+
+    def _rows_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
+        lasting = f"{np.ptp(found.kept) * 1e9:.3g} nm that last along y were kept"
+        if found.jumps:
+            lasting += f", with {found.jumps} steps across whole rows up to {found.highest_jump * 1e9:.4g} nm"
+        if found.period is not None:
+            return f"none; {lasting}", (
+                f"rows repeat every {found.period:.3g} rows over {found.wave * 1e9:.4g} nm: taken for a grating along "
+                "the fast axis and left; medians would erase it"
+            )
+        if not found.agreed:
+            return f"no offsets on which both halves of the image agree; {lasting}", ""
+        if found.single:
+            return f"offsets of rows; {lasting}", (
+                f"{len(found.single)} rows were off by up to {found.highest_single * 1e9:.4g} nm and put back (the "
+                f"first is row {found.single[0]}); if that is a wire along the fast axis, level without rows"
+            )
+        return f"offsets of rows; {lasting}", ""
+
+    def _medians_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
+        rms, lasting = float(np.nanstd(self.strips)), float(np.ptp(found.kept))
+        note = f"the median of every row, {lasting * 1e9:.4g} nm of it lasting along y"
+        if found.period is not None:
+            what = f"a grating along the fast axis of {found.period:.3g} rows, {found.wave * 1e9:.4g} nm high"
+        elif found.jumps and found.highest_jump > rms:
+            what = f"{found.jumps} steps along the fast axis, up to {found.highest_jump * 1e9:.4g} nm high"
+        elif lasting > 4.0 * rms:
+            what = f"a structure along the fast axis, {lasting * 1e9:.4g} nm high over {rms * 1e9:.3g} nm rms left"
+        else:
+            return note, ""
+        return note, f"medians erased what looks like {what}; use rows"
+
+    def _record(self, method: str, removed: Floats, note: str) -> None:
+        self.steps.append(LevelStep(method, float(np.ptp(removed)), float(removed.std()), note))
+
+    def result(self, method: str) -> tuple[Topography, LevelReport]:
+        """The levelled image and the report."""
+        before = self.topography
+        heights = before.heights - self.by_row[:, None]
+        heights -= self.by_column
+        removed_range = float(np.ptp(self.by_row) + np.ptp(self.by_column))
+        offset = float(self.by_row.mean() + self.by_column.mean())
+        if self.curved is not None:
+            heights -= self.curved
+            removed_range = float(np.ptp(before.heights - heights))
+            offset += float(self.curved.mean())
+        zero = self.zero
+        if zero is None:
+            zero = float(heights.mean() if self.used is None else heights[self.used].mean())
+        heights -= zero
+        levelled = replace(before, heights=heights)
+        report = LevelReport(
+            method,
+            tuple(self.steps),
+            (float(self.tilt[0]), float(self.tilt[1])),
+            zero + offset,
+            removed_range,
+            before.height_range,
+            levelled.height_range,
+            self.pieces,
+            self.terraces,
+            tuple(self.warnings),
+        )
+        return levelled, report
 
 
-def _small_groups(suspect: NDArray[np.bool_], cv2: object) -> NDArray[np.bool_]:
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(suspect.astype(np.uint8), connectivity=8)  # type: ignore[attr-defined]
-    small = stats[:, cv2.CC_STAT_AREA] <= _SPECKLE_SIZE  # type: ignore[attr-defined]
-    small[0] = False
-    return np.asarray(small[labels], dtype=bool)
-
-
-def _apart(z: NDArray[np.float32], suspect: NDArray[np.bool_], threshold: float, cv2: object) -> NDArray[np.bool_]:
-    """Where a pixel lies beyond all its unsuspected neighbours by more than `threshold`."""
-    ring = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], dtype=np.uint8)
-    big = np.float32(4.0)  # beyond any normalised height
-    highest = cv2.dilate(np.where(suspect, -big, z), ring)  # type: ignore[attr-defined]
-    lowest = cv2.erode(np.where(suspect, big, z), ring)  # type: ignore[attr-defined]
-    return np.asarray((z > highest + threshold) | (z < lowest - threshold), dtype=bool)
-
-
-def _common_tilt(z: NDArray[np.float64], used: NDArray[np.bool_]) -> tuple[float, float, int]:
-    """The tilt that the flat pieces agree on [m/pixel along y, along x], and their number."""
-    steps_y, steps_x = np.diff(z, axis=0), np.diff(z, axis=1)
-    pairs_y, pairs_x = used[1:] & used[:-1], used[:, 1:] & used[:, :-1]
-    slope = np.array([_middle(steps_y[pairs_y]), _middle(steps_x[pairs_x])])
-    height_range = float(np.ptp(z[used]))
-    small = 1e-3 * height_range
-    floor_y, floor_x = (max(small, _digit(v, height_range)) for v in (steps_y[pairs_y], steps_x[pairs_x]))
-    pieces = 1
-    for _ in range(_ROUNDS):
-        flat = used.copy()
-        flat[:-1] &= _gentle(steps_y - slope[0], pairs_y, floor_y)
-        flat[:, :-1] &= _gentle(steps_x - slope[1], pairs_x, floor_x)
-        labels, pieces = _cut(flat, used)
-        change = _fit_change(z, slope, labels)
-        slope += change
-        if np.abs(change).max() * max(z.shape) < 1e-6 * small:
-            break
-    return float(slope[0]), float(slope[1]), pieces
-
-
-def _middle(values: NDArray[np.float64]) -> float:
-    return float(np.median(_sample(values))) if values.size else 0.0
-
-
-def _sample(values: NDArray[Any]) -> NDArray[Any]:
-    """Every n-th value of many: 2^17 tell a tilt to a tenth of the noise. n is odd, so that it does not follow rows."""
-    return values[:: values.size // _ENOUGH | 1]
-
-
-def _digit(steps: NDArray[np.float64], height_range: float) -> float:
-    """One and a half steps of the digitiser: the smallest difference there is, unless it is a structure's."""
-    size = np.abs(steps)
-    smallest = 1.5 * float(size[size > 0].min(initial=np.inf))
-    return smallest if smallest < 0.05 * height_range else 0.0
-
-
-def _gentle(difference: NDArray[np.float64], counted: NDArray[np.bool_], floor: float) -> NDArray[np.bool_]:
-    """Where a height difference from pixel to pixel is no more than noise and the digitiser's steps explain."""
-    size = np.abs(difference)
-    ups = size[counted]
-    return np.asarray(size <= max(_STEEP * _MAD * _middle(ups), floor), dtype=bool)
-
-
-def _cut(flat: NDArray[np.bool_], used: NDArray[np.bool_]) -> tuple[NDArray[np.int32], int]:
-    """Label the connected flat pieces from 1; 0 is steep or too small. Without any piece all used pixels are one."""
-    cv2 = require("cv2", "images")
-    count, labels = cv2.connectedComponents(flat.astype(np.uint8), connectivity=4)
-    area = np.bincount(labels.ravel(), minlength=count)
-    kept = area >= _SMALLEST_PIECE
-    kept[0] = False
-    if not kept.any():
-        return used.astype(np.int32), 1
-    new_label = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
-    return new_label[labels], int(kept.sum())
-
-
-def _fit_change(z: NDArray[np.float64], slope: NDArray[np.float64], labels: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Change of the common slope by Huber-weighted least squares with a free height for each piece.
-
-    The least-norm solution leaves a direction alone in which no piece extends.
-    """
-    j, i = np.divmod(_sample(np.flatnonzero(labels)), z.shape[1])
-    piece = np.unique(labels[j, i], return_inverse=True)[1]
-    rest = z[j, i] - slope[0] * j - slope[1] * i
-    weight = np.ones(rest.size)
-    change = np.zeros(2)
-    for _ in range(3):
-        total = np.bincount(piece, weight)
-        centred = [v - (np.bincount(piece, weight * v) / total)[piece] for v in (j, i, rest)]
-        dj, di, dz = centred
-        normal = np.array([[weight @ (dj * dj), weight @ (dj * di)], [weight @ (dj * di), weight @ (di * di)]])
-        change = np.linalg.lstsq(normal, np.array([weight @ (dj * dz), weight @ (di * dz)]), rcond=1e-12)[0]
-        residual = np.abs(dz - change[0] * dj - change[1] * di)
-        limit = _HUBER * _MAD * float(np.median(residual))
-        if limit == 0.0:
-            break
-        weight = np.minimum(1.0, limit / np.maximum(residual, limit))
-    return change
+def _turns(profile: Floats, prominence: float) -> int:
+    """How often a profile turns round by more than `prominence`."""
+    turns, direction = 0, 0
+    low = high = float(profile[0])
+    for value in profile:
+        low, high = min(low, value), max(high, value)
+        if direction >= 0 and high - value > prominence:
+            turns, direction, low = turns + (direction > 0), -1, value
+        elif direction <= 0 and value - low > prominence:
+            turns, direction, high = turns + (direction < 0), 1, value
+    return turns

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .._arrays import Floats
 from ..errors import require
-from .levelling import _MAD, _digit, _middle
+from ._robust import MAD, block_means, digit, middle
 from .topography import Topography
 
 _HIGHEST = 3  # [row]; what is broader across the rows is a structure
@@ -19,6 +19,8 @@ _SHORTEST = 17  # [pixel], odd for OpenCV; what is shorter along the row is a pa
 _GAP = 2  # [pixel]; noise may interrupt a scar for so long
 _STANDARD_DEVIATIONS = 3.0  # of the difference from row to row; seventeen in line do not come from noise
 _MOST = 0.05  # of the image; more is a texture
+_BLOCK = 8  # [pixel]; one lies wholly within every scar, so a scar shows in the means over blocks
+_ROWS = 64  # that tell the noise
 
 
 @dataclass(frozen=True)
@@ -71,8 +73,11 @@ def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
         What was replaced.
     """
     z = topography.heights
-    threshold = _threshold(z)
-    raised, sunk = _streaks(z, threshold), _streaks(-z, threshold)
+    slope, threshold = _slope_and_threshold(z)
+    means = block_means(z, _BLOCK, 1) - slope * np.arange(len(z))[:, None]
+    if not any(_starts(sign * means, rows, threshold).size for sign in (1, -1) for rows in _heights(z)):
+        return topography, ScarReport(0, 0, threshold, 0.0, 0, False)
+    raised, sunk = (_streaks(z, sign, slope, threshold, means) for sign in (1, -1))
     (up, ups, lines), (down, downs, more) = _without_lines(raised), _without_lines(sunk)
     scar, lines = up | down, lines + more
     if lines:
@@ -81,34 +86,54 @@ def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
         share = 100 * np.count_nonzero(scar) / z.size
         warnings.warn(f"{share:.3g} % of the image look like scars: taken for its texture and left", stacklevel=2)
         return topography, ScarReport(0, 0, threshold, 0.0, lines, True)
-    heights = _bridged(z, scar)
-    largest = float(np.abs(heights - z).max())
+    heights, largest = _bridged(z, scar)
     report = ScarReport(ups + downs, int(np.count_nonzero(scar)), threshold, largest, lines, False)
     return replace(topography, heights=heights, mask=topography.mask | scar), report
 
 
-def _threshold(z: Floats) -> float:
-    """What neither noise nor the digitiser's steps explain from row to row [m]."""
-    steps = np.diff(z, axis=0).ravel()
-    noise = _MAD * _middle(np.abs(steps - _middle(steps)))
+def _heights(z: Floats) -> range:
+    return range(1, min(_HIGHEST, len(z) - 2) + 1)
+
+
+def _slope_and_threshold(z: Floats) -> tuple[float, float]:
+    """The tilt across the rows [m/row], and what neither noise nor the digitiser's steps explain of a jump [m]."""
+    row = np.arange(0, len(z) - 1, len(z) // _ROWS | 1)
+    steps = (z[row + 1] - z[row]).ravel()
+    slope = middle(steps)
+    noise = MAD * middle(np.abs(steps - slope))
     height_range = float(np.ptp(z))
-    return max(_STANDARD_DEVIATIONS * noise, 1e-3 * height_range, _digit(steps, height_range))
+    return slope, max(_STANDARD_DEVIATIONS * noise, 1e-3 * height_range, digit(steps, height_range))
 
 
-def _streaks(z: Floats, threshold: float) -> NDArray[np.uint8]:
-    """Where one to three rows stand above the row before and the row after, for long enough along the row."""
+def _stands_out(before: Floats, inner: Floats, after: Floats, threshold: float) -> NDArray[np.bool_]:
+    """Where rows stand above those before and after, by more than these differ from each other."""
+    excess = inner - np.maximum(before, after)
+    return np.asarray((excess > threshold) & (excess > np.abs(before - after)))
+
+
+def _starts(means: Floats, rows: int, threshold: float) -> NDArray[np.intp]:
+    """The first row of all runs of `rows` rows that stand out in a block. What stands out pixel by pixel does so in
+    the mean."""
+    inner = means[1 : len(means) - rows].copy()
+    for k in range(1, rows):
+        np.minimum(inner, means[1 + k : len(means) - rows + k], out=inner)
+    return 1 + np.flatnonzero(_stands_out(means[: -rows - 1], inner, means[rows + 1 :], threshold).any(axis=1))
+
+
+def _streaks(z: Floats, sign: int, slope: float, threshold: float, means: Floats) -> NDArray[np.uint8]:
+    """Where one to three rows stand above (sign 1) the row before and the row after, for long enough along the row."""
     cv2 = require("cv2", "images")
     found = np.zeros(z.shape, np.uint8)
-    flat = z - _middle(np.diff(z, axis=0).ravel()) * np.arange(len(z))[:, None]
-    for rows in range(1, min(_HIGHEST, len(z) - 2) + 1):
-        inner = np.lib.stride_tricks.sliding_window_view(flat[1:-1], rows, axis=0).min(axis=-1)
-        before, after = flat[: -rows - 1], flat[rows + 1 :]
-        excess = inner - np.maximum(before, after)
-        out = ((excess > threshold) & (excess > np.abs(before - after))).astype(np.uint8)
+    for rows in _heights(z):
+        starts = _starts(sign * means, rows, threshold)
+        if not starts.size:
+            continue
+        before, *inner, after = (sign * (z[starts + k] - slope * k) for k in range(-1, rows + 1))
+        out = _stands_out(before, np.minimum.reduce(inner), after, threshold).astype(np.uint8)
         out = cv2.morphologyEx(out, cv2.MORPH_CLOSE, np.ones((1, _GAP + 1), np.uint8))
         out = cv2.morphologyEx(out, cv2.MORPH_OPEN, np.ones((1, _SHORTEST), np.uint8))
-        for row in range(1, rows + 1):
-            found[row : row + len(out)] |= out
+        for row in range(rows):
+            found[starts + row] |= out
     return found
 
 
@@ -123,14 +148,16 @@ def _without_lines(found: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], int, in
     return np.asarray(kept[labels], dtype=bool), streaks, lines
 
 
-def _bridged(z: Floats, scar: NDArray[np.bool_]) -> Floats:
-    """Marked pixels from the nearest others above and below in their column, linearly."""
-    rows = np.arange(len(z))[:, None]
-    below = np.maximum.accumulate(np.where(scar, -1, rows), axis=0)
-    above = np.minimum.accumulate(np.where(scar, len(z), rows)[::-1], axis=0)[::-1]
+def _bridged(z: Floats, scar: NDArray[np.bool_]) -> tuple[Floats, float]:
+    """Marked pixels from the nearest others above and below in their column, linearly; and the largest change [m]."""
     j, i = np.nonzero(scar)
-    low, high = below[j, i], above[j, i]
+    low, high = j - 1, j + 1
+    for _ in range(len(z)):
+        low_in, high_in = scar[low, i], scar[high, i]
+        if not (low_in.any() or high_in.any()):
+            break
+        low, high = low - low_in, high + high_in
     share = (j - low) / (high - low)
     heights = z.copy()
     heights[j, i] = (1 - share) * z[low, i] + share * z[high, i]
-    return heights
+    return heights, float(np.abs(heights[j, i] - z[j, i]).max(initial=0.0))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidValue
+from ._robust import used_pixels
 from .topography import Topography
 
 
@@ -41,13 +41,7 @@ def roughness(topography: Topography, mask: NDArray[np.bool_] | None = None) -> 
     mask : ndarray, shape (ny, nx), bool, optional
         True where a pixel shall not count; pixels that were filled in never do.
     """
-    used = ~topography.mask
-    if mask is not None:
-        if np.shape(mask) != topography.shape:
-            raise InvalidValue(f"mask: shape {np.shape(mask)}, expected {topography.shape}")
-        used &= ~np.asarray(mask, dtype=bool)
-    z = topography.heights[used]
-    if not z.size:
-        raise InvalidValue("mask: leaves 0 pixels, expected at least 1")
+    used = used_pixels(topography, mask)
+    z = topography.heights if used is None else topography.heights[used]
     off = z - z.mean()
     return Roughness(float(np.abs(off).mean()), float(np.sqrt((off**2).mean())), float(np.ptp(z)))

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Particles on a flat (quantum dots, grains) or pits in it: found, parted where they touch, and measured."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass, fields
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._arrays import Floats
+from ..errors import InvalidValue, require
+from ._robust import MAD, pixel_noise
+from .topography import Topography
+
+_STANDARD_DEVIATIONS = 5.0  # of the flat above which a pixel belongs to a particle
+_STANDS_OUT = 10.0
+_SADDLE = 0.2  # of the lower peak's height: two peaks are two particles if the saddle between them is so much lower
+_BINS = 512  # of Otsu's histogram
+
+
+@dataclass(frozen=True, eq=False)
+class GrainTable:
+    """Particles, highest first: arrays of one length.
+
+    Attributes
+    ----------
+    x, y : ndarray
+        Centre, weighted by height [m].
+    height : ndarray
+        Highest pixel over the base [m] (of pits: the depth).
+    mean_height : ndarray
+        Mean over the base [m].
+    diameter : ndarray
+        Of the circle of equal area [m], at the threshold.
+    area : ndarray
+        At the threshold [m^2].
+    volume : ndarray
+        Between base and surface [m^3], within that area.
+    pixels : ndarray of int
+        Number of pixels.
+    border : ndarray of bool
+        True for a particle that the border of the image cuts; leave those out of mean sizes.
+    labels : ndarray, shape (ny, nx), int
+        Number of the particle from 1 (row 0 of the table), 0 for the flat.
+    base : float
+        Height of the flat [m].
+    threshold : float
+        Height over the base above which pixels were counted [m].
+    noise : float
+        Standard deviation of the flat, or of the lower class [m].
+    """
+
+    x: Floats
+    y: Floats
+    height: Floats
+    mean_height: Floats
+    diameter: Floats
+    area: Floats
+    volume: Floats
+    pixels: NDArray[np.int64]
+    border: NDArray[np.bool_]
+    labels: NDArray[np.int32]
+    base: float
+    threshold: float
+    noise: float
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    @property
+    def coverage(self) -> float:
+        """Share of the image that lies in particles [-]."""
+        return float(np.count_nonzero(self.labels) / self.labels.size)
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """The columns by name, with their units: ``"height_m"``, ..."""
+        units = {"area": "_m2", "volume": "_m3", "pixels": "", "border": ""}
+        names = [f.name for f in fields(self)][:9]
+        return {name + units.get(name, "_m"): getattr(self, name) for name in names}
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the table, one line per particle, SI."""
+        columns = self.columns()
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["number", *columns])
+            for number, row in enumerate(zip(*columns.values(), strict=True), 1):
+                writer.writerow([number, *(f"{v:.6g}" if isinstance(v, np.floating) else int(v) for v in row)])
+
+    def __str__(self) -> str:
+        if not len(self):
+            return f"no particles above {self.threshold * 1e9:.3g} nm"
+        inner = ~self.border if not self.border.all() else np.ones(len(self), bool)
+        height, diameter = self.height[inner] * 1e9, self.diameter[inner] * 1e9
+        return (
+            f"{len(self)} particles above {self.threshold * 1e9:.3g} nm ({int(self.border.sum())} cut by the border), "
+            f"{100 * self.coverage:.3g} % of the area; of the others height {np.median(height):.3g} nm "
+            f"({height.min():.3g} .. {height.max():.3g}), diameter {np.median(diameter):.3g} nm "
+            f"({diameter.min():.3g} .. {diameter.max():.3g})"
+        )
+
+
+def grains(
+    topography: Topography,
+    threshold: float | str = "auto",
+    *,
+    smallest: int = 9,
+    split: bool = True,
+    pits: bool = False,
+) -> GrainTable:
+    """Find particles on a levelled image and measure them.
+
+    Parameters
+    ----------
+    topography : Topography
+        The image, levelled (:func:`level` leaves particles out by itself).
+    threshold : float or {"auto", "flat", "otsu"}
+        Height over the base above which a pixel belongs to a particle [m].
+
+        ``"flat"``: five standard deviations of the flat; base is the most frequent height, and the half of the heights
+        below it, which particles do not reach, gives the standard deviation. ``"otsu"``, for grains so dense that there
+        is no flat: what parts the heights best into two classes (Otsu 1979); base is the median of the lower one.
+        ``"auto"``: ``"flat"`` if the highest pixel in a thousand stands ten standard deviations over it, else
+        ``"otsu"``.
+    smallest : int
+        Particles of fewer pixels are noise.
+    split : bool
+        Part particles that touch: two peaks are two particles where the saddle between them lies lower than the lower
+        one by a fifth of its height, and by five standard deviations of the noise of a pixel.
+    pits : bool
+        Look for pits in place of particles.
+    """
+    if smallest < 1:
+        raise InvalidValue(f"smallest: {smallest} pixels, expected 1 or more")
+    z = -topography.heights if pits else topography.heights
+    base, noise, least = _base(z[~topography.mask], threshold)
+    cv2 = require("cv2", "images")
+    over = z - base
+    count, labels = cv2.connectedComponents((over > least).astype(np.uint8), connectivity=8)
+    if split and count > 1:
+        labels = _parted(over, labels, _STANDARD_DEVIATIONS * pixel_noise(z))
+    labels = _numbered(over, labels, smallest)
+    return _measured(topography, over, labels, (-base if pits else base, least, noise))
+
+
+def _flat(z: Floats) -> tuple[float, float]:
+    """The most frequent height, and the standard deviation of what lies below it."""
+    low, high = np.quantile(z, [0.001, 0.999])
+    if low == high:
+        return float(low), 0.0
+    step = (high - low) / _BINS
+    histogram = np.histogram(z, _BINS, (low, high))[0].astype(float)
+    smooth = np.convolve(histogram, np.hanning(27), "same")
+    base = low + (float(smooth.argmax()) + 0.5) * step
+    base = float(np.median(z[np.abs(z - base) <= 2.0 * step]))  # exact where the flat is narrower than a bin
+    below = base - z[z < base]
+    noise = MAD * float(np.median(below)) if below.size else 0.0
+    near = z[np.abs(z - base) <= 2.0 * noise]
+    return (float(np.median(near)) if near.size else base), noise
+
+
+def _base(z: Floats, threshold: float | str) -> tuple[float, float, float]:
+    """Height of the base, standard deviation about it, and the height over it from which a pixel counts."""
+    base, noise = _flat(z)
+    if threshold == "auto":
+        threshold = "flat" if np.quantile(z, 0.999) - base >= _STANDS_OUT * noise else "otsu"
+    if threshold == "flat":
+        return base, noise, max(_STANDARD_DEVIATIONS * noise, 1e-3 * float(np.ptp(z)))
+    if threshold == "otsu":
+        parting = _otsu(z)
+        lower = z[z <= parting]
+        base = float(np.median(lower))
+        return base, float(lower.std()), parting - base
+    if isinstance(threshold, str) or not 0.0 < threshold < np.inf:
+        raise InvalidValue(f"threshold: {threshold!r}, expected a positive height [m], 'auto', 'flat' or 'otsu'")
+    return base, noise, float(threshold)
+
+
+def _otsu(z: Floats) -> float:
+    """The height that leaves the least variance within the two classes it makes."""
+    histogram, edges = np.histogram(z, _BINS)
+    share = histogram / z.size
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    below, moment = np.cumsum(share), np.cumsum(share * middle)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        between = (moment[-1] * below - moment) ** 2 / (below * (1.0 - below))
+    return float(edges[1 + int(np.nanargmax(between[:-1]))])
+
+
+def _parted(over: Floats, labels: NDArray[np.int32], least: float) -> NDArray[np.int32]:
+    """Basins of the peaks of every particle, joined again where no saddle parts them.
+
+    A pixel belongs to the peak to which steepest ascent leads.
+    """
+    cv2 = require("cv2", "images")
+    smooth = cv2.GaussianBlur(over, (0, 0), 1.0)
+    smooth[labels == 0] = -np.inf
+    basins = _ascended(smooth)
+    inside = np.flatnonzero(labels)
+    roots, basin = np.unique(basins[inside], return_inverse=True)
+    index = np.full(over.size, -1, np.int64)
+    index[inside] = basin
+    peaks = smooth.ravel()[roots]
+    joined = _joined(index.reshape(over.shape), smooth, peaks, least)
+    out = np.zeros(over.size, np.int32)
+    out[inside] = 1 + joined[basin]
+    return out.reshape(over.shape)
+
+
+def _ascended(z: Floats) -> NDArray[np.int64]:
+    """For every pixel the index of the peak to which steepest ascent over 3 x 3 pixels leads."""
+    ny, nx = z.shape
+    padded = np.pad(z, 1, constant_values=-np.inf)
+    highest, target = z.copy(), np.arange(z.size).reshape(z.shape)
+    own = target.copy()
+    for dj in (-1, 0, 1):
+        for di in (-1, 0, 1):
+            neighbour = padded[1 + dj : 1 + dj + ny, 1 + di : 1 + di + nx]
+            better = neighbour > highest
+            highest[better] = neighbour[better]
+            target[better] = own[better] + dj * nx + di
+    flat = target.ravel()
+    while True:  # each round doubles the steps taken
+        further = flat[flat]
+        if np.array_equal(further, flat):
+            return flat
+        flat = further
+
+
+def _joined(index: NDArray[np.int64], z: Floats, peaks: Floats, least: float) -> NDArray[np.int64]:
+    """Which basins are one particle: saddles from the highest down, a peak that stands too little above one joins."""
+    pairs, saddles = [], []
+    for dj, di in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        here = (slice(None, -dj or None), slice(max(-di, 0), -di if di > 0 else None))
+        there = (slice(dj, None), slice(max(di, 0), di if di < 0 else None))
+        near, far = index[here], index[there]
+        meet = (near != far) & (near >= 0) & (far >= 0)
+        pairs.append(np.stack([near[meet], far[meet]], axis=1))
+        saddles.append(np.minimum(z[here][meet], z[there][meet]))
+    pair, saddle = np.concatenate(pairs), np.concatenate(saddles)
+    parent = list(range(len(peaks)))
+
+    def top(k: int) -> int:
+        while parent[k] != k:
+            parent[k] = parent[parent[k]]
+            k = parent[k]
+        return k
+
+    order = np.argsort(-saddle, kind="stable")
+    for (one, other), height in zip(pair[order].tolist(), saddle[order].tolist(), strict=True):
+        a, b = top(one), top(other)
+        low, high = (a, b) if peaks[a] < peaks[b] else (b, a)
+        if a != b and peaks[low] - height < max(_SADDLE * peaks[low], least):
+            parent[low] = high
+    return np.array([top(k) for k in range(len(peaks))], dtype=np.int64)
+
+
+def _numbered(over: Floats, labels: NDArray[np.int32], smallest: int) -> NDArray[np.int32]:
+    """Numbers from 1 by falling height; 0 for particles of fewer than `smallest` pixels."""
+    inside = np.flatnonzero(labels)
+    found, which = np.unique(labels.ravel()[inside], return_inverse=True)
+    if not found.size:
+        return np.zeros(labels.shape, np.int32)
+    top = np.full(found.size, -np.inf)
+    np.maximum.at(top, which, over.ravel()[inside])
+    keep = np.bincount(which) >= smallest
+    number = np.zeros(found.size, np.int32)
+    order = np.argsort(np.where(keep, -top, np.inf), kind="stable")[: np.count_nonzero(keep)]
+    number[order] = np.arange(1, len(order) + 1)
+    out = np.zeros(labels.size, np.int32)
+    out[inside] = number[which]
+    return out.reshape(labels.shape)
+
+
+def _measured(
+    topography: Topography, over: Floats, labels: NDArray[np.int32], flat: tuple[float, float, float]
+) -> GrainTable:
+    (dy, dx), (ny, nx) = topography.pixel_size, topography.shape
+    inside = np.flatnonzero(labels)
+    which, high = labels.ravel()[inside] - 1, over.ravel()[inside]
+    j, i = np.divmod(inside, nx)
+    count = int(labels.max(initial=0))
+    pixels = np.bincount(which, minlength=count)
+    total = np.bincount(which, high, count)
+    top = np.zeros(count)
+    np.maximum.at(top, which, high)
+    edge = (j == 0) | (j == ny - 1) | (i == 0) | (i == nx - 1)
+    area = np.asarray(pixels * (dy * dx), np.float64)
+    return GrainTable(
+        np.bincount(which, high * i, count) / total * dx,
+        np.bincount(which, high * j, count) / total * dy,
+        top,
+        total / pixels,
+        2.0 * np.sqrt(area / np.pi),
+        area,
+        np.asarray(total * (dy * dx)),
+        pixels,
+        np.bincount(which, edge, count) > 0,
+        labels,
+        *flat,
+    )
