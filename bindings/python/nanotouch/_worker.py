@@ -51,13 +51,16 @@ class Limits:
     files: int = 16
 
 
-def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer], limits: Limits | None = None) -> Answer:
+LIMITS = Limits()
+
+
+def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer]) -> Answer:
     """The answer of `job` ("images.read", ...) for `file`; :class:`ReadError` whatever happens to the worker."""
     if sys.platform != "linux":
         raise Error(f"{file}: untrusted files are opened on Linux only, not on {sys.platform}")
-    request = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(limits or Limits())}
+    request = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(LIMITS)}
     with _lock:
-        answer = _process().ask(request, file, limits or Limits())
+        answer = _process().ask(request, file, LIMITS)
     if isinstance(answer, dict) and "error" in answer:
         raise _failure(answer, file)
     items = answer if get_origin(expected) is list and isinstance(answer, list) else [answer]

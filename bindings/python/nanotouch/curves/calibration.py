@@ -11,7 +11,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from fnmatch import fnmatch
+from fnmatch import fnmatchcase
 from os import PathLike
 from pathlib import Path
 
@@ -101,12 +101,9 @@ class CalibrationTable:
 
     def of(self, file: str | PathLike[str]) -> Calibration:
         """What the table gives for a file; nothing if no pattern matches."""
-        path = Path(file)
+        path = Path(file).absolute()
         for pattern, calibration in self.rows:
-            name = path.as_posix() if "/" in pattern else path.name
-            if fnmatch(name, f"*/{pattern}" if "/" in pattern and not pattern.startswith("/") else pattern):
-                return calibration
-            if "/" in pattern and fnmatch(name, pattern):
+            if fnmatchcase(path.as_posix(), f"*/{pattern}") if "/" in pattern else fnmatchcase(path.name, pattern):
                 return calibration
         return Calibration()
 
