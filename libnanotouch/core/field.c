@@ -24,7 +24,8 @@ nt_status nt_field_check(const nt_field *fields, int count, const void *object, 
     for (int i = 0; i < count; i++) {
         const nt_field *field = &fields[i];
         const double value = nt_field_get(field, object);
-        if (value >= field->minimum && value <= field->maximum)
+        const int is_choice = strchr(field->unit, '|') != NULL;
+        if (value >= field->minimum && value <= field->maximum && !(is_choice && value != floor(value)))
             continue;
         if (problem != NULL)
             *problem = (nt_problem){field->name, field->unit, value, field->minimum, field->maximum};

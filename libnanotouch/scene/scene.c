@@ -1,51 +1,96 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The description of a scene: defaults, one table of fields, checks. */
+ * The description of a scene: defaults, one table of fields, checks of each field and of what belongs together. */
+#include "nanotouch/scene.h"
+
 #include <math.h>
 #include <stddef.h>
 
-#include "nanotouch/forces.h"
-#include "nanotouch/scene.h"
-
 #define FIELD(path, unit, minimum, maximum, doc)                                                                       \
     {#path, unit, minimum, maximum, (unsigned)offsetof(nt_scene, path), doc}
+#define CHOICE(path, choices, last, doc) FIELD(path, choices, 0.0, last, doc)
+#define NO_YES "no|yes"
 
 static const nt_field scene_fields[] = {
-    FIELD(tip.radius, "m", 1e-10, 1e-3, "apex radius R"),
+    CHOICE(tip.shape, "paraboloid|sphere|cone|punch|blunted|truncated", 5.0, "shape of the tip"),
+    FIELD(tip.sides, "", 0.0, 4.0, "of a cone or blunted or truncated tip: 0 round, 3 or 4 a pyramid"),
+    FIELD(tip.radius, "m", 1e-10, 1e-3, "apex radius R, or radius of the flat end"),
     FIELD(tip.half_angle, "rad", 0.0, 1.5, "half-angle psi of the cone above the apex"),
+    FIELD(tip.height, "m", 0.0, 1e-3, "height L of that cone, for long-range forces; 0: a sphere alone"),
     FIELD(tip.youngs_modulus, "Pa", 1e2, 1e13, "Young's modulus of the tip"),
     FIELD(tip.poisson_ratio, "", -0.99, 0.5, "Poisson ratio of the tip"),
+    CHOICE(tip.conducting, NO_YES, 1.0, "whether the tip conducts"),
+    FIELD(tip.work_function, "V", 0.0, 10.0, "work function over e; 0: not known"),
+    FIELD(tip.surface_potential, "V", -0.5, 0.5, "potential of the tip's surface in the liquid, where no pH is given"),
+    FIELD(tip.isoelectric_point, "", 0.0, 14.0, "pH at which the tip's surface bears no charge"),
     FIELD(sample.youngs_modulus, "Pa", 1e2, 1e13, "Young's modulus of the sample"),
     FIELD(sample.poisson_ratio, "", -0.99, 0.5, "Poisson ratio of the sample"),
+    FIELD(sample.thickness, "m", 0.0, 1.0, "thickness of the layer that is pressed; 0: a half-space"),
     FIELD(sample.roughness, "m", 0.0, 1e-6, "roughness b, peak to peak, below what the surface map shows"),
+    CHOICE(sample.conducting, NO_YES, 1.0, "whether the sample conducts"),
+    CHOICE(sample.grounded, NO_YES, 1.0, "whether the sample is connected to the tip's circuit"),
+    FIELD(sample.work_function, "V", 0.0, 10.0, "work function over e; 0: not known"),
+    FIELD(sample.charge, "C", -1e-12, 1e-12, "charge q trapped on the surface under the tip"),
+    FIELD(sample.surface_potential, "V", -0.5, 0.5, "potential of its surface in the liquid, where no pH is given"),
+    FIELD(sample.isoelectric_point, "", 0.0, 14.0, "pH at which the sample's surface bears no charge"),
+    CHOICE(medium.kind, "air|vacuum|liquid", 2.0, "what is between tip and sample"),
     FIELD(medium.temperature, "K", 200.0, 500.0, "temperature"),
-    FIELD(medium.relative_humidity, "", 0.0, 0.99, "relative humidity; 0 is dry gas or vacuum"),
+    FIELD(medium.relative_humidity, "", 0.0, 1.0, "relative humidity of air; 0: no meniscus; 1 needs a meniscus radius"),
     FIELD(medium.surface_tension, "N/m", 0.0, 1.0, "surface tension gamma_L of the condensed liquid; 0: no meniscus"),
-    FIELD(medium.molar_volume, "m^3/mol", 1e-6, 1e-3, "molar volume of the liquid"),
+    FIELD(medium.molar_volume, "m^3/mol", 1e-6, 1e-3, "molar volume of the condensed liquid"),
     FIELD(medium.meniscus_radius, "m", 0.0, 1e-6, "meniscus radius r1; 0: from the Kelvin equation"),
     FIELD(medium.film_thickness, "m", 0.0, 1e-7, "thickness e of the adsorbed film on each surface"),
+    FIELD(medium.relative_permittivity, "", 1.0, 200.0, "relative permittivity of the liquid"),
+    FIELD(medium.ionic_strength, "mol/m^3", 0.0, 1e4, "ionic strength of the liquid; 0: no double layer"),
+    FIELD(medium.ph, "", 0.0, 14.0, "pH of the liquid; 0: surface potentials as given"),
+    FIELD(medium.potential_per_ph, "V", 0.0, 0.06, "surface potential per pH below the isoelectric point"),
+    FIELD(medium.hydration_energy, "J/m^2", -1.0, 1.0, "hydration energy W of plates at gap 0; below 0: hydrophobic"),
+    FIELD(medium.hydration_length, "m", 1e-11, 1e-7, "decay length of the hydration force"),
+    FIELD(medium.brush_thickness, "m", 0.0, 1e-6, "thickness T of the free polymer brushes of both bodies; 0: none"),
+    FIELD(medium.brush_spacing, "m", 1e-10, 1e-6, "distance s of grafted chains"),
+    CHOICE(adhesion.given, "work_of_adhesion|surface_energies|pull_off_force", 2.0, "what the adhesion follows from"),
     FIELD(adhesion.work_of_adhesion, "J/m^2", 0.0, 10.0, "work of adhesion w of the dry solids"),
+    FIELD(adhesion.tip_surface_energy, "J/m^2", 0.0, 10.0, "surface energy of the tip"),
+    FIELD(adhesion.sample_surface_energy, "J/m^2", 0.0, 10.0, "surface energy of the sample"),
+    FIELD(adhesion.pull_off_force, "N", 0.0, 1.0, "measured pull-off force under load control"),
     FIELD(adhesion.equilibrium_distance, "m", 1e-11, 1e-8, "distance z0 of atoms in contact (the paper's a0)"),
-    FIELD(adhesion.hamaker_constant, "J", 0.0, 1e-17, "Hamaker constant H"),
-    FIELD(adhesion.contact_potential, "V", -100.0, 100.0, "potential difference U of tip and sample"),
+    FIELD(adhesion.hamaker_constant, "J", 0.0, 1e-17, "Hamaker constant H through the medium"),
+    FIELD(adhesion.contact_potential, "V", -100.0, 100.0, "potential difference U of tip and sample, bias included"),
+    FIELD(range.minimum_gap, "m", -1e-3, 1e-2, "smallest gap that will be visited; below 0: contact"),
+    FIELD(range.maximum_load, "N", 1e-15, 1.0, "largest load that will be visited"),
+    FIELD(range.speed, "m/s", 0.0, 1.0, "fastest approach"),
+    FIELD(range.viscosity, "Pa s", 0.0, 1e3, "viscosity of the medium, for the drag that a plan leaves out"),
+    FIELD(range.warming, "K", 0.0, 100.0, "the temperature may move by this either way"),
 };
 
 nt_scene nt_scene_defaults(void)
 {
     /* Fig. 9 and 17: Si on Si, 40 % humidity, gamma_L = 72 mJ/m^2. e: van der Waals film of water at 40 % (erratum E4).
-     * w, z0, H are those of dry silicon; they matter outside the meniscus. Same material on both sides: U = 0. */
+     * w, z0, H are those of dry silicon; they matter outside the meniscus. Same material on both sides: U = 0. The
+     * liquid's numbers are those of water; gases are as viscous as air. */
     nt_scene scene = {
-        .tip = {.radius = 20e-9, .half_angle = 0.30, .youngs_modulus = 135e9, .poisson_ratio = 0.35},
-        .sample = {.youngs_modulus = 135e9, .poisson_ratio = 0.35, .roughness = 0.0},
-        .medium = {.temperature = 298.15,
+        .tip = {.radius = 20e-9,
+                .half_angle = 0.30,
+                .youngs_modulus = 135e9,
+                .poisson_ratio = 0.35,
+                .conducting = 1.0,
+                .isoelectric_point = 2.0},
+        .sample = {.youngs_modulus = 135e9,
+                   .poisson_ratio = 0.35,
+                   .conducting = 1.0,
+                   .grounded = 1.0,
+                   .isoelectric_point = 2.0},
+        .medium = {.kind = NT_MEDIUM_AIR,
+                   .temperature = 298.15,
                    .relative_humidity = 0.40,
                    .surface_tension = 0.072,
                    .molar_volume = 1.8e-5,
-                   .meniscus_radius = 0.0,
-                   .film_thickness = 0.35e-9},
-        .adhesion = {.work_of_adhesion = 0.10,
-                     .equilibrium_distance = 0.2e-9,
-                     .hamaker_constant = 1e-19,
-                     .contact_potential = 0.0},
+                   .film_thickness = 0.35e-9,
+                   .relative_permittivity = 78.4,
+                   .potential_per_ph = 0.006,
+                   .hydration_length = 0.3e-9,
+                   .brush_spacing = 10e-9},
+        .adhesion = {.work_of_adhesion = 0.10, .equilibrium_distance = 0.2e-9, .hamaker_constant = 1e-19},
+        .range = {.minimum_gap = -1e-3, .maximum_load = 2.2e-6, .viscosity = 1.8e-5},
     };
     return scene;
 }
@@ -56,26 +101,65 @@ const nt_field *nt_scene_fields(int *count)
     return scene_fields;
 }
 
+/* Refuses `field` of a scene whose other fields leave it [minimum, maximum]. */
+static nt_status refuse(nt_problem *problem, const char *field, double value, double minimum, double maximum)
+{
+    int count = 0;
+    const nt_field *fields = nt_scene_fields(&count);
+    const char *unit = "";
+    for (int i = 0; i < count; ++i)
+        if (fields[i].name == field)
+            unit = fields[i].unit;
+    if (problem)
+        *problem = (nt_problem){field, unit, value, minimum, maximum};
+    return NT_E_RANGE;
+}
+
+nt_shape nt_scene_shape(const nt_scene *scene)
+{
+    const nt_tip *tip = &scene->tip;
+    nt_shape shape = {.kind = (nt_shape_kind)(int)tip->shape,
+                      .sides = (int)tip->sides,
+                      .radius = tip->radius,
+                      .half_angle = tip->half_angle};
+    return shape;
+}
+
+/* A shape that the contact laws know. Adhesion of cones and punches is JKR's, of round ones only. */
+static nt_status check_shape(const nt_scene *scene, nt_problem *problem)
+{
+    const nt_tip *tip = &scene->tip;
+    const nt_shape shape = nt_scene_shape(scene);
+    nt_problem found = {"", "", 0.0, 0.0, 0.0};
+    if (nt_shape_check(&shape, &found) != NT_OK) {
+        const int sides = found.field[0] == 's';
+        return refuse(problem, sides ? "tip.sides" : "tip.half_angle", sides ? tip->sides : tip->half_angle,
+                      found.minimum, found.maximum);
+    }
+    const int adhesive = nt_scene_adhesion_source(scene) != NT_ADHESION_NONE;
+    if (adhesive && shape.kind == NT_SHAPE_CONE && shape.sides != 0)
+        return refuse(problem, "tip.sides", tip->sides, 0.0, 0.0);
+    if (adhesive && shape.kind == NT_SHAPE_TRUNCATED)
+        return refuse(problem, "adhesion.work_of_adhesion", scene->adhesion.work_of_adhesion, 0.0, 0.0);
+    /* a full sphere fits into the cone above it: the forces of sphere and tip then have one order at every gap */
+    if (tip->height > 0.0 && !(tip->height >= 2.0 * tip->radius && tip->half_angle >= 0.01))
+        return refuse(problem, "tip.height", tip->height, 2.0 * tip->radius, 1e-3);
+    return NT_OK;
+}
+
 nt_status nt_scene_check(const nt_scene *scene, nt_problem *problem)
 {
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
-    return nt_field_check(fields, count, scene, problem);
-}
-
-nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene)
-{
+    const nt_status status = nt_field_check(fields, count, scene, problem);
+    if (status != NT_OK)
+        return status;
     const nt_medium *medium = &scene->medium;
-    if (medium->relative_humidity > 0.0 && medium->surface_tension > 0.0)
-        return NT_ADHESION_MENISCUS;
-    return scene->adhesion.work_of_adhesion > 0.0 ? NT_ADHESION_SOLID : NT_ADHESION_NONE;
-}
-
-double nt_scene_meniscus_radius(const nt_scene *scene)
-{
-    const nt_medium *medium = &scene->medium;
-    if (medium->meniscus_radius > 0.0)
-        return medium->meniscus_radius;
-    return nt_kelvin_radius(medium->surface_tension, medium->molar_volume, medium->temperature,
-                            medium->relative_humidity);
+    if (nt_scene_adhesion_source(scene) == NT_ADHESION_MENISCUS) {
+        if (!(medium->relative_humidity < 1.0) && !(medium->meniscus_radius > 0.0))
+            return refuse(problem, "medium.meniscus_radius", 0.0, 1e-10, 1e-6); /* Kelvin's is infinite at 100 % */
+        if (!(nt_scene_meniscus_radius(scene) >= 1e-11)) /* thinner than a molecule: no liquid to speak of */
+            return refuse(problem, "medium.relative_humidity", medium->relative_humidity, 1e-20, 1.0);
+    }
+    return check_shape(scene, problem);
 }

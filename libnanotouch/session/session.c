@@ -134,11 +134,12 @@ static nt_status fly(nt_session *session, nt_problem *problem)
 
 static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
 {
-    nt_demand demand = setup->demand;
-    demand.maximum_load = setup->settings.limits.force;
+    nt_scene scene = setup->scene;
+    scene.range.maximum_load = setup->settings.limits.force;
+    const nt_plan_inputs inputs = {&scene, &setup->demand, &setup->rig.probe, setup->surface};
     nt_status status = nt_touch_make(&session->touch, &setup->rig, &setup->settings, setup->mode, problem);
     if (status == NT_OK)
-        status = nt_plan_make(&session->plan, &setup->scene, &demand, setup->surface, problem);
+        status = nt_plan_make(&session->plan, &inputs, problem);
     if (status == NT_OK)
         status = judge_margin(session, setup, problem);
     if (status == NT_OK)

@@ -18,9 +18,10 @@ typedef struct loop {
  * (sim.plan). */
 static inline nt_status loop_open(loop *l, const nt_session_setup *setup)
 {
-    nt_demand demand = setup->demand;
-    demand.maximum_load = setup->settings.limits.force;
-    nt_status status = nt_plan_make(&l->plan, &setup->scene, &demand, setup->surface, NULL);
+    nt_scene scene = setup->scene;
+    scene.range.maximum_load = setup->settings.limits.force;
+    const nt_plan_inputs inputs = {&scene, &setup->demand, &setup->rig.probe, setup->surface};
+    nt_status status = nt_plan_make(&l->plan, &inputs, NULL);
     if (status == NT_OK)
         status = nt_touch_make(&l->touch, &setup->rig, &setup->settings, setup->mode, NULL);
     if (status != NT_OK)

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/plan.h"
+#include "nanotouch/interaction.h"
 #include "nanotouch/random.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
@@ -30,12 +30,13 @@ static nt_surface bumpy_surface(void)
     return surface;
 }
 
-static nt_plan plan_of(const nt_scene *scene, const nt_surface *surface)
+static nt_plan plan;
+
+static void make_plan(const nt_scene *scene, const nt_surface *surface)
 {
-    const nt_demand demand = {.relative_accuracy = 1e-4, .maximum_load = 1e-6};
-    nt_plan plan;
-    assert_int_equal(nt_plan_make(&plan, scene, &demand, surface, NULL), NT_OK);
-    return plan;
+    const nt_demand demand = {.relative_accuracy = 1e-4};
+    const nt_plan_inputs inputs = {.scene = scene, .demand = &demand, .surface = surface};
+    assert_int_equal(nt_plan_make(&plan, &inputs, NULL), NT_OK);
 }
 
 static nt_scene scene_of(int wet)
@@ -48,9 +49,9 @@ static nt_scene scene_of(int wet)
     return scene;
 }
 
-static double energy_at(const nt_plan *plan, const nt_interaction_state *state, nt_pose pose)
+static double energy_at(const nt_interaction_state *state, nt_pose pose)
 {
-    return nt_interaction_eval(plan, state, &pose).U;
+    return nt_interaction_eval(&plan, state, &pose).U;
 }
 
 /* Central differences, h = 1e-13 m. The slope of the force jumps at first touch by some N/m: error h dk = 1e-12 N there
@@ -63,9 +64,9 @@ static void force_is_minus_the_gradient(void **state)
     int compared = 0;
     for (int wet = 0; wet < 2; wet++) {
         const nt_scene scene = scene_of(wet);
-        const nt_plan plan = plan_of(&scene, &surface);
+        make_plan(&scene, &surface);
         for (int n = 0; n < 2000; n++) {
-            const nt_interaction_state history = {n % 2};
+            const nt_interaction_state history = {n % 2, 0.0, 0.0};
             const double h = 1e-13, x = (20 + 110 * nt_random_uniform(&random)) * 1e-9,
                          y = (20 + 110 * nt_random_uniform(&random)) * 1e-9;
             const double gap = (-1.5 + 5.0 * nt_random_uniform(&random)) * 1e-9;
@@ -77,12 +78,12 @@ static void force_is_minus_the_gradient(void **state)
                 continue;
             const nt_pose p = {x, y, nt_surface_eval(&surface, x, y).z + gap};
             const nt_interaction_value v = nt_interaction_eval(&plan, &history, &p);
-            const double dx = energy_at(&plan, &history, (nt_pose){x + h, y, p.z}) -
-                              energy_at(&plan, &history, (nt_pose){x - h, y, p.z});
-            const double dy = energy_at(&plan, &history, (nt_pose){x, y + h, p.z}) -
-                              energy_at(&plan, &history, (nt_pose){x, y - h, p.z});
-            const double dz = energy_at(&plan, &history, (nt_pose){x, y, p.z + h}) -
-                              energy_at(&plan, &history, (nt_pose){x, y, p.z - h});
+            const double dx = energy_at(&history, (nt_pose){x + h, y, p.z}) -
+                              energy_at(&history, (nt_pose){x - h, y, p.z});
+            const double dy = energy_at(&history, (nt_pose){x, y + h, p.z}) -
+                              energy_at(&history, (nt_pose){x, y - h, p.z});
+            const double dz = energy_at(&history, (nt_pose){x, y, p.z + h}) -
+                              energy_at(&history, (nt_pose){x, y, p.z - h});
             const double tolerance = 1e-12 + 1e-6 * fabs(v.Fz);
             assert_true(fabs(v.Fx + dx / (2 * h)) < tolerance);
             assert_true(fabs(v.Fy + dy / (2 * h)) < tolerance);
@@ -99,14 +100,14 @@ static void stiffness_is_the_slope_of_the_force(void **state)
     (void)state;
     for (int wet = 0; wet < 2; wet++) {
         const nt_scene scene = scene_of(wet);
-        const nt_plan plan = plan_of(&scene, NULL);
+        make_plan(&scene, NULL);
         for (double gap = -2e-9; gap < 5e-9; gap += 7.3e-12)
             for (int attached = 0; attached < 2; attached++) {
-                const nt_interaction_state history = {attached};
+                const nt_interaction_state history = {attached, 0.0, 0.0};
                 const double h = 1e-14;
-                const nt_law_value v = nt_interaction_eval_gap(&plan, &history, gap);
-                const nt_law_value a = nt_interaction_eval_gap(&plan, &history, gap - h);
-                const nt_law_value b = nt_interaction_eval_gap(&plan, &history, gap + h);
+                const nt_law_value v = nt_interaction_eval_gap(&plan, &history, NULL, gap);
+                const nt_law_value a = nt_interaction_eval_gap(&plan, &history, NULL, gap - h);
+                const nt_law_value b = nt_interaction_eval_gap(&plan, &history, NULL, gap + h);
                 const int jump = fabs(gap - plan.capture_gap) < 1e-12 || fabs(gap - plan.release_gap) < 5e-12 ||
                                  fabs(gap - scene.adhesion.equilibrium_distance) < 1e-12;
                 if (!jump)
@@ -128,7 +129,7 @@ static void hysteresis_only_dissipates(void **state)
         scene.sample.youngs_modulus = pow(10.0, 9.0 + 2.0 * nt_random_uniform(&random));
         scene.medium.film_thickness = 1e-9 * nt_random_uniform(&random);
         scene.medium.relative_humidity *= 0.5 + nt_random_uniform(&random);
-        const nt_plan plan = plan_of(&scene, NULL);
+        make_plan(&scene, NULL);
         const double far = 1.5 * plan.release_gap, scale = plan.pull_off_force * plan.release_gap;
         nt_interaction_state history = {0};
         double gap = far, work = 0.0;
@@ -138,11 +139,11 @@ static void hysteresis_only_dissipates(void **state)
             for (long i = 0; i < steps; i++) {
                 const double next = i + 1 == steps ? target : gap + (target - gap) / (double)(steps - i);
                 const nt_interaction_state before = history;
-                nt_interaction_advance(&plan, &history, next);
+                nt_interaction_advance_gap(&plan, &history, NULL, next);
                 /* a jump of history happens at `next`: up to it the old branch holds, if it is still there */
-                const double F0 = nt_interaction_eval_gap(&plan, &before, gap).F;
+                const double F0 = nt_interaction_eval_gap(&plan, &before, NULL, gap).F;
                 const double F1 =
-                    before.attached == history.attached ? nt_interaction_eval_gap(&plan, &before, next).F : F0;
+                    before.attached == history.attached ? nt_interaction_eval_gap(&plan, &before, NULL, next).F : F0;
                 work += 0.5 * (F0 + F1) * (next - gap);
                 gap = next;
             }
@@ -159,16 +160,16 @@ static void capture_and_release_have_their_gaps(void **state)
     (void)state;
     for (int wet = 0; wet < 2; wet++) {
         const nt_scene scene = scene_of(wet);
-        const nt_plan plan = plan_of(&scene, NULL);
+        make_plan(&scene, NULL);
         nt_interaction_state history = {0};
         assert_true(plan.release_gap > plan.capture_gap && plan.capture_gap > 0.0);
-        nt_interaction_advance(&plan, &history, nextafter(plan.capture_gap, 1.0));
+        nt_interaction_advance_gap(&plan, &history, NULL, nextafter(plan.capture_gap, 1.0));
         assert_int_equal(history.attached, 0);
-        nt_interaction_advance(&plan, &history, plan.capture_gap);
+        nt_interaction_advance_gap(&plan, &history, NULL, plan.capture_gap);
         assert_int_equal(history.attached, 1);
-        nt_interaction_advance(&plan, &history, plan.release_gap);
+        nt_interaction_advance_gap(&plan, &history, NULL, plan.release_gap);
         assert_int_equal(history.attached, 1);
-        nt_interaction_advance(&plan, &history, nextafter(plan.release_gap, 1.0));
+        nt_interaction_advance_gap(&plan, &history, NULL, nextafter(plan.release_gap, 1.0));
         assert_int_equal(history.attached, 0);
     }
 }
@@ -179,15 +180,15 @@ static void the_meniscus_is_there_on_retraction_only(void **state)
     (void)state;
     nt_scene scene = nt_scene_defaults();
     scene.adhesion.hamaker_constant = 0.0;
-    const nt_plan plan = plan_of(&scene, NULL);
-    const nt_interaction_state approach = {0}, retraction = {1};
+    make_plan(&scene, NULL);
+    const nt_interaction_state approach = {0, 0.0, 0.0}, retraction = {1, 0.0, 0.0};
     for (double gap = 1.001 * plan.capture_gap; gap < plan.release_gap; gap *= 1.01) {
-        assert_true(nt_interaction_eval_gap(&plan, &approach, gap).F == 0.0);
-        assert_true(nt_interaction_eval_gap(&plan, &retraction, gap).F < 0.0);
+        assert_true(nt_interaction_eval_gap(&plan, &approach, NULL, gap).F == 0.0);
+        assert_true(nt_interaction_eval_gap(&plan, &retraction, NULL, gap).F < 0.0);
     }
     /* inside the capture gap history makes no difference */
-    assert_true(nt_interaction_eval_gap(&plan, &approach, 0.5 * plan.capture_gap).F ==
-                nt_interaction_eval_gap(&plan, &retraction, 0.5 * plan.capture_gap).F);
+    assert_true(nt_interaction_eval_gap(&plan, &approach, NULL, 0.5 * plan.capture_gap).F ==
+                nt_interaction_eval_gap(&plan, &retraction, NULL, 0.5 * plan.capture_gap).F);
 }
 
 /* Solid, nearly rigid: Dugdale and tail together pull 2 pi R w at contact, and where the tail meets the range of the
@@ -200,17 +201,17 @@ static void tail_and_contact_join(void **state)
     scene.adhesion.hamaker_constant = 1e-19;
     scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13;
     scene.tip.radius = 1e-9;
-    const nt_plan plan = plan_of(&scene, NULL);
-    const nt_interaction_state apart = {0};
+    make_plan(&scene, NULL);
+    const nt_interaction_state apart = {0, 0.0, 0.0};
     const double pull = 2.0 * PI * scene.tip.radius * scene.adhesion.work_of_adhesion, lambda = plan.lambda;
-    assert_true(plan.terms[NT_PLAN_VDW].included);
+    assert_true(plan.terms[NT_PLAN_VDW].form != NT_FORM_OFF);
     double strongest = 0.0;
     for (double gap = -0.1e-9; gap < plan.release_gap; gap += 1e-14)
-        strongest = fmin(strongest, nt_interaction_eval_gap(&plan, &apart, gap).F);
+        strongest = fmin(strongest, nt_interaction_eval_gap(&plan, &apart, NULL, gap).F);
     /* under displacement control the rigid sphere pulls its most at a = 0: P0 = -2 + O(lambda^1.5) of pi w R */
     assert_true(fabs(-strongest / pull - 1.0) < 2.0 * pow(lambda, 1.5));
-    const double outside = nt_interaction_eval_gap(&plan, &apart, nextafter(plan.capture_gap, 1.0)).F;
-    const double inside = nt_interaction_eval_gap(&plan, &apart, plan.capture_gap).F;
+    const double outside = nt_interaction_eval_gap(&plan, &apart, NULL, nextafter(plan.capture_gap, 1.0)).F;
+    const double inside = nt_interaction_eval_gap(&plan, &apart, NULL, plan.capture_gap).F;
     const double jump = 0.5 * PI * lambda * pow(16.0 * lambda / (3.0 * PI), 2.0) * 0.5 * pull;
     assert_true(outside < 0.0 && outside - inside > 0.0 && outside - inside < 1.001 * jump);
     assert_true(jump < 1e-4 * pull);
@@ -222,17 +223,17 @@ static void what_is_not_a_number_stays_so(void **state)
     const nt_surface surface = bumpy_surface();
     for (int wet = 0; wet < 2; wet++) {
         const nt_scene scene = scene_of(wet);
-        const nt_plan plan = plan_of(&scene, &surface);
+        make_plan(&scene, &surface);
         for (int attached = 0; attached < 2; attached++) {
-            const nt_interaction_state history = {attached};
-            const nt_law_value law = nt_interaction_eval_gap(&plan, &history, (double)NAN);
+            const nt_interaction_state history = {attached, 0.0, 0.0};
+            const nt_law_value law = nt_interaction_eval_gap(&plan, &history, NULL, (double)NAN);
             assert_true(isnan(law.U) && isnan(law.F) && isnan(law.k));
-            assert_true(isnan(nt_interaction_eval_gap(&plan, &history, -HUGE_VAL).F)); /* the law refuses it */
+            assert_true(isnan(nt_interaction_eval_gap(&plan, &history, NULL, -HUGE_VAL).F)); /* the law refuses it */
             const nt_pose poses[] = {{NAN, 50e-9, 0.0}, {50e-9, NAN, 0.0}, {50e-9, 50e-9, NAN}};
             for (int i = 0; i < 3; i++)
                 assert_true(isnan(nt_interaction_eval(&plan, &history, &poses[i]).Fz));
         }
-        assert_true(nt_interaction_eval_gap(&plan, &(nt_interaction_state){0}, HUGE_VAL).F == 0.0);
+        assert_true(nt_interaction_eval_gap(&plan, &(nt_interaction_state){0, 0.0, 0.0}, NULL, HUGE_VAL).F == 0.0);
     }
 }
 
@@ -240,12 +241,12 @@ static void evaluation_leaves_history_alone(void **state)
 {
     (void)state;
     const nt_scene scene = nt_scene_defaults();
-    const nt_plan plan = plan_of(&scene, NULL);
-    const nt_interaction_state apart = {0};
-    const double before = nt_interaction_eval_gap(&plan, &apart, 1e-9).F;
-    assert_true(nt_interaction_eval_gap(&plan, &apart, -1e-9).F != before); /* a trial deep in contact */
+    make_plan(&scene, NULL);
+    const nt_interaction_state apart = {0, 0.0, 0.0};
+    const double before = nt_interaction_eval_gap(&plan, &apart, NULL, 1e-9).F;
+    assert_true(nt_interaction_eval_gap(&plan, &apart, NULL, -1e-9).F != before); /* a trial deep in contact */
     assert_int_equal(apart.attached, 0);
-    assert_true(nt_interaction_eval_gap(&plan, &apart, 1e-9).F == before);
+    assert_true(nt_interaction_eval_gap(&plan, &apart, NULL, 1e-9).F == before);
 }
 
 int main(void)

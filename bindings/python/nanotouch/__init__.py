@@ -17,16 +17,19 @@ _HOMES = {
     "Topography": "images",
     "Input": "operator",
     "Recording": "record",
-    "Plan": "scene",
+    "Demand": "scene",
+    "Interaction": "interaction",
+    "Plan": "plan",
     "Rig": "scene",
     "Scene": "scene",
     "Settings": "scene",
     "Session": "session",
+    "Supervisor": "supervisor",
     "Surface": "surface",
 }
 _MODULES = (
-    "contact", "curves", "errors", "fit", "forces", "geometry", "hal", "images", "materials", "operator", "plots",
-    "presets", "record", "reference", "scene", "session", "surface", "units",
+    "contact", "curves", "errors", "fit", "forces", "geometry", "hal", "images", "interaction", "materials", "operator",
+    "plan", "plots",    "presets", "record", "reference", "scene", "session", "surface", "units",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]

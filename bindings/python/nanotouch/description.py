@@ -25,6 +25,21 @@ class Field(NamedTuple):
     maximum: float
     doc: str
 
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """The names of a field that is a choice; it holds the number of one of them."""
+        return tuple(self.unit.split("|")) if "|" in self.unit else ()
+
+    def number_of(self, choice: object, label: str) -> float:
+        """The number of a choice given by its name; yes and no may be true and false."""
+        if isinstance(choice, bool) and self.choices == ("no", "yes"):
+            return float(choice)
+        if isinstance(choice, str) and choice in self.choices:
+            return float(self.choices.index(choice))
+        if isinstance(choice, int | float) and not isinstance(choice, bool) and choice in range(len(self.choices)):
+            return float(choice)
+        raise InvalidValue(f"{label} = {choice!r} ({self.doc}): valid are {', '.join(self.choices)}")
+
     def check(self, value: float, label: str, written: float, factor: float = 1.0) -> None:
         """Raise :class:`~nanotouch.errors.InvalidValue` for an SI value out of range, in the unit it was written in."""
         if math.isfinite(value) and self.minimum <= value <= self.maximum:
@@ -51,12 +66,12 @@ class Section:
             raise AttributeError(f"{self._name} has no field {key!r}; it has {', '.join(self.__dir__())}")
         return name
 
-    def __getattr__(self, key: str) -> float:
+    def __getattr__(self, key: str) -> Any:
         if key.startswith("_"):  # copying and pickling ask before there is an owner
             raise AttributeError(key)
-        return self._owner[self._field(key)]
+        return self._owner.plain(self._field(key))
 
-    def __setattr__(self, key: str, value: float) -> None:
+    def __setattr__(self, key: str, value: float | str) -> None:
         self._owner[self._field(key)] = value
 
     def __reduce__(self) -> Any:
@@ -66,7 +81,7 @@ class Section:
         return self._owner.keys_of(self._name)
 
     def __repr__(self) -> str:
-        return f"{self._name}({', '.join(f'{key}={getattr(self, key):g}' for key in self.__dir__())})"
+        return f"{self._name}({', '.join(f'{key}={_shown(getattr(self, key))}' for key in self.__dir__())})"
 
 
 class Description(Mapping[str, float]):
@@ -82,7 +97,7 @@ class Description(Mapping[str, float]):
     fields: ClassVar[dict[str, Field]]
     core: Any
 
-    def __init__(self, **sections: Mapping[str, float]) -> None:
+    def __init__(self, **sections: Mapping[str, float | str]) -> None:
         self._take(self._core_type())
         for section, values in sections.items():
             if section not in self.sections():
@@ -91,6 +106,8 @@ class Description(Mapping[str, float]):
                 )
             for key, value in _as_table(section, values).items():
                 name = f"{section}.{key}"
+                if self._set(section, key, value):
+                    continue
                 if name not in self.fields:
                     raise InvalidValue(f"{section} has no field {key!r}; it has {', '.join(self.keys_of(section))}")
                 self[name] = value
@@ -125,10 +142,15 @@ class Description(Mapping[str, float]):
         for section in self.sections():
             seen: dict[str, str] = {}
             for key, value in _as_table(section, tables.get(section, {})).items():
+                if self._set(section, key, value):
+                    continue
                 name, factor = self._field_of(section, key)
                 if name in seen:
                     raise InvalidValue(f"[{section}] has both {seen[name]} and {key}: give one")
                 seen[name] = key
+                if self.fields[name].choices:
+                    self.core.set(name, self.fields[name].number_of(value, f"[{section}] {key}"))
+                    continue
                 if isinstance(value, bool) or not isinstance(value, int | float):
                     raise InvalidValue(f"[{section}] {key} = {value!r}: it must be a number")
                 number = _as_float(value)
@@ -136,11 +158,16 @@ class Description(Mapping[str, float]):
                 self.fields[name].check(si, f"[{section}] {key}", number, factor)
                 self.core.set(name, si)
 
+    def _set(self, section: str, key: str, value: object) -> bool:
+        """Take a key that stands for several fields; False if it is none."""
+        return False
+
     def _field_of(self, section: str, key: str) -> tuple[str, float]:
         spellings: dict[str, tuple[str, float]] = {}
         for name, field in self.fields.items():
             if name.startswith(section + "."):
-                keys = key_spellings(name.removeprefix(section + "."), field.unit)
+                short = name.removeprefix(section + ".")
+                keys = {short: 1.0} if field.choices else key_spellings(short, field.unit)
                 if key == name.removeprefix(section + ".") and key not in keys:
                     raise InvalidValue(f"[{section}] {key} lacks its unit: write {', '.join(keys)}")
                 spellings |= {spelling: (name, factor) for spelling, factor in keys.items()}
@@ -163,23 +190,29 @@ class Description(Mapping[str, float]):
     def _take(self, core: Any) -> None:
         object.__setattr__(self, "core", core)
 
-    def to_dict(self) -> dict[str, dict[str, float]]:
-        """Nested plain numbers in SI, for JSON."""
-        nested: dict[str, dict[str, float]] = {section: {} for section in self.sections()}
+    def to_dict(self) -> dict[str, dict[str, Any]]:
+        """Nested plain numbers in SI, and names of choices, for JSON."""
+        nested: dict[str, dict[str, Any]] = {section: {} for section in self.sections()}
         for name in self.fields:
             section, key = name.split(".")
-            nested[section][key] = self[name]
+            nested[section][key] = self.plain(name)
         return nested
+
+    def plain(self, name: str) -> float | str:
+        """The value of a field, of a choice its name."""
+        choices = self.fields[name].choices
+        return choices[int(self[name])] if choices else self[name]
 
     def __getitem__(self, name: str) -> float:
         value: float = self.core.get(name)
         return value
 
-    def __setitem__(self, name: str, value: float) -> None:
+    def __setitem__(self, name: str, value: float | str) -> None:
         if name not in self.fields:
             raise KeyError(name)
-        number = float(value)
-        self.fields[name].check(number, name, number)
+        field = self.fields[name]
+        number = field.number_of(value, name) if field.choices else float(value)
+        field.check(number, name, number)
         self.core.set(name, number)
 
     def __getattr__(self, name: str) -> Section:
@@ -205,6 +238,10 @@ class Description(Mapping[str, float]):
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(repr(getattr(self, name)) for name in self.sections())})"
+
+
+def _shown(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def _as_table(section: str, values: Any) -> Mapping[str, Any]:

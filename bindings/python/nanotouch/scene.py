@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What there is and with what it is touched: :class:`Scene`, :class:`Rig`, :class:`Settings`, and the :class:`Plan`
-made from them. All three descriptions may stand in one TOML file; every key carries its unit (``[tip] radius_nm``)."""
+"""The descriptions: what there is (:class:`Scene`), with what it is touched (:class:`Rig`), how well (:class:`Demand`),
+how it is controlled (:class:`Settings`). All may stand in one TOML file; every key carries its unit
+(``[tip] radius_nm``)."""
 
 from __future__ import annotations
 
+import math
 import os
 import tomllib
-from typing import Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
-from numpy.typing import ArrayLike
-
-from nanotouch import _core
-from nanotouch._arrays import Law, as_floats, as_law
+from nanotouch import _core, materials
 from nanotouch.description import Description
-from nanotouch.errors import InvalidValue, ReadError
+from nanotouch.errors import ReadError
 
-MAXIMUM_STRAIN = 0.3  # a/R up to which a sphere is a paraboloid to some per cent
+if TYPE_CHECKING:
+    from nanotouch.plan import Plan
+    from nanotouch.surface import Surface
+
+Quantity = Literal["force", "stiffness", "radius", "folds"]
 
 
 class Scene(Description, core_type=_core.Scene):
@@ -26,19 +29,65 @@ class Scene(Description, core_type=_core.Scene):
         """The scene of a TOML file; see :func:`read_toml`."""
         return cls.from_tables(read_tables(path))
 
-    def plan(self, rtol: float = 0.01, atol: float = 0.0, maximum_load: float = 2.2e-6) -> Plan:
-        """Decide what has to be computed.
+    def _set(self, section: str, key: str, value: object) -> bool:
+        """``material``: the moduli, and the surface energy where the table has it, of a named material."""
+        if section not in ("tip", "sample") or key != "material":
+            return False
+        material = materials.find(str(value))
+        self[f"{section}.youngs_modulus"] = material.youngs_modulus
+        self[f"{section}.poisson_ratio"] = material.poisson_ratio
+        if math.isfinite(material.surface_energy):
+            self[f"adhesion.{section}_surface_energy"] = material.surface_energy
+        return True
+
+    def plan(
+        self,
+        rtol: float = 0.01,
+        atol: float = 0.0,
+        quantity: Quantity = "force",
+        probe: Rig | None = None,
+        budget: float | None = None,
+        surface: Surface | None = None,
+    ) -> Plan:
+        """Decide what has to be computed, at the least cost that keeps the demand over the whole ``range``.
 
         Parameters
         ----------
         rtol : float
-            Largest error of the force over max(\\|F\\|, \\|F_pull-off\\|).
+            Largest error of the quantity over max(\\|it\\|, its scale), for a force the pull-off force; 0: everything
+            on, exact.
         atol : float
             Forces below this cannot be felt [N].
-        maximum_load : float
-            The largest load that will be visited [N].
+        quantity : str
+            What has to be that accurate: ``"force"``, ``"stiffness"``, ``"radius"`` (of contact), ``"folds"`` (their
+            gaps, under grips).
+        probe : Rig, optional
+            Raises ``atol`` to the force noise of its probe.
+        budget : float, optional
+            What one evaluation may cost, in Hertz evaluations.
+        surface : Surface, optional
+            The topography, dilated by the tip; otherwise a flat at z = 0.
+
+        Raises
+        ------
+        InvalidValue
+            For a scene that no law covers, naming the field; for a demand that cannot be kept, with the best that can.
         """
-        return Plan(_core.Plan(self.core, rtol, atol, maximum_load))
+        from nanotouch.plan import Plan
+
+        demand = Demand(
+            demand={"relative_accuracy": rtol, "force_floor": atol, "quantity": quantity, "budget": budget or 0.0}
+        )
+        return Plan.make(self, demand, probe, surface)
+
+
+class Demand(Description, core_type=_core.Demand):
+    """How true the felt force must be and what it may cost; by default 1 % of the force."""
+
+    @classmethod
+    def from_toml(cls, path: str | os.PathLike[str]) -> Self:
+        """The demand of a TOML file; see :func:`read_toml`."""
+        return cls.from_tables(read_tables(path))
 
 
 class Rig(Description, core_type=_core.Rig):
@@ -86,107 +135,3 @@ def read_tables(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise ReadError(f"{os.fspath(path)}: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ReadError(f"{os.fspath(path)} is not a TOML file: {error}") from error
-
-
-class Term(NamedTuple):
-    """One law of a plan."""
-
-    name: str
-    included: bool
-    bound: float
-    """contact law: its relative error; otherwise the largest force it adds, or would have added [N]"""
-
-
-class Plan:
-    """What is computed for a scene, and why; see ``print(plan)``."""
-
-    def __init__(self, core: _core.Plan) -> None:
-        self.core = core
-        self._facts: dict[str, Any] = core.as_dict()
-
-    @property
-    def terms(self) -> list[Term]:
-        """The laws that are computed."""
-        return [term for term in self._all_terms() if term.included]
-
-    @property
-    def omitted(self) -> list[Term]:
-        """The laws left out, with the largest force each could add."""
-        return [term for term in self._all_terms() if not term.included]
-
-    def _all_terms(self) -> list[Term]:
-        return [Term(*term) for term in self._facts["terms"]]
-
-    def explain(self) -> dict[str, Any]:
-        """The plan as data, SI."""
-        return dict(self._facts)
-
-    def force(self, gap: ArrayLike, history: Literal["approach", "retract"] = "approach") -> Any:
-        """Force on the tip [N] along a path of gaps [m], in their order, starting apart or in contact."""
-        return self.run(gap, history).F
-
-    def run(self, gap: ArrayLike, history: Literal["approach", "retract"] = "approach") -> Law:
-        """Energy, force, stiffness and contact radius along a path of gaps [m]."""
-        if history not in ("approach", "retract"):
-            raise InvalidValue(f"history {history!r}: valid are approach, retract")
-        return as_law(self.core.run(as_floats(gap, "gap"), history == "retract"))
-
-    @property
-    def pull_off_force(self) -> float:
-        """Pull-off force under load control, tails included, a positive magnitude [N]."""
-        return float(self._facts["pull_off_force"])
-
-    @property
-    def maximum_stiffness(self) -> float:
-        """Stiffness of the contact at the largest load [N/m]."""
-        return float(self._facts["maximum_stiffness"])
-
-    @property
-    def warnings(self) -> list[str]:
-        """Where a law is outside its validity."""
-        strain = self._facts["contact_strain"]
-        if strain <= MAXIMUM_STRAIN:
-            return []
-        return [
-            f"the contact radius reaches {strain:.2f} R at the largest load; "
-            f"the laws are for small contacts, up to about {MAXIMUM_STRAIN} R"
-        ]
-
-    def __str__(self) -> str:
-        contact, *others = self._all_terms()
-        lines = [_contact_sentence(contact, self._facts)]
-        lines += [_term_sentence(term, self.pull_off_force) for term in others]
-        return "\n".join(lines + [f"warning: {text}" for text in self.warnings])
-
-    def __repr__(self) -> str:
-        return f"Plan({', '.join(term.name for term in self.terms)})"
-
-
-_NAMES = {
-    "hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale",
-    "vdw": "van der Waals", "electrostatic": "electrostatic",
-}  # fmt: skip
-_SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
-_ABSENT = {"vdw": "the Hamaker constant is 0", "electrostatic": "no potential difference"}
-
-
-def _contact_sentence(term: Term, facts: dict[str, Any]) -> str:
-    if facts["adhesion_source"] == "none":
-        return "contact: Hertz, no adhesion"
-    if term.name == "hertz":
-        return "contact: Hertz, the adhesion is too weak to be felt"
-    accuracy = f"within {100 * term.bound:.2g} % of Maugis-Dugdale" if term.name == "jkr" else "solved to rounding"
-    return (
-        f"contact: {_NAMES[term.name]} (lambda {facts['lambda']:.3g}), {accuracy}; "
-        f"adhesion {_SOURCES[facts['adhesion_source']]}, w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2; "
-        f"pull-off {facts['pull_off_force'] * 1e9:.4g} nN"
-    )
-
-
-def _term_sentence(term: Term, pull_off_force: float) -> str:
-    name = _NAMES[term.name]
-    if term.bound == 0.0:
-        return f"{name}: none ({_ABSENT[term.name]})"
-    share = f" ({100 * term.bound / pull_off_force:.2g} % of the pull-off)" if pull_off_force > 0.0 else ""
-    verb = "computed, up to" if term.included else "left out, it would add at most"
-    return f"{name}: {verb} {term.bound * 1e9:.2g} nN{share}"

@@ -43,6 +43,8 @@ void bind_descriptions(py::module_ &module)
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
     bind_described<nt_scene>(module, "Scene", fields, count, nt_scene_defaults, nt_scene_check);
+    fields = nt_demand_fields(&count);
+    bind_described<nt_demand>(module, "Demand", fields, count, nt_demand_defaults, nt_demand_check);
     fields = nt_rig_fields(&count);
     bind_described<nt_rig>(module, "Rig", fields, count, nt_rig_defaults, nt_rig_check);
     fields = nt_settings_fields(&count);

@@ -15,6 +15,8 @@ PYBIND11_MODULE(_core, module)
     bind_surface(module);
     bind_descriptions(module);
     bind_plan(module);
+    bind_interaction(module);
+    bind_control(module);
     bind_session(module);
 #ifdef NANOTOUCH_HAS_LINUX
     bind_linux(module);

@@ -1,54 +1,91 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// plan.h, scene.h: the plan as data, and the interaction along a path of gaps
-#include "descriptions.h"
+// plan.h: the plan as data
+#include <memory>
 
-static nt_plan plan_of(const Described<nt_scene> &scene, double accuracy, double floor, double load)
+#include "descriptions.h"
+#include "surface.h"
+
+static std::unique_ptr<nt_plan> plan_of(const Described<nt_scene> &scene, const Described<nt_demand> &demand,
+                                        const Described<nt_rig> *rig, const Surface *surface)
 {
-    const nt_demand demand = {accuracy, floor, load};
-    nt_plan plan;
+    const nt_plan_inputs inputs = {&scene.value, &demand.value, rig ? &rig->value.probe : nullptr,
+                                   surface ? &surface->surface : nullptr};
+    auto plan = std::make_unique<nt_plan>();
     nt_problem problem{};
-    raise_on(nt_plan_make(&plan, &scene.value, &demand, nullptr, &problem), problem, "plan");
+    nt_status status;
+    {
+        py::gil_scoped_release release;
+        status = nt_plan_make(plan.get(), &inputs, &problem);
+    }
+    raise_on(status, problem, "plan");
     return plan;
+}
+
+static py::list terms_of(const nt_plan &plan)
+{
+    py::list terms;
+    for (const nt_plan_term &term : plan.terms)
+        terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.error, term.cost));
+    return terms;
+}
+
+static py::list warnings_of(const nt_plan &plan)
+{
+    py::list warnings;
+    for (int i = 0; i < plan.warning_count; ++i) {
+        const nt_plan_warning &warning = plan.warnings[i];
+        warnings.append(py::make_tuple(warning.text, warning.unit, warning.value, warning.limit));
+    }
+    return warnings;
+}
+
+static void add_numbers(const nt_plan &plan, py::dict &out)
+{
+    out["bound"] = plan.bound.force_error;
+    out["fold_shift"] = plan.bound.fold_shift;
+    out["model_error"] = plan.bound.model_error;
+    out["cost"] = plan.cost;
+    out["full_cost"] = plan.full_cost;
+    out["scale"] = plan.scale;
+    out["force_floor"] = plan.demand.force_floor;
+    out["lambda"] = plan.lambda;
+    out["radius"] = plan.contact.radius;
+    out["effective_modulus"] = plan.contact.effective_modulus;
+    out["work_of_adhesion"] = plan.contact.work_of_adhesion;
+    out["cohesive_stress"] = plan.contact.cohesive_stress;
+    out["capture_gap"] = plan.capture_gap;
+    out["release_gap"] = plan.release_gap;
+    out["capture_energy"] = plan.capture_energy;
+    out["release_energy"] = plan.release_energy;
+    out["pull_off_force"] = plan.pull_off_force;
+    out["minimum_spring"] = plan.minimum_spring;
+    out["maximum_stiffness"] = plan.maximum_stiffness;
+    out["length"] = plan.length;
+    out["contact_strain"] = plan.validity.radius_ratio;
 }
 
 static py::dict as_dict(const nt_plan &plan)
 {
     static const char *const sources[] = {"none", "solid", "meniscus"};
-    py::list terms;
-    for (const nt_plan_term &term : plan.terms)
-        terms.append(py::make_tuple(term.name, term.included != 0, term.bound));
-    const nt_contact &contact = plan.contact.maugis.contact;
+    static const char *const quantities[] = {"force", "stiffness", "radius", "folds"};
     py::dict out;
-    out["terms"] = terms;
+    out["terms"] = terms_of(plan);
     out["adhesion_source"] = sources[plan.source];
-    out["lambda"] = plan.lambda;
-    out["work_of_adhesion"] = contact.work_of_adhesion;
-    out["cohesive_stress"] = contact.cohesive_stress;
-    out["effective_modulus"] = contact.effective_modulus;
-    out["radius"] = contact.radius;
-    out["capture_gap"] = plan.capture_gap;
-    out["release_gap"] = plan.release_gap;
-    out["pull_off_force"] = plan.pull_off_force;
-    out["maximum_stiffness"] = plan.maximum_stiffness;
-    out["contact_strain"] = plan.contact_strain;
+    out["quantity"] = quantities[static_cast<int>(plan.demand.quantity)];
+    out["shape"] = nt_shape_name(plan.shape.kind);
+    add_numbers(plan, out);
+    out["rivals"] = py::dict(py::arg("hertz") = plan.rivals.hertz, py::arg("dmt") = plan.rivals.dmt,
+                             py::arg("jkr") = plan.rivals.jkr);
+    out["warnings"] = warnings_of(plan);
     return out;
 }
 
 void bind_plan(py::module_ &module)
 {
     py::class_<nt_plan>(module, "Plan")
-        .def(py::init(&plan_of), py::arg("scene"), py::arg("relative_accuracy"), py::arg("force_floor"),
-             py::arg("maximum_load"))
+        .def(py::init(&plan_of), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("surface"),
+             py::keep_alive<1, 5>())
         .def("as_dict", &as_dict)
-        .def(
-            "run",
-            [](const nt_plan &plan, const Array &gap, bool attached) {
-                nt_interaction_state state = {attached ? 1 : 0};
-                return map_law(gap, [&plan, &state](double h) {
-                    if (h == h)
-                        nt_interaction_advance(&plan, &state, h); // a NaN is no step of the path
-                    return nt_interaction_eval_gap(&plan, &state, h);
-                });
-            },
-            py::arg("gap"), py::arg("attached") = false);
+        .def("cutoff_gap", &nt_plan_cutoff_gap)
+        .def("stable_step", &nt_plan_stable_step);
 }

@@ -4,12 +4,13 @@
 #include <mutex>
 #include <vector>
 
-#include "descriptions.h"
+#include "control.h"
 #include "surface.h"
 
 struct Session {
     nt_session *handle = nullptr;
-    std::shared_ptr<Surface> surface; // outlives the handle
+    std::shared_ptr<Surface> surface; // outlives the handle, as the law does
+    OwnLaw law;
     std::mutex one_at_a_time;
     ~Session()
     {
@@ -36,6 +37,8 @@ static constexpr Column columns[] = {
     {"tip_force", &nt_record::tip_force},
     {"contact_radius", &nt_record::contact_radius},
     {"surface_height", &nt_record::surface_height},
+    {"age", &nt_record::age},
+    {"lateness", &nt_record::lateness},
 };
 
 static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
@@ -46,17 +49,23 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.scene = scene.value;
     setup.rig = rig.value;
     setup.settings = settings.value;
-    setup.mode = options["topography"].cast<bool>() ? NT_MODE_TOPOGRAPHY : NT_MODE_TOUCH;
+    setup.mode = mode_of(options["mode"].cast<std::string>());
     setup.surface = surface ? &surface->surface : nullptr;
     setup.x = options["x"].cast<double>();
     setup.y = options["y"].cast<double>();
     setup.clearance = options["clearance"].cast<double>();
     setup.rise = options["rise"].cast<double>();
+    setup.slope = options["slope"].cast<double>();
+    setup.preflight = options["preflight"].cast<bool>();
     setup.seed = options["seed"].cast<uint64_t>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();
     setup.demand.relative_accuracy = options["relative_accuracy"].cast<double>();
     auto made = std::make_unique<Session>();
     made->surface = std::move(surface);
+    if (!options["law"].is_none()) {
+        made->law.call = options["law"];
+        set_control(setup.settings, made->law);
+    }
     nt_problem problem{};
     raise_on(nt_session_open(&made->handle, &setup, &problem), problem, "session");
     return made;
@@ -72,7 +81,9 @@ template <class Call> static auto alone(Session &self, Call call)
 
 static void advance_session(Session &self, long ticks)
 {
-    raise_on(alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); }), "advance");
+    const nt_status status = alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); });
+    self.law.raise();
+    raise_on(status, "advance");
 }
 
 static py::dict read_records(Session &self, long count)
@@ -86,21 +97,71 @@ static py::dict read_records(Session &self, long count)
             values.mutable_data()[i] = records[static_cast<size_t>(i)].*column.member;
         out[column.name] = values;
     }
-    py::array_t<uint8_t> state(got);
-    py::array_t<uint32_t> reasons(got);
+    py::array_t<uint8_t> state(got), phase(got);
+    py::array_t<uint32_t> reasons(got), flags(got);
     for (long i = 0; i < got; ++i) {
-        state.mutable_data()[i] = static_cast<uint8_t>(records[static_cast<size_t>(i)].state);
-        reasons.mutable_data()[i] = records[static_cast<size_t>(i)].reasons;
+        const nt_record &record = records[static_cast<size_t>(i)];
+        state.mutable_data()[i] = static_cast<uint8_t>(record.state);
+        phase.mutable_data()[i] = static_cast<uint8_t>(record.phase);
+        reasons.mutable_data()[i] = record.reasons;
+        flags.mutable_data()[i] = record.flags;
     }
     out["state"] = state;
     out["reasons"] = reasons;
+    out["flags"] = flags;
+    out["phase"] = phase;
     return out;
+}
+
+static py::dict guarantee_of(const Session &self)
+{
+    const nt_guarantee guarantee = nt_session_guarantee(self.handle);
+    py::dict out;
+    out["reaction_time"] = guarantee.reaction_time;
+    out["motion"] = guarantee.motion;
+    out["ringing"] = guarantee.ringing;
+    out["snap_in"] = guarantee.snap_in;
+    out["noise"] = guarantee.noise;
+    out["force"] = guarantee.force;
+    out["indentation"] = guarantee.indentation;
+    return out;
+}
+
+static void bind_requests(py::class_<Session> &type)
+{
+    type.def("set_mode",
+             [](Session &self, const std::string &name) {
+                 const nt_mode mode = mode_of(name);
+                 raise_on(alone(self, [=](nt_session *handle) { return nt_session_set_mode(handle, mode); }), "mode");
+             })
+        .def("rescale",
+             [](Session &self, double alpha_p, double alpha_f) {
+                 const nt_scaling scaling = {alpha_p, alpha_f};
+                 raise_on(alone(self, [&](nt_session *handle) { return nt_session_rescale(handle, &scaling); }),
+                          "rescale");
+             })
+        .def("clutch",
+             [](Session &self, bool open) {
+                 alone(self, [=](nt_session *handle) { nt_session_clutch(handle, open); });
+             })
+        .def_property_readonly("guarantee", &guarantee_of)
+        .def_property_readonly("tare",
+                               [](const Session &self) {
+                                   const nt_tare tare = nt_session_tare(self.handle);
+                                   return py::make_tuple(tare.deflection, tare.operator_force);
+                               })
+        .def_property_readonly("ticks",
+                               [](const Session &self) { return nt_session_touch_state(self.handle)->ticks; })
+        .def_property_readonly("phase", [](const Session &self) {
+            return static_cast<int>(nt_session_touch_state(self.handle)->phase);
+        });
 }
 
 void bind_session(py::module_ &module)
 {
-    py::class_<Session>(module, "Session")
-        .def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"),
+    py::class_<Session> type(module, "Session");
+    bind_requests(type);
+    type.def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"),
              py::arg("options"))
         .def("aim",
              [](Session &self, double force, double x, double y, double duration) {
@@ -117,13 +178,14 @@ void bind_session(py::module_ &module)
              [](Session &self, bool pressed) {
                  alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });
              })
-        .def_property_readonly("plan", [](const Session &self) { return nt_plan(*nt_session_plan(self.handle)); })
+        .def_property_readonly("plan",
+                               [](const Session &self) {
+                                   auto copy = std::make_unique<nt_plan>();
+                                   nt_plan_copy(copy.get(), nt_session_plan(self.handle));
+                                   return copy;
+                               })
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
         .def_property_readonly("start_height",
                                [](const Session &self) { return nt_session_start_height(self.handle); });
-    py::list reasons;
-    for (uint32_t bit = 1; nt_reason_name(bit)[0] != 0; bit <<= 1)
-        reasons.append(nt_reason_name(bit));
-    module.attr("reasons") = py::tuple(reasons);
 }

@@ -1,153 +1,178 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The simulated rig: hand, master, stage, probe, surface and sensors, one period at a time. Master and stage are exact
- * under the held command; the probe is at rest at every tick (its resonance lies far above the loop). */
+ * under the held command, from the moment within the period at which it begins to act; what the sensors read is from
+ * the moment that their converters' latency says. */
 #include <math.h>
 #include <stddef.h>
 
-#include "nanotouch/sim.h"
+#include "parts.h"
 
 #define FIRST_CLEAR_DISTANCE 1e-9 /* a rig starts at least this clear of the surface [m] */
+#define SUBSTEP 0.25              /* of the dynamic cantilever [rad] */
 
-/* What the cantilever asks: the force if the tip stood at z_t, here. The last answer is kept: contact laws are by far
- * the dearest part of a period, and the probe begins each one where it ended the last. */
-typedef struct probe_context {
-    const nt_plan *plan;
-    nt_interaction_state *interaction;
-    double surface_height;
-    double gap; /* of the last answer [m] */
-    nt_law_value law;
-} probe_context;
-
-static nt_law_value force_at(void *context, double z_t)
+/* The coarser of a sensor's own step and that of its converter, over +- range. */
+static double step_of(double own, double range, double bits)
 {
-    probe_context *probe = context;
-    const double gap = z_t - probe->surface_height;
-    if (gap != probe->gap) {
-        probe->gap = gap;
-        probe->law = nt_interaction_eval_gap(probe->plan, probe->interaction, gap);
-    }
-    return probe->law;
-}
-
-static void moved_to(void *context, double z_t)
-{
-    probe_context *probe = context;
-    nt_interaction_advance(probe->plan, probe->interaction, z_t - probe->surface_height);
-}
-
-static double surface_height(const nt_sim *sim)
-{
-    return sim->plan->surface ? nt_surface_eval(sim->plan->surface, sim->x, sim->y).z : 0.0;
-}
-
-/* The shortest distance over which the force changes shape: the range of adhesion, or a thousandth of the tip. */
-static double force_length(const nt_plan *plan)
-{
-    const nt_contact *contact = &plan->contact.maugis.contact;
-    if (contact->work_of_adhesion > 0.0)
-        return contact->work_of_adhesion / contact->cohesive_stress;
-    return 1e-3 * contact->radius;
-}
-
-/* The law at the gap where the probe came to rest: that of its last question, one Newton step (1e-7 of the length over
- * which the force changes) away. */
-static nt_law_value law_at_rest(probe_context *probe, double gap, double length)
-{
-    const double step = gap - probe->gap;
-    if (!(fabs(step) <= 1e-6 * length))
-        return nt_interaction_eval_gap(probe->plan, probe->interaction, gap);
-    nt_law_value law = probe->law;
-    law.U -= law.F * step;
-    law.F -= law.k * step;
-    return law;
-}
-
-static nt_status settle(nt_sim *sim)
-{
-    probe_context context = {sim->plan, &sim->interaction, surface_height(sim), sim->truth.gap, sim->law};
-    const nt_force_field field = {force_at, moved_to, &context, force_length(sim->plan)};
-    const double base = sim->start_height - sim->stage.position;
-    const nt_status status = nt_cantilever_settle(&sim->cantilever, &sim->rig.probe, &field, base, NULL);
-    const double gap = sim->cantilever.tip_height - context.surface_height;
-    const nt_law_value law = law_at_rest(&context, gap, field.length);
-    sim->law = law;
-    nt_truth truth = {.gap = gap,
-                      .tip_force = law.F,
-                      .contact_radius = law.a,
-                      .surface_height = context.surface_height,
-                      .tip_height = sim->cantilever.tip_height,
-                      .energy = law.U};
-    sim->truth = truth;
-    return status;
+    return fmax(own, bits > 0.0 ? range * exp2(1.0 - bits) : 0.0);
 }
 
 static void init_sensors(nt_sim *sim)
 {
     const nt_probe *probe = &sim->rig.probe;
+    const nt_stage *stage = &sim->rig.stage;
     const nt_master *master = &sim->rig.master;
-    const double metres_per_volt = probe->sensitivity;
-    nt_sensor deflection = {metres_per_volt * probe->noise / 6.0, metres_per_volt * probe->resolution,
-                            nt_probe_deflection_range(probe)};
-    nt_sensor stage = {0.0, sim->rig.stage.resolution, 0.5 * sim->rig.stage.travel};
-    nt_sensor position = {0.0, master->resolution, 0.5 * master->travel};
-    nt_sensor gauge = {master->gauge_noise, master->gauge_resolution, master->gauge_range};
-    sim->deflection_sensor = deflection;
-    sim->stage_sensor = stage;
-    sim->master_sensor = position;
-    sim->gauge = gauge;
+    const double bits = sim->rig.converters.adc_bits, metres_per_volt = probe->sensitivity;
+    const double half_stage = 0.5 * stage->travel, half_master = 0.5 * master->travel;
+    sim->deflection_sensor = (nt_sensor){metres_per_volt * probe->noise / 6.0,
+                                         metres_per_volt * step_of(probe->resolution, probe->range, bits),
+                                         nt_probe_deflection_range(probe)};
+    sim->stage_sensor = (nt_sensor){stage->noise, step_of(stage->resolution, half_stage, bits), half_stage};
+    sim->master_sensor = (nt_sensor){0.0, step_of(master->resolution, half_master, bits), half_master};
+    sim->gauge = (nt_sensor){master->gauge_noise, step_of(master->gauge_resolution, master->gauge_range, bits),
+                             master->gauge_range};
+}
+
+/* A command acts after delay and latency; a part of a period splits the period in two. */
+static nt_status init_delay(nt_sim *sim, double delay)
+{
+    const double total = delay + sim->rig.converters.dac_latency / sim->period;
+    if (!(total >= 0.0 && total <= NT_SIM_DELAY_MAX) ||
+        sim->rig.converters.adc_latency / sim->period > NT_SIM_DELAY_MAX)
+        return NT_E_RANGE;
+    sim->delay = (int)total;
+    sim->fraction = total - sim->delay;
+    const double lengths[] = {sim->fraction * sim->period, (1.0 - sim->fraction) * sim->period};
+    nt_status status = NT_OK;
+    for (int i = 0; i < 2 && status == NT_OK; i++) {
+        struct nt_sim_part *part = &sim->parts[i];
+        part->length = lengths[i];
+        if (lengths[i] == 0.0)
+            continue;
+        status = nt_stage_model_init(&part->stage, &sim->rig.stage, lengths[i]);
+        if (status == NT_OK)
+            status = nt_master_model_init(&part->master, &sim->rig.master, &sim->rig.hand, lengths[i]);
+    }
+    return status;
+}
+
+static nt_status check_setup(const nt_sim_setup *setup)
+{
+    if (!setup->plan || !setup->rig)
+        return NT_E_ARGUMENT;
+    if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance) || !isfinite(setup->master_position) ||
+        !isfinite(setup->period) || !isfinite(setup->delay) || !isfinite(setup->substep))
+        return NT_E_NOT_FINITE;
+    if (setup->clearance < FIRST_CLEAR_DISTANCE || setup->period <= 0.0 || setup->delay < 0.0 || setup->substep < 0.0)
+        return NT_E_RANGE;
+    const nt_status status = nt_rig_check(setup->rig, NULL);
+    if (status == NT_OK && fabs(setup->master_position) > 0.5 * setup->rig->master.travel)
+        return NT_E_RANGE;
+    return status;
+}
+
+static nt_moment moment_now(const nt_sim *sim)
+{
+    nt_hand_state hand = sim->hand;
+    hand.random_force += nt_sim_push(sim);
+    const double force = nt_master_grip_force(&sim->parts[1].master, &sim->master, &hand);
+    return (nt_moment){.deflection = sim->cantilever.deflection,
+                       .stage_position = sim->stage.position,
+                       .master_position = sim->master.position,
+                       .operator_force = sim->rig.master.gauge != 0.0 ? force : (double)NAN};
+}
+
+static nt_status begin(nt_sim *sim, const nt_sim_setup *setup)
+{
+    init_sensors(sim);
+    sim->start_height = nt_sim_surface_height(sim) + setup->clearance;
+    sim->cantilever = nt_cantilever_at(setup->clearance);
+    sim->truth.gap = NAN; /* nothing is known yet */
+    sim->hand.rest = setup->master_position;
+    const int is_dynamic = setup->probe_model == NT_PROBE_DYNAMIC ||
+                           (setup->probe_model == NT_PROBE_AUTO && nt_sim_needs_dynamics(sim->plan, &sim->rig, sim->period));
+    nt_status status = nt_sim_move_probe(sim); /* at rest, whatever the model */
+    sim->dynamic = is_dynamic;
+    if (status == NT_OK && is_dynamic)
+        status = nt_cantilever_model_init(&sim->cantilever_model, &sim->rig.probe, sim->period,
+                                          setup->substep > 0.0 ? setup->substep : SUBSTEP);
+    const nt_moment now = moment_now(sim);
+    for (int i = 0; i < NT_SIM_SLOTS; ++i) {
+        sim->pending[i] = (nt_command){.x = setup->x, .y = setup->y};
+        sim->moments[i] = now;
+    }
+    return status;
 }
 
 nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup)
 {
-    if (!setup->plan || !setup->rig || setup->delay < 0 || setup->delay > NT_SIM_DELAY_MAX)
-        return NT_E_ARGUMENT;
-    if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance) || !isfinite(setup->master_position))
-        return NT_E_NOT_FINITE;
-    if (setup->clearance < FIRST_CLEAR_DISTANCE)
-        return NT_E_RANGE;
-    if (fabs(setup->master_position) > 0.5 * setup->rig->master.travel)
-        return NT_E_RANGE;
+    nt_status status = check_setup(setup);
+    if (status != NT_OK)
+        return status;
     nt_sim made = {.plan = setup->plan,
                    .rig = *setup->rig,
                    .period = setup->period,
-                   .delay = setup->delay,
                    .random = nt_random_seed(setup->seed),
                    .x = setup->x,
                    .y = setup->y,
                    .master = {.position = setup->master_position}};
-    nt_status status = nt_stage_model_init(&made.stage_model, &made.rig.stage, setup->period);
+    status = init_delay(&made, setup->delay);
+    for (int i = 0; setup->faults && i < setup->faults->count && status == NT_OK; i++)
+        status = nt_faults_add(&made.faults, &setup->faults->list[i]);
     if (status == NT_OK)
-        status = nt_master_model_init(&made.master_model, &made.rig.master, setup->period);
-    if (status != NT_OK)
-        return status;
-    init_sensors(&made);
-    made.start_height = surface_height(&made) + setup->clearance;
-    made.cantilever = nt_cantilever_at(made.start_height);
-    made.truth.gap = NAN; /* nothing is known yet */
-    for (int i = 0; i <= NT_SIM_DELAY_MAX; ++i) {
-        made.pending[i].x = setup->x;
-        made.pending[i].y = setup->y;
-    }
-    status = settle(&made);
-    if (status != NT_OK)
-        return status;
-    *sim = made;
-    return NT_OK;
+        status = begin(&made, setup);
+    if (status == NT_OK)
+        *sim = made;
+    return status;
+}
+
+static double between(double older, double newer, double share)
+{
+    return newer + share * (older - newer);
+}
+
+/* What there was a latency ago, between two ticks on a straight line. */
+static nt_moment moment_before(const nt_sim *sim, double latency)
+{
+    const double back = latency / sim->period;
+    const uint64_t whole = (uint64_t)back;
+    const double share = back - (double)whole;
+    const uint64_t at = sim->tick + 2u * NT_SIM_SLOTS - whole;
+    const nt_moment newer = sim->moments[at % NT_SIM_SLOTS], older = sim->moments[(at - 1u) % NT_SIM_SLOTS];
+    return (nt_moment){.deflection = between(older.deflection, newer.deflection, share),
+                       .stage_position = between(older.stage_position, newer.stage_position, share),
+                       .master_position = between(older.master_position, newer.master_position, share),
+                       .operator_force = between(older.operator_force, newer.operator_force, share)};
+}
+
+/* Does a conversion end in this tick? */
+static int is_converted(const nt_sim *sim)
+{
+    const double per_tick = sim->rig.converters.adc_rate * sim->period;
+    if (sim->tick == 0 || per_tick == 0.0 || per_tick >= 1.0)
+        return 1;
+    return floor((double)sim->tick * per_tick) > floor((double)(sim->tick - 1u) * per_tick);
 }
 
 nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
 {
-    nt_sample found = {
-        .tick = sim->tick,
-        .age = 0.0,
-        .master_position = nt_sensor_read(&sim->master_sensor, sim->master.position, &sim->random),
-        .operator_force = nt_sensor_read(&sim->gauge, nt_hand_now(&sim->hand).force, &sim->random),
-        .stage_position = nt_sensor_read(&sim->stage_sensor, sim->stage.position, &sim->random),
-        .deflection = nt_sensor_read(&sim->deflection_sensor, sim->cantilever.deflection, &sim->random),
-        .x = sim->x,
-        .y = sim->y,
-        .flags = sim->flags,
-    };
+    const double latency = sim->rig.converters.adc_latency;
+    sim->moments[sim->tick % NT_SIM_SLOTS] = moment_now(sim);
+    if (is_converted(sim)) {
+        const nt_moment seen = moment_before(sim, latency);
+        sim->converted =
+            (nt_sample){.tick = sim->tick,
+                        .master_position = nt_sensor_read(&sim->master_sensor, seen.master_position, &sim->random),
+                        .operator_force = nt_sensor_read(&sim->gauge, seen.operator_force, &sim->random),
+                        .stage_position = nt_sensor_read(&sim->stage_sensor, seen.stage_position, &sim->random),
+                        .deflection = nt_sensor_read(&sim->deflection_sensor, seen.deflection, &sim->random)};
+    }
+    nt_sample found = sim->converted;
+    found.age = latency + (double)(sim->tick - found.tick) * sim->period;
+    found.tick = sim->tick;
+    found.x = sim->x;
+    found.y = sim->y;
+    found.flags = sim->flags;
+    nt_sim_spoil(sim, &found);
     *sample = found;
     return NT_OK;
 }
@@ -157,15 +182,48 @@ static double limit(double value, double minimum, double maximum)
     return fmin(fmax(value, minimum), maximum);
 }
 
+static double in_steps(double value, double step)
+{
+    return step > 0.0 ? step * round(value / step) : value;
+}
+
 /* What the stage's driver makes of a command: travel, slew, steps. */
-static double drive_stage(nt_sim *sim, double command)
+static double drive_stage(nt_sim *sim, double command, double time)
 {
     const nt_stage *stage = &sim->rig.stage;
-    const double slew = stage->max_speed * sim->period;
+    const double slew = stage->max_speed * time, half = 0.5 * stage->travel;
     const double reached = limit(command, sim->stage_drive - slew, sim->stage_drive + slew);
-    sim->stage_drive = limit(reached, -0.5 * stage->travel, 0.5 * stage->travel);
-    const double step = stage->command_resolution;
-    return step > 0.0 ? step * round(sim->stage_drive / step) : sim->stage_drive;
+    sim->stage_drive = limit(reached, -half, half);
+    return in_steps(sim->stage_drive, step_of(stage->command_resolution, half, sim->rig.converters.dac_bits));
+}
+
+static double drive_motor(const nt_sim *sim, double command)
+{
+    const double most = sim->rig.master.max_force;
+    const double force = nt_sim_spoil_motor(sim, command);
+    return in_steps(limit(force, -most, most), step_of(0.0, most, sim->rig.converters.dac_bits));
+}
+
+static void pass_part(nt_sim *sim, const struct nt_sim_part *part, const nt_command *acting)
+{
+    const double effort = nt_hand_effort(&sim->hand) + nt_sim_push(sim);
+    nt_master_step(&part->master, &sim->master, drive_motor(sim, acting->motor_force) + effort, sim->hand.rest);
+    const double drive = drive_stage(sim, acting->stage_position, part->length);
+    nt_stage_step(&part->stage, &sim->stage, nt_sim_spoil_stage(sim, drive), sim->truth.tip_force);
+    sim->x = acting->x;
+    sim->y = acting->y;
+}
+
+static nt_status pass_period(nt_sim *sim, const nt_command *command)
+{
+    sim->pending[sim->tick % NT_SIM_SLOTS] = *command;
+    const uint64_t newest = sim->tick + NT_SIM_SLOTS - (uint64_t)sim->delay;
+    if (sim->parts[0].length > 0.0)
+        pass_part(sim, &sim->parts[0], &sim->pending[(newest - 1u) % NT_SIM_SLOTS]);
+    pass_part(sim, &sim->parts[1], &sim->pending[newest % NT_SIM_SLOTS]);
+    nt_hand_step(&sim->hand, &sim->rig.hand, sim->master.position, sim->period, &sim->random);
+    ++sim->tick;
+    return nt_sim_move_probe(sim);
 }
 
 nt_status nt_sim_write(nt_sim *sim, const nt_command *command)
@@ -173,22 +231,25 @@ nt_status nt_sim_write(nt_sim *sim, const nt_command *command)
     if (!isfinite(command->motor_force) || !isfinite(command->stage_position) || !isfinite(command->x) ||
         !isfinite(command->y))
         return NT_E_NOT_FINITE;
-    const uint64_t slots = (uint64_t)sim->delay + 1u;
-    sim->pending[sim->tick % slots] = *command;
-    const nt_command *acting = &sim->pending[(sim->tick + 1u) % slots]; /* the oldest; this one if delay is 0 */
-    const double motor_force = limit(acting->motor_force, -sim->rig.master.max_force, sim->rig.master.max_force);
-    nt_master_step(&sim->master_model, &sim->master, motor_force + nt_hand_now(&sim->hand).force);
-    nt_hand_step(&sim->hand, sim->period);
-    nt_stage_step(&sim->stage_model, &sim->stage, drive_stage(sim, acting->stage_position), sim->truth.tip_force);
-    sim->x = acting->x;
-    sim->y = acting->y;
-    ++sim->tick;
-    return settle(sim);
+    const int lost = nt_sim_lost_periods(sim);
+    sim->fault_memory.lateness = lost * sim->period;
+    nt_status status = NT_OK;
+    for (int i = 0; i < lost && status == NT_OK; i++) {
+        const nt_command before = sim->pending[(sim->tick + NT_SIM_SLOTS - 1u) % NT_SIM_SLOTS];
+        status = pass_period(sim, &before);
+        sim->moments[sim->tick % NT_SIM_SLOTS] = moment_now(sim);
+    }
+    return status == NT_OK ? pass_period(sim, command) : status;
 }
 
 void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target)
 {
     nt_hand_aim(&sim->hand, target);
+}
+
+nt_status nt_sim_inject(nt_sim *sim, const nt_fault *fault)
+{
+    return nt_faults_add(&sim->faults, fault);
 }
 
 static nt_status read_operation(void *context, nt_sample *sample)

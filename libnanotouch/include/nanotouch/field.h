@@ -13,7 +13,7 @@ extern "C" {
 /* One field of a description; all fields in a table are doubles. */
 typedef struct nt_field {
     const char *name;        /* dotted, "probe.spring_constant"; static storage */
-    const char *unit;        /* SI, "" if none */
+    const char *unit;        /* SI, "" if none; "no|yes": a choice, of which the field holds the number 0, 1, .. */
     double minimum, maximum; /* valid range, both ends included */
     unsigned offset;         /* of the double inside the description [byte] */
     const char *doc;         /* what it is, in a few words, with the paper's symbol */

@@ -119,6 +119,17 @@ NT_API nt_status nt_electrostatic_lever_check(const nt_electrostatic_lever *leve
 NT_API nt_law_value nt_electrostatic_lever_eval(const nt_electrostatic_lever *lever, double gap);
 NT_API void nt_electrostatic_lever_eval_n(const nt_electrostatic_lever *lever, const nt_strided *arrays);
 
+/* A charge trapped on the sample, under the apex of a grounded tip. */
+typedef struct nt_point_charge {
+    double radius;      /* R [m] */
+    double charge;      /* q [C] */
+    double minimum_gap; /* closest approach of tip and charge [m], > 0 */
+} nt_point_charge;
+NT_API nt_status nt_point_charge_check(const nt_point_charge *charge, nt_problem *problem);
+/* Image charge in a sphere (Thomson, exact): F = -q^2 R (R + h)/(4 pi eps0 (h (h + 2R))^2). */
+NT_API nt_law_value nt_point_charge_eval(const nt_point_charge *charge, double gap);
+NT_API void nt_point_charge_eval_n(const nt_point_charge *charge, const nt_strided *arrays);
+
 /* --- Lennard-Jones: attraction and repulsion of rigid surfaces --- */
 
 typedef struct nt_lennard_jones {

@@ -97,6 +97,9 @@ NT_API double nt_cohesive_stress_of_range(double work_of_adhesion, double range)
 NT_API double nt_cohesive_stress_laplace(double surface_tension, double meniscus_radius);
 /* mu = (R w^2/(E*^2 z0^3))^(1/3) from the contact's R, E*, w and the distance z0 [m]; cohesive_stress is not read. */
 NT_API double nt_tabor_mu(const nt_contact *contact, double equilibrium_distance);
+/* Distance of Maugis-Dugdale to the Lennard-Jones sphere: largest |dF|/max(|F|, F_pull-off) for loads from -0.9 to 10
+ * pull-off forces, indentation counted from load 0 [-]; interpolated, mu 0.05 .. 5, NaN outside. */
+NT_API double nt_maugis_model_error(double lambda);
 
 /* --- Is the law inside its range? --- */
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What has to be computed for a scene, and why: the contact law by its true error at this lambda, the non-contact terms
- * by a bound on what leaving them out costs. Immutable after nt_plan_make. */
+ * What has to be computed for a scene, and why. Every term of the scene's potential has forms of rising cost, from "left
+ * out" to exact; each form's error is bounded over the whole range that the scene says will be visited. The plan is the
+ * cheapest choice whose bounds add up to no more than the demand. */
 #ifndef NANOTOUCH_PLAN_H
 #define NANOTOUCH_PLAN_H
 
-#include "nanotouch/contact.h"
+#include "nanotouch/contact_table.h"
 #include "nanotouch/forces.h"
+#include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
 
@@ -13,44 +15,141 @@
 extern "C" {
 #endif
 
-/* How true the felt force must be. */
+typedef enum nt_quantity { NT_QUANTITY_FORCE, NT_QUANTITY_STIFFNESS, NT_QUANTITY_RADIUS, NT_QUANTITY_FOLDS } nt_quantity;
+
+/* How true the felt force must be, and what it may cost. */
 typedef struct nt_demand {
-    double relative_accuracy; /* |dF| / max(|F|, |F_pull-off|) [-], 1e-6 .. 0.5 */
+    double relative_accuracy; /* of the quantity, over max(|it|, its scale) [-], 1e-11 .. 0.5; 0: everything, exact */
     double force_floor;       /* forces below this cannot be felt [N], >= 0 */
-    double maximum_load;      /* the largest load that will be visited [N], > 0 */
+    double quantity;          /* nt_quantity: "force|stiffness|radius|folds" */
+    double budget;            /* of one evaluation, in Hertz evaluations; 0: none [-] */
 } nt_demand;
-/* 1 %, 0 N, 2.2 uN. */
+/* 1 % of the force, no floor, no budget. */
 NT_API nt_demand nt_demand_defaults(void);
+NT_API const nt_field *nt_demand_fields(int *count);
 NT_API nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem);
 
-/* One law of the plan, in or out. */
+/* How a term is computed. */
+typedef enum nt_form {
+    NT_FORM_OFF,       /* left out */
+    NT_FORM_ON,        /* the law as it is */
+    NT_FORM_DERJAGUIN, /* van der Waals: the paper's form for gaps << R */
+    NT_FORM_SPHERE,    /* of the apex sphere */
+    NT_FORM_TIP,       /* of sphere and cone */
+    NT_FORM_SHAPE,     /* contact without adhesion; of a paraboloid, Hertz */
+    NT_FORM_JKR,       /* contact of cone and punch, adhesion of no range */
+    NT_FORM_TABLE,     /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
+    NT_FORM_POLISHED,
+    NT_FORM_EXACT,
+    NT_FORM_LOCAL /* contact by Maugis-Dugdale with the radius of each place (a bank of tables over lambda) */
+} nt_form;
+/* "off", "on", "derjaguin", ... */
+NT_API const char *nt_form_name(nt_form form);
+
+enum {
+    NT_PLAN_CONTACT,
+    NT_PLAN_VDW,
+    NT_PLAN_ELECTROSTATIC,
+    NT_PLAN_CHARGE,
+    NT_PLAN_DOUBLE_LAYER,
+    NT_PLAN_HYDRATION,
+    NT_PLAN_STERIC,
+    NT_PLAN_TERMS
+};
+
+/* One term of the plan, in or out. */
 typedef struct nt_plan_term {
-    const char *name; /* "maugis", "vdw", "electrostatic"; static storage */
-    int included;
-    double bound; /* included contact law: its relative error; left out: the largest force it could add [N] */
+    const char *name; /* "contact", "vdw", "electrostatic", ...; static storage */
+    nt_form form;
+    double force; /* the largest force it has in the scene's range; 0: the scene has no such term [N] */
+    double error; /* bound of what this form errs by, in the norm of the demand [-] */
+    double cost;  /* of one evaluation [Hertz evaluations] */
 } nt_plan_term;
 
-enum { NT_PLAN_CONTACT, NT_PLAN_VDW, NT_PLAN_ELECTROSTATIC, NT_PLAN_TERMS };
+/* Something that the bound does not cover. */
+typedef struct nt_plan_warning {
+    const char *text; /* what; static storage */
+    const char *unit; /* of the two numbers */
+    double value, limit;
+} nt_plan_warning;
+enum { NT_PLAN_WARNINGS_MAX = 10 };
 
+/* Models that the plan did not take: largest |dF|/max(|F|, S) at equal indentation, from 0.9 of that
+ * of the pull-off (Hertz and DMT: from first touch) to the largest load. */
+typedef struct nt_plan_rivals {
+    double hertz, dmt, jkr; /* [-] */
+} nt_plan_rivals;
+
+/* The laws of the scene beside contact. */
+typedef struct nt_plan_laws {
+    nt_vdw vdw;
+    nt_vdw_tip vdw_tip;
+    nt_electrostatic electrostatic;
+    nt_electrostatic_tip electrostatic_tip;
+    nt_point_charge charge;
+    nt_double_layer double_layer;
+    nt_hydration hydration;
+    nt_steric steric;
+} nt_plan_laws;
+
+enum { NT_PLAN_CELLS = 256 };
+
+/* Immutable after nt_plan_make. It refers to itself: share it by pointer; copy it with nt_plan_copy only. */
 typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
+    nt_accuracy bound;   /* force_error: of the demanded quantity; model_error: of Maugis-Dugdale beside Lennard-Jones, NaN
+                            where not known */
+    double cost;         /* of one evaluation [Hertz evaluations] */
+    double full_cost;    /* of everything on, exact [Hertz evaluations] */
+    double scale;        /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy) [N, N/m, m] */
+    nt_demand demand;    /* as given, the floor raised to what the probe can measure */
+    nt_plan_rivals rivals;
+    nt_plan_warning warnings[NT_PLAN_WARNINGS_MAX];
+    int warning_count;
+
     nt_adhesion_source source;
-    nt_contact_law contact;
-    double lambda; /* Maugis' parameter of the contact [-] */
-    nt_vdw vdw;    /* tail: before the meniscus forms, or outside the range of the solid's own adhesion */
-    nt_electrostatic electrostatic;
-    double capture_gap; /* on approach adhesion takes hold here: meniscus formed, or onset of the Dugdale stress [m] */
-    double release_gap; /* on retraction under grips it lets go here [m] */
-    double pull_off_force;     /* load control, tails included, positive [N] */
-    double maximum_stiffness;  /* k of the contact at the maximum load [N/m] */
-    double contact_strain;     /* a/R at the maximum load: above 0.3 the paraboloid is outside its validity [-] */
-    const nt_surface *surface; /* dilated surface, borrowed; NULL: flat at z = 0 */
+    nt_contact contact; /* w: what the tail leaves of it (E5b) */
+    double lambda;      /* Maugis' parameter of the contact [-]; +inf without adhesion or its range */
+    nt_shape shape;
+    nt_jkr_shape jkr;
+    nt_maugis maugis;
+    nt_maugis_table table;
+    nt_maugis_cell cells[NT_PLAN_CELLS];
+    nt_plan_laws laws;
+
+    double capture_gap;       /* on approach adhesion takes hold here [m] */
+    double release_gap;       /* on retraction under grips it lets go here [m] */
+    double capture_energy;    /* that is lost when it takes hold, >= 0 [J] */
+    double release_energy;    /* that is lost when it lets go, >= 0 [J] */
+    double pull_off_force;    /* of everything on, under load control, positive [N] */
+    double minimum_spring;    /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
+    double maximum_stiffness; /* k of the contact at the largest load [N/m] */
+    double length;            /* the shortest distance over which the force changes its shape [m] */
+    nt_contact_validity validity; /* of the contact law at the largest load */
+
+    const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
 } nt_plan;
 
-/* Decides for a scene (checked here) and a demand. surface: borrowed, NULL for a flat at z = 0. On failure *plan is
- * untouched and *problem (NULL allowed) names the field. */
-NT_API nt_status nt_plan_make(nt_plan *plan, const nt_scene *scene, const nt_demand *demand, const nt_surface *surface,
-                              nt_problem *problem);
+/* What a plan is made from. */
+typedef struct nt_plan_inputs {
+    const nt_scene *scene;
+    const nt_demand *demand; /* NULL: nt_demand_defaults */
+    const nt_probe *probe;   /* raises the floor to its force noise; NULL: none */
+    const nt_surface *surface; /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
+} nt_plan_inputs;
+
+/* Decides. Some 100 us. On failure *plan is not to be used and *problem (NULL allowed) names the field of scene, demand
+ * or probe, or what the demand would have to be: NT_E_RANGE with "demand.relative_accuracy" and the best bound as its
+ * minimum, or "demand.budget" and the smallest cost. */
+NT_API nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
+
+NT_API void nt_plan_copy(nt_plan *copy, const nt_plan *plan);
+
+/* Beyond this gap |F| is at most `force` >= 0 [N] on any history [m]; +inf if there is no such gap. */
+NT_API double nt_plan_cutoff_gap(const nt_plan *plan, double force);
+/* Explicit (symplectic) integration of a free mass m [kg] is stable below this step, 2 sqrt(m/k), up to the largest
+ * load [s]. At a fold, where k is infinite and the force is not, it lets go. */
+NT_API double nt_plan_stable_step(const nt_plan *plan, double mass);
 
 #ifdef __cplusplus
 }

@@ -1,97 +1,123 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What there is (nt_scene), and the force between its tip and its surface as a sum of laws on one pose
- * (nt_interaction_*). What is computed is decided once, by a plan (plan.h). */
+ * What there is between tip and sample, and over which ranges it will be visited. A description only: what is computed
+ * for it is decided by a plan (plan.h), the force at a pose is given by an interaction (interaction.h). */
 #ifndef NANOTOUCH_SCENE_H
 #define NANOTOUCH_SCENE_H
 
+#include "nanotouch/contact.h"
 #include "nanotouch/field.h"
-#include "nanotouch/material.h"
-#include "nanotouch/types.h"
+#include "nanotouch/geometry.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/* Fields that are choices hold the number of the choice (field.h). */
 typedef struct nt_tip {
-    double radius;         /* R of the apex [m] */
-    double half_angle;     /* psi of the cone above it [rad] */
-    double youngs_modulus; /* E_t [Pa] */
-    double poisson_ratio;  /* nu_t [-] */
+    double shape;             /* nt_shape_kind: "paraboloid|sphere|cone|punch|blunted|truncated" */
+    double sides;             /* of CONE, BLUNTED, TRUNCATED: 0 round, 3 or 4 a pyramid [-] */
+    double radius;            /* R of the apex, or of the flat end [m] */
+    double half_angle;        /* psi of the cone above it [rad] */
+    double height;            /* L of that cone, for long-range forces; 0: a sphere alone [m] */
+    double youngs_modulus;    /* E_t [Pa] */
+    double poisson_ratio;     /* nu_t [-] */
+    double conducting;        /* "no|yes" */
+    double work_function;     /* phi_t/e [V]; 0: not known */
+    double surface_potential; /* psi_t in the liquid, where no pH is given [V] */
+    double isoelectric_point; /* pH without charge, where a pH is given [-] */
 } nt_tip;
 
 typedef struct nt_specimen {
-    double youngs_modulus; /* E_s [Pa] */
-    double poisson_ratio;  /* nu_s [-] */
-    double roughness;      /* b, peak to peak, below what the surface map shows [m] */
+    double youngs_modulus;    /* E_s [Pa] */
+    double poisson_ratio;     /* nu_s [-] */
+    double thickness;         /* t of the layer that is pressed; 0: a half-space [m] */
+    double roughness;         /* b, peak to peak, below what the surface map shows [m] */
+    double conducting;        /* "no|yes" */
+    double grounded;          /* "no|yes": connected to the tip's circuit */
+    double work_function;     /* phi_s/e [V]; 0: not known */
+    double charge;            /* q, trapped on the surface under the tip [C] */
+    double surface_potential; /* psi_s in the liquid, where no pH is given [V] */
+    double isoelectric_point; /* [-] */
 } nt_specimen;
 
+typedef enum nt_medium_kind { NT_MEDIUM_AIR, NT_MEDIUM_VACUUM, NT_MEDIUM_LIQUID } nt_medium_kind;
+
 typedef struct nt_medium {
-    double temperature;       /* T [K] */
-    double relative_humidity; /* [-]; 0 is dry gas or vacuum: no meniscus */
-    double surface_tension;   /* gamma_L of the condensed liquid [N/m]; 0: no meniscus */
-    double molar_volume;      /* V_m of the liquid [m^3/mol] */
-    double meniscus_radius;   /* r1 [m]; 0: from the Kelvin equation */
-    double film_thickness;    /* e of the adsorbed film on each surface [m] */
+    double kind;                  /* nt_medium_kind: "air|vacuum|liquid" */
+    double temperature;           /* T [K] */
+    double relative_humidity;     /* of air [-]; 0: no meniscus */
+    double surface_tension;       /* gamma_L of the condensed liquid [N/m]; 0: no meniscus */
+    double molar_volume;          /* V_m of it [m^3/mol] */
+    double meniscus_radius;       /* r1 [m]; 0: from the Kelvin equation */
+    double film_thickness;        /* e of the adsorbed film on each surface [m] */
+    double relative_permittivity; /* of the liquid [-] */
+    double ionic_strength;        /* I of the liquid [mol/m^3]; 0: no double layer */
+    double ph;                    /* of the liquid; 0: surface potentials as given [-] */
+    double potential_per_ph;      /* psi = this (isoelectric point - pH) [V] */
+    double hydration_energy;      /* W of plates at gap 0; < 0: hydrophobic attraction [J/m^2] */
+    double hydration_length;      /* decay length of it [m] */
+    double brush_thickness;       /* T, of the free polymer brushes of both bodies together; 0: none [m] */
+    double brush_spacing;         /* s, distance of grafted chains [m] */
 } nt_medium;
 
+typedef enum nt_adhesion_given {
+    NT_ADHESION_GIVEN_WORK,     /* w as given */
+    NT_ADHESION_GIVEN_ENERGIES, /* w = 2 sqrt(gamma_t gamma_s) (nt_work_of_adhesion) */
+    NT_ADHESION_GIVEN_PULL_OFF  /* the w whose pull-off force was measured; a meniscus, too */
+} nt_adhesion_given;
+
 typedef struct nt_adhesion {
-    double work_of_adhesion;     /* w of the dry solids [J/m^2] */
-    double equilibrium_distance; /* z0 (the paper's a0): atoms in contact [m] */
-    double hamaker_constant;     /* H through the dry medium [J] */
-    double contact_potential;    /* U = (phi_1 - phi_2)/e [V]; 0 for the same or non-conducting materials */
+    double given;                 /* nt_adhesion_given: "work_of_adhesion|surface_energies|pull_off_force" */
+    double work_of_adhesion;      /* w of the dry solids [J/m^2] */
+    double tip_surface_energy;    /* gamma_t [J/m^2] */
+    double sample_surface_energy; /* gamma_s [J/m^2] */
+    double pull_off_force;        /* measured under load control, a positive magnitude [N] */
+    double equilibrium_distance;  /* z0 (the paper's a0): atoms in contact [m] */
+    double hamaker_constant;      /* H through the medium [J] */
+    double contact_potential;     /* U, bias included; that of the work functions adds to it [V] */
 } nt_adhesion;
+
+/* What will be visited; a plan's bound holds inside. */
+typedef struct nt_range {
+    double minimum_gap;  /* h; below 0: contact, as deep as the load allows [m] */
+    double maximum_load; /* the largest load [N] */
+    double speed;        /* the fastest approach [m/s] */
+    double viscosity;    /* of the medium, for the drag that a plan leaves out [Pa s] */
+    double warming;      /* the temperature may move by +- this [K] */
+} nt_range;
 
 typedef struct nt_scene {
     nt_tip tip;
     nt_specimen sample;
     nt_medium medium;
     nt_adhesion adhesion;
+    nt_range range;
 } nt_scene;
 
 /* The paper's scene: silicon tip (R = 20 nm) on silicon (E = 135 GPa, nu = 0.35) in air of 40 % humidity. */
 NT_API nt_scene nt_scene_defaults(void);
 /* Every field once: dotted name, unit, range, offset. One table for checks, bindings, TOML and docs. */
 NT_API const nt_field *nt_scene_fields(int *count);
-/* NT_OK, or the first offending field in *problem (NULL allowed). */
+/* NT_OK, or the first offending field in *problem (NULL allowed). What belongs together is checked together: the shape
+ * of the tip, and that every quantity that another one needs is given. */
 NT_API nt_status nt_scene_check(const nt_scene *scene, nt_problem *problem);
 
 /* Where the adhesion in contact comes from. One source at a time: the van der Waals and capillary forces at contact are
  * the same adhesion that w already puts into the contact law (erratum E5b). */
 typedef enum nt_adhesion_source {
-    NT_ADHESION_NONE,    /* w = 0: Hertz */
+    NT_ADHESION_NONE,    /* w = 0 */
     NT_ADHESION_SOLID,   /* atoms against atoms: w, over the range of the atomic potential */
     NT_ADHESION_MENISCUS /* water bridge: w = 2 gamma_L over h0 = 2 r1, the Laplace pressure (erratum E12) */
 } nt_adhesion_source;
 NT_API nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene);
 /* r1: as given, or by the Kelvin equation from humidity and temperature [m]. */
 NT_API double nt_scene_meniscus_radius(const nt_scene *scene);
-
-/* The history of one contact. Copyable; zero is "never touched". */
-typedef struct nt_interaction_state {
-    int attached; /* 1: in contact, or held by the meniscus or the attraction that contact has left */
-} nt_interaction_state;
-
-/* Force on the tip at a pose. */
-typedef struct nt_interaction_value {
-    double U;          /* energy [J] */
-    double Fx, Fy, Fz; /* force on the tip [N] */
-    double k;          /* dFz/d(delta) [N/m] */
-    double a;          /* contact radius [m] */
-    double gap;        /* h of the undeformed bodies [m] */
-} nt_interaction_value;
-
-struct nt_plan;
-
-/* The vertical law at a gap [m]: pure, may be called at trial gaps. A gap inside the capture range counts as captured.
- */
-NT_API NT_REALTIME nt_law_value nt_interaction_eval_gap(const struct nt_plan *plan, const nt_interaction_state *state,
-                                                        double gap);
-/* The same at a pose over the plan's surface, with lateral forces: F = -grad U. */
-NT_API NT_REALTIME nt_interaction_value nt_interaction_eval(const struct nt_plan *plan,
-                                                            const nt_interaction_state *state, const nt_pose *pose);
-/* Commits history once per accepted step: captured (contact, meniscus formed) or let go (pull-off, meniscus ruptured).
- */
-NT_API NT_REALTIME void nt_interaction_advance(const struct nt_plan *plan, nt_interaction_state *state, double gap);
+/* U between conductors that are connected, 0 for others and in a liquid, where ions screen it [V]. */
+NT_API double nt_scene_potential(const nt_scene *scene);
+/* The tip's shape, checked with the scene. */
+NT_API nt_shape nt_scene_shape(const nt_scene *scene);
+/* R, E*, w and sigma0 of the scene's adhesion source. NT_E_RANGE if no w gives the measured pull-off force. */
+NT_API nt_status nt_scene_contact(const nt_scene *scene, nt_contact *contact, nt_problem *problem);
 
 #ifdef __cplusplus
 }

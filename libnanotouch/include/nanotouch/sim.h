@@ -4,12 +4,21 @@
 #define NANOTOUCH_SIM_H
 
 #include "nanotouch/dynamics.h"
+#include "nanotouch/faults.h"
 #include "nanotouch/hal.h"
+#include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* How the cantilever is computed. */
+typedef enum nt_probe_model {
+    NT_PROBE_AUTO,         /* quasi-static where that is good enough: nt_sim_needs_dynamics */
+    NT_PROBE_QUASI_STATIC, /* at rest at every tick */
+    NT_PROBE_DYNAMIC       /* Eq. 2 */
+} nt_probe_model;
 
 /* What is simulated. */
 typedef struct nt_sim_setup {
@@ -20,10 +29,13 @@ typedef struct nt_sim_setup {
     double clearance;       /* L, height of the tip above the surface there [m] */
     double master_position; /* x_m at the start [m] */
     uint64_t seed;          /* of the sensors' noise */
-    int delay;              /* periods between write and effect, 0 .. NT_SIM_DELAY_MAX */
+    double delay; /* between write and effect, 0 .. NT_SIM_DELAY_MAX with the converters' own [periods]; may be a part */
+    nt_probe_model probe_model;
+    double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
+    const nt_faults *faults; /* copied; NULL: none */
 } nt_sim_setup;
 
-enum { NT_SIM_DELAY_MAX = 15 };
+enum { NT_SIM_DELAY_MAX = 15, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2 };
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {
@@ -35,15 +47,35 @@ typedef struct nt_truth {
     double energy;         /* U of the interaction [J] */
 } nt_truth;
 
+/* What the sensors would read without noise, steps and delay. */
+typedef struct nt_moment {
+    double deflection, stage_position, master_position; /* [m] */
+    double operator_force;                              /* [N] */
+} nt_moment;
+
+/* What lasting faults have to remember. */
+typedef struct nt_fault_memory {
+    nt_sample last;   /* as it was given away */
+    nt_sample fresh;  /* the last one of a living link */
+    double stood;     /* of the stage's drive when its fault began [m] */
+    double lateness;  /* of this tick [s] */
+    double last_push; /* of the hand [N] */
+} nt_fault_memory;
+
 typedef struct nt_sim {
     const nt_plan *plan;
     nt_rig rig;
-    nt_stage_model stage_model;
-    nt_master_model master_model;
-    nt_sensor deflection_sensor, stage_sensor, master_sensor, gauge;
     double period, start_height; /* z_b at x_s = 0 [m] */
-    int delay;
-    nt_command pending[NT_SIM_DELAY_MAX + 1];
+    int delay;                   /* whole periods until a command acts ... */
+    double fraction;             /* ... and the part of one [periods] */
+    struct nt_sim_part {         /* before and after a command begins to act */
+        double length;           /* [s], 0 if there is no such part */
+        nt_stage_model stage;
+        nt_master_model master;
+    } parts[2];
+    nt_sensor deflection_sensor, stage_sensor, master_sensor, gauge;
+    nt_cantilever_model cantilever_model;
+    int dynamic; /* the cantilever is */
     /* state */
     uint64_t tick;
     nt_random random;
@@ -51,10 +83,15 @@ typedef struct nt_sim {
     nt_stage_state stage;
     double stage_drive; /* the command as far as the driver has slewed [m] */
     nt_master_state master;
-    nt_cantilever_state cantilever;
+    nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
     double x, y;
     uint32_t flags; /* NT_SAMPLE_* put into every sample: faults and buttons */
+    nt_command pending[NT_SIM_SLOTS];
+    nt_moment moments[NT_SIM_SLOTS];
+    nt_sample converted; /* the newest, before faults */
+    nt_faults faults;
+    nt_fault_memory fault_memory;
     nt_truth truth;
     nt_law_value law; /* of the interaction, at truth.gap */
 } nt_sim;
@@ -70,6 +107,12 @@ NT_API NT_REALTIME nt_status nt_sim_read(nt_sim *sim, nt_sample *sample);
 NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command);
 /* What the simulated operator does next. */
 NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target);
+/* Adds a fault, from now on if its start has passed. As nt_faults_add. */
+NT_API nt_status nt_sim_inject(nt_sim *sim, const nt_fault *fault);
+/* Is the quasi-static cantilever not good enough? Its lag may be a hundredth of the pull-off force or the standard
+ * deviation of the force read-out, whichever is more, and it rings out within a millisecond, the quickest that touch
+ * perceives, or within a period. */
+NT_API int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A plan in plain words with numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from nanotouch.plan import Plan, Term
+
+_NAMES = {
+    "vdw": "van der Waals", "electrostatic": "electrostatic", "charge": "trapped charge",
+    "double_layer": "double layer", "hydration": "hydration", "steric": "polymer brush",
+}  # fmt: skip
+_CONTACT = {
+    "table": "Maugis-Dugdale table", "polished": "Maugis-Dugdale, polished table", "exact": "Maugis-Dugdale, exact",
+    "local": "Maugis-Dugdale with the radius of each place", "jkr": "JKR",
+}  # fmt: skip
+_FORMS = {"derjaguin": "in Derjaguin's form", "sphere": "of the sphere", "tip": "of the whole tip", "on": "computed"}
+_SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
+_QUANTITIES = ("force", "stiffness", "contact radius", "folds")
+
+
+def text_of(plan: Plan) -> str:
+    """All of it."""
+    facts = plan.explain()
+    contact, *others = plan._all_terms()
+    lines = [_contact(contact, facts)]
+    lines += [_term(term, plan.pull_off_force) for term in others if term.force > 0.0]
+    lines.append(_total(plan))
+    lines.append(_numbers(facts))
+    return "\n".join(lines + [f"warning: {warning}" for warning in plan.warnings])
+
+
+def _contact(term: Term, facts: dict[str, Any]) -> str:
+    if not term.included:
+        return "contact: none within the range of gaps"
+    if facts["adhesion_source"] == "none":
+        law = "Hertz" if facts["shape"] == "paraboloid" else f"{facts['shape']} without adhesion"
+        felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
+        return f"contact: {law}, no adhesion{felt}"
+    text = f"contact: {_CONTACT[term.form]}"
+    if math.isfinite(facts["lambda"]):
+        text += f", lambda {facts['lambda']:.3g}"
+    text += f"; adhesion {_SOURCES[facts['adhesion_source']]}, w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2"
+    rivals = {name.upper() if name != "hertz" else "Hertz": error for name, error in facts["rivals"].items()}
+    if math.isfinite(facts["lambda"]):
+        text += "; " + ", ".join(f"{name} would err by {_percent(error)}" for name, error in rivals.items())
+    return text
+
+
+def _term(term: Term, pull_off_force: float) -> str:
+    share = f", {_percent(term.force / pull_off_force)} of the pull-off" if pull_off_force > 0.0 else ""
+    size = f"at most {_nano(term.force)} nN{share}"
+    if not term.included:
+        return f"{_NAMES[term.name]}: left out, {size}"
+    error = f"; this form errs by {_percent(term.bound)}" if term.bound > 0.0 else ""
+    return f"{_NAMES[term.name]}: {_FORMS[term.form]}, {size}{error}"
+
+
+def _total(plan: Plan) -> str:
+    quantity = _QUANTITIES[("force", "stiffness", "radius", "folds").index(plan.quantity)]
+    text = f"{quantity} within {_percent(plan.bound)}, folds within {plan.fold_shift_m * 1e9:.2g} nm"
+    if not math.isnan(plan.model_error):
+        text += f" (beside Lennard-Jones the model itself errs by {_percent(plan.model_error)})"
+    return f"{text}; cost {plan.cost:.3g} Hertz evaluations, everything exact {plan.explain()['full_cost']:.3g}"
+
+
+def _numbers(facts: dict[str, Any]) -> str:
+    spring = facts["minimum_spring"]
+    jump = "the force jumps in, whatever the spring" if math.isinf(spring) else f"no jump-in above {spring:.3g} N/m"
+    return (
+        f"pull-off {_nano(facts['pull_off_force'])} nN; {jump}; "
+        f"stiffest contact {facts['maximum_stiffness']:.3g} N/m"
+    )
+
+
+def _nano(force: float) -> str:
+    return f"{force * 1e9:.4g}"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %"

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One contact of tip and surface: its history, and the force at a pose as minus the gradient of one energy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nanotouch import _core
+from nanotouch._arrays import Floats, Law, as_floats, as_law
+from nanotouch.errors import InvalidValue
+from nanotouch.plan import History
+
+if TYPE_CHECKING:
+    from nanotouch.plan import Plan
+
+#: size of the history of one contact in the C library [byte]
+STATE_SIZE: int = _core.interaction_state_size
+
+
+class State(NamedTuple):
+    """The history of one contact."""
+
+    attached: bool = False
+    """in contact, or held by a meniscus or by the attraction that contact has left"""
+    dissipated: float = 0.0
+    """energy lost in jumps so far [J]"""
+    port: float = 0.0
+    """energy put in by slow changes of the scene so far [J]"""
+
+
+class Value(NamedTuple):
+    """Force on the tip at poses; each a float for one pose, an array (n,) for n."""
+
+    U: Any
+    """energy [J]"""
+    Fx: Any
+    """force [N]"""
+    Fy: Any
+    Fz: Any
+    k: Any
+    """dFz/d(indentation) [N/m]"""
+    a: Any
+    """contact radius [m]"""
+    gap: Any
+    """gap of the undeformed bodies [m]"""
+
+
+class Interaction:
+    """One contact on a plan.
+
+    ``eval`` is pure and may be asked at trial poses; ``advance`` commits history, once per accepted step.
+    """
+
+    def __init__(self, plan: Plan, history: History = "approach") -> None:
+        if history not in get_args(History):
+            raise InvalidValue(f"history {history!r}: valid are {', '.join(get_args(History))}")
+        self.plan = plan
+        self._core = _core.Interaction(plan.core)
+        self.state = State(attached=history == "retract")
+
+    @property
+    def state(self) -> State:
+        """The history: small, enough to go on from."""
+        return State(*self._core.state)
+
+    @state.setter
+    def state(self, state: State) -> None:
+        self._core.state = tuple(state)
+
+    def eval(self, pose: ArrayLike) -> Value:
+        """Energy and force at a pose (x, y, z) or poses (n, 3) [m], on the present history."""
+        rows, single = _rows(pose)
+        return _value(self._core.eval(rows), single)
+
+    def advance(self, pose: ArrayLike) -> Value:
+        """Go to a pose, or through poses in their order, and commit history; returns what :meth:`eval` gives there."""
+        rows, single = _rows(pose)
+        return _value(self._core.run(rows), single)
+
+    def run(self, gaps: ArrayLike) -> Any:
+        """Force on the tip [N] along a path of gaps [m] over a flat, in their order, committing history."""
+        return self.run_law(gaps).F
+
+    def run_law(self, gaps: ArrayLike) -> Law:
+        """Energy, force, stiffness and contact radius along a path of gaps [m]."""
+        return as_law(self._core.run_gaps(as_floats(gaps, "gaps")))
+
+    def change(self, plan: Plan, pose: ArrayLike) -> Interaction:
+        """This contact on a plan of the changed scene (wear, charging, ageing) at a pose; the energy that the change
+        puts in is added to ``state.port``."""
+        changed = type(self)(plan)
+        rows, single = _rows(pose)
+        if not single:
+            raise InvalidValue(f"{len(rows)} poses: a change takes place at one")
+        self._core.change(changed._core, *rows[0])
+        return changed
+
+    def copy(self) -> Self:
+        """An independent contact with the same history."""
+        made = type(self)(self.plan)
+        made.state = self.state
+        return made
+
+
+def step(plan: Plan, states: ArrayLike, poses: ArrayLike) -> tuple[Floats, Value]:
+    """Many contacts of one plan, each with its own history: advance each to its pose.
+
+    Parameters
+    ----------
+    states : array (n, 3)
+        Rows of :class:`State`; zeros for contacts that never touched.
+    poses : array (n, 3)
+        Where each goes [m].
+
+    Returns
+    -------
+    states, value : array (n, 3), Value
+    """
+    rows, _ = _rows(poses)
+    history = as_floats(states, "states")
+    if history.shape != (len(rows), 3):
+        raise InvalidValue(f"states of shape {history.shape}: {len(rows)} poses need ({len(rows)}, 3)")
+    after, values = _core.interaction_step(plan.core, history, rows)
+    return after, _value(values, False)
+
+
+def _rows(pose: ArrayLike) -> tuple[Floats, bool]:
+    rows = as_floats(pose, "pose")
+    if rows.ndim not in (1, 2) or rows.shape[-1] != 3:
+        raise InvalidValue(f"poses of shape {rows.shape}: (3,) or (n, 3) is needed")
+    return np.atleast_2d(rows), rows.ndim == 1
+
+
+def _value(values: Floats, single: bool) -> Value:
+    return Value(*(float(v) for v in values[0])) if single else Value(*values.T)

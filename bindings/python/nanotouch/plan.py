@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is computed for a scene, and why: :class:`Plan`, made by :meth:`nanotouch.Scene.plan`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from numpy.typing import ArrayLike
+
+from nanotouch import _core
+from nanotouch._arrays import Law, as_floats
+from nanotouch.errors import InvalidValue
+
+if TYPE_CHECKING:
+    from nanotouch.scene import Demand, Rig, Scene
+    from nanotouch.surface import Surface
+
+History = Literal["approach", "retract"]
+
+
+class Term(NamedTuple):
+    """One law of a plan."""
+
+    name: str
+    form: str
+    """how it is computed: ``"table"``, ``"sphere"``, ...; ``"off"``"""
+    force: float
+    """the largest it is in the range of the scene, for contact the largest load [N]"""
+    bound: float
+    """of what this form errs by, over max(\\|quantity\\|, scale)"""
+    cost: float
+    """of one evaluation, in Hertz evaluations"""
+
+    @property
+    def included(self) -> bool:
+        """Whether it is computed."""
+        return self.form != "off"
+
+
+class Warning(NamedTuple):
+    """Something that the bound does not cover."""
+
+    text: str
+    unit: str
+    value: float
+    limit: float
+
+    def __str__(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.text}: {self.value:.3g}{unit}, limit {self.limit:.3g}{unit}"
+
+
+class Plan:
+    """What is computed for a scene, and why; see ``print(plan)``. Immutable."""
+
+    def __init__(self, core: _core.Plan) -> None:
+        self.core = core
+        self._facts: dict[str, Any] = core.as_dict()
+
+    @classmethod
+    def make(
+        cls, scene: Scene, demand: Demand | None = None, probe: Rig | None = None, surface: Surface | None = None
+    ) -> Plan:
+        """The cheapest plan that keeps a demand; see :meth:`nanotouch.Scene.plan`."""
+        from nanotouch.scene import Demand
+
+        wanted = Demand() if demand is None else demand
+        return cls(
+            _core.Plan(
+                scene.core,
+                wanted.core,
+                None if probe is None else probe.core,
+                None if surface is None else surface.core,
+            )
+        )
+
+    @property
+    def terms(self) -> list[Term]:
+        """The laws that are computed."""
+        return [term for term in self._all_terms() if term.included]
+
+    @property
+    def omitted(self) -> list[Term]:
+        """The laws that the scene has and the plan leaves out, with a bound each."""
+        return [term for term in self._all_terms() if not term.included and term.force > 0.0]
+
+    def _all_terms(self) -> list[Term]:
+        return [Term(*term) for term in self._facts["terms"]]
+
+    @property
+    def bound(self) -> float:
+        """Largest error of the demanded quantity over max(\\|it\\|, its scale), away from folds: all terms together."""
+        return float(self._facts["bound"])
+
+    @property
+    def quantity(self) -> str:
+        """What is that accurate: ``"force"``, ``"stiffness"``, ``"radius"``, ``"folds"``."""
+        return str(self._facts["quantity"])
+
+    @property
+    def scale(self) -> float:
+        """What small values are compared with, for a force max(pull-off force, atol/rtol) [N, N/m or m]."""
+        return float(self._facts["scale"])
+
+    @property
+    def fold_shift_m(self) -> float:
+        """How far the folds (jump-in, pull-off under grips) may be off, as a gap [m]."""
+        return float(self._facts["fold_shift"])
+
+    @property
+    def model_error(self) -> float:
+        """What Maugis-Dugdale itself errs by beside Lennard-Jones; no part of :attr:`bound`; NaN where not known."""
+        return float(self._facts["model_error"])
+
+    @property
+    def cost(self) -> float:
+        """Of one evaluation, in Hertz evaluations."""
+        return float(self._facts["cost"])
+
+    @property
+    def maugis_lambda(self) -> float:
+        """Maugis' parameter of the contact; infinite without adhesion or without its range."""
+        return float(self._facts["lambda"])
+
+    @property
+    def pull_off_force(self) -> float:
+        """Pull-off force under load control, everything on, a positive magnitude [N]."""
+        return float(self._facts["pull_off_force"])
+
+    @property
+    def minimum_spring(self) -> float:
+        """The softest spring that does not jump in [N/m]; infinite where the force itself jumps."""
+        return float(self._facts["minimum_spring"])
+
+    @property
+    def maximum_stiffness(self) -> float:
+        """Stiffness of the contact at the largest load [N/m]."""
+        return float(self._facts["maximum_stiffness"])
+
+    @property
+    def warnings(self) -> list[Warning]:
+        """What the bound does not cover: laws outside their validity, descriptions that disagree, losses."""
+        return [Warning(*warning) for warning in self._facts["warnings"]]
+
+    def cutoff_gap(self, force: float = 0.0) -> float:
+        """Beyond this gap \\|F\\| is at most ``force`` [N], whatever the history [m]; infinite if there is none."""
+        if not force >= 0.0:
+            raise InvalidValue(f"force = {force:g} N: it must be 0 or above")
+        return self.core.cutoff_gap(force)
+
+    def stable_step(self, mass: float) -> float:
+        """Longest step of an explicit symplectic integrator for a mass [kg] on this force [s]."""
+        if not mass > 0.0:
+            raise InvalidValue(f"mass = {mass:g} kg: it must be above 0")
+        return self.core.stable_step(mass)
+
+    def explain(self) -> dict[str, Any]:
+        """The plan as data, SI."""
+        return dict(self._facts)
+
+    def force(self, gap: ArrayLike, history: History = "approach") -> Any:
+        """Force on the tip [N] along a path of gaps [m], in their order, starting apart or in contact."""
+        return self.run(gap, history).F
+
+    def run(self, gap: ArrayLike, history: History = "approach") -> Law:
+        """Energy, force, stiffness and contact radius along a path of gaps [m]."""
+        from nanotouch.interaction import Interaction
+
+        return Interaction(self, history).run_law(as_floats(gap, "gap"))
+
+    def __str__(self) -> str:
+        from nanotouch._plan_text import text_of
+
+        return text_of(self)
+
+    def __repr__(self) -> str:
+        forms = ", ".join(f"{term.name}: {term.form}" for term in self.terms)
+        return f"Plan({forms}; bound {self.bound:.2g}, cost {self.cost:.3g})"

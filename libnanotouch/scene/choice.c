@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The cheapest combination of forms whose errors add up to no more than the demand: all of them are tried, a few hundred
+ * at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
+#include <math.h>
+
+#include "scene/parts.h"
+
+typedef struct combination {
+    int index[NT_PLAN_TERMS];
+    double error, cost;
+} combination;
+
+static void weigh(const nt_plan_options *options, combination *tried)
+{
+    tried->error = tried->cost = 0.0;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term) {
+        tried->error += options->option[term][tried->index[term]].error;
+        tried->cost += options->option[term][tried->index[term]].cost;
+    }
+}
+
+/* The next combination; 0 after the last. */
+static int next(const nt_plan_options *options, combination *tried)
+{
+    for (int term = 0; term < NT_PLAN_TERMS; ++term) {
+        if (++tried->index[term] < options->count[term])
+            return 1;
+        tried->index[term] = 0;
+    }
+    return 0;
+}
+
+static nt_status refuse(nt_problem *problem, const char *field, double value, double minimum)
+{
+    if (problem)
+        *problem = (nt_problem){field, "", value, minimum, INFINITY};
+    return NT_E_RANGE;
+}
+
+static void take(nt_plan *plan, const nt_plan_options *options, const combination *best)
+{
+    static const char *const names[NT_PLAN_TERMS] = {"contact",      "vdw",       "electrostatic", "charge",
+                                                     "double_layer", "hydration", "steric"};
+    for (int term = 0; term < NT_PLAN_TERMS; ++term) {
+        plan->terms[term].name = names[term];
+        plan->terms[term].form = options->option[term][best->index[term]].form;
+        plan->terms[term].error = options->option[term][best->index[term]].error;
+        plan->terms[term].cost = options->option[term][best->index[term]].cost;
+    }
+    plan->bound.force_error = best->error;
+    plan->cost = best->cost;
+}
+
+/* The last option of every term is its fullest. */
+static combination everything(const nt_plan_options *options)
+{
+    combination full;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        full.index[term] = options->count[term] - 1;
+    weigh(options, &full);
+    return full;
+}
+
+nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
+{
+    const double demanded = plan->demand.relative_accuracy, budget = plan->demand.budget;
+    const combination full = everything(options);
+    combination best = full, tried = {{0}, 0.0, 0.0};
+    int found = !(demanded > 0.0);
+    plan->full_cost = full.cost;
+    do {
+        weigh(options, &tried);
+        if (!(tried.error <= demanded) || !(demanded > 0.0))
+            continue;
+        if (!found || tried.cost < best.cost || (tried.cost == best.cost && tried.error < best.error))
+            best = tried;
+        found = 1;
+    } while (next(options, &tried));
+    if (!found)
+        return refuse(problem, "demand.relative_accuracy", demanded, full.error);
+    if (budget > 0.0 && best.cost > budget)
+        return refuse(problem, "demand.budget", budget, best.cost);
+    take(plan, options, &best);
+    return NT_OK;
+}

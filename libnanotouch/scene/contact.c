@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The contact of a scene: which laws can stand for it, made ready, and where adhesion takes hold and lets go.
+ *
+ * Paraboloid, sphere and cap with adhesion are Maugis-Dugdale's paraboloid; cone and punch with adhesion are JKR's, of
+ * no range; without adhesion every shape has its own law. */
+#include <math.h>
+#include <stddef.h>
+
+#include "scene/parts.h"
+
+static int is_jkr_shape(const nt_plan *plan)
+{
+    return plan->shape.kind == NT_SHAPE_CONE || plan->shape.kind == NT_SHAPE_PUNCH;
+}
+
+nt_form nt_plan_contact_form(const nt_plan *plan)
+{
+    if (plan->source == NT_ADHESION_NONE)
+        return NT_FORM_SHAPE;
+    return is_jkr_shape(plan) ? NT_FORM_JKR : NT_FORM_EXACT;
+}
+
+nt_status nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    plan->source = nt_scene_adhesion_source(scene);
+    plan->shape = nt_scene_shape(scene);
+    const nt_status status = nt_scene_contact(scene, &plan->contact, problem);
+    if (status != NT_OK)
+        return status;
+    const double range =
+        plan->source == NT_ADHESION_NONE ? 0.0 : plan->contact.work_of_adhesion / plan->contact.cohesive_stress;
+    plan->capture_gap = range; /* where attraction begins; a bridge, where the films touch */
+    if (plan->source == NT_ADHESION_MENISCUS)
+        plan->capture_gap = fmin(2.0 * scene->medium.film_thickness, range);
+    if (is_jkr_shape(plan))
+        plan->capture_gap = 0.0;
+    return NT_OK;
+}
+
+nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation)
+{
+    nt_law_value value = {NAN, NAN, NAN, NAN};
+    switch (form) {
+    case NT_FORM_SHAPE:
+        return nt_shape_eval(&plan->shape, plan->contact.effective_modulus, indentation);
+    case NT_FORM_JKR:
+        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
+        return value;
+    case NT_FORM_EXACT:
+        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
+        return value;
+    default:
+        (void)nt_maugis_table_eval(&plan->table, form == NT_FORM_POLISHED ? NT_TIER_POLISHED : NT_TIER_TABLE,
+                                   indentation, NT_BRANCH_STABLE, &value);
+        return value;
+    }
+}
+
+/* Where the contact carries `load` [m]: bracket upwards from first touch, where it cannot push, then bisect. NaN if it
+ * never does. */
+static double indentation_at(const nt_plan *plan, nt_form form, double load)
+{
+    double low = 0.0, high = nt_shape_indentation(&plan->shape, plan->contact.effective_modulus, load);
+    for (int i = 0; i < 64 && nt_plan_contact_eval(plan, form, high).F < load; ++i) {
+        low = high;
+        high *= 2.0;
+    }
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        if (nt_plan_contact_eval(plan, form, middle).F < load)
+            low = middle;
+        else
+            high = middle;
+    }
+    return nt_plan_contact_eval(plan, form, high).F >= load ? high : (double)NAN;
+}
+
+/* Tables of Maugis-Dugdale up to the largest load, for those scenes that have it. */
+static nt_status prepare_maugis(nt_plan *plan, double maximum_load)
+{
+    nt_status status = nt_maugis_init(&plan->maugis, &plan->contact);
+    if (status != NT_OK)
+        return status;
+    plan->lambda = plan->maugis.lambda;
+    plan->release_gap = -plan->maugis.folds.grip_indentation * plan->maugis.indentation_scale;
+    nt_maugis_table_options options = nt_maugis_table_defaults();
+    const double deepest = indentation_at(plan, NT_FORM_EXACT, maximum_load);
+    options.largest_indentation = 1.01 * deepest;
+    return nt_maugis_table_init(&plan->table, &plan->maugis, &options, plan->cells, NT_PLAN_CELLS);
+}
+
+nt_status nt_plan_contact_laws(nt_plan *plan, const nt_scene *scene)
+{
+    const double load = scene->range.maximum_load;
+    nt_status status = NT_OK;
+    plan->lambda = INFINITY;
+    plan->jkr = (nt_jkr_shape){plan->shape, plan->contact.effective_modulus, plan->contact.work_of_adhesion};
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
+        status = prepare_maugis(plan, load);
+    else if (nt_plan_contact_form(plan) == NT_FORM_JKR)
+        plan->release_gap = -nt_jkr_shape_pull_off_indentation(&plan->jkr);
+    if (status != NT_OK)
+        return status;
+    const nt_form form = nt_plan_contact_form(plan);
+    const double deepest = indentation_at(plan, form, load);
+    if (!isfinite(deepest))
+        return NT_E_NO_CONVERGENCE;
+    const nt_law_value loaded = nt_plan_contact_eval(plan, form, deepest);
+    plan->maximum_stiffness = loaded.k;
+    plan->length = plan->source == NT_ADHESION_NONE ? 1e-3 * plan->contact.radius
+                                                    : plan->contact.work_of_adhesion / plan->contact.cohesive_stress;
+    const double thickness = scene->sample.thickness > 0.0 ? scene->sample.thickness : (double)INFINITY;
+    return nt_contact_validity_of(&plan->shape, loaded.a, deepest, thickness, &plan->validity);
+}

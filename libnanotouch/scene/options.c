@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The forms in which every term of a plan could be computed, each with a bound of its error and its cost.
+ *
+ * An error is a share of the demand: over max(|X|, S), X the demanded quantity of the whole and S its scale. Let T be the
+ * largest that the terms beside contact come to. Contact is off by at most e max(|X_c|, S), and |X_c| <= |X| + T, so that
+ * its share is e (1 + T/S). A term left out is off by its largest value in the range; one in a simpler form by the
+ * largest difference of the two forms. */
+#include <math.h>
+
+#include "scene/parts.h"
+
+/* Measured cost of {U, F, k, a}, in evaluations of an inlined Hertz law (tests/bench/bench_plan.cpp). */
+#define COST_GAP 1.0 /* what every evaluation needs, whatever is computed */
+#define COST_SHAPE 6.0
+#define COST_HERTZ 1.5
+#define COST_JKR 40.0
+#define COST_TABLE 6.0
+#define COST_POLISHED 30.0
+#define COST_EXACT 400.0
+static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
+    [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 3.0, [NT_FORM_SPHERE] = 8.0, [NT_FORM_TIP] = 20.0},
+    [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 30.0},
+    [NT_PLAN_CHARGE] = {[NT_FORM_ON] = 4.0},
+    [NT_PLAN_DOUBLE_LAYER] = {[NT_FORM_ON] = 20.0},
+    [NT_PLAN_HYDRATION] = {[NT_FORM_ON] = 8.0},
+    [NT_PLAN_STERIC] = {[NT_FORM_ON] = 40.0},
+};
+
+#define SAMPLED 1.05   /* a largest value that was sampled on a smooth curve may be this much short of the true one */
+#define TABLED 2.0     /* the same for the error of a table, which oscillates within its cells */
+#define ROUNDING 1e-12 /* polished and exact tiers, away from folds (docs/contact.md) */
+
+static double pick(nt_law_value value, nt_quantity quantity)
+{
+    return quantity == NT_QUANTITY_STIFFNESS ? value.k : quantity == NT_QUANTITY_RADIUS ? value.a : value.F;
+}
+
+/* The largest difference between two forms of contact over max(|X|, scale), over all indentations from the release gap
+ * to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. */
+static double contact_distance(const nt_plan *plan, nt_law_value (*other)(const nt_plan *, double), double lowest,
+                               nt_quantity quantity)
+{
+    enum { SAMPLES = 96 };
+    const double fold = -plan->release_gap;
+    const double deepest = plan->table.cells ? plan->table.largest_indentation : 0.0;
+    const double scale = quantity == NT_QUANTITY_FORCE ? fmax(plan->pull_off_force, plan->scale) : plan->scale;
+    double largest = 0.0;
+    for (int i = 1; i <= SAMPLES; ++i) {
+        const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
+        if (d < lowest)
+            continue;
+        const double truth = pick(nt_plan_contact_eval(plan, NT_FORM_POLISHED, d), quantity);
+        largest = fmax(largest, fabs(pick(other(plan, d), quantity) - truth) / fmax(fabs(truth), scale));
+    }
+    return largest;
+}
+
+static nt_law_value hertz_at(const nt_plan *plan, double indentation)
+{
+    return nt_hertz_eval(&plan->contact, indentation);
+}
+
+static nt_law_value dmt_at(const nt_plan *plan, double indentation)
+{
+    return nt_dmt_eval(&plan->contact, indentation);
+}
+
+static nt_law_value jkr_at(const nt_plan *plan, double indentation)
+{
+    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
+    (void)nt_jkr_eval(&plan->contact, indentation, NT_BRANCH_STABLE, &value);
+    return value;
+}
+
+static nt_law_value table_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_contact_eval(plan, NT_FORM_TABLE, indentation);
+}
+
+/* On what load control can hold, away from its fold; Hertz and DMT know contact only from first touch on. */
+static void rivals_of(nt_plan *plan)
+{
+    const double last = 0.9 * plan->maugis.folds.pull_off_indentation * plan->maugis.indentation_scale;
+    plan->rivals.hertz = contact_distance(plan, hertz_at, 0.0, NT_QUANTITY_FORCE);
+    plan->rivals.dmt = contact_distance(plan, dmt_at, 0.0, NT_QUANTITY_FORCE);
+    plan->rivals.jkr = contact_distance(plan, jkr_at, last, NT_QUANTITY_FORCE);
+}
+
+/* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
+static double scale_of(const nt_plan *plan)
+{
+    const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
+    const nt_maugis *m = &plan->maugis;
+    const double accuracy = plan->demand.relative_accuracy;
+    switch ((int)plan->demand.quantity) {
+    case NT_QUANTITY_STIFFNESS:
+        return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
+    case NT_QUANTITY_RADIUS:
+        return maugis ? m->folds.zero_load_radius * m->radius_scale : plan->contact.radius * plan->validity.radius_ratio;
+    case NT_QUANTITY_FOLDS:
+        return fmax(fabs(plan->release_gap), plan->length);
+    default:
+        return fmax(plan->pull_off_force, accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
+    }
+}
+
+static void offer(nt_plan_options *options, int term, nt_form form, double error, double cost)
+{
+    const int i = options->count[term]++;
+    options->option[term][i].form = form;
+    options->option[term][i].error = error;
+    options->option[term][i].cost = cost;
+}
+
+static double share(double error, double scale)
+{
+    return error == 0.0 ? 0.0 : error / scale;
+}
+
+/* Contact of tips that adhesion makes Maugis-Dugdale's. */
+static void offer_maugis(nt_plan *plan, nt_plan_options *options, double beside)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const double more = 1.0 + share(beside, plan->scale);
+    double table = TABLED * plan->table.accuracy[NT_TIER_TABLE].force_error;
+    if (quantity == NT_QUANTITY_FOLDS)
+        table = share(plan->table.accuracy[NT_TIER_TABLE].fold_shift, plan->scale);
+    else if (quantity != NT_QUANTITY_FORCE)
+        table = TABLED * contact_distance(plan, table_at, -INFINITY, quantity);
+    else
+        table *= fmax(1.0, share(nt_maugis_pull_off_force(&plan->maugis), plan->scale));
+    const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
+    if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
+        offer(options, NT_PLAN_CONTACT, NT_FORM_SHAPE,
+              SAMPLED * more * contact_distance(plan, hertz_at, -INFINITY, quantity), COST_HERTZ);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_TABLE, more * table + ROUNDING, COST_TABLE);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_POLISHED, more * 2.0 * ROUNDING, COST_POLISHED);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_EXACT, more * ROUNDING, COST_EXACT);
+}
+
+static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
+{
+    const nt_form full = nt_plan_contact_form(plan);
+    nt_plan_term *term = &plan->terms[NT_PLAN_CONTACT];
+    if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
+        term->force = 0.0; /* never touched */
+        offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, 0.0, 0.0);
+        return;
+    }
+    term->force = scene->range.maximum_load;
+    if (full == NT_FORM_EXACT)
+        offer_maugis(plan, options, beside);
+    else if (full == NT_FORM_JKR)
+        offer(options, NT_PLAN_CONTACT, full, ROUNDING, COST_JKR);
+    else
+        offer(options, NT_PLAN_CONTACT, full, ROUNDING,
+              plan->shape.kind == NT_SHAPE_PARABOLOID ? COST_HERTZ : COST_SHAPE);
+}
+
+/* The largest difference of a form to the fullest one, over the gaps of the range. */
+static double form_distance(const nt_plan *plan, int term, nt_form form, double nearest)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_form full = nt_plan_full_form(plan, term);
+    if (form == full || quantity == NT_QUANTITY_RADIUS || quantity == NT_QUANTITY_FOLDS)
+        return 0.0;
+    double largest = 0.0;
+    for (double gap = fmax(nearest, 1e-13); gap < 1e-1; gap *= 1.1)
+        largest = fmax(largest, fabs(pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
+                                     pick(nt_plan_law_eval(plan, term, full, gap), quantity)));
+    const double held = fabs(pick(nt_plan_law_eval(plan, term, form, nearest), quantity) -
+                             pick(nt_plan_law_eval(plan, term, full, nearest), quantity));
+    return SAMPLED * fmax(largest, held);
+}
+
+static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_options *options)
+{
+    static const nt_form simpler[] = {NT_FORM_DERJAGUIN, NT_FORM_SPHERE};
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_form full = nt_plan_full_form(plan, term);
+    offer(options, term, NT_FORM_OFF, share(nt_plan_law_limit(plan, term, nearest, quantity), plan->scale), 0.0);
+    if (full == NT_FORM_OFF)
+        return;
+    for (int i = 0; i < 2; ++i) {
+        const double cost = law_costs[term][simpler[i]];
+        if (cost > 0.0 && simpler[i] != full)
+            offer(options, term, simpler[i], share(form_distance(plan, term, simpler[i], nearest), plan->scale), cost);
+    }
+    offer(options, term, full, 0.0, law_costs[term][full]);
+}
+
+void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options)
+{
+    static const nt_plan_options none = {0};
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const double nearest = fmax(scene->range.minimum_gap, 0.0);
+    double beside = 0.0;
+    *options = none;
+    plan->scale = scale_of(plan);
+    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) {
+        plan->terms[term].force = nt_plan_law_limit(plan, term, nearest, NT_QUANTITY_FORCE);
+        beside += nt_plan_law_limit(plan, term, nearest, quantity);
+        offer_law(plan, term, nearest, options);
+    }
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
+        rivals_of(plan);
+    offer_contact(plan, scene, options, beside);
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The steps of nt_plan_make, in their order; private to scene/. Each reads what the ones before it wrote. */
+#ifndef NANOTOUCH_SCENE_PARTS_H
+#define NANOTOUCH_SCENE_PARTS_H
+
+#include "nanotouch/interaction.h"
+#include "nanotouch/plan.h"
+
+/* contact.c: source, shape, contact with all of w, capture; and, with what the tail leaves of w, the laws of contact. */
+nt_status nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+nt_status nt_plan_contact_laws(nt_plan *plan, const nt_scene *scene);
+/* The fullest form of the scene's contact. */
+nt_form nt_plan_contact_form(const nt_plan *plan);
+/* {U, F, k, a} of the contact in a form; all NaN where it refuses the indentation. */
+nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation);
+
+/* laws.c: everything beside contact. */
+nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+/* One of the terms beside contact, in a form, at a gap. */
+nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, double gap);
+/* What is taken out of w, because the tail pulls it already (E5b) [J/m^2]. */
+double nt_plan_tail_share(const nt_plan *plan);
+/* The largest |F| or |k| of a term at all gaps from `gap` on; signs that could cancel are not trusted. */
+double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity quantity);
+/* The fullest form of a term that the scene has, NT_FORM_OFF if it has none. */
+nt_form nt_plan_full_form(const nt_plan *plan, int term);
+
+/* facts.c: pull-off, stiffness, energies of the jumps, with everything on. */
+nt_status nt_plan_facts(nt_plan *plan);
+
+/* options.c: the forms of every term with error and cost. */
+enum { NT_OPTIONS_MAX = 5 };
+typedef struct nt_plan_options {
+    struct {
+        nt_form form;
+        double error, cost;
+    } option[NT_PLAN_TERMS][NT_OPTIONS_MAX];
+    int count[NT_PLAN_TERMS];
+} nt_plan_options;
+void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options);
+
+/* choice.c: the cheapest of all combinations that keeps the demand. */
+nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
+
+/* warnings.c: what the bound does not cover. */
+void nt_plan_warn(nt_plan *plan, const nt_scene *scene);
+
+#endif
