@@ -126,7 +126,10 @@ def write_ibw(
 def write_ibw_image(path: Path, channels: dict[str, Array], pitch: float) -> Path:
     """An Asylum image: channels (ny, nx) by name, square pixels of `pitch` [m]."""
     wave = np.stack([heights.T for heights in channels.values()], axis=-1)
-    return write_ibw(path, wave, list(channels), pitch=pitch, note={"MicroscopeModel": "Synthetic", "Version": "1"})
+    ny, nx = wave.shape[1], wave.shape[0]
+    note: dict[str, object] = {"MicroscopeModel": "Synthetic", "Version": "1", "ScanPoints": nx, "ScanLines": ny}
+    note |= {"FastScanSize": f"{(nx - 1) * pitch:.6g}", "SlowScanSize": f"{(ny - 1) * pitch:.6g}"}
+    return write_ibw(path, wave, list(channels), pitch=pitch, note=note)
 
 
 def write_nid(path: Path, heights: Array, side: tuple[float, float]) -> Path:
@@ -136,6 +139,7 @@ def write_nid(path: Path, heights: Array, side: tuple[float, float]) -> Path:
     header: dict[str, dict[str, object]] = {
         "DataSet": {"Version": 2, "GroupCount": 1, "Gr0-Name": "Scan", "Gr0-Count": 1, "Gr0-Ch0": "DataSet-0:0"},
         "DataSet-Info": {"Date": "01-02-2020", "Time": "10:11:12"},
+        r"DataSet\DataSetInfos\Scan": {"Image size": f"{side[1] * 1e6:g}µm", "Points": nx, "Lines": ny},
         "DataSet-0:0": {
             "Version": 2, "Points": nx, "Lines": ny, "Frame": "Scan forward", "SaveMode": "Binary", "SaveBits": 32,
             "SaveSign": "Signed", "SaveOrder": "Intel", "Dim0Name": "X", "Dim0Unit": "m", "Dim0Range": side[1],
