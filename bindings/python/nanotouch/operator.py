@@ -36,6 +36,8 @@ def script_for(session: Session) -> list[Input]:
         return _follow(session)
     if session.mode == "scan":
         return _scan(session)
+    if session.mode in ("approach", "curve"):
+        return _descend(session)
     return _press(session)
 
 
@@ -113,3 +115,13 @@ def _follow(session: Session) -> list[Input]:
     speed = gains.height_gain * gains.set_point / session.rig.probe.spring_constant
     settle = 2.0 * session.clearance / speed + 0.5
     return [Input(0.0, x, y, settle), *_along_path(session, 0.0, speed / 3.0), Input(0.0, *session.path[-1], 0.3)]
+
+
+def _descend(session: Session) -> list[Input]:
+    """No hand force: long enough for the stage to find the surface, and to draw a curve."""
+    gains, x, y = session.settings.gains, *session.path[0]
+    stretch = gains.set_point / session.rig.probe.spring_constant
+    down = session.clearance + _depth(session, gains.set_point * gains.alpha_f) + stretch
+    back = gains.curve_length if session.mode == "curve" else 0.0
+    settle = 5.0 / gains.height_gain if session.mode == "approach" and gains.height_gain > 0.0 else 0.0
+    return [Input(0.0, x, y, 1.1 * (down + back) / gains.approach_speed + settle + 0.1)]

@@ -13,16 +13,21 @@ import struct
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nanotouch._files import checked_path
+from nanotouch.columns import COLUMNS as COLUMNS
+from nanotouch.columns import Column as Column
 from nanotouch.errors import Error, InvalidValue, ReadError, require
+
+if TYPE_CHECKING:
+    from nanotouch.curves import ForceCurve
+    from nanotouch.session import Law
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 TOPIC = "nanotouch/touch"
@@ -32,35 +37,6 @@ CHUNK_SIZE = 1 << 18  # what a killed process may lose [bytes]
 BLOCK_ROWS = 10_000
 HDF5_STORAGE = {"chunks": True, "compression": "gzip", "shuffle": True, "fletcher32": True}
 STATES = ("RUN", "HOLD", "RETRACT", "LATCHED")
-
-
-@dataclass(frozen=True)
-class Column:
-    """One channel of a recording: its NumPy type (little-endian), unit and meaning."""
-
-    dtype: str
-    unit: str
-    doc: str
-
-
-COLUMNS: dict[str, Column] = {
-    "time": Column("<f8", "s", "time since the start"),
-    "x": Column("<f8", "m", "lateral position of the tip, to the right"),
-    "y": Column("<f8", "m", "lateral position of the tip, up the image"),
-    "master_position": Column("<f8", "m", "x_m, + towards the sample"),
-    "operator_force": Column("<f8", "N", "f_m as measured, + towards the sample"),
-    "stage_position": Column("<f8", "m", "x_s as measured, travel towards the sample"),
-    "stage_command": Column("<f8", "m", "x_s as commanded, travel towards the sample"),
-    "deflection": Column("<f8", "m", "zeta as measured, + away from the sample"),
-    "slave_force": Column("<f8", "N", "f_s = k_c zeta as measured, + repulsive"),
-    "motor_force": Column("<f8", "N", "tau_m, + towards the sample"),
-    "state": Column("|u1", "", "0 RUN, 1 HOLD, 2 RETRACT, 3 LATCHED"),
-    "reasons": Column("<u4", "", "bits that explain the state"),
-    "gap": Column("<f8", "m", "simulated truth: h = z_t - z_s of the undeformed bodies"),
-    "tip_force": Column("<f8", "N", "simulated truth: force on the tip, + repulsive"),
-    "contact_radius": Column("<f8", "m", "simulated truth: radius of the contact, 0 when apart"),
-    "surface_height": Column("<f8", "m", "simulated truth: tip-dilated surface under the tip"),
-}
 
 
 class Recording:
@@ -133,6 +109,24 @@ class Recording:
         base: NDArray[np.float64] = self.parameter("start_height") - self.stage_position
         return base + math.cos(tilt) * self.deflection
 
+    def replay(self, control: Law | None = None) -> Recording:
+        """Feed what was measured to the touch step again: the same commands to the last bit, on the same machine.
+
+        Parameters
+        ----------
+        control : callable, optional
+            The law, where the recording was made with one's own.
+        """
+        from nanotouch.replay import replay
+
+        return replay(self, control)
+
+    def curve(self) -> ForceCurve:
+        """The force-distance curve of a recording in mode ``"curve"``, for :mod:`nanotouch.curves`."""
+        from nanotouch.replay import curve
+
+        return curve(self)
+
     def to_csv(self, path: str | os.PathLike[str], progress: Callable[[float], None] | None = None) -> None:
         """Write a text table: ``# key: value`` lines with the metadata, then ``name [unit],...``, then the rows."""
         comments = {key: json.dumps(value) for key, value in self.metadata.items()}
@@ -187,6 +181,11 @@ class Writer:
             self._mcap.add_message(self._channel, log_time=stamp, data=data, publish_time=stamp, sequence=self._blocks)
         self._blocks += 1
         self.rows += times.size
+
+    def update(self, metadata: Mapping[str, Any]) -> None:
+        """Write the metadata anew: what is known only at the end, such as the requests of a session."""
+        with _naming(self._path):
+            self._mcap.add_metadata("nanotouch", _texts(metadata))
 
     def close(self) -> None:
         """Finish the file and give it its name."""

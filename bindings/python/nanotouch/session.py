@@ -4,25 +4,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from operator import index
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch import _core
 from nanotouch._arrays import check_between
+from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
 from nanotouch.errors import InvalidValue
 from nanotouch.operator import Input, script_for
 from nanotouch.record import Recording, Writer
-from nanotouch.scene import Plan, Rig, Scene, Settings
+from nanotouch.plan import Plan
+from nanotouch.scene import Rig, Scene, Settings
+from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
-Mode = Literal["point", "scan", "topography"]
-MODES: tuple[Mode, ...] = get_args(Mode)
-#: names of the bits of a recording's ``reasons``
-REASONS: tuple[str, ...] = _core.reasons
+__all__ = ["CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "Session", "settings_for_path"]
+
+CONTROLS = ("default", "paper", "impedance")
+#: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
+Law = Callable[["_core.Signals"], tuple[float, float]]
 BLOCK_TICKS = 5000
 INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
 ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
@@ -66,23 +70,36 @@ class Session:
     ----------
     scene, rig : Scene, Rig
         What is touched, and with what; the paper's by default.
+    rate : float, optional
+        Of the force loop [Hz]; by default that of the settings, 10 kHz.
+    control : {"default", "paper", "impedance"} or callable
+        The control law (docs/control.md), or one's own: a function of the signals of a period
+        (:class:`nanotouch._core.Signals`) that returns the motor force [N] and where the stage shall be [m], under the
+        same supervisor and limits. A rig without a gauge has ``"impedance"`` as its default.
+    gains : mapping, optional
+        Fields of ``settings.gains`` in SI that differ, such as ``{"force_gain": 10}``.
+    mode : {"point", "scan", "topography", "approach", "curve"}
+        Touch at a point; touch along a path; follow the path at constant force and feel the height only; find the
+        surface and hold the set-point there; a force-distance curve.
+    path : sequence of (x, y), optional
+        Where the tip goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By default the
+        middle of the surface, or a line across it at mid-height.
+    delay : float
+        Of the link between hand and probe [s], beside the rig's own.
+    seed : int
+        Of the sensors' noise.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path.
     surface : Surface, optional
         The (dilated) surface; without it a flat at z = 0.
-    mode : {"point", "scan", "topography"}
-        Touch at a point; touch along a path; follow the path at constant force and feel the height only.
-    path : sequence of (x, y), optional
-        Where the tip goes [m]: one point for ``"point"``, at least two otherwise. By default the middle of the surface,
-        or a line across it at mid-height.
     clearance : float
         Height of the tip above the surface at the start [m].
-    seed : int
-        Of the sensors' noise.
     rtol : float
         Largest relative error of the planned force.
     minimum_margin : float
         Refuse to open closer to the stability limit than this.
+    preflight : bool
+        Tare the sensors and test the stage's sign before the first tick; refuse to open if they are off.
     """
 
     def __init__(
@@ -90,14 +107,19 @@ class Session:
         scene: Scene | None = None,
         rig: Rig | None = None,
         *,
-        settings: Settings | None = None,
-        surface: Surface | None = None,
+        rate: float | None = None,
+        control: str | Law = "default",
+        gains: Mapping[str, float] | None = None,
         mode: Mode = "point",
         path: Sequence[tuple[float, float]] | None = None,
+        delay: float = 0.0,
+        seed: int = 0,
+        settings: Settings | None = None,
+        surface: Surface | None = None,
         clearance: float = 0.1e-6,
-        seed: int = 1,
         rtol: float = 0.01,
         minimum_margin: float = 1.5,
+        preflight: bool = True,
     ) -> None:
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
@@ -107,14 +129,18 @@ class Session:
         self.mode: Mode = mode
         self.seed = _checked_seed(seed)
         self.clearance = clearance
-        self.path = _checked_path(mode, path, surface)
-        heights = self.path_heights()[1]
+        self.path = checked_path(mode, path, surface)
+        distance, heights = self.path_heights()
         self.relief = float(np.ptp(heights))
         self.settings = settings_for_path(self.rig, self.relief, clearance) if settings is None else settings.copy()
+        _choose(self.settings, rate, gains, delay)
+        self.control = _chosen_control(self.settings, control)
+        self._events: list[tuple[int, str, list[Any]]] = []
         options = {
-            "topography": mode == "topography", "x": self.path[0][0], "y": self.path[0][1], "seed": self.seed,
-            "clearance": clearance, "rise": float(heights.max() - heights[0]),
-            "minimum_margin": minimum_margin, "relative_accuracy": rtol,
+            "mode": core_mode(mode), "x": self.path[0][0], "y": self.path[0][1], "seed": self.seed,
+            "clearance": clearance, "rise": float(heights.max() - heights[0]), "slope": _steepest(distance, heights),
+            "minimum_margin": minimum_margin, "relative_accuracy": rtol, "preflight": preflight,
+            "law": control if callable(control) else None,
         }  # fmt: skip
         self.core = _core.Session(
             self.scene.core, self.rig.core, self.settings.core, surface.core if surface else None, options
@@ -140,12 +166,19 @@ class Session:
         margins = self.margins()
         return margins.height_margin if self.mode == "topography" else margins.margin
 
+    def guarantee(self) -> Guarantee:
+        """What holds whatever the operator does, on this path; to be read before anything moves."""
+        return Guarantee(**self.core.guarantee)
+
     @property
     def force_overshoot(self) -> float:
         """How far the force on the sample may exceed the set limit before the reaction shows, on this path [N]."""
-        distance, height = self.path_heights()
-        slope = float(np.max(np.abs(np.gradient(height, distance)))) if distance[-1] > 0.0 else 0.0
-        return _core.force_overshoot(self.rig.core, self.settings.core, slope)
+        return self.guarantee().force - self.settings.limits.force
+
+    @property
+    def is_done(self) -> bool:
+        """An approach has found the surface, or a curve is complete."""
+        return bool(self.core.phase == 2)
 
     def path_heights(self, points: int = 2001) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distance along the path [m] and height of the (dilated) surface there [m]."""
@@ -200,7 +233,7 @@ class Session:
         blocks: list[Columns] = []
         done = 0
         for step, left in zip(script, ticks, strict=True):
-            self.core.aim(*step)
+            self._aim(step)
             for length in _blocks_of(left):
                 block = self.advance(length / self.rate)
                 blocks.append(block)
@@ -209,11 +242,20 @@ class Session:
                     writer.append(block)
                 if progress is not None:
                     progress(done / sum(ticks))
-        return Recording(_joined(blocks) if blocks else self.advance(0.0), self.metadata())
+        recording = Recording(_joined(blocks) if blocks else self.advance(0.0), self.metadata())
+        if writer is not None:
+            writer.update(recording.metadata)
+        return recording
 
     def _aim(self, input: Input) -> None:
         self._check(input)
-        self.core.aim(*input)
+        self._request("aim", self.core.aim, [input.x, input.y, input.duration], tuple(input))
+
+    def _request(self, name: str, call: Callable[..., None], numbers: list[Any], arguments: Sequence[Any]) -> None:
+        """Ask the touch step for something between two ticks, and keep it for a replay."""
+        tick = self.core.ticks
+        call(*arguments)
+        self._events.append((tick, name, numbers))
 
     def _check(self, input: Input) -> None:
         """Refuse what the C library would, with the names and ranges it does not know."""
@@ -222,7 +264,7 @@ class Session:
                 raise InvalidValue(f"operator input: {name} = {value} is not finite")
         if input.duration < 0.0:
             raise InvalidValue(f"operator input: duration = {input.duration} s: it must be 0 s or more")
-        _check_inside(self.surface, input.x, input.y, "operator input")
+        check_inside(self.surface, input.x, input.y, "operator input")
 
     def metadata(self) -> dict[str, Any]:
         """What a recording of this session has to be read with; JSON-able, SI."""
@@ -232,6 +274,9 @@ class Session:
             "spring_constant": self.rig.probe.spring_constant,
             "start_height": self.core.start_height,
             "master_start": self.core.master_start,
+            "control": self.control,
+            "tare": list(self.core.tare),
+            "events": [[tick, name, numbers] for tick, name, numbers in self._events],
             "mode": self.mode,
             "path": [list(point) for point in self.path],
             "seed": self.seed,
@@ -246,7 +291,26 @@ class Session:
 
     def arm(self, confirmed: bool = False) -> None:
         """Back to RUN after RETRACT; after LATCHED only with ``confirmed``."""
-        self.core.arm(confirmed)
+        self._request("arm", self.core.arm, [confirmed], [confirmed])
+
+    def set_mode(self, mode: Mode) -> None:
+        """Go on in another mode from where the stage stands; the force fades out and in again."""
+        if mode not in MODES:
+            raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
+        self._request("mode", self.core.set_mode, [core_mode(mode)], [core_mode(mode)])
+
+    def rescale(self, alpha_p: float | None = None, alpha_f: float | None = None) -> None:
+        """Change the scales [m/m], [N/N] while running: without a bump, and as far as it is passive (docs/control.md).
+
+        Refused where the loop would run closer to its stability limit than the session's minimum.
+        """
+        gains = self.settings.gains
+        pair = [gains.alpha_p if alpha_p is None else alpha_p, gains.alpha_f if alpha_f is None else alpha_f]
+        self._request("rescale", self.core.rescale, pair, pair)
+
+    def clutch(self, open: bool = True) -> None:
+        """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
+        self._request("clutch", self.core.clutch, [open], [open])
 
     def emergency_stop(self, pressed: bool = True) -> None:
         """Press or release the simulated emergency stop."""
@@ -276,38 +340,30 @@ def _checked_seed(seed: int) -> int:
     return index(seed)
 
 
-def _check_inside(surface: Surface | None, x: float, y: float, what: str) -> None:
-    if surface is None:
-        return
-    width, height = surface.size
-    if not (0.0 <= x <= width and 0.0 <= y <= height):
-        raise InvalidValue(
-            f"{what}: ({x * 1e6:.6g} um, {y * 1e6:.6g} um) is outside the surface; "
-            f"valid is x 0 .. {width * 1e6:.6g} um, y 0 .. {height * 1e6:.6g} um"
-        )
+def _steepest(distance: NDArray[np.float64], heights: NDArray[np.float64]) -> float:
+    return float(np.max(np.abs(np.gradient(heights, distance)))) if distance[-1] > 0.0 else 0.0
 
 
-def _checked_path(
-    mode: Mode, path: Sequence[tuple[float, float]] | None, surface: Surface | None
-) -> list[tuple[float, float]]:
-    if path is None:
-        path = _default_path(mode, surface)
-    points = [(float(x), float(y)) for x, y in path]
-    if mode == "point" and len(points) != 1:
-        raise InvalidValue(f"mode 'point' takes one point as its path, not {len(points)}")
-    if mode != "point" and len(points) < 2:
-        raise InvalidValue(f"mode {mode!r} needs at least two points in its path, not {len(points)}")
-    for x, y in points:
-        if not (math.isfinite(x) and math.isfinite(y)):
-            raise InvalidValue(f"path: ({x} m, {y} m) is not finite")
-        _check_inside(surface, x, y, "path")
-    if mode != "point" and len(set(points)) == 1:
-        raise InvalidValue(f"mode {mode!r} needs a path with a length; all its points are the same")
-    return points
+def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] | None, delay: float) -> None:
+    """What was given beside the settings goes into them."""
+    for name, value in (gains or {}).items():
+        if f"gains.{name}" not in settings.fields:
+            raise InvalidValue(f"gains has no field {name!r}; it has {', '.join(settings.keys_of('gains'))}")
+        settings[f"gains.{name}"] = value
+    if rate is not None:
+        settings["gains.rate"] = rate
+    if not 0.0 <= delay < math.inf:
+        raise InvalidValue(f"delay = {delay} s: it must be a time of 0 s or more")
+    if delay > 0.0:
+        settings["gains.delay"] = settings.gains.delay + delay * settings.gains.rate
 
 
-def _default_path(mode: Mode, surface: Surface | None) -> list[tuple[float, float]]:
-    width, height = surface.size if surface is not None else (1e-6, 0.0)
-    if mode == "point":
-        return [(0.5 * width, 0.5 * height)]
-    return [(0.02 * width, 0.5 * height), (0.98 * width, 0.5 * height)]
+def _chosen_control(settings: Settings, control: str | Law) -> str:
+    """The name of the law, which the settings then have too; ``"own"`` for a callable."""
+    if callable(control):
+        return "own"
+    if control not in CONTROLS:
+        raise InvalidValue(f"control {control!r}: valid are {', '.join(CONTROLS)} or a callable")
+    if control != "default":  # else what the rig asks for
+        _core.set_control(settings.core, control)
+    return control

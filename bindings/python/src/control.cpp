@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// control.h: a law written in Python, the supervisor on plain numbers, and the touch step run again on a recording
+#include "control.h"
+
+static constexpr const char *controls[] = {"default", "paper", "impedance"};
+
+static nt_effort call_law(void *context, const nt_gains *gains, const nt_signals *signals)
+{
+    auto *law = static_cast<OwnLaw *>(context);
+    const py::gil_scoped_acquire gil;
+    (void)gains;
+    try {
+        const auto [force, stage] = law->call(*signals).cast<std::pair<double, double>>();
+        return {force, stage};
+    } catch (...) {
+        if (!law->error)
+            law->error = std::current_exception();
+        return {NAN, NAN};
+    }
+}
+
+void set_control(nt_settings &settings, const std::string &name)
+{
+    for (int choice = 0; choice < 3; ++choice)
+        if (name == controls[choice]) {
+            settings.control = {static_cast<nt_law_choice>(choice), nullptr, nullptr};
+            return;
+        }
+    throw py::value_error(name);
+}
+
+void set_control(nt_settings &settings, OwnLaw &law)
+{
+    settings.control = {NT_CONTROL_OWN, call_law, &law};
+}
+
+nt_mode mode_of(const std::string &name)
+{
+    static constexpr const char *names[] = {"touch", "topography", "approach", "curve"};
+    for (int mode = 0; mode < 4; ++mode)
+        if (name == names[mode])
+            return static_cast<nt_mode>(mode);
+    throw py::value_error(name);
+}
+
+struct Supervisor {
+    nt_supervisor supervisor;
+    nt_supervisor_state state;
+};
+
+static py::tuple supervise(Supervisor &self, const nt_sample &sample, const nt_situation &situation)
+{
+    const nt_state state = nt_supervisor_step(&self.supervisor, &self.state, &sample, &situation);
+    return py::make_tuple(static_cast<int>(state), self.state.reasons);
+}
+
+static nt_sample sample_of(const py::dict &numbers)
+{
+    nt_sample sample{};
+    sample.age = numbers["age"].cast<double>();
+    sample.lateness = numbers["lateness"].cast<double>();
+    sample.master_position = numbers["master_position"].cast<double>();
+    sample.operator_force = numbers["operator_force"].cast<double>();
+    sample.stage_position = numbers["stage_position"].cast<double>();
+    sample.deflection = numbers["deflection"].cast<double>();
+    sample.flags = numbers["flags"].cast<uint32_t>();
+    return sample;
+}
+
+// What was measured, one array per number, and what comes out of it.
+struct Measured {
+    Array age, lateness, master_position, operator_force, stage_position, deflection, x, y;
+    py::array_t<uint32_t> flags;
+};
+
+static nt_sample sample_at(const Measured &measured, py::ssize_t i)
+{
+    nt_sample sample{};
+    sample.tick = static_cast<uint64_t>(i);
+    sample.age = measured.age.data()[i];
+    sample.lateness = measured.lateness.data()[i];
+    sample.master_position = measured.master_position.data()[i];
+    sample.operator_force = measured.operator_force.data()[i];
+    sample.stage_position = measured.stage_position.data()[i];
+    sample.deflection = measured.deflection.data()[i];
+    sample.x = measured.x.data()[i];
+    sample.y = measured.y.data()[i];
+    sample.flags = measured.flags.data()[i];
+    return sample;
+}
+
+static Measured measured_of(const py::dict &columns)
+{
+    const auto column = [&](const char *name) { return columns[name].cast<Array>(); };
+    return {column("age"),          column("lateness"),
+            column("master_position"), column("operator_force"),
+            column("stage_position"), column("deflection"),
+            column("x"),            column("y"),
+            columns["flags"].cast<py::array_t<uint32_t>>()};
+}
+
+// A request between two ticks: its name and up to three numbers.
+static nt_status request(const nt_touch &touch, nt_touch_state &state, const std::string &name, const py::list &n)
+{
+    const auto number = [&](size_t i) { return n[i].cast<double>(); };
+    if (name == "aim")
+        return nt_touch_aim(&touch, &state, number(0), number(1), number(2));
+    if (name == "arm")
+        return nt_touch_arm(&state, n[0].cast<bool>());
+    if (name == "mode")
+        return nt_touch_set_mode(&state, mode_of(n[0].cast<std::string>()));
+    if (name == "clutch") {
+        nt_touch_clutch(&state, n[0].cast<bool>());
+        return NT_OK;
+    }
+    const nt_scaling scaling = {number(0), number(1)};
+    return name == "rescale" ? nt_touch_rescale(&state, &scaling) : NT_E_ARGUMENT;
+}
+
+// Those of this tick, the path last: a session takes it from its mailbox when the tick begins.
+static void replay_requests(const nt_touch &touch, nt_touch_state &state, const py::list &events, py::ssize_t tick)
+{
+    for (const bool aims : {false, true})
+        for (const py::handle item : events) {
+            const auto event = item.cast<py::tuple>();
+            const auto name = event[1].cast<std::string>();
+            if (event[0].cast<py::ssize_t>() == tick && (name == "aim") == aims)
+                raise_on(request(touch, state, name, event[2].cast<py::list>()), "replay: " + name);
+        }
+}
+
+static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings> &settings, const py::object &control,
+                       const py::dict &start, const py::dict &columns)
+{
+    nt_settings chosen = settings.value;
+    OwnLaw law{control};
+    if (py::isinstance<py::str>(control))
+        set_control(chosen, control.cast<std::string>());
+    else
+        set_control(chosen, law);
+    nt_touch touch;
+    nt_problem problem{};
+    const nt_mode mode = mode_of(start["mode"].cast<std::string>());
+    raise_on(nt_touch_make(&touch, &rig.value, &chosen, mode, &problem), problem, "replay");
+    nt_touch_state state = nt_touch_start(&touch, start["master"].cast<double>(), start["x"].cast<double>(),
+                                          start["y"].cast<double>());
+    const auto events = start["events"].cast<py::list>();
+    std::set<py::ssize_t> eventful;
+    for (const py::handle event : events)
+        eventful.insert(event.cast<py::tuple>()[0].cast<py::ssize_t>());
+    const Measured measured = measured_of(columns);
+    const py::ssize_t count = measured.deflection.size();
+    py::array_t<double> motor_force(count), stage_command(count);
+    py::array_t<uint8_t> states(count);
+    py::array_t<uint32_t> reasons(count);
+    for (py::ssize_t i = 0; i < count; ++i) {
+        if (eventful.count(i) != 0)
+            replay_requests(touch, state, events, i);
+        const nt_sample sample = sample_at(measured, i);
+        nt_command command;
+        nt_touch_step(&touch, &state, &sample, &command);
+        motor_force.mutable_data()[i] = command.motor_force;
+        stage_command.mutable_data()[i] = command.stage_position;
+        states.mutable_data()[i] = static_cast<uint8_t>(command.state);
+        reasons.mutable_data()[i] = command.reasons;
+    }
+    law.raise();
+    py::dict out;
+    out["motor_force"] = motor_force;
+    out["stage_command"] = stage_command;
+    out["state"] = states;
+    out["reasons"] = reasons;
+    return out;
+}
+
+static void bind_signals(py::module_ &module)
+{
+    py::class_<nt_signals>(module, "Signals")
+        .def_readonly("period", &nt_signals::period)
+        .def_readonly("master_position", &nt_signals::master_position)
+        .def_readonly("master_speed", &nt_signals::master_speed)
+        .def_readonly("smooth_speed", &nt_signals::smooth_speed)
+        .def_readonly("operator_force", &nt_signals::operator_force)
+        .def_readonly("smooth_force", &nt_signals::smooth_force)
+        .def_readonly("slave_force", &nt_signals::slave_force)
+        .def_readonly("stage_position", &nt_signals::stage_position)
+        .def_readonly("stage_speed", &nt_signals::stage_speed)
+        .def_readonly("target", &nt_signals::target)
+        .def_readonly("master_damping", &nt_signals::master_damping)
+        .def_readonly("gain_factor", &nt_signals::gain_factor)
+        .def_property_readonly("alpha_p", [](const nt_signals &self) { return self.scaling.alpha_p; })
+        .def_property_readonly("alpha_f", [](const nt_signals &self) { return self.scaling.alpha_f; });
+}
+
+void bind_control(py::module_ &module)
+{
+    bind_signals(module);
+    py::class_<Supervisor>(module, "Supervisor")
+        .def(py::init([](const Described<nt_rig> &rig, const Described<nt_settings> &settings) {
+            return Supervisor{nt_supervisor_make(&rig.value, &settings.value), nt_supervisor_start()};
+        }))
+        .def("step",
+             [](Supervisor &self, const py::dict &numbers, double reference, bool moves_sideways, bool unstable) {
+                 return supervise(self, sample_of(numbers), {reference, moves_sideways, unstable});
+             })
+        .def("arm", [](Supervisor &self, bool confirmed) {
+            raise_on(nt_supervisor_arm(&self.state, confirmed), "arm");
+        });
+    module.def("replay", &replay);
+    module.def("set_control", [](Described<nt_settings> &settings, const std::string &name) {
+        set_control(settings.value, name);
+    });
+    py::list reasons;
+    for (uint32_t bit = 1; nt_reason_name(bit)[0] != 0; bit <<= 1)
+        reasons.append(nt_reason_name(bit));
+    module.attr("reasons") = py::tuple(reasons);
+}
