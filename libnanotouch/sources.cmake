@@ -53,7 +53,12 @@ set(nanotouch_sources_contact
     contact/stage_displacement.c
     contact/tabor.c
     contact/validity.c)
-set(nanotouch_sources_surface surface/dilation.c surface/dots.c surface/grating.c surface/height_field.c)
+set(nanotouch_sources_surface
+    surface/dilation.c
+    surface/dots.c
+    surface/grating.c
+    surface/height_field.c
+    surface/radius_map.c)
 set(nanotouch_sources_scene
     scene/adhesion.c
     scene/choice.c
@@ -90,7 +95,7 @@ set(nanotouch_sources_control
     control/stage_loop.c
     control/supervisor.c
     control/touch.c)
-set(nanotouch_sources_sim hal/sim/sim.c)
+set(nanotouch_sources_sim hal/sim/faults.c hal/sim/probe.c hal/sim/sim.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted hal/loop.c)

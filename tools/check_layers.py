@@ -33,9 +33,11 @@ USES = {
 HEADERS = {
     **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
     "geometry": "contact",
-    **dict.fromkeys(["margins", "passivity", "scaling", "settings", "stage_loop", "supervisor", "touch"], "control"),
+    **dict.fromkeys(["guarantee", "margins", "passivity", "preflight", "scaling", "servo"], "control"),
+    **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     "plan": "scene",
     "sim": "hal/sim",
+    "faults": "hal/sim",
     "hal_linux": "hal/linux",
 }
 

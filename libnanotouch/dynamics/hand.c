@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The operator's hand as a script: straight to a target over a time, then it stays. */
+ * The operator's hand: a script, straight to a target over a time, then it stays; an adversary that adds any force at
+ * any time; and the rest position of the spring with which it holds the master (its mass, damping and spring move with
+ * the master: master.c). */
+#include <math.h>
+
 #include "nanotouch/dynamics.h"
 
 void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target)
@@ -22,7 +26,16 @@ nt_hand_target nt_hand_now(const nt_hand_state *hand)
     return now;
 }
 
-void nt_hand_step(nt_hand_state *hand, double period)
+double nt_hand_effort(const nt_hand_state *hand)
 {
-    hand->elapsed += period;
+    return nt_hand_now(hand).force + hand->random_force;
+}
+
+void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period, nt_random *random)
+{
+    state->elapsed += period;
+    if (hand->relaxation > 0.0)
+        state->rest -= expm1(-period / hand->relaxation) * (position - state->rest);
+    if (hand->random_force > 0.0 && nt_random_uniform(random) < -expm1(-hand->random_rate * period))
+        state->random_force = hand->random_force * (2.0 * nt_random_uniform(random) - 1.0);
 }

@@ -13,7 +13,7 @@ typedef struct wall {
     double last_commit;
 } wall;
 
-static nt_law_value wall_eval(void *context, double z)
+static inline nt_law_value wall_eval(void *context, double z)
 {
     const wall *w = context;
     const double depth = z < 0.0 ? -z : 0.0;
@@ -21,7 +21,7 @@ static nt_law_value wall_eval(void *context, double z)
         .U = 0.5 * w->stiffness * depth * depth, .F = w->stiffness * depth, .k = z < 0.0 ? w->stiffness : 0.0};
 }
 
-static void wall_advance(void *context, double z)
+static inline void wall_advance(void *context, double z)
 {
     wall *w = context;
     w->commits++;
@@ -60,7 +60,7 @@ static nt_law_value sphere_eval(void *context, double z)
         return (nt_law_value){
             .U = -s->adhesion / z, .F = -s->adhesion / (z * z), .k = -2.0 * s->adhesion / (z * z * z)};
     const double depth = s->a0 - z;
-    return (nt_law_value){.U = -s->adhesion / s->a0 + 0.4 * s->hertz * pow(depth, 2.5),
+    return (nt_law_value){.U = -s->adhesion / s->a0 * (1.0 + depth / s->a0) + 0.4 * s->hertz * pow(depth, 2.5),
                           .F = -s->adhesion / (s->a0 * s->a0) + s->hertz * pow(depth, 1.5),
                           .k = 1.5 * s->hertz * sqrt(depth)};
 }
@@ -76,15 +76,17 @@ typedef struct bridge {
     int made;
 } bridge;
 
-static nt_law_value bridge_eval(void *context, double z)
+static inline nt_law_value bridge_eval(void *context, double z)
 {
     const bridge *b = context;
     const int holds = z <= b->make || (b->made && z < b->reach);
     const double depth = z < 0.0 ? -z : 0.0;
-    return (nt_law_value){.F = (holds ? -b->pull : 0.0) + 1000.0 * depth, .k = z < 0.0 ? 1000.0 : 0.0};
+    return (nt_law_value){.U = (holds ? b->pull * (z - b->reach) : 0.0) + 500.0 * depth * depth,
+                          .F = (holds ? -b->pull : 0.0) + 1000.0 * depth,
+                          .k = z < 0.0 ? 1000.0 : 0.0};
 }
 
-static void bridge_advance(void *context, double z)
+static inline void bridge_advance(void *context, double z)
 {
     bridge *b = context;
     b->made = z <= b->make || (b->made && z < b->reach);

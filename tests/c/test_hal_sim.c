@@ -23,13 +23,13 @@ static int make_plan(void **state)
     (void)state;
     static double heights[N * N];
     const nt_scene scene = nt_scene_defaults();
-    const nt_demand demand = nt_demand_defaults();
+    const nt_plan_inputs inputs = {.scene = &scene};
     for (int i = 0; i < N * N; i++)
         heights[i] = 5e-9 * sin(0.8 * (i % N)) + 1e-9 * (i / N);
     const nt_height_map map = {heights, N, N, 20e-9, 20e-9};
     rig = nt_rig_defaults();
     return nt_surface_init(&surface, &map, coefficients) != NT_OK ||
-           nt_plan_make(&plan, &scene, &demand, NULL, NULL) != NT_OK;
+           nt_plan_make(&plan, &inputs, NULL) != NT_OK;
 }
 
 static nt_sim_setup setup_of(uint64_t seed, int delay)
@@ -261,9 +261,9 @@ static void the_surface_under_the_tip_is_the_maps(void **state)
 {
     (void)state;
     const nt_scene scene = nt_scene_defaults();
-    const nt_demand demand = nt_demand_defaults();
-    nt_plan bumpy;
-    assert_int_equal(nt_plan_make(&bumpy, &scene, &demand, &surface, NULL), NT_OK);
+    const nt_plan_inputs inputs = {.scene = &scene, .surface = &surface};
+    static nt_plan bumpy;
+    assert_int_equal(nt_plan_make(&bumpy, &inputs, NULL), NT_OK);
     nt_sim_setup setup = setup_of(3, 0);
     setup.plan = &bumpy;
     setup.x = 100e-9;
@@ -290,11 +290,11 @@ static void setups_are_checked(void **state)
     bad.rig = NULL;
     assert_int_equal(nt_sim_init(&sim, &bad), NT_E_ARGUMENT);
     bad = good;
-    bad.delay = NT_SIM_DELAY_MAX + 1;
-    assert_int_equal(nt_sim_init(&sim, &bad), NT_E_ARGUMENT);
+    bad.delay = NT_SIM_DELAY_MAX + 0.1;
+    assert_int_equal(nt_sim_init(&sim, &bad), NT_E_RANGE);
     bad = good;
-    bad.delay = -1;
-    assert_int_equal(nt_sim_init(&sim, &bad), NT_E_ARGUMENT);
+    bad.delay = -0.1;
+    assert_int_equal(nt_sim_init(&sim, &bad), NT_E_RANGE);
     bad = good;
     bad.x = NAN;
     assert_int_equal(nt_sim_init(&sim, &bad), NT_E_NOT_FINITE);

@@ -23,9 +23,9 @@ static void init_sensors(nt_sim *sim)
     const nt_master *master = &sim->rig.master;
     const double bits = sim->rig.converters.adc_bits, metres_per_volt = probe->sensitivity;
     const double half_stage = 0.5 * stage->travel, half_master = 0.5 * master->travel;
-    sim->deflection_sensor = (nt_sensor){metres_per_volt * probe->noise / 6.0,
-                                         metres_per_volt * step_of(probe->resolution, probe->range, bits),
-                                         nt_probe_deflection_range(probe)};
+    sim->deflection_sensor =
+        (nt_sensor){metres_per_volt * probe->noise / 6.0,
+                    metres_per_volt * step_of(probe->resolution, probe->range, bits), nt_probe_deflection_range(probe)};
     sim->stage_sensor = (nt_sensor){stage->noise, step_of(stage->resolution, half_stage, bits), half_stage};
     sim->master_sensor = (nt_sensor){0.0, step_of(master->resolution, half_master, bits), half_master};
     sim->gauge = (nt_sensor){master->gauge_noise, step_of(master->gauge_resolution, master->gauge_range, bits),
@@ -44,7 +44,7 @@ static nt_status init_delay(nt_sim *sim, double delay)
     const double lengths[] = {sim->fraction * sim->period, (1.0 - sim->fraction) * sim->period};
     nt_status status = NT_OK;
     for (int i = 0; i < 2 && status == NT_OK; i++) {
-        struct nt_sim_part *part = &sim->parts[i];
+        nt_sim_part *part = &sim->parts[i];
         part->length = lengths[i];
         if (lengths[i] == 0.0)
             continue;
@@ -59,8 +59,9 @@ static nt_status check_setup(const nt_sim_setup *setup)
 {
     if (!setup->plan || !setup->rig)
         return NT_E_ARGUMENT;
-    if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance) || !isfinite(setup->master_position) ||
-        !isfinite(setup->period) || !isfinite(setup->delay) || !isfinite(setup->substep))
+    if (!isfinite(setup->x) || !isfinite(setup->y) || !isfinite(setup->clearance) ||
+        !isfinite(setup->master_position) || !isfinite(setup->period) || !isfinite(setup->delay) ||
+        !isfinite(setup->substep))
         return NT_E_NOT_FINITE;
     if (setup->clearance < FIRST_CLEAR_DISTANCE || setup->period <= 0.0 || setup->delay < 0.0 || setup->substep < 0.0)
         return NT_E_RANGE;
@@ -88,8 +89,9 @@ static nt_status begin(nt_sim *sim, const nt_sim_setup *setup)
     sim->cantilever = nt_cantilever_at(setup->clearance);
     sim->truth.gap = NAN; /* nothing is known yet */
     sim->hand.rest = setup->master_position;
-    const int is_dynamic = setup->probe_model == NT_PROBE_DYNAMIC ||
-                           (setup->probe_model == NT_PROBE_AUTO && nt_sim_needs_dynamics(sim->plan, &sim->rig, sim->period));
+    const int is_dynamic =
+        setup->probe_model == NT_PROBE_DYNAMIC ||
+        (setup->probe_model == NT_PROBE_AUTO && nt_sim_needs_dynamics(sim->plan, &sim->rig, sim->period));
     nt_status status = nt_sim_move_probe(sim); /* at rest, whatever the model */
     sim->dynamic = is_dynamic;
     if (status == NT_OK && is_dynamic)
@@ -204,12 +206,21 @@ static double drive_motor(const nt_sim *sim, double command)
     return in_steps(limit(force, -most, most), step_of(0.0, most, sim->rig.converters.dac_bits));
 }
 
-static void pass_part(nt_sim *sim, const struct nt_sim_part *part, const nt_command *acting)
+/* How the tip force grows as the stage goes on [N/m]; where it pulls the more, it is the probe that jumps. */
+static double tip_stiffness(const nt_sim *sim)
 {
+    const double k = sim->law.k, spring = sim->rig.probe.spring_constant;
+    return k > 0.0 ? spring / (1.0 + spring / k) : 0.0;
+}
+
+static void pass_part(nt_sim *sim, nt_sim_part *part, const nt_command *acting)
+{
+    part->stage.stage.hysteresis = nt_sim_stage_hysteresis(sim);
     const double effort = nt_hand_effort(&sim->hand) + nt_sim_push(sim);
     nt_master_step(&part->master, &sim->master, drive_motor(sim, acting->motor_force) + effort, sim->hand.rest);
     const double drive = drive_stage(sim, acting->stage_position, part->length);
-    nt_stage_step(&part->stage, &sim->stage, nt_sim_spoil_stage(sim, drive), sim->truth.tip_force);
+    const nt_stage_load load = {sim->truth.tip_force, tip_stiffness(sim)};
+    nt_stage_step(&part->stage, &sim->stage, nt_sim_spoil_stage(sim, drive), &load);
     sim->x = acting->x;
     sim->y = acting->y;
 }

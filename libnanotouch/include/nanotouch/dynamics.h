@@ -13,9 +13,17 @@
 extern "C" {
 #endif
 
-/* --- probe: quasi-static cantilever (Eq. 2-3 at rest): k_c zeta = F(z_t), z_t = z_b + zeta cos(alpha) --- */
+/* Exact transition of m x'' + b x' + k x = f over one step with f held: x += xv v + xf (f - k x), v' = vv v + vf (f - k
+ * x).
+ */
+typedef struct nt_oscillator {
+    double xv, vv, xf, vf;
+    double k; /* k [N/m] */
+} nt_oscillator;
 
-/* The force on the tip at height z_t, as a function that may be called at trial heights. */
+/* --- probe: the force that it feels --- */
+
+/* The force on the tip at a height, as a function that may be called at trial heights. */
 typedef struct nt_force_field {
     nt_law_value (*eval)(void *context, double z_t); /* pure: the force if the tip stood at z_t */
     void (*advance)(void *context, double z_t);      /* commits history when the tip has moved to z_t; may be NULL */
@@ -24,10 +32,15 @@ typedef struct nt_force_field {
 } nt_force_field;
 
 typedef struct nt_cantilever_state {
-    double deflection; /* zeta [m] */
-    double tip_height; /* z_t [m] */
+    double deflection;   /* zeta [m] */
+    double tip_height;   /* z_t [m] */
+    double speed;        /* zeta' [m/s]; 0 in the quasi-static model */
+    uint64_t unresolved; /* sub-steps of the dynamic model that were coarser than its accuracy asks for */
 } nt_cantilever_state;
 NT_API nt_cantilever_state nt_cantilever_at(double base_height);
+
+/* --- probe: quasi-static cantilever (Eq. 2-3 at rest): k_c zeta = F(z_t), z_t = z_b + zeta cos(alpha) --- */
+
 /* Moves the base to base_height [m] and lets the tip settle: downhill from where it is to the next stable equilibrium,
  * through jump-in and snap-off. At most about 400 evaluations, usually 2 to 4. NT_OK; NT_E_ARGUMENT (spring constant or
  * field length not positive, state untouched); NT_E_NO_CONVERGENCE, or NT_E_NOT_FINITE where the field is, with the
@@ -35,32 +48,70 @@ NT_API nt_cantilever_state nt_cantilever_at(double base_height);
 NT_API NT_REALTIME nt_status nt_cantilever_settle(nt_cantilever_state *state, const nt_probe *probe,
                                                   const nt_force_field *field, double base_height, nt_solve_info *info);
 
-/* --- stage: x_s'' /wn^2 + x_s'/(wn Q) + x_s = u - f/k_stage (Eq. 13 repaired, E15), u the command and f the tip force,
- *     + pushing the stage back --- */
+/* What the quasi-static model leaves out, while the tip does not jump. */
+typedef struct nt_cantilever_lag {
+    double force;    /* largest error of the force, by speed and acceleration of the base [N] */
+    double settling; /* time constant of the ringing after a jump, 2 Q/w0 [s] */
+    double thermal;  /* thermal motion as a force, sqrt(k_c k_B T), RMS [N] */
+} nt_cantilever_lag;
+/* For a base on this stage, at the stage's largest speed. Thread-safe. */
+NT_API nt_cantilever_lag nt_cantilever_lag_of(const nt_probe *probe, const nt_stage *stage);
+
+/* --- probe: dynamic cantilever (Eq. 2): m zeta'' + (m w0/Q) zeta' + k_c zeta = F(z_t) - 2 eta a z_t' + thermal force,
+ *     m = 0.24 m_c; exact in its linear part, passive in the rest, at any stiffness, quality and step --- */
+
+enum { NT_CANTILEVER_LEVELS = 20 }; /* a period is halved at most this often */
+
+typedef struct nt_cantilever_substep {
+    nt_oscillator oscillator;
+    double length;   /* h [s] */
+    double noise[3]; /* Cholesky factor of the thermal motion over h: zeta; zeta' with zeta; zeta' alone */
+} nt_cantilever_substep;
+typedef struct nt_cantilever_model {
+    nt_probe probe;
+    double period, cosine, rate; /* T [s]; cos(alpha); w0 [rad/s] */
+    double substep;              /* largest w h of a sub-step, w the frequency of tip and contact there [rad] */
+    int finest;                  /* the shortest sub-step is T/2^finest */
+    nt_cantilever_substep steps[NT_CANTILEVER_LEVELS + 1];
+} nt_cantilever_model;
+/* substep in radians, > 0: 0.25 is usual; a larger one is coarser, and stable too. NT_E_RANGE, NT_E_NOT_FINITE. */
+NT_API nt_status nt_cantilever_model_init(nt_cantilever_model *model, const nt_probe *probe, double period,
+                                          double substep);
+/* One period, in which the base moves to base_height on a straight line. random may be NULL where the temperature is 0.
+ * At most 2^finest sub-steps. NT_E_ARGUMENT (field length not positive), NT_E_NOT_FINITE where the field is, with the
+ * state left where it was last finite. */
+NT_API NT_REALTIME nt_status nt_cantilever_step(const nt_cantilever_model *model, nt_cantilever_state *state,
+                                                const nt_force_field *field, double base_height, nt_random *random);
+
+/* --- stage: x_s'' /wn^2 + x_s'/(wn Q) + x_s = P[u] - f/k_stage (Eq. 13 repaired, E15), u the command and f the tip
+ *     force, + pushing the stage back; P the piezo's own play and creep, P[u] = u where it has none --- */
+
+enum { NT_STAGE_PLAYS = 10, NT_STAGE_CREEPS = 4 };
+
 typedef struct nt_stage_state {
-    double position; /* x_s [m] */
-    double speed;    /* [m/s] */
+    double position;               /* x_s [m] */
+    double speed;                  /* [m/s] */
+    double play[NT_STAGE_PLAYS];   /* where the play operators stand [m] */
+    double creep[NT_STAGE_CREEPS]; /* how far each decade of creep has followed [m] */
 } nt_stage_state;
 typedef struct nt_stage_model {
-    double phi[2][2], gamma[2]; /* exact zero-order-hold transition over one period */
+    nt_oscillator oscillator;           /* of x_s over one period, k = 1 */
+    double period;                      /* [s] */
+    double creep_rate[NT_STAGE_CREEPS]; /* share of the way that is crept per period */
     nt_stage stage;
 } nt_stage_model;
 NT_API nt_status nt_stage_model_init(nt_stage_model *model, const nt_stage *stage, double period);
-NT_API NT_REALTIME void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double command, double force);
+/* What pushes the stage back: f, which grows by k per metre of travel. */
+typedef struct nt_stage_load {
+    double force;     /* f where the stage is [N] */
+    double stiffness; /* k >= 0 [N/m] */
+} nt_stage_load;
+NT_API NT_REALTIME void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double command,
+                                      const nt_stage_load *load);
 
-/* --- master: m x'' + b x' = f (Eq. 12), f = motor + operator force, between hard end stops --- */
-typedef struct nt_master_state {
-    double position; /* x_m [m] */
-    double speed;    /* [m/s] */
-} nt_master_state;
-typedef struct nt_master_model {
-    double phi[2][2], gamma[2];
-    nt_master master;
-} nt_master_model;
-NT_API nt_status nt_master_model_init(nt_master_model *model, const nt_master *master, double period);
-NT_API NT_REALTIME void nt_master_step(const nt_master_model *model, nt_master_state *state, double force);
+/* --- hand: goes straight to a target over a time, then stays; a script is a sequence of targets. An impedance may hold
+ *     the master besides, and an adversary may add any force (nt_hand in rig.h) --- */
 
-/* --- hand: goes straight to a target over a time, then stays; a script is a sequence of targets --- */
 typedef struct nt_hand_target {
     double force;    /* operator force, + towards the sample [N] */
     double x, y;     /* lateral position [m] */
@@ -68,12 +119,41 @@ typedef struct nt_hand_target {
 } nt_hand_target;
 typedef struct nt_hand_state {
     nt_hand_target from, to;
-    double elapsed; /* since `to` was set [s] */
+    double elapsed;      /* since `to` was set [s] */
+    double rest;         /* where the hand's spring is at rest [m] */
+    double random_force; /* of the adversary, now [N] */
 } nt_hand_state;
 NT_API void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target);
-/* Where the hand is now (duration unused). */
+/* Where the hand is now (duration unused): the force is the script's. */
 NT_API NT_REALTIME nt_hand_target nt_hand_now(const nt_hand_state *hand);
-NT_API NT_REALTIME void nt_hand_step(nt_hand_state *hand, double period);
+/* The force that the hand means to apply, before its impedance: the script's and the adversary's [N]. */
+NT_API NT_REALTIME double nt_hand_effort(const nt_hand_state *hand);
+/* One period; the master stands at `position` [m]. random may be NULL where random_force is 0. */
+NT_API NT_REALTIME void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period,
+                                     nt_random *random);
+
+/* --- master, and the hand that holds it: (m + m_h) x'' + (b + b_h) x' + k_h (x - rest) + f_C sgn x' = f (Eq. 12), f =
+ *     motor force + the hand's effort, held; between hard end stops. Exact, sticking and slipping too --- */
+
+typedef struct nt_master_state {
+    double position;     /* x_m [m] */
+    double speed;        /* [m/s] */
+    double acceleration; /* at the end of the last step [m/s^2] */
+} nt_master_state;
+typedef struct nt_master_model {
+    nt_oscillator oscillator; /* over one period */
+    double period;            /* [s] */
+    nt_master master;
+    nt_hand hand;
+} nt_master_model;
+/* hand: NULL for a pure force. */
+NT_API nt_status nt_master_model_init(nt_master_model *model, const nt_master *master, const nt_hand *hand,
+                                      double period);
+/* force: of motor and hand's effort [N]; rest: of the hand's spring [m]. */
+NT_API NT_REALTIME void nt_master_step(const nt_master_model *model, nt_master_state *state, double force, double rest);
+/* f_m, what a force sensor between hand and master reads: effort - m_h x'' - b_h x' - k_h (x - rest) [N]. */
+NT_API NT_REALTIME double nt_master_grip_force(const nt_master_model *model, const nt_master_state *state,
+                                               const nt_hand_state *hand);
 
 /* --- sensor: gain 1, white noise, range, steps --- */
 typedef struct nt_sensor {

@@ -29,13 +29,14 @@ typedef struct nt_sim_setup {
     double clearance;       /* L, height of the tip above the surface there [m] */
     double master_position; /* x_m at the start [m] */
     uint64_t seed;          /* of the sensors' noise */
-    double delay; /* between write and effect, 0 .. NT_SIM_DELAY_MAX with the converters' own [periods]; may be a part */
+    double
+        delay; /* between write and effect, 0 .. NT_SIM_DELAY_MAX with the converters' own [periods]; may be a part */
     nt_probe_model probe_model;
     double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_faults *faults; /* copied; NULL: none */
 } nt_sim_setup;
 
-enum { NT_SIM_DELAY_MAX = 15, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2 };
+enum { NT_SIM_DELAY_MAX = 15, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000 };
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {
@@ -55,12 +56,18 @@ typedef struct nt_moment {
 
 /* What lasting faults have to remember. */
 typedef struct nt_fault_memory {
-    nt_sample last;   /* as it was given away */
-    nt_sample fresh;  /* the last one of a living link */
-    double stood;     /* of the stage's drive when its fault began [m] */
-    double lateness;  /* of this tick [s] */
-    double last_push; /* of the hand [N] */
+    nt_sample last;  /* as it was given away */
+    nt_sample fresh; /* the last one of a living link */
+    double stood;    /* of the stage's drive when its fault began [m] */
+    double lateness; /* of this tick [s] */
 } nt_fault_memory;
+
+/* A part of a period under one command. */
+typedef struct nt_sim_part {
+    double length; /* [s], 0 if there is no such part */
+    nt_stage_model stage;
+    nt_master_model master;
+} nt_sim_part;
 
 typedef struct nt_sim {
     const nt_plan *plan;
@@ -68,11 +75,7 @@ typedef struct nt_sim {
     double period, start_height; /* z_b at x_s = 0 [m] */
     int delay;                   /* whole periods until a command acts ... */
     double fraction;             /* ... and the part of one [periods] */
-    struct nt_sim_part {         /* before and after a command begins to act */
-        double length;           /* [s], 0 if there is no such part */
-        nt_stage_model stage;
-        nt_master_model master;
-    } parts[2];
+    nt_sim_part parts[2];        /* before and after a command begins to act */
     nt_sensor deflection_sensor, stage_sensor, master_sensor, gauge;
     nt_cantilever_model cantilever_model;
     int dynamic; /* the cantilever is */

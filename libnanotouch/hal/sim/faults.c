@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Faults of the simulated rig: a schedule, and what each kind does to a sample, an actuator or the surface. Numbers of
+ * rows are those of the fault table in docs/safety.md. */
+#include "nanotouch/faults.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "parts.h"
+
+enum { SENSORS = NT_CHANNEL_OPERATOR_FORCE + 1 };
+#define ON(channel) (1u << (channel))
+#define ON_SENSORS (ON(SENSORS) - 1u)
+
+static const nt_fault_description descriptions[] = {
+    [NT_FAULT_NAN] = {"nan", "", "the reading is not a number", 0.0, 1, ON_SENSORS},
+    [NT_FAULT_INFINITE] = {"infinite", "", "the reading is infinite, with the sign of the value", 1.0, 1, ON_SENSORS},
+    [NT_FAULT_SATURATED] = {"saturated", "", "the reading is at the end of its range, with the sign of the value", 1.0,
+                            2, ON_SENSORS},
+    [NT_FAULT_STUCK] = {"stuck", "", "the reading stays as it was", 0.0, 3, ON_SENSORS},
+    [NT_FAULT_STALE] = {"stale", "", "the link repeats its last sample, which ages", 0.0, 4, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_DROPOUT] = {"dropout", "", "frames arrive marked bad, without numbers", 0.0, 4, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_NOISE] = {"noise", "", "more noise: this many times the sensor's noise or step", 100.0, 5, ON_SENSORS},
+    [NT_FAULT_JUMP] = {"jump", "m", "the surface rises by the value at once", 5e-9, 6, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_LATE] = {"late", "periods", "every tick is late by the value", 1.0, 11, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_CLOCK] = {"clock", "s", "the clock jumps: the sample is this old", -3600.0, 12, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_LIMIT] = {"limit", "m", "it goes no farther than the value beyond where it stands", 0.0, 13,
+                        ON(NT_CHANNEL_STAGE)},
+    [NT_FAULT_GAIN] = {"gain", "", "reading, stage travel from here, or motor force times the value", -1.0, 14,
+                       ON_SENSORS | ON(NT_CHANNEL_STAGE) | ON(NT_CHANNEL_MOTOR)},
+    [NT_FAULT_DRIFT] = {"drift", "", "drifts by the value per second, the stage unseen by its read-out", 1e-6, 15,
+                        ON_SENSORS | ON(NT_CHANNEL_STAGE)},
+    [NT_FAULT_HYSTERESIS] = {"hysteresis", "", "the stage's hysteresis becomes the value", 0.3, 15,
+                             ON(NT_CHANNEL_STAGE)},
+    [NT_FAULT_PUSH] = {"push", "N", "the operator pushes with this besides", 5.0, 16, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_EMERGENCY_STOP] = {"emergency-stop", "", "pressed, or its line is lost", 0.0, 34, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_LIMIT_SWITCH] = {"limit-switch", "", "the stage stands at its end switch", 0.0, 13, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_DEVICE_LOST] = {"device-lost", "", "a device is gone", 0.0, 9, ON(NT_CHANNEL_RIG)},
+};
+enum { KINDS = (int)(sizeof descriptions / sizeof *descriptions) };
+
+const nt_fault_description *nt_fault_descriptions(int *count)
+{
+    if (count != NULL)
+        *count = KINDS;
+    return descriptions;
+}
+
+const char *nt_channel_name(nt_channel channel)
+{
+    static const char *const names[] = {
+        "deflection", "stage_position", "master_position", "operator_force", "stage", "motor", "rig"};
+    return channel >= NT_CHANNEL_DEFLECTION && channel <= NT_CHANNEL_RIG ? names[channel] : "";
+}
+
+nt_status nt_faults_add(nt_faults *faults, const nt_fault *fault)
+{
+    const int kind = (int)fault->kind, channel = (int)fault->channel;
+    if (kind < 0 || kind >= KINDS || channel < 0 || channel > NT_CHANNEL_RIG)
+        return NT_E_ARGUMENT;
+    if (!(descriptions[kind].channels & ON(channel)))
+        return NT_E_ARGUMENT;
+    if (!isfinite(fault->start) || !isfinite(fault->value) || isnan(fault->duration))
+        return NT_E_NOT_FINITE;
+    if (fault->start < 0.0 || fault->duration <= 0.0)
+        return NT_E_RANGE;
+    if (faults->count >= NT_FAULTS_MAX)
+        return NT_E_CAPACITY;
+    faults->list[faults->count++] = *fault;
+    return NT_OK;
+}
+
+/* Half a period of slack: a start that is a multiple of T begins in that tick, however it was rounded. */
+static double elapsed(const nt_sim *sim, const nt_fault *fault)
+{
+    return (double)sim->tick * sim->period - fault->start + 0.5 * sim->period;
+}
+
+static int is_active(const nt_sim *sim, const nt_fault *fault)
+{
+    const double since = elapsed(sim, fault);
+    return since >= 0.0 && since < fault->duration;
+}
+
+/* The next fault of this kind that acts now; from: where to go on. NULL: no more. */
+static const nt_fault *next_active(const nt_sim *sim, nt_fault_kind kind, int *from)
+{
+    while (*from < sim->faults.count) {
+        const nt_fault *fault = &sim->faults.list[(*from)++];
+        if (fault->kind == kind && is_active(sim, fault))
+            return fault;
+    }
+    return NULL;
+}
+
+static double sum_of(const nt_sim *sim, nt_fault_kind kind)
+{
+    double sum = 0.0;
+    const nt_fault *fault;
+    for (int i = 0; (fault = next_active(sim, kind, &i)) != NULL;)
+        sum += fault->value;
+    return sum;
+}
+
+static double *reading(nt_sample *sample, nt_channel channel)
+{
+    double *const readings[SENSORS] = {&sample->deflection, &sample->stage_position, &sample->master_position,
+                                       &sample->operator_force};
+    return readings[channel];
+}
+
+static const nt_sensor *sensor_of(const nt_sim *sim, nt_channel channel)
+{
+    const nt_sensor *const sensors[SENSORS] = {&sim->deflection_sensor, &sim->stage_sensor, &sim->master_sensor,
+                                               &sim->gauge};
+    return sensors[channel];
+}
+
+static double noise_of(nt_sim *sim, const nt_fault *fault, double value)
+{
+    const nt_sensor *sensor = sensor_of(sim, fault->channel);
+    const nt_sensor loud = {fault->value * fmax(sensor->noise, sensor->resolution), sensor->resolution, sensor->range};
+    return nt_sensor_read(&loud, value, &sim->random);
+}
+
+/* One reading of one sensor. */
+static void spoil_reading(nt_sim *sim, const nt_fault *fault, nt_sample *sample)
+{
+    double *value = reading(sample, fault->channel);
+    const double sign = fault->value < 0.0 ? -1.0 : 1.0;
+    switch (fault->kind) {
+    case NT_FAULT_NAN:
+        *value = NAN;
+        break;
+    case NT_FAULT_INFINITE:
+        *value = sign * HUGE_VAL;
+        break;
+    case NT_FAULT_SATURATED:
+        *value = sign * sensor_of(sim, fault->channel)->range;
+        break;
+    case NT_FAULT_STUCK:
+        *value = *reading(&sim->fault_memory.last, fault->channel);
+        break;
+    case NT_FAULT_NOISE:
+        *value = noise_of(sim, fault, *value);
+        break;
+    case NT_FAULT_GAIN:
+        *value *= fault->value;
+        break;
+    case NT_FAULT_DRIFT:
+        *value += fault->value * elapsed(sim, fault);
+        break;
+    default:
+        break;
+    }
+}
+
+static void spoil_frame(nt_sim *sim, const nt_fault *fault, nt_sample *sample)
+{
+    const uint32_t lines = sample->flags;
+    switch (fault->kind) {
+    case NT_FAULT_STALE:
+        sample->age = sim->fault_memory.fresh.age + (double)(sim->tick - sim->fault_memory.fresh.tick) * sim->period;
+        for (int channel = 0; channel < SENSORS; channel++)
+            *reading(sample, (nt_channel)channel) = *reading(&sim->fault_memory.fresh, (nt_channel)channel);
+        break;
+    case NT_FAULT_DROPOUT:
+        for (int channel = 0; channel < SENSORS; channel++)
+            *reading(sample, (nt_channel)channel) = NAN;
+        sample->flags = lines | NT_SAMPLE_INVALID;
+        break;
+    case NT_FAULT_CLOCK:
+        sample->age = fault->value;
+        break;
+    case NT_FAULT_EMERGENCY_STOP:
+        sample->flags = lines | NT_SAMPLE_EMERGENCY_STOP;
+        break;
+    case NT_FAULT_LIMIT_SWITCH:
+        sample->flags = lines | NT_SAMPLE_LIMIT_SWITCH;
+        break;
+    case NT_FAULT_DEVICE_LOST:
+        sample->flags = lines | NT_SAMPLE_DEVICE_LOST;
+        break;
+    default:
+        break;
+    }
+}
+
+/* Sensors first, then the link that carries them. */
+void nt_sim_spoil(nt_sim *sim, nt_sample *sample)
+{
+    sample->lateness = sim->fault_memory.lateness;
+    int stale = 0;
+    for (int i = 0; i < sim->faults.count; i++) {
+        const nt_fault *fault = &sim->faults.list[i];
+        if ((int)fault->channel < SENSORS && is_active(sim, fault))
+            spoil_reading(sim, fault, sample);
+    }
+    for (int i = 0; i < sim->faults.count; i++) {
+        const nt_fault *fault = &sim->faults.list[i];
+        if (fault->channel == NT_CHANNEL_RIG && is_active(sim, fault)) {
+            spoil_frame(sim, fault, sample);
+            stale |= fault->kind == NT_FAULT_STALE;
+        }
+    }
+    sim->fault_memory.last = *sample;
+    if (!stale)
+        sim->fault_memory.fresh = *sample;
+}
+
+int nt_sim_lost_periods(const nt_sim *sim)
+{
+    return (int)fmin(fmax(0.0, sum_of(sim, NT_FAULT_LATE)), NT_SIM_LOST_MAX);
+}
+
+double nt_sim_spoil_stage(nt_sim *sim, double drive)
+{
+    double driven = drive;
+    int spoilt = 0;
+    for (int i = 0; i < sim->faults.count; i++) {
+        const nt_fault *fault = &sim->faults.list[i];
+        if (fault->channel != NT_CHANNEL_STAGE || !is_active(sim, fault))
+            continue;
+        spoilt |= fault->kind == NT_FAULT_GAIN || fault->kind == NT_FAULT_LIMIT;
+        const double stood = sim->fault_memory.stood;
+        if (fault->kind == NT_FAULT_GAIN)
+            driven = stood + fault->value * (driven - stood);
+        if (fault->kind == NT_FAULT_LIMIT)
+            driven = fmin(driven, stood + fault->value);
+    }
+    if (!spoilt)
+        sim->fault_memory.stood = drive;
+    return driven;
+}
+
+double nt_sim_stage_hysteresis(const nt_sim *sim)
+{
+    int from = 0;
+    const nt_fault *fault = next_active(sim, NT_FAULT_HYSTERESIS, &from);
+    return fault != NULL ? fault->value : sim->rig.stage.hysteresis;
+}
+
+double nt_sim_spoil_motor(const nt_sim *sim, double force)
+{
+    double pushed = force;
+    for (int i = 0; i < sim->faults.count; i++) {
+        const nt_fault *fault = &sim->faults.list[i];
+        if (fault->channel == NT_CHANNEL_MOTOR && is_active(sim, fault))
+            pushed *= fault->value;
+    }
+    return pushed;
+}
+
+double nt_sim_stage_drift(const nt_sim *sim)
+{
+    double sum = 0.0;
+    const nt_fault *fault;
+    for (int i = 0; (fault = next_active(sim, NT_FAULT_DRIFT, &i)) != NULL;)
+        sum += fault->channel == NT_CHANNEL_STAGE ? fault->value * elapsed(sim, fault) : 0.0;
+    return sum;
+}
+
+double nt_sim_surface_jump(const nt_sim *sim)
+{
+    return sum_of(sim, NT_FAULT_JUMP);
+}
+
+double nt_sim_push(const nt_sim *sim)
+{
+    return sum_of(sim, NT_FAULT_PUSH);
+}

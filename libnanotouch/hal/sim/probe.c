@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The probe of the simulated rig: the cantilever over the interaction of the plan, quasi-static or dynamic. Heights
+ * count from the surface under the tip, so that a surface that passes by below is the same as a base that moves. */
+#include <math.h>
+#include <stddef.h>
+
+#include "parts.h"
+
+#define PERCEIVED 1e-3 /* touch feels nothing quicker [s] */
+#define LAG_SHARE 0.01 /* of the pull-off force */
+#define SAME_LAW 1e-6  /* a law is known by its derivatives this close to where it was asked, over plan->length */
+
+/* What the cantilever asks: the force at a gap, here. The last answer is kept: contact laws are by far the dearest part
+ * of a period, and the probe begins each one where it ended the last. */
+typedef struct probe_context {
+    const nt_plan *plan;
+    nt_interaction_state *interaction;
+    nt_place place;
+    double gap; /* of the last answer [m] */
+    nt_law_value law;
+} probe_context;
+
+static nt_law_value force_at(void *context, double gap)
+{
+    probe_context *probe = context;
+    if (gap != probe->gap) {
+        probe->gap = gap;
+        probe->law = nt_interaction_eval_gap(probe->plan, probe->interaction, &probe->place, gap);
+    }
+    return probe->law;
+}
+
+static void moved_to(void *context, double gap)
+{
+    probe_context *probe = context;
+    nt_interaction_advance_gap(probe->plan, probe->interaction, &probe->place, gap);
+}
+
+/* The law where the probe has come to: that of its last question, mostly one Newton step away. */
+static nt_law_value law_there(probe_context *probe, double gap)
+{
+    const double step = gap - probe->gap;
+    if (!(fabs(step) <= SAME_LAW * probe->plan->length))
+        return force_at(probe, gap);
+    nt_law_value law = probe->law;
+    law.U -= law.F * step;
+    law.F -= law.k * step;
+    return law;
+}
+
+double nt_sim_surface_height(const nt_sim *sim)
+{
+    return nt_interaction_place(sim->plan, sim->x, sim->y).surface.z + nt_sim_surface_jump(sim);
+}
+
+nt_status nt_sim_move_probe(nt_sim *sim)
+{
+    const nt_place place = nt_interaction_place(sim->plan, sim->x, sim->y);
+    const double surface = place.surface.z + nt_sim_surface_jump(sim);
+    probe_context context = {sim->plan, &sim->interaction, place, sim->truth.gap, sim->law};
+    if (surface != sim->truth.surface_height)
+        context.gap = NAN; /* another place: nothing is known there */
+    const nt_force_field field = {force_at, moved_to, &context, sim->plan->length};
+    const double base = sim->start_height - sim->stage.position - nt_sim_stage_drift(sim) - surface;
+    const nt_status status =
+        sim->dynamic ? nt_cantilever_step(&sim->cantilever_model, &sim->cantilever, &field, base, &sim->random)
+                     : nt_cantilever_settle(&sim->cantilever, &sim->rig.probe, &field, base, NULL);
+    const double gap = sim->cantilever.tip_height;
+    const nt_law_value law = law_there(&context, gap);
+    sim->law = law;
+    sim->truth = (nt_truth){.gap = gap,
+                            .tip_force = law.F,
+                            .contact_radius = law.a,
+                            .surface_height = surface,
+                            .tip_height = gap + surface,
+                            .energy = law.U};
+    return status;
+}
+
+int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period)
+{
+    const nt_cantilever_lag lag = nt_cantilever_lag_of(&rig->probe, &rig->stage);
+    const double allowed = fmax(LAG_SHARE * plan->pull_off_force, nt_probe_force_noise(&rig->probe));
+    return !(lag.force <= allowed && lag.settling <= fmax(PERCEIVED, period));
+}
