@@ -6,9 +6,9 @@
  * lambda_0/lambda - 1 below, read off the bits of v as cells are off those of u. All tables of a side have one Zs, and
  * every coefficient of the cubic of a cell is a cubic in t = (v - low)/(high - low) that takes value and slope at the
  * ends of the panel: so panels join smoothly. Sums, and products with numbers that do not depend on lambda, pass
- * through this interpolation: so U stays the integral of F. Below lambda_0 the branch starts at a = 0, which is explicit
- * in lambda; there U and F are counted from what they are at a = 0 (F going on as a constant), so that both go over
- * into the attracted state without a step. */
+ * through this interpolation: so U stays the integral of F. Below lambda_0 the branch starts at a = 0, which is
+ * explicit in lambda; there U and F are counted from what they are at a = 0 (F going on as a constant), so that both go
+ * over into the attracted state without a step. */
 #ifndef NANOTOUCH_CONTACT_MAUGIS_BANK_H
 #define NANOTOUCH_CONTACT_MAUGIS_BANK_H
 
@@ -25,7 +25,8 @@ enum { NT_BANK_START_NODES = 8 };
 
 /* Value and slope at both ends, four points between: (1 - cos(k pi/5))/2. */
 static const double nt_bank_start_nodes[NT_BANK_START_NODES] = {
-    0.0, 0.0, 0.095491502812526287949, 0.34549150281252628795, 0.65450849718747371205, 0.90450849718747371205, 1.0, 1.0};
+    0.0, 0.0, 0.095491502812526287949, 0.34549150281252628795, 0.65450849718747371205, 0.90450849718747371205,
+    1.0, 1.0};
 
 /* The bit of the mantissa below which cells or panels are not told apart; 0 for an invalid number per octave. */
 static inline int nt_bank_shift(int per_octave)

@@ -90,9 +90,8 @@ nt_status nt_maugis_bank_pairs_n(const nt_maugis_bank *bank, nt_branch branch, c
         nt_bank_value value = {{NAN, NAN, NAN, NAN}, NAN};
         nt_status status = nt_contact_check(contact, NULL);
         if (status == NT_OK)
-            status = pairs->dU_dR != NULL
-                         ? nt_maugis_bank_eval_radius(bank, contact, indentation, branch, &value)
-                         : nt_maugis_bank_eval_contact(bank, contact, indentation, branch, &value.law);
+            status = pairs->dU_dR != NULL ? nt_maugis_bank_eval_radius(bank, contact, indentation, branch, &value)
+                                          : nt_maugis_bank_eval_contact(bank, contact, indentation, branch, &value.law);
         first = first == NT_OK ? status : first;
         const long j = i * pairs->out_stride;
         store(pairs->U, j, value.law.U);

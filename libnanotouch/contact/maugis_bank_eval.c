@@ -13,7 +13,7 @@
 typedef struct {
     const nt_maugis_panel *panel;
     double t, t_lambda;
-    double Z2;                       /* d - start */
+    double Z2; /* d - start */
     double start, start_lambda;
     double P, P_lambda, U, U_lambda; /* at the start; U_lambda at constant d */
 } place;
@@ -103,8 +103,7 @@ static int table_find(const nt_maugis_bank *bank, const place *at, int sloped, n
         return 0;
     const uint64_t name = nt_bits_of(u) >> shift;
     const double low = nt_double_of(name << shift);
-    const nt_maugis_bank_cell *cell =
-        &bank->cells[panel->first + (int64_t)(name - (nt_bits_of(1.0) >> shift))];
+    const nt_maugis_bank_cell *cell = &bank->cells[panel->first + (int64_t)(name - (nt_bits_of(1.0) >> shift))];
     const nt_maugis_place in = {.s = u - low, .Z = Z};
     const nt_maugis_cell now = cell_at(cell, low, at->t);
     const nt_law_value above = nt_maugis_cell_value(&now, in, panel->rate, at->start);
@@ -209,8 +208,8 @@ static void blend(weight over_lambda, weight over_d, const nt_bank_state *exact,
     const double dU = state->value.U - exact->value.U, dF = state->value.F - exact->value.F;
     state->value.U = exact->value.U + W * dU;
     state->value.F = exact->value.F + W * dF + W_d * dU;
-    state->value.k = exact->value.k + W * (state->value.k - exact->value.k) + 2.0 * W_d * dF +
-                     over_lambda.value * over_d.bend * dU;
+    state->value.k =
+        exact->value.k + W * (state->value.k - exact->value.k) + 2.0 * W_d * dF + over_lambda.value * over_d.bend * dU;
     state->value.a = exact->value.a + W * (state->value.a - exact->value.a);
     state->slope = exact->slope + W * (state->slope - exact->slope) + over_lambda.slope * over_d.value * dU;
 }

@@ -5,8 +5,8 @@
  * that meet there take them. */
 #include "contact/maugis_bank_panels.h"
 
-#define GAP 0.0078125    /* v below which there is no panel: 2^-7, a border of panels of every width */
-#define STEP 0.00390625  /* between the tables at a border, of its v: truncation 1e-10, rounding 1e-13 of the slope */
+#define GAP 0.0078125   /* v below which there is no panel: 2^-7, a border of panels of every width */
+#define STEP 0.00390625 /* between the tables at a border, of its v: truncation 1e-10, rounding 1e-13 of the slope */
 
 enum { STENCIL = 5, NUMBERS = 9, CENTRE = 2 }; /* numbers of a cell: F, a, U */
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A bank of Maugis-Dugdale tables over a range of lambda: for curved surfaces, grains of many sizes and pairs of bodies,
- * where lambda changes at every sample (docs/contact.md).
+ * A bank of Maugis-Dugdale tables over a range of lambda: for curved surfaces, grains of many sizes and pairs of
+ * bodies, where lambda changes at every sample (docs/contact.md).
  *
- * In panels of lambda every number of a table is a cubic in lambda that shares value and slope with its neighbours: U is
- * one function of indentation and lambda, continuous with its first derivatives on the stable branch, and F = dU/dd,
+ * In panels of lambda every number of a table is a cubic in lambda that shares value and slope with its neighbours: U
+ * is one function of indentation and lambda, continuous with its first derivatives on the stable branch, and F = dU/dd,
  * k = dF/dd and dU/dlambda are its exact derivatives. Panels crowd towards lambda = 0.9379, where the branch changes
  * its kind, and leave out 1 % around it. There, outside the range, beyond the largest indentation and on the unstable
  * branch the exact solver answers (some microseconds); in between the two potentials are blended, with their
@@ -83,8 +83,9 @@ NT_API nt_status nt_maugis_bank_eval_radius(const nt_maugis_bank *bank, const nt
  * that is none. */
 NT_API double nt_maugis_bank_grip_indentation(const nt_maugis_bank *bank, const nt_contact *contact);
 
-/* Many contacts, each its own: contact i is contacts[i * contact_stride], its indentation [m] and results lie i * stride
- * elements along theirs. Results that are NULL are not wanted. Parts of the arrays may be done in different threads. */
+/* Many contacts, each its own: contact i is contacts[i * contact_stride], its indentation [m] and results lie i *
+ * stride elements along theirs. Results that are NULL are not wanted. Parts of the arrays may be done in different
+ * threads. */
 typedef struct nt_bank_pairs {
     const nt_contact *contacts;
     const double *indentation;

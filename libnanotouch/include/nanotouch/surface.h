@@ -63,6 +63,41 @@ NT_API double nt_tip_shape_height(const nt_tip_shape *tip, double r);
  * the tip within the height range of the map. */
 NT_API nt_status nt_surface_dilate(const nt_height_map *map, const nt_tip_shape *tip, double *dilated);
 
+/* --- The effective radius of the contact on a curved surface (docs/surface.md) ---
+ * A sphere of radius R on a body whose tip-dilated surface has the principal curvatures k1, k2 (> 0 convex) touches it
+ * as a flat touches a sphere of the radius R sqrt((1 - R k1)(1 - R k2)): smaller on a bump, larger in a hollow. */
+
+/* Kept between these ratios of effective to tip radius: an edge that is sharper than a pixel has none, and a hollow as
+ * narrow as the tip is no paraboloid. */
+typedef struct nt_radius_limits {
+    double minimum; /* 1e-3 .. 1 [-] */
+    double maximum; /* 1 .. 1e3 [-] */
+} nt_radius_limits;
+/* 0.1 and 10. */
+NT_API nt_radius_limits nt_radius_limits_defaults(void);
+
+/* The effective radius over a map. Immutable after nt_radius_map_init; the coefficients stay the caller's. */
+typedef struct nt_radius_map {
+    nt_surface ratio;        /* R_eff/R; its coefficients are the ratios at the pixels. No coefficients: R everywhere */
+    double tip_radius;       /* R [m] */
+    double minimum, maximum; /* of the effective radius, anywhere: true bounds [m] */
+    long limited;            /* pixels whose ratio was beyond the limits */
+} nt_radius_map;
+
+typedef struct nt_radius_value {
+    double radius; /* [m] */
+    double dx, dy; /* dR/dx, dR/dy [-] */
+} nt_radius_value;
+
+/* From the curvature of a dilated surface at its pixels. limits NULL: the defaults. coefficients: nx * ny doubles of
+ * the caller's (none for a flat, which makes R everywhere). The pixels' ratios are the coefficients of a cubic
+ * B-spline: C2, never outside their range, and free of the ringing of an interpolation; a pixel's own value is smoothed
+ * with its neighbours' (1/36, 4/36 .. 16/36). Not real-time. */
+NT_API nt_status nt_radius_map_init(nt_radius_map *map, const nt_surface *dilated, double tip_radius,
+                                    const nt_radius_limits *limits, double *coefficients);
+/* Effective radius and its slope at a point; beyond the map as nt_surface_eval. NaN in, NaN out. Real-time safe. */
+NT_API NT_REALTIME nt_radius_value nt_radius_map_eval(const nt_radius_map *map, double x, double y);
+
 /* Built-in samples. */
 
 /* Square grating, lines along y, like TGZ-03: ridges of `height` on a floor at 0. */
