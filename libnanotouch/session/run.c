@@ -156,6 +156,20 @@ void nt_session_emergency_stop(nt_session *session, int pressed)
         session->sim.flags &= ~(uint32_t)NT_SAMPLE_EMERGENCY_STOP;
 }
 
+nt_status nt_session_inject(nt_session *session, const nt_fault *fault)
+{
+    nt_fault shifted = *fault;
+    if (fault->start < 0.0)
+        return NT_E_RANGE;
+    shifted.start += (double)session->first_tick * session->sim.period;
+    return nt_sim_inject(&session->sim, &shifted);
+}
+
+int nt_session_is_dynamic(const nt_session *session)
+{
+    return session->sim.dynamic;
+}
+
 const nt_plan *nt_session_plan(const nt_session *session)
 {
     return &session->plan;

@@ -78,7 +78,10 @@ static nt_status make_sim(nt_session *session, const nt_session_setup *setup)
                               .clearance = setup->clearance,
                               .master_position = master_start(setup),
                               .seed = setup->seed,
-                              .delay = (int)ceil(setup->settings.gains.delay)};
+                              .delay = setup->settings.gains.delay,
+                              .probe_model = setup->probe_model,
+                              .substep = setup->substep,
+                              .faults = setup->faults};
     const nt_status status = nt_sim_init(&session->sim, &sim);
     return status == NT_OK ? nt_hal_open(&session->hal, nt_sim_backend(), &session->sim) : status;
 }

@@ -13,6 +13,7 @@ from nanotouch.errors import Error
 _HOMES = {
     "Contact": "contact",
     "ForceCurve": "curves",
+    "Faults": "faults",
     "FitResult": "fit",
     "Topography": "images",
     "Input": "operator",
@@ -28,7 +29,7 @@ _HOMES = {
     "Surface": "surface",
 }
 _MODULES = (
-    "contact", "curves", "errors", "fit", "forces", "geometry", "hal", "images", "interaction", "materials", "operator",
+    "contact", "curves", "errors", "faults", "fit", "forces", "geometry", "hal", "images", "interaction", "materials", "operator",
     "plan", "plots",    "presets", "record", "reference", "scene", "session", "surface", "units",
 )  # fmt: skip
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from operator import index
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +15,18 @@ from nanotouch import _core
 from nanotouch._arrays import check_between
 from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
 from nanotouch.errors import InvalidValue
+from nanotouch.faults import Faults
 from nanotouch.operator import Input, script_for
-from nanotouch.record import Recording, Writer
 from nanotouch.plan import Plan
+from nanotouch.record import Recording, Writer
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
 __all__ = ["CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "Session", "settings_for_path"]
 
+ProbeModel = Literal["auto", "quasi-static", "dynamic"]
+PROBE_MODELS: tuple[ProbeModel, ...] = get_args(ProbeModel)
 CONTROLS = ("default", "paper", "impedance")
 #: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
 Law = Callable[["_core.Signals"], tuple[float, float]]
@@ -100,6 +103,13 @@ class Session:
         Refuse to open closer to the stability limit than this.
     preflight : bool
         Tare the sensors and test the stage's sign before the first tick; refuse to open if they are off.
+    probe_model : {"auto", "quasi-static", "dynamic"}
+        How the cantilever is simulated: at rest at every tick, or by its equation of motion (docs/plant.md). ``"auto"``
+        takes the first where its error is small enough.
+    substep : float
+        Of the dynamic cantilever: the largest angle of its fastest oscillation in one sub-step [rad].
+    faults : Faults, optional
+        What fails in the simulated rig, and when.
     """
 
     def __init__(
@@ -120,9 +130,15 @@ class Session:
         rtol: float = 0.01,
         minimum_margin: float = 1.5,
         preflight: bool = True,
+        probe_model: ProbeModel = "auto",
+        substep: float = 0.25,
+        faults: Faults | None = None,
     ) -> None:
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
+        if probe_model not in PROBE_MODELS:
+            raise InvalidValue(f"probe_model {probe_model!r}: valid are {', '.join(PROBE_MODELS)}")
+        check_between("substep", substep, "rad", above=0.0, up_to=1e9)
         self.scene = Scene() if scene is None else scene.copy()
         self.rig = Rig() if rig is None else rig.copy()
         self.surface = surface
@@ -141,10 +157,15 @@ class Session:
             "clearance": clearance, "rise": float(heights.max() - heights[0]), "slope": _steepest(distance, heights),
             "minimum_margin": minimum_margin, "relative_accuracy": rtol, "preflight": preflight,
             "law": control if callable(control) else None,
+            "probe_model": PROBE_MODELS.index(probe_model), "substep": substep,
+            "faults": [fault.core for fault in faults or () if fault.at is None],
         }  # fmt: skip
         self.core = _core.Session(
             self.scene.core, self.rig.core, self.settings.core, surface.core if surface else None, options
         )
+        self._faults: list[str] = []
+        if faults is not None:
+            self.inject(faults)
 
     @property
     def plan(self) -> Plan:
@@ -280,6 +301,8 @@ class Session:
             "mode": self.mode,
             "path": [list(point) for point in self.path],
             "seed": self.seed,
+            "probe_model": self.probe_model,
+            "faults": list(self._faults),
             "loop_rate": self.rate,
             "stability_margin": self.stability_margin,
             "scene": self.scene.to_dict(),
@@ -311,6 +334,18 @@ class Session:
     def clutch(self, open: bool = True) -> None:
         """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
         self._request("clutch", self.core.clutch, [open], [open])
+
+    def inject(self, faults: Faults) -> None:
+        """Let the simulated rig fail; times count from the session's first tick."""
+        for fault in faults:
+            if fault.at is not None:
+                self.core.inject(fault.core)
+        self._faults.append(repr(faults))
+
+    @property
+    def probe_model(self) -> ProbeModel:
+        """How the cantilever is simulated."""
+        return "dynamic" if self.core.is_dynamic else "quasi-static"
 
     def emergency_stop(self, pressed: bool = True) -> None:
         """Press or release the simulated emergency stop."""

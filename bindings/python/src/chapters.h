@@ -22,6 +22,7 @@ void bind_descriptions(py::module_ &module);
 void bind_plan(py::module_ &module);
 void bind_interaction(py::module_ &module);
 void bind_control(py::module_ &module);
+void bind_faults(py::module_ &module);
 void bind_session(py::module_ &module);
 void bind_linux(py::module_ &module);
 

@@ -17,6 +17,7 @@ PYBIND11_MODULE(_core, module)
     bind_plan(module);
     bind_interaction(module);
     bind_control(module);
+    bind_faults(module);
     bind_session(module);
 #ifdef NANOTOUCH_HAS_LINUX
     bind_linux(module);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "control.h"
+#include "faults.h"
 #include "surface.h"
 
 struct Session {
@@ -57,6 +58,10 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.rise = options["rise"].cast<double>();
     setup.slope = options["slope"].cast<double>();
     setup.preflight = options["preflight"].cast<bool>();
+    setup.probe_model = static_cast<nt_probe_model>(options["probe_model"].cast<int>());
+    setup.substep = options["substep"].cast<double>();
+    const nt_faults faults = faults_of(options["faults"]);
+    setup.faults = &faults;
     setup.seed = options["seed"].cast<uint64_t>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();
     setup.demand.relative_accuracy = options["relative_accuracy"].cast<double>();
@@ -140,21 +145,17 @@ static void bind_requests(py::class_<Session> &type)
                  raise_on(alone(self, [&](nt_session *handle) { return nt_session_rescale(handle, &scaling); }),
                           "rescale");
              })
-        .def("clutch",
-             [](Session &self, bool open) {
-                 alone(self, [=](nt_session *handle) { nt_session_clutch(handle, open); });
-             })
+        .def("clutch", [](Session &self,
+                          bool open) { alone(self, [=](nt_session *handle) { nt_session_clutch(handle, open); }); })
         .def_property_readonly("guarantee", &guarantee_of)
         .def_property_readonly("tare",
                                [](const Session &self) {
                                    const nt_tare tare = nt_session_tare(self.handle);
                                    return py::make_tuple(tare.deflection, tare.operator_force);
                                })
-        .def_property_readonly("ticks",
-                               [](const Session &self) { return nt_session_touch_state(self.handle)->ticks; })
-        .def_property_readonly("phase", [](const Session &self) {
-            return static_cast<int>(nt_session_touch_state(self.handle)->phase);
-        });
+        .def_property_readonly("ticks", [](const Session &self) { return nt_session_touch_state(self.handle)->ticks; })
+        .def_property_readonly(
+            "phase", [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->phase); });
 }
 
 void bind_session(py::module_ &module)
@@ -174,6 +175,13 @@ void bind_session(py::module_ &module)
              [](Session &self, bool confirmed) {
                  raise_on(alone(self, [=](nt_session *handle) { return nt_session_arm(handle, confirmed); }), "arm");
              })
+        .def("inject",
+             [](Session &self, const py::tuple &entry) {
+                 const nt_fault fault = fault_of(entry);
+                 raise_on(alone(self, [&](nt_session *handle) { return nt_session_inject(handle, &fault); }), "fault");
+             })
+        .def_property_readonly("is_dynamic",
+                               [](const Session &self) { return nt_session_is_dynamic(self.handle) != 0; })
         .def("emergency_stop",
              [](Session &self, bool pressed) {
                  alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });

@@ -30,6 +30,9 @@ typedef struct nt_session_setup {
     long ring_capacity;    /* records held between two reads; rounded up to a power of two */
     double minimum_margin; /* refuse to open below this stability margin (R1) [-] */
     int preflight;         /* 1: tare and sign test before the first tick (preflight.h) */
+    nt_probe_model probe_model;
+    double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
+    const nt_faults *faults; /* of the rig from its switching on, before preflight; copied; NULL: none */
 } nt_session_setup;
 
 /* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with
@@ -67,7 +70,7 @@ typedef struct nt_record {
     uint32_t reasons;       /* NT_REASON_* */
 } nt_record;
 
-/* Opens a session. A fractional delay is simulated as the next whole one. NT_E_RANGE with problem->field "stability
+/* Opens a session. NT_E_RANGE with problem->field "stability
  * margin" if the loop would run closer to its stability limit than minimum_margin, or with what preflight has found.
  * The session belongs to the caller: nt_session_close. */
 NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
@@ -91,6 +94,10 @@ NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scali
 NT_API void nt_session_clutch(nt_session *session, int open);
 /* Presses or releases the simulated emergency stop. */
 NT_API void nt_session_emergency_stop(nt_session *session, int pressed);
+/* Adds a fault of the simulated rig; its start counts from the session's first tick (faults.h). */
+NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
+/* Is the cantilever computed as dynamic (1) or quasi-static (0)? */
+NT_API int nt_session_is_dynamic(const nt_session *session);
 
 /* Read-only views, valid until close. */
 NT_API const nt_plan *nt_session_plan(const nt_session *session);
