@@ -28,16 +28,20 @@ static double step_of(const nt_touch *touch, double speed)
     return speed * touch->period;
 }
 
-/* A spring and a damper between master and stage: the stage yields to the force at the tip, so that the operator never
- * feels a contact stiffer than the spring, and the loop never sees one. */
-static double coupling_yield(const nt_touch *touch, const nt_touch_state *state)
+/* A virtual tool without mass: a spring holds it to the master, a damper to the ground, the tip's force acts on it, and
+ * the stage follows it. The operator feels the spring, never a contact stiffer than it, and what comes late through the
+ * stage moves the tool alone. At rest the spring's force is alpha_f f_s. One implicit step; the spring's force [N]. */
+static double couple(const nt_touch *touch, nt_touch_state *state)
 {
     const nt_gains *gains = &touch->settings.gains;
+    const nt_signals *signals = &state->signals;
+    const double reflected = signals->scaling.alpha_f * signals->slave_force;
     if (gains->coupling_stiffness == 0.0)
-        return 0.0;
-    const double damping = gains->coupling_damping * gains->rate; /* over a period [N/m] */
-    const double reflected = state->signals.scaling.alpha_f * state->signals.slave_force;
-    return (damping * state->yield + reflected) / (gains->coupling_stiffness + damping);
+        return reflected;
+    const double drag = gains->coupling_damping * gains->rate; /* over a period [N/m] */
+    const double stretch = state->stretch + signals->master_speed * touch->period;
+    state->stretch = (drag * stretch + reflected) / (gains->coupling_stiffness + drag);
+    return gains->coupling_stiffness * state->stretch;
 }
 
 static void engage(const nt_touch *touch, nt_touch_state *state)
@@ -49,8 +53,8 @@ static void engage(const nt_touch *touch, nt_touch_state *state)
 static double run_touch(const nt_touch *touch, nt_touch_state *state)
 {
     nt_signals *signals = &state->signals;
-    state->yield = coupling_yield(touch, state);
-    signals->target = signals->scaling.alpha_p * (signals->master_position - state->yield) + state->offset;
+    signals->felt_force = couple(touch, state) / signals->scaling.alpha_f;
+    signals->target = signals->scaling.alpha_p * (signals->master_position - state->stretch) + state->offset;
     const nt_effort effort = touch->law(touch->settings.control.context, &touch->settings.gains, signals);
     if (!isfinite(effort.motor_force) || !isfinite(effort.stage))
         return NAN;
@@ -78,7 +82,9 @@ static double run_topography(const nt_touch *touch, nt_touch_state *state)
 static double run_approach(const nt_touch *touch, nt_touch_state *state)
 {
     const double most = step_of(touch, touch->settings.gains.approach_speed);
-    move_reference(touch, state, state->reference + clamp(height_step(touch, state), -most, most));
+    const int is_free = state->signals.slave_force <= touch->supervisor.free_force; /* or drawn in */
+    const double step = is_free ? most : clamp(height_step(touch, state), -most, most);
+    move_reference(touch, state, state->reference + step);
     if (state->signals.slave_force >= FOUND_SHARE * touch->settings.gains.set_point)
         state->phase = NT_PHASE_DONE;
     return nt_mode_release(touch, state);
@@ -135,7 +141,7 @@ double nt_mode_run(const nt_touch *touch, nt_touch_state *state)
 double nt_mode_release(const nt_touch *touch, nt_touch_state *state)
 {
     const nt_signals *signals = &state->signals;
-    state->yield = 0.0;
+    state->stretch = 0.0;
     state->offset = state->reference - signals->scaling.alpha_p * signals->master_position;
     const double engaged = state->engaged - touch->period / FADE_TIME;
     if (!(engaged > 0.0))

@@ -10,7 +10,7 @@
 /* tau_m = -alpha_f f_s - K_f (alpha_f f_s - f_m). At rest f_m = alpha_f f_s for any K_f (erratum E16). */
 static double reflect(const nt_gains *gains, const nt_signals *signals, double operator_force)
 {
-    const double reflected = signals->scaling.alpha_f * signals->slave_force;
+    const double reflected = signals->scaling.alpha_f * signals->felt_force;
     return -reflected - signals->gain_factor * gains->force_gain * (reflected - operator_force);
 }
 
@@ -38,7 +38,7 @@ nt_effort nt_servo_paper(void *unused, const nt_gains *gains, const nt_signals *
 nt_effort nt_servo_impedance(void *unused, const nt_gains *gains, const nt_signals *signals)
 {
     (void)unused;
-    const double reflected = signals->gain_factor * signals->scaling.alpha_f * signals->slave_force;
+    const double reflected = signals->gain_factor * signals->scaling.alpha_f * signals->felt_force;
     return (nt_effort){feed_forward(gains, signals) - reflected, signals->target};
 }
 

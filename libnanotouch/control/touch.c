@@ -137,7 +137,8 @@ static void rescale(const nt_touch *touch, nt_touch_state *state)
     state->offset += (alpha_p - signals->scaling.alpha_p) * signals->master_position;
 }
 
-/* What goes in at the hand, and what comes out at the tip at the operator's scale. */
+/* What goes in at the hand, and what comes out at the tip at the operator's scale; behind a virtual coupling, whose
+ * spring stores energy, what goes into that. */
 static void watch_energy(const nt_touch *touch, nt_touch_state *state, double stage_step)
 {
     const nt_signals *signals = &state->signals;
@@ -147,8 +148,11 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
                                   ? signals->operator_force
                                   : nt_passivity_hand_force(&touch->passivity, passivity, state->motor_force);
     const nt_port hand = {hand_force, signals->master_position};
-    const nt_port tip = {scaling->alpha_f * signals->slave_force,
-                         passivity->last_tip.position + stage_step / scaling->alpha_p};
+    const int coupled = touch->settings.gains.coupling_stiffness > 0.0;
+    const double tip_step =
+        coupled ? signals->master_position - passivity->last_hand.position : stage_step / scaling->alpha_p;
+    const nt_port tip = {scaling->alpha_f * (coupled ? signals->felt_force : signals->slave_force),
+                         passivity->last_tip.position + tip_step};
     nt_passivity_step(&touch->passivity, passivity, &hand, &tip);
     state->signals.gain_factor = passivity->gain;
 }

@@ -24,15 +24,15 @@ static void rest_means_scaled_forces_agree(void **state)
         nt_signals s = still;
         s.scaling.alpha_f = pow(10.0, 3.0 + 5.0 * nt_random_uniform(&random));
         s.operator_force = s.smooth_force = 5.0 * (2.0 * nt_random_uniform(&random) - 1.0);
-        s.slave_force = s.operator_force / s.scaling.alpha_f;
+        s.felt_force = s.operator_force / s.scaling.alpha_f;
         assert_true(fabs(laws[i % 2](NULL, &gains, &s).motor_force + s.operator_force) < 1e-12);
-        s.slave_force *= 1.1; /* off balance: the difference, amplified by 1 + K_f */
-        const double difference = s.operator_force - s.scaling.alpha_f * s.slave_force;
+        s.felt_force *= 1.1; /* off balance: the difference, amplified by 1 + K_f */
+        const double difference = s.operator_force - s.scaling.alpha_f * s.felt_force;
         const double net = laws[i % 2](NULL, &gains, &s).motor_force + s.operator_force;
         assert_true(fabs(net - (1.0 + gains.force_gain) * difference) < 1e-12);
         /* the passivity observer takes K_f away, never the reflected force */
         s.gain_factor = 0.0;
-        assert_true(fabs(laws[i % 2](NULL, &gains, &s).motor_force + s.scaling.alpha_f * s.slave_force) < 1e-12);
+        assert_true(fabs(laws[i % 2](NULL, &gains, &s).motor_force + s.scaling.alpha_f * s.felt_force) < 1e-12);
     }
 }
 
@@ -47,7 +47,8 @@ static void the_papers_law_is_eq_17(void **state)
                           .smooth_speed = 9.0,
                           .operator_force = 1.5,
                           .smooth_force = 9.0,
-                          .slave_force = 0.4e-6,
+                          .slave_force = 9.0,
+                          .felt_force = 0.4e-6,
                           .stage_position = 13e-9,
                           .stage_speed = 17e-9,
                           .target = 15e-9,
@@ -75,7 +76,7 @@ static void impedance_reflects_and_asks_no_hand(void **state)
     (void)state;
     const nt_gains gains = {.force_gain = 10.0};
     nt_signals s = still;
-    s.slave_force = 1e-6;
+    s.felt_force = 1e-6;
     s.operator_force = s.smooth_force = NAN;
     assert_true(nt_servo_impedance(NULL, &gains, &s).motor_force == -3.0);
     s.gain_factor = 0.5; /* backs off in what is reflected: there is nothing else */
@@ -101,7 +102,7 @@ static void advance(loop *l, double push, int ticks)
         s.period = T;
         s.master_speed = s.smooth_speed = (reached - l->x) / T;
         s.operator_force = s.smooth_force = push;
-        s.slave_force = l->k_r * reached / s.scaling.alpha_f;
+        s.felt_force = l->k_r * reached / s.scaling.alpha_f;
         l->x = reached, l->v = speed;
         l->tau = l->law(NULL, &l->gains, &s).motor_force;
     }

@@ -20,6 +20,7 @@ typedef struct nt_signals {
     double operator_force;  /* f_m, 0 where there is no gauge [N] */
     double smooth_force;    /* the same behind gains.force_filter [N] */
     double slave_force;     /* f_s = k_c zeta [N] */
+    double felt_force;      /* the same, or what a virtual coupling makes of it: to be reflected [N] */
     double stage_position;  /* x_s [m] */
     double stage_speed;     /* of x_s, by differences [m/s] */
     double target;          /* alpha_p x_m from where it was last indexed: x_s by Eq. 16 [m] */
@@ -59,8 +60,8 @@ typedef struct nt_servo_shape {
     double contact_stiffness; /* [N/m] */
 } nt_servo_shape;
 NT_API nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness);
-/* Of the loop that the virtual coupling closes by itself (force, yield, stage), over a delay [s]: below 1 it
- * oscillates; infinite without a coupling. */
+/* Of the loop that the virtual tool closes by itself (force, tool, stage), over a delay [s]: below 1 it oscillates, and
+ * no observer sees it; infinite without a coupling. */
 NT_API double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
                                        double delay);
 

@@ -43,8 +43,8 @@ typedef struct nt_gains {
     double stage_integral;       /* integral gain of the stage loop [1/s] */
     double stage_proportional;   /* K_p of Eq. 17, the paper's law only [-] */
     double stage_derivative;     /* K_v of Eq. 17, the paper's law only [s] */
-    double coupling_stiffness;   /* virtual coupling between master and stage, 0: rigid [N/m] */
-    double coupling_damping;     /* its damping [N s/m] */
+    double coupling_stiffness;   /* of the spring between master and virtual tool, 0: rigid [N/m] */
+    double coupling_damping;     /* of the virtual tool against the ground [N s/m] */
     double ramp_time;            /* force fades in over this on engagement, a new scale too [s] */
     double set_point;            /* force held in topography mode, sought in approach and curve [N] */
     double height_gain;          /* integral gain of the height servo [1/s] */

@@ -46,7 +46,7 @@ typedef struct nt_touch_state {
     double deflections[2];                  /* of the last two valid samples [m] */
     double reference;                       /* where the stage shall be [m] */
     double offset;                          /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
-    double yield;                           /* of the virtual coupling, at the operator's scale [m] */
+    double stretch;                         /* of the virtual coupling, at the operator's scale [m] */
     int clutch_open;                        /* the master moves alone */
     double engaged;                         /* 0 .. 1, fades the force in and out [-] */
     double motor_force;                     /* last command [N] */
