@@ -84,7 +84,7 @@ def test_hdf5_in_h5py_and_surfacetopography(tmp_path: Path) -> None:
     path = images.write(tmp_path / "out.h5", topography(holes=1), title="Height", offset=OFFSET)
     with h5py.File(path) as file:
         np.testing.assert_array_equal(file["height"][...][::-1], synthetic.asymmetric())
-        assert file["height"].attrs["units"] == "m"
+        assert file["height"].attrs["units"] == b"m"
         assert file["height"].fletcher32  # damage is noticed
         assert file["height"].dims[0][0].name == "/y"
         y, x = file["y"][...], file["x"][...]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import struct
 import warnings
 import zipfile
 from collections.abc import Iterator
@@ -67,12 +68,25 @@ def guarded(file: Path, reader: str) -> Iterator[None]:
 
 
 def refuse_traps(file: Path, head: bytes) -> None:
-    """Refuse containers that unpack to too much, or that make the reader open other files."""
+    """Refuse containers that unpack to too much, or make the reader open other files, or loop."""
     if head.startswith(b"PK\3\4"):
         with guarded(file, "zipfile"), zipfile.ZipFile(file) as archive:
             _check_unpacked(file, sum(item.file_size for item in archive.infolist()))
+    elif head[:2] in (b"\5\0", b"\0\5"):
+        _check_igor(file, head)
     elif head.startswith(b"\x89HDF") or file.suffix.lower() in _HDF5_ENDINGS:
         _refuse_hdf5_traps(file)
+
+
+def _check_igor(file: Path, head: bytes) -> None:
+    """Igor binary waves of version 5: igor2 looks neither at the check sum nor at the sizes, and loops on some."""
+    order = "<" if head[0] else ">"
+    shorts = struct.unpack(f"{order}{min(len(head), 384) // 2}h", head[: min(len(head), 384) // 2 * 2])
+    if len(head) < 384 or sum(shorts) & 0xFFFF:
+        raise ReadError(f"{file}: the check sum of its header is wrong: it is damaged, or no Igor binary wave")
+    parts = struct.unpack(f"{order}13i", head[4:56])  # wave, formula, note, units and labels of 4 dimensions, strings
+    if min(parts) < 0 or 64 + sum(parts) > file.stat().st_size:
+        raise ReadError(f"{file}: {file.stat().st_size} bytes long, but its header states {64 + sum(parts)}")
 
 
 def _refuse_hdf5_traps(file: Path) -> None:

@@ -35,7 +35,7 @@ def recognises(file: Path, head: bytes) -> bool:
     h5py = require("h5py", "images")
     try:
         with h5py.File(file, "r") as opened:
-            return bool(opened.attrs.get("format", "") == FORMAT)
+            return _text(opened, "format") == FORMAT
     except OSError:  # damaged; the reader that takes it says so
         return False
 
@@ -45,13 +45,13 @@ def channels(file: Path) -> list[Channel]:
     with _opened(file) as (opened, heights):
         dy, dx = _pair(opened, "pixel_size", file)
         ny, nx = heights.shape
-        return [Channel(str(opened.attrs.get("title", "")), (ny, nx), (ny * dy, nx * dx), "m", "height", True)]
+        return [Channel(_text(opened, "title"), (ny, nx), (ny * dy, nx * dx), "m", "height", True)]
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """The heights and the mask."""
     with _opened(file) as (opened, heights):
-        title = str(opened.attrs.get("title", ""))
+        title = _text(opened, "title")
         if channel is not None and channel.casefold() != title.casefold():
             raise ReadError(f"{file}: no channel {channel!r}; it holds {title}")
         dy, dx = _pair(opened, "pixel_size", file)
@@ -63,7 +63,7 @@ def read(file: Path, channel: str | None) -> Plane:
         mask = np.asarray(opened["mask"][...], bool)[::-1]
         if mask.shape != values.shape:
             raise ReadError(f"{file}: a mask of {mask.shape} for {values.shape} pixels")
-        return Plane(title, values, str(heights.attrs.get("units", "")) or None, (dy, dx), NAME, mask=mask)
+        return Plane(title, values, _text(heights, "units") or None, (dy, dx), NAME, mask=mask)
 
 
 def write(file: Path, topography: Topography, title: str, offset: tuple[float, float]) -> None:
@@ -71,16 +71,18 @@ def write(file: Path, topography: Topography, title: str, offset: tuple[float, f
     h5py = require("h5py", "images")
     (ny, nx), (dy, dx) = topography.shape, topography.pixel_size
     with h5py.File(file, "w") as opened:
-        facts = {"format": FORMAT, "version": VERSION, "title": title, "name": topography.name}
-        facts |= {"source": topography.source, "pixel_size": topography.pixel_size, "offset": offset}
-        opened.attrs.update(facts)
+        facts = {"format": FORMAT, "title": title, "name": topography.name, "source": topography.source}
+        for key, text in facts.items():
+            _set_text(opened, key, text)
+        opened.attrs.update({"version": VERSION, "pixel_size": topography.pixel_size, "offset": offset})
         heights = opened.create_dataset("height", data=topography.heights[::-1], **_STORAGE)
-        heights.attrs.update({"units": "m", "long_name": title})
+        _set_text(heights, "units", "m")
+        _set_text(heights, "long_name", title)
         opened.create_dataset("mask", data=topography.mask[::-1].astype(np.uint8), **_STORAGE)
         axes = {"y": offset[0] + (np.arange(ny)[::-1] + 0.5) * dy, "x": offset[1] + (np.arange(nx) + 0.5) * dx}
         for number, (axis, centres) in enumerate(axes.items()):
             scale = opened.create_dataset(axis, data=centres)
-            scale.attrs["units"] = "m"
+            _set_text(scale, "units", "m")
             scale.make_scale(axis)
             for picture in (heights, opened["mask"]):
                 picture.dims[number].attach_scale(scale)
@@ -98,6 +100,19 @@ def _opened(file: Path) -> Iterator[tuple[Any, Any]]:
             raise ReadError(f"{file}: holds no height")
         check_shape(file, heights.shape)
         yield opened, heights
+
+
+def _set_text(node: Any, key: str, text: str) -> None:
+    """With a fixed length: on a damaged heap, where others lie, the HDF5 library may loop for ever."""
+    raw = text.encode()
+    node.attrs.create(key, raw, dtype=require("h5py", "images").string_dtype("utf-8", max(1, len(raw))))
+
+
+def _text(node: Any, key: str) -> str:
+    """A text of fixed length; empty where there is none."""
+    if key not in node.attrs or node.attrs.get_id(key).dtype.kind != "S":
+        return ""
+    return bytes(np.asarray(node.attrs[key]).item()).decode("utf-8", "replace")
 
 
 def _pair(opened: Any, key: str, file: Path) -> tuple[float, float]:
