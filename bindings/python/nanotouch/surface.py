@@ -32,7 +32,7 @@ class Surface:
         if tip_radius is not None:
             heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
         self.topography = topography
-        self.core = _core.Surface(heights, dy, dx)
+        self.core = _core.Surface(heights, dy, dx, overwrite=True)  # `heights` is nobody else's
 
     @property
     def size(self) -> tuple[float, float]:

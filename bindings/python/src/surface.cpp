@@ -30,15 +30,17 @@ static py::array_t<double> dilate(const Array &heights, double dy, double dx, do
     return dilated;
 }
 
-static std::shared_ptr<Surface> make(const Array &heights, double dy, double dx)
+// With `overwrite` the coefficients take the memory of the heights, and no copy is made.
+static std::shared_ptr<Surface> make(const Array &heights, double dy, double dx, bool overwrite)
 {
     const nt_height_map map = map_of(heights, dy, dx);
     auto made = std::make_shared<Surface>();
-    made->coefficients.resize(static_cast<size_t>(heights.size()));
+    made->coefficients = overwrite ? heights : Array({heights.shape(0), heights.shape(1)});
+    double *coefficients = made->coefficients.mutable_data(); // an exception where the array is read-only
     nt_status status;
     {
         py::gil_scoped_release release;
-        status = nt_surface_init(&made->surface, &map, made->coefficients.data());
+        status = nt_surface_init(&made->surface, &map, coefficients);
     }
     raise_on(status, "surface");
     return made;
@@ -74,7 +76,7 @@ static py::array_t<double> sample(double (*height)(const void *, double, double)
 void bind_surface(py::module_ &module)
 {
     py::class_<Surface, std::shared_ptr<Surface>>(module, "Surface")
-        .def(py::init(&make), py::arg("heights"), py::arg("dy"), py::arg("dx"))
+        .def(py::init(&make), py::arg("heights"), py::arg("dy"), py::arg("dx"), py::arg("overwrite") = false)
         .def("heights", &heights_at, py::arg("x"), py::arg("y"));
     module.def("dilate", &dilate);
     module.def("grating",

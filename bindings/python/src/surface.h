@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <vector>
-
 #include "chapters.h"
 
-// A surface that owns its coefficients.
+// A surface and the array that holds its coefficients.
 struct Surface {
-    std::vector<double> coefficients;
+    Array coefficients;
     nt_surface surface;
 };

@@ -11,6 +11,7 @@ from .despeckling import DespeckleReport, despeckle
 from .filters import gaussian, median
 from .levelling import LevelReport, LevelStep, level, prepare
 from .particles import GrainTable, grains
+from .pictures import draw
 from .pyramid import MipLevel, mip_levels
 from .reading import channels, read
 from .scars import ScarReport, repair_scars
@@ -38,6 +39,7 @@ __all__ = [
     "channels",
     "despeckle",
     "dilate",
+    "draw",
     "erode",
     "estimate_tip",
     "gaussian",

@@ -98,9 +98,9 @@ class GrainTable:
         height, diameter = self.height[inner] * 1e9, self.diameter[inner] * 1e9
         return (
             f"{len(self)} particles above {self.threshold * 1e9:.3g} nm ({int(self.border.sum())} cut by the border), "
-            f"{100 * self.coverage:.3g} % of the area; of the others height {np.median(height):.3g} nm "
-            f"({height.min():.3g} .. {height.max():.3g}), diameter {np.median(diameter):.3g} nm "
-            f"({diameter.min():.3g} .. {diameter.max():.3g})"
+            f"{100 * self.coverage:.3g} % of the area; of the others height {np.median(height):.4g} nm "
+            f"({height.min():.4g} .. {height.max():.4g}), diameter {np.median(diameter):.4g} nm "
+            f"({diameter.min():.4g} .. {diameter.max():.4g})"
         )
 
 

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Prepare and measure an AFM image: level, repair, undo the tip, find particles; say what each step took away."""
+
+from __future__ import annotations
+
+import argparse
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from nanotouch import images
+from nanotouch.errors import InvalidValue
+
+from nanotouch_app import output
+from nanotouch_app.quantity import parse_quantity
+
+FILES = ("image.json", "image.png", "image.gwy", "grains.csv", "tip.csv")
+LISTED = 10  # particles printed; the table holds all
+EPILOG = """examples:
+  nanotouch image scan.ibw                                level by plane and rows, roughness
+  nanotouch image dots.tiff --scars --grains              quantum dots: a table of them in grains.csv
+  nanotouch image grating.gwy --level poly2+rows --tip 10nm,0.3rad"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "image",
+        help="level, repair and measure an AFM image",
+        description=__doc__,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    what = parser.add_argument_group("what is read")
+    what.add_argument("image", metavar="FILE", help="AFM image")
+    what.add_argument("--channel", metavar="NAME", help="channel of the image (nanotouch info lists them)")
+    what.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
+    what.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
+    what.add_argument("--untrusted", action="store_true", help="read it in a guarded process")
+    steps = parser.add_argument_group("what is done, in this order")
+    steps.add_argument(
+        "--level", default="plane+rows", metavar="METHOD",
+        help="plane, poly2 .. poly6, rows, medians, terraces, joined by +; none (default: %(default)s)",
+    )  # fmt: skip
+    steps.add_argument("--scars", action="store_true", help="repair streaks along the fast axis")
+    steps.add_argument("--despeckle", action="store_true", help="repair isolated wrong pixels")
+    steps.add_argument("--smooth", metavar="LENGTH", help="Gaussian of this standard deviation, as 5nm")
+    steps.add_argument(
+        "--tip", metavar="TIP",
+        help="undo a tip: its radius, as 10nm; with a cone, as 10nm,0.3rad; or estimate it from the image: blind",
+    )  # fmt: skip
+    steps.add_argument(
+        "--grains", nargs="?", const="auto", metavar="THRESHOLD",
+        help="find particles: higher than this, as 2nm; flat, otsu or auto (default: auto)",
+    )  # fmt: skip
+    steps.add_argument("--pits", action="store_true", help="with --grains: find pits instead")
+    parser.add_argument(
+        "--out", default="nanotouch-out", metavar="DIR", help="folder for results (default: %(default)s)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    if args.pits and args.grains is None:
+        raise InvalidValue("--pits goes with --grains")
+    smooth = None if args.smooth is None else parse_quantity(args.smooth, "m")
+    tip = _tip(args.tip)
+    threshold = args.grains if args.grains in (None, "auto", "flat", "otsu") else parse_quantity(args.grains, "m")
+    raw = _read(args)
+    print(_described(raw))
+    out = output.folder(args.out)
+    output.clear(out, FILES)
+    facts: dict[str, Any] = {"file": str(args.image), "channel": raw.channel, "reader": raw.source}
+    clean = _repaired(raw, args, facts)
+    if smooth is not None:
+        clean = images.gaussian(clean, smooth)
+        print(f"smoothed by a Gaussian of {smooth * 1e9:.4g} nm")
+    if args.tip is not None:
+        clean = _without_tip(clean, tip, out, facts)
+    rough = images.roughness(clean)
+    facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
+    print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
+    table = None if threshold is None else images.grains(clean, threshold, pits=args.pits)
+    if table is not None:
+        _tell(table, out, facts)
+    output.write_json(out / "image.json", facts)
+    images.write(out / "image.gwy", clean)
+    images.draw({"as read": raw, "processed": clean}, grains=table, save=out / "image.png")
+    print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+    return 0
+
+
+def _read(args: argparse.Namespace) -> images.Topography:
+    pixel_size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
+    return images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
+
+
+def _described(image: images.Topography) -> str:
+    (ny, nx), (height, width) = image.shape, image.size
+    lines = [
+        f"{image.name}: channel {image.channel!r} by {image.source}, {nx} x {ny} pixels, {width * 1e6:.4g} x "
+        f"{height * 1e6:.4g} um, heights over {_nm(image.height_range)}"
+    ]
+    if image.masked_pixels:
+        lines.append(f"{image.masked_pixels} missing pixels filled from their neighbours")
+    return "\n".join(lines)
+
+
+def _repaired(image: images.Topography, args: argparse.Namespace, facts: dict[str, Any]) -> images.Topography:
+    """Levelling, scars, speckles; each prints its report, which holds the warnings too."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        if args.level != "none":
+            image, levelled = images.level(image, args.level)
+            print(levelled)
+            facts["removed"] = {f"{n}_{step.method}_m": step.removed_range for n, step in enumerate(levelled.steps, 1)}
+            facts["tilt"] = {"dz_dy": levelled.tilt[0], "dz_dx": levelled.tilt[1]}
+            facts["terraces"] = [{"height_m": t.height, "share": t.share} for t in levelled.terraces]
+            facts["warnings"] = list(levelled.warnings)
+        if args.scars:
+            image, scars = images.repair_scars(image)
+            print(scars)
+            facts["scars"] = {"scars": scars.scars, "pixels": scars.pixels, "largest_m": scars.largest}
+        if args.despeckle:
+            image, speckles = images.despeckle(image)
+            print(speckles)
+            facts["speckles"] = {"pixels": speckles.pixels, "largest_m": speckles.largest}
+    return image
+
+
+def _tip(text: str | None) -> images.Paraboloid | images.RoundedCone | None:
+    """The shape that ``--tip`` names; None for none, and for the one that the image shows."""
+    if text is None or text == "blind":
+        return None
+    radius, *angle = text.split(",")
+    if len(angle) > 1:
+        raise InvalidValue(f"--tip {text}: write it like 10nm, 10nm,0.3rad or blind")
+    if angle:
+        return images.RoundedCone(parse_quantity(radius, "m"), parse_quantity(angle[0], "rad"))
+    return images.Paraboloid(parse_quantity(radius, "m"))
+
+
+def _without_tip(
+    image: images.Topography, tip: images.Paraboloid | images.RoundedCone | None, out: Path, facts: dict[str, Any]
+) -> images.Topography:
+    shape: Any = tip
+    if tip is None:
+        size = min(31, (min(image.shape) // 2 - 1) | 1)
+        estimate = images.estimate_tip(image, size)
+        shape = estimate.heights
+        np.savetxt(out / "tip.csv", shape, delimiter=",", fmt="%.6e", header="height above the apex [m]")
+        height = 0.25 * float(shape.max())
+        flat = not (shape > 0).any()
+        radius = float("inf") if flat else estimate.radius(max(height, float(shape[shape > 0].min())))
+        state = "" if estimate.converged else ", not settled"
+        print(
+            f"tip from the image: at most {_nm(radius)} blunt at the apex, from {estimate.points} points over "
+            f"{_nm(estimate.threshold)} of noise{state}"
+        )
+        facts["tip"] = {"radius_at_most_m": None if flat else radius, "threshold_m": estimate.threshold}
+    clean, certain = images.erode(image, shape)
+    lowered = float((image.heights - clean.heights).max())
+    print(f"tip undone: up to {_nm(lowered)} lower; {100 * certain.mean():.3g} % of the surface is certain")
+    facts["certain_share"] = float(certain.mean())
+    return clean
+
+
+def _tell(table: images.GrainTable, out: Path, facts: dict[str, Any]) -> None:
+    print(table)
+    if len(table):
+        print("  number   height nm  diameter nm   volume nm3     x um     y um")
+    for k in range(min(len(table), LISTED)):
+        print(
+            f"  {k + 1:6d}{table.height[k] * 1e9:12.4g}{table.diameter[k] * 1e9:13.4g}{table.volume[k] * 1e27:13.4g}"
+            f"{table.x[k] * 1e6:9.4g}{table.y[k] * 1e6:9.4g}{'  border' if table.border[k] else ''}"
+        )
+    if len(table) > LISTED:
+        print(f"  and {len(table) - LISTED} more in grains.csv")
+    table.to_csv(out / "grains.csv")
+    facts["grains"] = {"count": len(table), "coverage": table.coverage, "threshold_m": table.threshold}
+
+
+def _nm(metres: float) -> str:
+    return f"{metres * 1e9:.4g} nm"
