@@ -5,7 +5,7 @@ OUT ?= nanotouch-out
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test fuzz bench lint format clean
+.PHONY: help demo test fuzz damage bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -25,6 +25,10 @@ fuzz:  ## random input to the C library, with sanitizers; about a minute
 	@cmake --preset fuzz --log-level WARNING
 	@cmake --build --preset fuzz
 	@ctest --preset fuzz -j $(JOBS)
+
+damage:  ## 2000 damaged files through the readers of images and curves; some minutes
+	@tools/setup.sh test
+	@$(VENV)/python tests/python/mutations.py
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test
