@@ -10,7 +10,6 @@ from typing import Any
 import nanotouch as nt
 from nanotouch import curves
 from nanotouch import fit as fitting
-from nanotouch.contact import MODELS
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import output
@@ -21,9 +20,9 @@ def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser = subparsers.add_parser("fit", help="fit a contact model to a measured force curve", description=__doc__)
     parser.add_argument("curve", metavar="CURVE", help="force curve file (JPK, Asylum .ibw, ...)")
-    parser.add_argument("--model", choices=MODELS, default="maugis", help="contact model (default: %(default)s)")
+    parser.add_argument("--model", choices=fitting.models(), default="maugis", help="contact model (default: %(default)s)")
     parser.add_argument("--index", type=int, default=0, metavar="N", help="which curve of a map (default: %(default)s)")
-    parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract; approach for hertz")
+    parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract for adhesive models")
     parser.add_argument("--radius", metavar="LENGTH", help="tip radius, as 20nm")
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
     parser.add_argument(
@@ -76,6 +75,9 @@ def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
         "points": int(result.z.size),
         "values": {key: _finite(value) for key, value in result.values.items()},
         "sigma": {key: _finite(value) for key, value in result.sigma.items()},
+        "sigma_statistical": {key: _finite(value) for key, value in result.sigma_statistical.items()},
+        "sigma_calibration": {key: _finite(value) for key, value in result.sigma_calibration.items()},
+        "interval_95": {key: [_finite(low), _finite(high)] for key, (low, high) in result.interval.items()},
         "units": {key: result.units[key] for key in result.values},
         "identifiable": dict(result.identifiable),
         "covariance": {
@@ -84,13 +86,14 @@ def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
         },
         "pull_off_force_N": _finite(result.measured_pull_off_force),
         "snap_in_force_N": _finite(result.measured_snap_in_force),
-        "fitted_pull_off_force_N": result.pull_off_force,
-        "contact_radius_m": result.contact_radius,
-        "contact_stiffness_N_per_m": result.contact_stiffness,
+        "fitted_pull_off_force_N": _finite(result.pull_off_force),
+        "contact_radius_m": _finite(result.contact_radius),
+        "contact_stiffness_N_per_m": _finite(result.contact_stiffness),
         "transition_parameter": _finite(result.transition_parameter),
         "residual_rms_N": result.residual_rms,
         "noise_N": result.report.noise,
         "tip_radius_m": result.radius,
+        "half_angle_rad": result.half_angle,
         "spring_constant_N_per_m": result.spring_constant,
         "converged": result.converged,
         "assumptions": list(result.assumptions),

@@ -65,7 +65,7 @@ nt_status check_data(const nt_fit_options &options, const nt_fit_data *data, nt_
         return NT_E_ARGUMENT;
     int free = 0;
     for (int i = 0; i < NT_FIT_PARAMETERS; i++)
-        free += !options.parameter[i].fixed && nt_fit_model_has(options.model, static_cast<nt_fit_parameter>(i));
+        free += is_free(options, i);
     if (free == 0) {
         *problem = {"parameter (free ones)", "", 0.0, 1.0, NT_FIT_PARAMETERS};
         return NT_E_RANGE;

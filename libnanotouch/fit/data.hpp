@@ -2,7 +2,7 @@
 // The points of a curve; private to fit/.
 #pragma once
 
-#include "nanotouch/fit.h"
+#include "model.hpp"
 
 namespace nanotouch
 {

@@ -7,7 +7,7 @@
 namespace nanotouch
 {
 
-// Fills in every initial value that is NaN, a range of adhesion that is NaN so that Maugis' lambda is as given.
+// Fills in every initial value that is NaN; a range of adhesion that is NaN so that Maugis' lambda is as given.
 // NT_E_NO_CONVERGENCE if no contact law of this kind exists within the bounds.
 nt_status guess(const nt_fit_options &options, const nt_fit_data &data, double lambda, Parameters *value);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 #include "nanotouch/field.h"
@@ -12,6 +13,7 @@ namespace
 {
 
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+constexpr const char *model_names[] = {"hertz", "dmt", "jkr", "maugis", "cone", "pyramid", "custom"};
 
 // An enumerator from C may be any number; C++ must not look at it as an enumerator before it is checked.
 template <class Enumeration> int number_of(const Enumeration &enumerator)
@@ -22,28 +24,23 @@ template <class Enumeration> int number_of(const Enumeration &enumerator)
     return number;
 }
 
-struct Description {
-    const char *name, *unit;
-    double minimum, maximum; // widest bounds
-    const char *initial_name, *minimum_name, *maximum_name;
+const nt_fit_quantity quantities[NT_FIT_PARAMETERS] = {
+    {"effective_modulus", "Pa", not_given, 1.0, 1e14},
+    {"work_of_adhesion", "J/m^2", not_given, 1e-9, 1e3},
+    {"cohesive_range", "m", 0.2e-9, 1e-12, 1e-5},
+    {nullptr, "", not_given, 0.0, 0.0},
+    {"contact_point", "m", not_given, -1.0, 1.0},
+    {"force_offset", "N", 0.0, -1.0, 1.0},
+    {"force_tilt", "N/m", 0.0, -1e3, 1e3},
+    {"sensitivity", "", 1.0, 0.1, 10.0},
 };
-
-#define DESCRIBE(name, unit, minimum, maximum)                                                                         \
-    {name, unit, minimum, maximum, name ".initial", name ".minimum", name ".maximum"}
-const Description descriptions[NT_FIT_PARAMETERS] = {
-    DESCRIBE("effective_modulus", "Pa", 1.0, 1e14), DESCRIBE("work_of_adhesion", "J/m^2", 1e-9, 1e3),
-    DESCRIBE("cohesive_range", "m", 1e-12, 1e-5),   DESCRIBE("contact_point", "m", -1.0, 1.0),
-    DESCRIBE("force_offset", "N", -1.0, 1.0),       DESCRIBE("compliance", "", 0.1, 10.0),
-};
-#undef DESCRIBE
 
 #define FIELD(path, unit, minimum, maximum)                                                                            \
     {#path, unit, minimum, maximum, static_cast<unsigned>(offsetof(nt_fit_options, path)), ""}
 const nt_field fields[] = {
-    FIELD(radius, "m", 1e-10, 1.0),        FIELD(spring_constant, "N/m", 0.0, 1e6),
-    FIELD(loss_scale, "N", 1e-18, 1.0),    FIELD(force_noise, "N", 0.0, 1.0),
-    FIELD(pull_off_force, "N", 0.0, 1.0),  FIELD(pull_off_sigma, "N", 0.0, 1.0),
-    FIELD(compliance_sigma, "", 0.0, 1.0),
+    FIELD(radius, "m", 1e-10, 1.0),       FIELD(half_angle, "rad", 0.01, 1.56), FIELD(spring_constant, "N/m", 0.0, 1e6),
+    FIELD(tilt_position, "m", -1.0, 1.0), FIELD(loss_scale, "N", 1e-18, 1.0),   FIELD(force_noise, "N", 0.0, 1.0),
+    FIELD(tear_position, "m", -1.0, 1.0), FIELD(tear_sigma, "m", 0.0, 1.0),
 };
 #undef FIELD
 
@@ -59,84 +56,124 @@ bool within(double value, double minimum, double maximum)
     return value >= minimum && value <= maximum;
 }
 
-void hold(nt_fit_start *start, double value)
+bool is_adhesive(nt_fit_model model)
 {
-    start->initial = value;
+    return model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
+}
+
+void hold(nt_fit_start *start)
+{
     start->fixed = 1;
 }
 
-nt_status check_start(const Description &description, const nt_fit_start &start, nt_problem *problem)
+nt_status check_start(const nt_fit_quantity &quantity, const nt_fit_start &start, nt_problem *problem)
 {
-    const char *unit = description.unit;
-    const double lowest = description.minimum, highest = description.maximum;
+    const nt_problem complaint{quantity.name, quantity.unit, start.initial, start.minimum, start.maximum};
+    const double lowest = quantity.minimum, highest = quantity.maximum;
     if (!within(start.minimum, lowest, highest))
-        return complain(problem, {description.minimum_name, unit, start.minimum, lowest, highest});
+        return complain(problem, {quantity.name, quantity.unit, start.minimum, lowest, highest});
     if (!within(start.maximum, start.minimum, highest))
-        return complain(problem, {description.maximum_name, unit, start.maximum, start.minimum, highest});
-    const bool to_be_guessed = std::isnan(start.initial) && !start.fixed;
+        return complain(problem, {quantity.name, quantity.unit, start.maximum, start.minimum, highest});
+    if (!within(start.sigma, 0.0, std::numeric_limits<double>::max()))
+        return complain(problem, {quantity.name, quantity.unit, start.sigma, 0.0, highest});
+    const bool to_be_guessed = std::isnan(start.initial) && !start.fixed && start.sigma == 0.0;
     if (!to_be_guessed && !within(start.initial, start.minimum, start.maximum))
-        return complain(problem, {description.initial_name, unit, start.initial, start.minimum, start.maximum});
+        return complain(problem, complaint);
+    return NT_OK;
+}
+
+nt_status check_law(const nt_fit_law *law, nt_problem *problem)
+{
+    if (!law || !law->force || !law->name)
+        return NT_E_ARGUMENT;
+    if (law->count < 1 || law->count > NT_FIT_OWN)
+        return complain(problem, {"law.count", "", double(law->count), 1.0, double(NT_FIT_OWN)});
+    for (int i = 0; i < law->count; i++) {
+        const nt_fit_quantity &quantity = law->parameter[i];
+        if (!quantity.name || !quantity.unit)
+            return NT_E_ARGUMENT;
+        if (!std::isfinite(quantity.minimum) || !(quantity.maximum > quantity.minimum) ||
+            !std::isfinite(quantity.maximum))
+            return complain(problem, {quantity.name, quantity.unit, quantity.maximum, quantity.minimum, 1e300});
+    }
     return NT_OK;
 }
 
 nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
 {
     const int model = number_of(options->model), loss = number_of(options->loss);
-    if (model < NT_HERTZ || model > NT_MAUGIS)
-        return complain(problem, {"model", "", double(model), NT_HERTZ, NT_MAUGIS});
+    if (model < NT_FIT_HERTZ || model > NT_FIT_CUSTOM)
+        return complain(problem, {"model", "", double(model), NT_FIT_HERTZ, NT_FIT_CUSTOM});
     if (loss < NT_LOSS_SQUARES || loss > NT_LOSS_CAUCHY)
         return complain(problem, {"loss", "", double(loss), NT_LOSS_SQUARES, NT_LOSS_CAUCHY});
     if (options->max_iterations < 1 || options->max_iterations > 100000)
         return complain(problem, {"max_iterations", "", double(options->max_iterations), 1.0, 1e5});
-    const bool needs_noise = options->pull_off_sigma > 0.0 || options->compliance_sigma > 0.0;
-    if (needs_noise && options->force_noise == 0.0)
-        return complain(problem, {"force_noise", "N", 0.0, 1e-18, 1.0});
-    const nt_fit_start &compliance = options->parameter[NT_FIT_COMPLIANCE];
-    if (!compliance.fixed && options->spring_constant == 0.0)
+    const nt_fit_start &sensitivity = options->parameter[NT_FIT_SENSITIVITY];
+    if ((!sensitivity.fixed || options->tear_sigma > 0.0) && options->spring_constant == 0.0)
         return complain(problem, {"spring_constant", "N/m", 0.0, 1e-6, 1e6});
-    return NT_OK;
+    if (options->tear_sigma > 0.0 && !is_adhesive(options->model))
+        return complain(problem, {"tear_sigma", "m", options->tear_sigma, 0.0, 0.0});
+    return options->model == NT_FIT_CUSTOM ? check_law(options->law, problem) : NT_OK;
+}
+
+nt_status check_noise(const nt_fit_options *options, nt_problem *problem)
+{
+    bool needed = options->tear_sigma > 0.0;
+    for (const nt_fit_start &start : options->parameter)
+        needed = needed || (start.sigma > 0.0 && !start.fixed);
+    return needed && options->force_noise == 0.0 ? complain(problem, {"force_noise", "N", 0.0, 1e-18, 1.0}) : NT_OK;
+}
+
+nt_fit_options defaults(nt_fit_model model, const nt_fit_law *law)
+{
+    nt_fit_options options{};
+    options.model = model;
+    options.law = law;
+    options.radius = 20e-9;
+    options.half_angle = 20.0 * 3.14159265358979323846 / 180.0;
+    options.loss = NT_LOSS_SQUARES;
+    options.loss_scale = 1e-9;
+    options.max_iterations = 100;
+    for (int i = 0; i < NT_FIT_PARAMETERS; i++) {
+        const nt_fit_quantity quantity = nt_fit_quantity_of(&options, static_cast<nt_fit_parameter>(i));
+        options.parameter[i] = {quantity.initial, quantity.minimum, quantity.maximum, 0.0, 0};
+    }
+    if (model == NT_FIT_MAUGIS)
+        hold(&options.parameter[NT_FIT_COHESIVE_RANGE]);
+    for (const int common : {NT_FIT_FORCE_OFFSET, NT_FIT_FORCE_TILT, NT_FIT_SENSITIVITY})
+        hold(&options.parameter[common]);
+    return options;
 }
 
 } // namespace
 
-const char *nt_fit_parameter_name(nt_fit_parameter parameter)
+const char *nt_fit_model_name(nt_fit_model model)
+{
+    const int index = number_of(model);
+    return index >= NT_FIT_HERTZ && index <= NT_FIT_CUSTOM ? model_names[index] : nullptr;
+}
+
+nt_fit_quantity nt_fit_quantity_of(const nt_fit_options *options, nt_fit_parameter parameter)
 {
     const int index = number_of(parameter);
-    return index >= 0 && index < NT_FIT_PARAMETERS ? descriptions[index].name : nullptr;
+    const nt_fit_quantity none = quantities[NT_FIT_FOURTH];
+    if (!options || index < 0 || index >= NT_FIT_PARAMETERS)
+        return none;
+    if (options->model == NT_FIT_CUSTOM && index < NT_FIT_OWN)
+        return options->law && index < options->law->count ? options->law->parameter[index] : none;
+    const bool absent = (index == NT_FIT_WORK_OF_ADHESION && !is_adhesive(options->model)) ||
+                        (index == NT_FIT_COHESIVE_RANGE && options->model != NT_FIT_MAUGIS);
+    return absent ? none : quantities[index];
 }
 
-const char *nt_fit_parameter_unit(nt_fit_parameter parameter)
+nt_fit_options nt_fit_defaults(nt_fit_model model)
 {
-    const int index = number_of(parameter);
-    return index >= 0 && index < NT_FIT_PARAMETERS ? descriptions[index].unit : nullptr;
+    return defaults(model, nullptr);
 }
 
-int nt_fit_model_has(nt_model model, nt_fit_parameter parameter)
+nt_fit_options nt_fit_defaults_for(const nt_fit_law *law)
 {
-    switch (parameter) {
-    case NT_FIT_WORK_OF_ADHESION:
-        return model != NT_HERTZ;
-    case NT_FIT_COHESIVE_RANGE:
-        return model == NT_MAUGIS;
-    default:
-        return 1;
-    }
-}
-
-nt_fit_options nt_fit_defaults(nt_model model)
-{
-    nt_fit_options options{};
-    options.model = model;
-    options.radius = 20e-9;
-    options.loss = NT_LOSS_SQUARES;
-    options.loss_scale = 1e-9;
-    options.max_iterations = 100;
-    for (int i = 0; i < NT_FIT_PARAMETERS; i++)
-        options.parameter[i] = {not_given, descriptions[i].minimum, descriptions[i].maximum, 0};
-    hold(&options.parameter[NT_FIT_COHESIVE_RANGE], 0.2e-9);
-    hold(&options.parameter[NT_FIT_FORCE_OFFSET], 0.0);
-    hold(&options.parameter[NT_FIT_COMPLIANCE], 1.0);
-    return options;
+    return defaults(NT_FIT_CUSTOM, law);
 }
 
 nt_status nt_fit_check(const nt_fit_options *options, nt_problem *problem)
@@ -148,8 +185,12 @@ nt_status nt_fit_check(const nt_fit_options *options, nt_problem *problem)
     nt_status status = nt_field_check(fields, sizeof fields / sizeof fields[0], options, problem);
     if (status == NT_OK)
         status = check_choices(options, problem);
-    for (int i = 0; i < NT_FIT_PARAMETERS && status == NT_OK; i++)
-        if (nt_fit_model_has(options->model, static_cast<nt_fit_parameter>(i)))
-            status = check_start(descriptions[i], options->parameter[i], problem);
+    if (status == NT_OK)
+        status = check_noise(options, problem);
+    for (int i = 0; i < NT_FIT_PARAMETERS && status == NT_OK; i++) {
+        const nt_fit_quantity quantity = nt_fit_quantity_of(options, static_cast<nt_fit_parameter>(i));
+        if (quantity.name)
+            status = check_start(quantity, options->parameter[i], problem);
+    }
     return status;
 }

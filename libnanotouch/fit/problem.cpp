@@ -13,12 +13,16 @@ namespace nanotouch
 Coordinates::Coordinates(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start)
     : start_(start)
 {
-    scale_.fill(1.0);
+    for (int i = 0; i < NT_FIT_PARAMETERS; i++) {
+        const auto p = static_cast<std::size_t>(i);
+        logarithmic_[p] = nanotouch::is_logarithmic(options, i);
+        scale_[p] = logarithmic_[p] ? 1.0 : options.parameter[i].maximum - options.parameter[i].minimum;
+        if (is_free(options, i))
+            free_.push_back(i);
+    }
     scale_[NT_FIT_CONTACT_POINT] = position_span(data).width();
     scale_[NT_FIT_FORCE_OFFSET] = force_span(data).width();
-    for (int i = 0; i < NT_FIT_PARAMETERS; i++)
-        if (!options.parameter[i].fixed && nt_fit_model_has(options.model, static_cast<nt_fit_parameter>(i)))
-            free_.push_back(i);
+    scale_[NT_FIT_FORCE_TILT] = scale_[NT_FIT_FORCE_OFFSET] / scale_[NT_FIT_CONTACT_POINT];
 }
 
 Parameters Coordinates::values(const double *x) const
@@ -26,7 +30,7 @@ Parameters Coordinates::values(const double *x) const
     Parameters value = start_;
     for (int i = 0; i < size(); i++) {
         const auto p = static_cast<std::size_t>(parameter(i));
-        value[p] = is_logarithmic(parameter(i)) ? start_[p] * std::exp(x[i]) : start_[p] + scale_[p] * x[i];
+        value[p] = logarithmic_[p] ? start_[p] * std::exp(x[i]) : start_[p] + scale_[p] * x[i];
     }
     return value;
 }
@@ -34,7 +38,7 @@ Parameters Coordinates::values(const double *x) const
 double Coordinates::inverse(int i, double value) const
 {
     const auto p = static_cast<std::size_t>(parameter(i));
-    return is_logarithmic(parameter(i)) ? std::log(value / start_[p]) : (value - start_[p]) / scale_[p];
+    return logarithmic_[p] ? std::log(value / start_[p]) : (value - start_[p]) / scale_[p];
 }
 
 double Coordinates::gradient_scale(int i) const
@@ -44,17 +48,21 @@ double Coordinates::gradient_scale(int i) const
 
 double Coordinates::slope(int i, const Parameters &value) const
 {
-    return is_logarithmic(parameter(i)) ? value[static_cast<std::size_t>(parameter(i))] : gradient_scale(i);
+    const auto p = static_cast<std::size_t>(parameter(i));
+    return logarithmic_[p] ? value[p] : scale_[p];
 }
 
 Residuals::Residuals(const nt_fit_options &options, const nt_fit_data &data, const Coordinates &coordinates)
-    : options_(options), data_(data), coordinates_(coordinates),
+    : options_(options), data_(data), coordinates_(coordinates), model_(Model::make(options)),
       unit_(options.force_noise > 0.0 ? options.force_noise : force_span(data).largest()),
-      has_pull_off_(options.pull_off_sigma > 0.0),
-      has_compliance_(options.compliance_sigma > 0.0 && !options.parameter[NT_FIT_COMPLIANCE].fixed),
-      count_(data.count + has_pull_off_ + has_compliance_), x_(static_cast<std::size_t>(coordinates.size())),
-      residual_(static_cast<std::size_t>(count_)), gradient_(static_cast<std::size_t>(count_ * coordinates.size()))
+      x_(static_cast<std::size_t>(coordinates.size()))
 {
+    for (int i = 0; i < coordinates_.size(); i++)
+        if (options_.parameter[coordinates_.parameter(i)].sigma > 0.0)
+            known_.push_back(i);
+    count_ = data.count + has_tear() + static_cast<long>(known_.size());
+    residual_.resize(static_cast<std::size_t>(count_));
+    gradient_.resize(static_cast<std::size_t>(count_ * coordinates_.size()));
 }
 
 void Residuals::PrepareForEvaluation(bool, bool new_evaluation_point)
@@ -66,35 +74,44 @@ void Residuals::PrepareForEvaluation(bool, bool new_evaluation_point)
 bool Residuals::evaluate()
 {
     const Parameters value = values();
-    if (model_.prepare(options_, value) != NT_OK)
+    Tear tear{};
+    if (model_->prepare(value) != NT_OK || model_->points_at(data_, &points_) != NT_OK ||
+        (has_tear() && model_->tear(&tear) != NT_OK))
         return false;
-    Point point;
-    Track track;
     for (long i = 0; i < data_.count; i++) {
-        const double force = data_.force[i * data_.force_stride];
-        if (model_.at(data_.position[i * data_.position_stride], &track, &point) != NT_OK)
-            return false;
-        store(i, point.force - force, point, unit_);
+        const Point &point = points_[static_cast<std::size_t>(i)];
+        store(i, point.force - data_.force[i * data_.force_stride], point.gradient, unit_);
     }
     long i = data_.count;
-    if (has_pull_off_)
-        store(i++, model_.pull_off().force + options_.pull_off_force, model_.pull_off(), options_.pull_off_sigma);
-    if (has_compliance_) {
-        point.gradient.fill(0.0);
-        point.gradient[NT_FIT_COMPLIANCE] = 1.0;
-        store(i, std::log(value[NT_FIT_COMPLIANCE]), point, options_.compliance_sigma);
-    }
+    if (has_tear())
+        store(i++, tear.position - options_.tear_position, tear.gradient, options_.tear_sigma);
+    for (const int known : known_)
+        store_known(i++, known);
     const auto finite = [](double number) { return std::isfinite(number); };
     return std::all_of(residual_.begin(), residual_.end(), finite) &&
            std::all_of(gradient_.begin(), gradient_.end(), finite);
 }
 
-void Residuals::store(long i, double residual, const Point &point, double unit)
+void Residuals::store(long i, double residual, const Parameters &gradient, double unit)
 {
     residual_[static_cast<std::size_t>(i)] = residual / unit;
+    double *row = &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
     for (int j = 0; j < coordinates_.size(); j++)
-        gradient_[static_cast<std::size_t>(i * coordinates_.size() + j)] =
-            point.gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * coordinates_.gradient_scale(j) / unit;
+        row[j] = gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * coordinates_.gradient_scale(j) / unit;
+}
+
+// The datum "initial +- sigma" of a free parameter; of its logarithm where that is fitted.
+void Residuals::store_known(long i, int coordinate)
+{
+    const nt_fit_start &start = options_.parameter[coordinates_.parameter(coordinate)];
+    const double sigma = coordinates_.is_logarithmic(coordinate)
+                             ? start.sigma / start.initial
+                             : start.sigma / coordinates_.gradient_scale(coordinate);
+    double *row = &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
+    std::fill_n(row, coordinates_.size(), 0.0);
+    row[coordinate] = 1.0 / sigma;
+    residual_[static_cast<std::size_t>(i)] =
+        (x_[static_cast<std::size_t>(coordinate)] - coordinates_.inverse(coordinate, start.initial)) / sigma;
 }
 
 Residual::Residual(const Residuals &all, long first, long count, int parameters) : all_(all), first_(first)

@@ -29,9 +29,14 @@ class Coordinates
     double inverse(int i, double value) const;
     double slope(int i, const Parameters &value) const; // d value/d x
     double gradient_scale(int i) const;                 // what Model's gradient is multiplied by
+    bool is_logarithmic(int i) const
+    {
+        return logarithmic_[static_cast<std::size_t>(parameter(i))];
+    }
 
   private:
     std::vector<int> free_;
+    std::array<bool, NT_FIT_PARAMETERS> logarithmic_;
     Parameters start_, scale_;
 };
 
@@ -58,7 +63,7 @@ class Residuals : public ceres::EvaluationCallback
     long data_count() const
     {
         return data_.count;
-    } // the first of them; the rest are measured pull-off and calibration
+    } // the first of them; the rest are the tear and what is known of parameters
     double unit() const
     {
         return unit_;
@@ -75,9 +80,13 @@ class Residuals : public ceres::EvaluationCallback
     {
         return &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
     }
+    bool has_tear() const
+    {
+        return options_.tear_sigma > 0.0;
+    } // then it is the residual data_count()
     const Model &model() const
     {
-        return model_;
+        return *model_;
     }
     Parameters values() const
     {
@@ -86,16 +95,18 @@ class Residuals : public ceres::EvaluationCallback
 
   private:
     bool evaluate();
-    void store(long i, double residual, const Point &point, double unit);
+    void store(long i, double residual, const Parameters &gradient, double unit);
+    void store_known(long i, int coordinate);
 
     const nt_fit_options &options_;
     const nt_fit_data &data_;
     const Coordinates &coordinates_;
+    const std::unique_ptr<Model> model_;
     const double unit_;
-    const bool has_pull_off_, has_compliance_;
-    const long count_;
+    long count_ = 0;
     std::vector<double> x_, residual_, gradient_;
-    Model model_;
+    std::vector<Point> points_;
+    std::vector<int> known_; // coordinates with a datum of their own
     bool valid_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include "nanotouch/fit.h"
 
 #include "../src/chapters.h"
+#include "law.h"
 
 static Array column(const Array &values, const char *name)
 {
@@ -18,12 +19,55 @@ static nt_fit_data data_of(const Array &position, const Array &force)
     return {position.data(), force.data(), static_cast<long>(position.size()), 1, 1};
 }
 
-static int index_of(const std::string &name)
+// Options together with the law of the user's own that they may point to.
+struct Options : nt_fit_options {
+    std::shared_ptr<PythonLaw> own;
+};
+
+static Options options_of_model(const std::string &name)
+{
+    for (int i = NT_FIT_HERTZ; i < NT_FIT_CUSTOM; ++i)
+        if (name == nt_fit_model_name(static_cast<nt_fit_model>(i)))
+            return {nt_fit_defaults(static_cast<nt_fit_model>(i)), nullptr};
+    throw py::key_error(name);
+}
+
+static Options options_of_law(const std::string &name, const py::list &parameters, const py::function &force)
+{
+    auto own = std::make_shared<PythonLaw>(name, parameters, force);
+    return {nt_fit_defaults_for(&own->law), own};
+}
+
+static nt_fit_quantity quantity_at(const Options &options, int i)
+{
+    return nt_fit_quantity_of(&options, static_cast<nt_fit_parameter>(i));
+}
+
+static int index_of(const Options &options, const std::string &name)
 {
     for (int i = 0; i < NT_FIT_PARAMETERS; ++i)
-        if (name == nt_fit_parameter_name(static_cast<nt_fit_parameter>(i)))
+        if (quantity_at(options, i).name && name == quantity_at(options, i).name)
             return i;
     throw py::key_error(name);
+}
+
+// (name, unit, minimum, maximum) of every parameter by its place; None where the model has none.
+static py::tuple parameters_of(const Options &options)
+{
+    py::list found;
+    for (int i = 0; i < NT_FIT_PARAMETERS; ++i) {
+        const nt_fit_quantity quantity = quantity_at(options, i);
+        if (quantity.name)
+            found.append(py::make_tuple(quantity.name, quantity.unit, quantity.minimum, quantity.maximum));
+        else
+            found.append(py::none());
+    }
+    return found;
+}
+
+template <class Number> static py::array_t<Number> array_of(const Number (&values)[NT_FIT_PARAMETERS])
+{
+    return py::array_t<Number>(NT_FIT_PARAMETERS, values);
 }
 
 static py::dict result_dict(const nt_fit_result &result)
@@ -31,8 +75,9 @@ static py::dict result_dict(const nt_fit_result &result)
     py::array_t<double> covariance({int(NT_FIT_PARAMETERS), int(NT_FIT_PARAMETERS)});
     std::copy_n(&result.covariance[0][0], NT_FIT_PARAMETERS * NT_FIT_PARAMETERS, covariance.mutable_data());
     py::dict out;
-    out["value"] = std::vector<double>(result.value, result.value + NT_FIT_PARAMETERS);
-    out["sigma"] = std::vector<double>(result.sigma, result.sigma + NT_FIT_PARAMETERS);
+    out["value"] = array_of(result.value);
+    out["sigma"] = array_of(result.sigma);
+    out["from_tear"] = array_of(result.from_tear);
     out["identifiable"] = std::vector<bool>(result.identifiable, result.identifiable + NT_FIT_PARAMETERS);
     out["covariance"] = covariance;
     out["residual_rms"] = result.residual_rms;
@@ -47,7 +92,14 @@ static py::dict result_dict(const nt_fit_result &result)
     return out;
 }
 
-static py::dict run(const nt_fit_options &options, const Array &position, const Array &force)
+static void raise(const Options &options, nt_status status, const nt_problem &problem)
+{
+    if (options.own)
+        options.own->rethrow();
+    raise_on(status, problem, "fit");
+}
+
+static py::dict run(const Options &options, const Array &position, const Array &force)
 {
     const nt_fit_data data = data_of(column(position, "position"), column(force, "force"));
     nt_fit_result result;
@@ -57,69 +109,108 @@ static py::dict run(const nt_fit_options &options, const Array &position, const 
         py::gil_scoped_release release;
         status = nt_fit_run(&options, &data, &result, &problem);
     }
-    raise_on(status, problem, "fit");
+    raise(options, status, problem);
     return result_dict(result);
 }
 
-// Force and indentation of the model at every position.
-static py::tuple evaluate(const nt_fit_options &options, const std::vector<double> &value, const Array &position)
+static std::vector<nt_fit_point> points_of(const Options &options, const std::vector<double> &value,
+                                           const Array &position)
 {
     if (value.size() != NT_FIT_PARAMETERS)
         throw py::value_error("value must have one number for each parameter");
-    py::array_t<double> force(position.size()), indentation(position.size());
-    double *F = force.mutable_data(), *delta = indentation.mutable_data();
-    for (py::ssize_t i = 0; i < position.size(); ++i) {
-        nt_fit_point point;
-        raise_on(nt_fit_model_at(&options, value.data(), position.data()[i], &point), "model");
-        F[i] = point.force;
-        delta[i] = point.indentation;
+    const nt_fit_data data{position.data(), nullptr, static_cast<long>(position.size()), 1, 1};
+    std::vector<nt_fit_point> points(static_cast<std::size_t>(position.size()));
+    nt_status status;
+    {
+        py::gil_scoped_release release;
+        status = nt_fit_model_n(&options, value.data(), &data, points.data());
     }
-    return py::make_tuple(force, indentation);
+    raise(options, status, nt_problem{});
+    return points;
+}
+
+// Force and indentation of the model at every position, and whether the contact is held there.
+static py::tuple evaluate(const Options &options, const std::vector<double> &value, const Array &position)
+{
+    const std::vector<nt_fit_point> points = points_of(options, value, position);
+    py::array_t<double> force(position.size()), indentation(position.size());
+    py::array_t<bool> held(position.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        force.mutable_data()[i] = points[i].force;
+        indentation.mutable_data()[i] = points[i].indentation;
+        held.mutable_data()[i] = points[i].held != 0;
+    }
+    return py::make_tuple(force, indentation, held);
+}
+
+// d force/d parameter in SI, shape (points, parameters).
+static py::array_t<double> gradient(const Options &options, const std::vector<double> &value, const Array &position)
+{
+    const std::vector<nt_fit_point> points = points_of(options, value, position);
+    py::array_t<double> found({position.size(), py::ssize_t(NT_FIT_PARAMETERS)});
+    for (std::size_t i = 0; i < points.size(); ++i)
+        std::copy_n(points[i].gradient, NT_FIT_PARAMETERS, found.mutable_data() + i * NT_FIT_PARAMETERS);
+    return found;
+}
+
+static double tear_position(const Options &options, const std::vector<double> &value)
+{
+    if (value.size() != NT_FIT_PARAMETERS)
+        throw py::value_error("value must have one number for each parameter");
+    double position = 0.0;
+    raise(options, nt_fit_tear_position(&options, value.data(), &position), nt_problem{});
+    return position;
+}
+
+static void bind_options(py::module_ &module)
+{
+    const auto start = [](Options &o, const std::string &name) -> nt_fit_start & {
+        return o.parameter[index_of(o, name)];
+    };
+    py::class_<Options>(module, "Options")
+        .def(py::init(&options_of_model), py::arg("model"))
+        .def(py::init(&options_of_law), py::arg("name"), py::arg("parameters"), py::arg("force"))
+        .def_property_readonly("parameters", &parameters_of)
+        .def("start", [=](Options &o, const std::string &name, double value) { start(o, name).initial = value; })
+        .def("know",
+             [=](Options &o, const std::string &name, double value, double sigma) {
+                 start(o, name) = {value, start(o, name).minimum, start(o, name).maximum, sigma, 0};
+             })
+        .def("hold",
+             [=](Options &o, const std::string &name, double value) {
+                 start(o, name).initial = value;
+                 start(o, name).fixed = 1;
+             })
+        .def("free", [=](Options &o, const std::string &name) { start(o, name).fixed = 0; })
+        .def("bound",
+             [=](Options &o, const std::string &name, double minimum, double maximum) {
+                 start(o, name).minimum = minimum;
+                 start(o, name).maximum = maximum;
+             })
+        .def("is_free", [=](Options &o, const std::string &name) { return !start(o, name).fixed; })
+        .def_readwrite("radius", &Options::radius)
+        .def_readwrite("half_angle", &Options::half_angle)
+        .def_readwrite("spring_constant", &Options::spring_constant)
+        .def_readwrite("tilt_position", &Options::tilt_position)
+        .def_property(
+            "loss", [](const Options &o) { return static_cast<int>(o.loss); },
+            [](Options &o, int loss) { o.loss = static_cast<nt_fit_loss>(loss); })
+        .def_readwrite("loss_scale", &Options::loss_scale)
+        .def_readwrite("force_noise", &Options::force_noise)
+        .def_readwrite("tear_position", &Options::tear_position)
+        .def_readwrite("tear_sigma", &Options::tear_sigma)
+        .def_readwrite("max_iterations", &Options::max_iterations);
 }
 
 PYBIND11_MODULE(_fit, module)
 {
-    py::list parameters;
-    for (int i = 0; i < NT_FIT_PARAMETERS; ++i) {
-        const auto parameter = static_cast<nt_fit_parameter>(i);
-        parameters.append(py::make_tuple(nt_fit_parameter_name(parameter), nt_fit_parameter_unit(parameter)));
-    }
-    module.attr("parameters") = py::tuple(parameters);
-    module.def("model_has", [](int model, const std::string &name) {
-        return nt_fit_model_has(static_cast<nt_model>(model), static_cast<nt_fit_parameter>(index_of(name))) != 0;
-    });
-    py::class_<nt_fit_options>(module, "Options")
-        .def(py::init([](int model) { return nt_fit_defaults(static_cast<nt_model>(model)); }), py::arg("model"))
-        .def("start", [](nt_fit_options &o, const std::string &name,
-                         double value) { o.parameter[index_of(name)].initial = value; })
-        .def("hold",
-             [](nt_fit_options &o, const std::string &name, double value) {
-                 nt_fit_start &start = o.parameter[index_of(name)];
-                 start.initial = value;
-                 start.fixed = 1;
-             })
-        .def("free", [](nt_fit_options &o, const std::string &name) { o.parameter[index_of(name)].fixed = 0; })
-        .def("bound",
-             [](nt_fit_options &o, const std::string &name, double minimum, double maximum) {
-                 o.parameter[index_of(name)].minimum = minimum;
-                 o.parameter[index_of(name)].maximum = maximum;
-             })
-        .def("is_free",
-             [](const nt_fit_options &o, const std::string &name) {
-                 const int i = index_of(name);
-                 return !o.parameter[i].fixed && nt_fit_model_has(o.model, static_cast<nt_fit_parameter>(i));
-             })
-        .def_readwrite("radius", &nt_fit_options::radius)
-        .def_readwrite("spring_constant", &nt_fit_options::spring_constant)
-        .def_property(
-            "loss", [](const nt_fit_options &o) { return static_cast<int>(o.loss); },
-            [](nt_fit_options &o, int loss) { o.loss = static_cast<nt_fit_loss>(loss); })
-        .def_readwrite("loss_scale", &nt_fit_options::loss_scale)
-        .def_readwrite("force_noise", &nt_fit_options::force_noise)
-        .def_readwrite("pull_off_force", &nt_fit_options::pull_off_force)
-        .def_readwrite("pull_off_sigma", &nt_fit_options::pull_off_sigma)
-        .def_readwrite("compliance_sigma", &nt_fit_options::compliance_sigma)
-        .def_readwrite("max_iterations", &nt_fit_options::max_iterations);
+    py::list models;
+    for (int i = NT_FIT_HERTZ; i < NT_FIT_CUSTOM; ++i)
+        models.append(nt_fit_model_name(static_cast<nt_fit_model>(i)));
+    module.attr("models") = py::tuple(models);
+    bind_options(module);
     module.def("run", &run, py::arg("options"), py::arg("position"), py::arg("force"));
     module.def("evaluate", &evaluate, py::arg("options"), py::arg("value"), py::arg("position"));
+    module.def("gradient", &gradient, py::arg("options"), py::arg("value"), py::arg("position"));
+    module.def("tear_position", &tear_position, py::arg("options"), py::arg("value"));
 }

@@ -1,31 +1,44 @@
 # SPDX-License-Identifier: BSD-3-Clause
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, overload
 
-from numpy import float64
+from numpy import bool_, float64
 from numpy.typing import NDArray
 
 Floats = NDArray[float64]
 
-parameters: tuple[tuple[str, str], ...]
+models: tuple[str, ...]
 
 class Options:
     radius: float
+    half_angle: float
     spring_constant: float
+    tilt_position: float
     loss: int
     loss_scale: float
     force_noise: float
-    pull_off_force: float
-    pull_off_sigma: float
-    compliance_sigma: float
+    tear_position: float
+    tear_sigma: float
     max_iterations: int
-    def __init__(self, model: int) -> None: ...
+    @overload
+    def __init__(self, model: str) -> None: ...
+    @overload
+    def __init__(
+        self,
+        name: str,
+        parameters: list[tuple[str, str, float, float, float]],
+        force: Callable[[Floats, Floats], Floats],
+    ) -> None: ...
+    @property
+    def parameters(self) -> tuple[tuple[str, str, float, float] | None, ...]: ...
     def start(self, name: str, value: float, /) -> None: ...
+    def know(self, name: str, value: float, sigma: float, /) -> None: ...
     def hold(self, name: str, value: float, /) -> None: ...
     def free(self, name: str, /) -> None: ...
     def bound(self, name: str, minimum: float, maximum: float, /) -> None: ...
     def is_free(self, name: str, /) -> bool: ...
 
-def model_has(model: int, name: str, /) -> bool: ...
 def run(options: Options, position: Floats, force: Floats) -> dict[str, Any]: ...
-def evaluate(options: Options, value: Sequence[float], position: Floats) -> tuple[Floats, Floats]: ...
+def evaluate(options: Options, value: Sequence[float], position: Floats) -> tuple[Floats, Floats, NDArray[bool_]]: ...
+def gradient(options: Options, value: Sequence[float], position: Floats) -> Floats: ...
+def tear_position(options: Options, value: Sequence[float]) -> float: ...

@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Fitting a contact law to a measured force curve by nonlinear least squares (Ceres behind a C interface).
+ * Fitting a law to a measured force curve by nonlinear least squares (Ceres behind a C interface).
  *
- * The model: at a position X the force is F0 + F(delta), where
+ * The model: at a position X the measured force is
  *
- *     X - delta0 = delta + c F(delta)/k_c                                                   (cantilever)
+ *     F0 + G (X - X_b) + F(delta)/s      where      X - delta0 = delta + F(delta)/k_c               (cantilever)
  *
- * X is the travel of the cantilever's base towards the sample and k_c its spring constant; where X is the indentation
- * itself (up to its zero delta0), set spring_constant = 0. Fitting at the position of the base keeps the noise of the
- * force out of the abscissa, and shows how little a curve says about a contact much stiffer than its cantilever.
+ * X is the travel of the cantilever's base towards the sample, k_c its spring constant, s the true over the assumed
+ * deflection sensitivity; F0 and G what is left of offset and tilt of the baseline. Where X is the indentation itself
+ * (up to its zero delta0), set spring_constant = 0. Fitting at the position of the base keeps the noise of the force
+ * out of the abscissa, and shows how little a curve says about a contact much stiffer than its cantilever.
  *
- * F(delta) is the stable branch down to the load fold (the pull-off force), constant below it: what a retraction shows
- * from the deepest point to its minimum. It is C1 in delta and in every parameter, whatever k_c.
+ * F(delta) is what a retraction shows: the stable branch, and beyond its lowest force (the load fold) the part that no
+ * dead weight but this cantilever holds, until it tears the tip off (dF/ddelta = -k_c). Shortly before that, where the
+ * curve has become steeper than NT_FIT_STEEPEST k_c, the model goes on as a straight line, so that it is C1 in delta
+ * and in every parameter: what lies there (nt_fit_point.held = 0) is not to be fitted. Without a spring constant the
+ * force stays at that of the load fold.
  *
  * All functions: thread-safe, no state between calls, nothing printed, no exception escapes. Not real-time (heap). */
 #ifndef NANOTOUCH_FIT_H
@@ -22,24 +26,54 @@
 extern "C" {
 #endif
 
+#define NT_FIT_STEEPEST 2.0
+
+typedef enum nt_fit_model {
+    NT_FIT_HERTZ = NT_HERTZ,
+    NT_FIT_DMT = NT_DMT,
+    NT_FIT_JKR = NT_JKR,
+    NT_FIT_MAUGIS = NT_MAUGIS,
+    NT_FIT_CONE,    /* Sneddon 1965: 2/pi E* tan(half_angle) delta^2 */
+    NT_FIT_PYRAMID, /* four sides, half_angle between axis and face (nt_pyramid_equivalent_angle) */
+    NT_FIT_CUSTOM   /* nt_fit_options.law */
+} nt_fit_model;
+
+/* The first four belong to the law (NT_FIT_CUSTOM: in the order of its own), the others to every curve. */
 typedef enum nt_fit_parameter {
     NT_FIT_EFFECTIVE_MODULUS, /* E* [Pa] */
-    NT_FIT_WORK_OF_ADHESION,  /* w [J/m^2]; not in Hertz */
-    NT_FIT_COHESIVE_RANGE,    /* h0 = w/sigma0 [m]; Maugis-Dugdale only */
+    NT_FIT_WORK_OF_ADHESION,  /* w [J/m^2]; DMT, JKR, Maugis-Dugdale */
+    NT_FIT_COHESIVE_RANGE,    /* h0 = w/sigma0 [m]; Maugis-Dugdale */
+    NT_FIT_FOURTH,            /* of NT_FIT_CUSTOM only */
     NT_FIT_CONTACT_POINT,     /* delta0: X at which the undeformed bodies touch [m] */
     NT_FIT_FORCE_OFFSET,      /* F0 [N] */
-    NT_FIT_COMPLIANCE,        /* c: true over assumed deflection sensitivity [-]; with a spring constant only */
+    NT_FIT_FORCE_TILT,        /* G [N/m] */
+    NT_FIT_SENSITIVITY,       /* s [-]; with a spring constant only */
     NT_FIT_PARAMETERS         /* how many there are */
 } nt_fit_parameter;
-/* "effective_modulus", ... and its SI unit ("" if none); NULL for no parameter. */
-NT_API const char *nt_fit_parameter_name(nt_fit_parameter parameter);
-NT_API const char *nt_fit_parameter_unit(nt_fit_parameter parameter);
-/* 1 if the model has this parameter (work of adhesion: all but Hertz; cohesive range: Maugis-Dugdale). */
-NT_API int nt_fit_model_has(nt_model model, nt_fit_parameter parameter);
+enum { NT_FIT_OWN = NT_FIT_CONTACT_POINT };
+
+/* What a parameter is called, its SI unit ("" if none) and widest bounds. With minimum > 0 it is fitted by its
+ * logarithm. */
+typedef struct nt_fit_quantity {
+    const char *name, *unit;
+    double initial, minimum, maximum; /* initial NaN: guessed from the data */
+} nt_fit_quantity;
+
+/* A law of the user's own. force fills force[i] [N] at indentation[i] [m] for i < count, NaN where there is none, and
+ * is a pure function of its arguments; it is differentiated numerically (central differences, 1e-9). Where there is a
+ * spring constant, X must grow with delta. What it returns but NT_OK ends the fit with that status. */
+typedef struct nt_fit_law {
+    const char *name;
+    int count; /* of parameters, 1 .. NT_FIT_OWN */
+    nt_fit_quantity parameter[NT_FIT_OWN];
+    nt_status (*force)(void *context, const double *value, long count, const double *indentation, double *force);
+    void *context;
+} nt_fit_law;
 
 typedef struct nt_fit_start {
     double initial;          /* SI; NaN: guessed from the data (not possible for a fixed one) */
     double minimum, maximum; /* bounds, SI */
+    double sigma;            /* > 0: initial is a datum of this standard uncertainty, SI; needs force_noise */
     int fixed;               /* 1: stays at initial */
 } nt_fit_start;
 
@@ -47,24 +81,31 @@ typedef struct nt_fit_start {
 typedef enum nt_fit_loss { NT_LOSS_SQUARES, NT_LOSS_HUBER, NT_LOSS_SOFT_L1, NT_LOSS_CAUCHY } nt_fit_loss;
 
 typedef struct nt_fit_options {
-    nt_model model;
+    nt_fit_model model;
+    const nt_fit_law *law;  /* of NT_FIT_CUSTOM, borrowed */
     double radius;          /* R of the tip [m] */
+    double half_angle;      /* psi of cone and pyramid [rad] */
     double spring_constant; /* k_c [N/m]; 0: the position is the indentation */
+    double tilt_position;   /* X_b: where the tilt adds nothing [m] */
     nt_fit_start parameter[NT_FIT_PARAMETERS];
     nt_fit_loss loss;
-    double loss_scale;     /* residual at which the loss leaves the parabola [N]; read unless NT_LOSS_SQUARES */
-    double force_noise;    /* standard deviation of the force data [N]; 0: unknown, taken from the residuals */
-    double pull_off_force; /* measured, positive [N]; a datum like the points, used if pull_off_sigma > 0 */
-    double pull_off_sigma; /* its standard uncertainty [N]; needs force_noise */
-    double
-        compliance_sigma; /* relative uncertainty of the deflection sensitivity; needs force_noise; used if c is free */
+    double loss_scale;    /* residual at which the loss leaves the parabola [N]; read unless NT_LOSS_SQUARES */
+    double force_noise;   /* standard deviation of the force data [N]; 0: unknown, taken from the residuals */
+    double tear_position; /* X at which the tip was torn off [m], a datum like the points, used if tear_sigma > 0 */
+    double tear_sigma;    /* its standard uncertainty [m]; needs force_noise, adhesion, spring constant */
     int max_iterations;
 } nt_fit_options;
-/* Free: E*, w and delta0 (guessed). Fixed: h0 = 0.2 nm, F0 = 0, c = 1. R = 20 nm, k_c = 0, least squares, no noise
- * known, 100 iterations. */
-NT_API nt_fit_options nt_fit_defaults(nt_model model);
+/* Free: E*, w and delta0 (guessed). Fixed: h0 = 0.2 nm, F0 = 0, G = 0, s = 1. R = 20 nm, psi = 20 degrees, k_c = 0,
+ * least squares, no noise known, 100 iterations. */
+NT_API nt_fit_options nt_fit_defaults(nt_fit_model model);
+/* The same for a law of the user's own (borrowed), whose parameters are free and start where it says. */
+NT_API nt_fit_options nt_fit_defaults_for(const nt_fit_law *law);
 /* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE / NT_E_ARGUMENT with the offending field in *problem (NULL allowed). */
 NT_API nt_status nt_fit_check(const nt_fit_options *options, nt_problem *problem);
+/* A parameter of the model that options name; its name is NULL if the model has none in that place. */
+NT_API nt_fit_quantity nt_fit_quantity_of(const nt_fit_options *options, nt_fit_parameter parameter);
+/* "hertz", "dmt", "jkr", "maugis", "cone", "pyramid", "custom"; NULL for no model. */
+NT_API const char *nt_fit_model_name(nt_fit_model model);
 
 /* Points of the curve in any order; point i is at position[i * position_stride]. */
 typedef struct nt_fit_data {
@@ -75,7 +116,7 @@ typedef struct nt_fit_data {
 } nt_fit_data;
 
 /* A parameter that the data determine: free, off its bounds, outside the null space of the problem, and known to
- * NT_FIT_IDENTIFIABLE: relative, for contact point and force offset of the range of the data. */
+ * NT_FIT_IDENTIFIABLE: relative, for contact point, force offset and tilt of the range of the data. */
 #define NT_FIT_IDENTIFIABLE 0.5
 
 enum { NT_FIT_MESSAGE = 200 };
@@ -84,12 +125,13 @@ typedef struct nt_fit_result {
     double value[NT_FIT_PARAMETERS]; /* SI; those of the model that are fixed too; NaN for those not in the model */
     double sigma[NT_FIT_PARAMETERS]; /* standard uncertainty, SI; 0 if fixed, +infinity in the null space */
     double covariance[NT_FIT_PARAMETERS][NT_FIT_PARAMETERS]; /* SI; 0 if fixed, NaN beside an infinite variance */
+    double from_tear[NT_FIT_PARAMETERS]; /* part of the variance that comes from the tear's position [-] */
     int identifiable[NT_FIT_PARAMETERS];
     double residual_rms; /* of the force [N] */
     double misfit;       /* reduced chi^2 against force_noise; NaN if that is 0. The covariance is scaled up by it
                             if > 1 */
     double transition_parameter; /* Maugis' lambda [-]; NaN for other models */
-    double pull_off_force;       /* of the fitted contact, positive [N] */
+    double pull_off_force;       /* of the fitted contact, positive [N]; NaN for NT_FIT_CUSTOM, as the next two */
     double contact_radius;       /* a at the deepest point [m] */
     double contact_stiffness;    /* k at the deepest point [N/m] */
     int iterations;
@@ -98,23 +140,24 @@ typedef struct nt_fit_result {
 } nt_fit_result;
 
 /* Fits. problem (NULL allowed) names what is wrong with options or data. The result is written on NT_OK only; fails
- * with NT_E_NO_CONVERGENCE if no contact law of this kind comes near the data, NT_E_NO_MEMORY. */
+ * with NT_E_NO_CONVERGENCE if no law of this kind comes near the data, NT_E_NO_MEMORY. */
 NT_API nt_status nt_fit_run(const nt_fit_options *options, const nt_fit_data *data, nt_fit_result *result,
                             nt_problem *problem);
 
 /* One point of the model and its derivatives. */
 typedef struct nt_fit_point {
-    double force;                       /* F0 + F [N] */
+    double force;                       /* as measured: F0 + G (X - X_b) + F/s [N] */
     double indentation;                 /* delta [m] */
     double gradient[NT_FIT_PARAMETERS]; /* d force/d parameter, SI */
+    int held;                           /* 1: on the branch; 0: where the cantilever has (almost) torn the tip off */
 } nt_fit_point;
-/* The model at a position, parameter values in SI as in nt_fit_result; reads model, radius, spring constant of options.
- */
-NT_API nt_status nt_fit_model_at(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double position,
-                                 nt_fit_point *point);
-/* The force of the model at every position of data into force[i], i < data->count (data->force is not read). */
+/* The model at every position of data (data->force is not read) into point[i], i < data->count; parameter values in SI
+ * as in nt_fit_result. */
 NT_API nt_status nt_fit_model_n(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
-                                const nt_fit_data *data, double *force);
+                                const nt_fit_data *data, nt_fit_point *point);
+/* X at which the cantilever tears the tip off [m]; NT_E_UNSUPPORTED without spring constant or adhesion. */
+NT_API nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
+                                      double *position);
 
 #ifdef __cplusplus
 }

@@ -6,10 +6,13 @@
 >>> report = nt.curves.analyse(curve)                                       # doctest: +SKIP
 """
 
-from .analysis import Baseline, CurveReport, analyse, force_gap, sensitivity
+from .analysis import analyse, force_gap, sensitivity
+from .baseline import Baseline, Wave
 from .calibration import Calibration, CalibrationTable
 from .curve import ForceCurve, Segment
 from .reading import read
+from .report import CurveReport
+from .sader import hydrodynamic_function, sader
 from .synthesis import synthesise
 from .thermal import ThermalTune, thermal_tune
 
@@ -21,9 +24,12 @@ __all__ = [
     "ForceCurve",
     "Segment",
     "ThermalTune",
+    "Wave",
     "analyse",
     "force_gap",
+    "hydrodynamic_function",
     "read",
+    "sader",
     "sensitivity",
     "synthesise",
     "thermal_tune",

@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import contact as laws
+from .. import geometry
 from .._arrays import check_between
 from ..errors import InvalidValue
 from .curve import ForceCurve, Segment
+
+Law = Literal["maugis", "jkr", "dmt", "hertz", "cone", "pyramid"]
 
 _TABLE = 20_001  # points of the law between which it is taken as straight: below 1e-8 of the force
 _FOLD = 1e-12  # of the depth, by which the table starts inside the displacement fold
@@ -19,7 +22,7 @@ _FOLD = 1e-12  # of the depth, by which the table starts inside the displacement
 
 def synthesise(
     contact: laws.Contact,
-    model: laws.Model = "maugis",
+    model: Law = "maugis",
     *,
     spring_constant: float,
     depth: float = 60e-9,
@@ -33,6 +36,7 @@ def synthesise(
     drift: float = 0.0,
     sensitivity_error: float = 1.0,
     spring_constant_error: float = 1.0,
+    half_angle: float | None = None,
     seed: int = 0,
 ) -> ForceCurve:
     """What an instrument would record over a known contact.
@@ -45,8 +49,8 @@ def synthesise(
     ----------
     contact : Contact
         Tip and sample.
-    model : {"maugis", "jkr", "dmt", "hertz"}
-        The law.
+    model : {"maugis", "jkr", "dmt", "hertz", "cone", "pyramid"}
+        The law; of the last two `contact` gives the modulus only.
     spring_constant : float
         True k_c [N/m].
     depth, clearance : float
@@ -65,6 +69,8 @@ def synthesise(
         Speed with which the sample recedes from the recorded z [m/s].
     sensitivity_error, spring_constant_error : float
         Stated over true calibration; both spoil the force, the first also the deflection.
+    half_angle : float, optional
+        Of cone (axis to flank) and pyramid (axis to face) [rad].
     seed : int
         Of the noise; the same arguments give the same curve.
 
@@ -82,7 +88,10 @@ def synthesise(
         raise InvalidValue(f"points: {points}, expected at least 16")
     rng = np.random.default_rng(seed)
     stated = spring_constant * spring_constant_error
-    height, force_there = _equilibria(contact, model, spring_constant, depth)
+    if model == "cone" or model == "pyramid":
+        height, force_there = _equilibria_of_cone(contact, model, half_angle, spring_constant, depth)
+    else:
+        height, force_there = _equilibria(contact, model, spring_constant, depth)
 
     def branch(role: Literal["approach", "retract"], z: NDArray[np.float64], first: int) -> Segment:
         time = (first + np.arange(points)) / rate
@@ -110,3 +119,14 @@ def _equilibria(
     height = -delta - force / stiffness
     torn = int(np.argmax(height))
     return height[torn:][::-1], force[torn:][::-1]
+
+
+def _equilibria_of_cone(
+    contact: laws.Contact, model: Literal["cone", "pyramid"], half_angle: float | None, stiffness: float, depth: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if half_angle is None:
+        raise InvalidValue(f"model {model!r} needs half_angle")
+    shape = geometry.Shape("cone", half_angle=half_angle, sides=4 if model == "pyramid" else 0)
+    delta = np.linspace(1.0, 0.0, _TABLE) ** 2 * 1.2 * depth
+    force = np.asarray(geometry.evaluate(shape, delta, contact.effective_modulus).F)
+    return -delta - force / stiffness, force

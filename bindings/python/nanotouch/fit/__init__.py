@@ -12,7 +12,19 @@ one that does not determine the modulus. How and why: docs/fit.md.
 """
 
 from .fitting import TipLike, fit_curve
+from .models import Model, Parameter, models, register
 from .picture import draw
 from .result import FitResult
+from .uncertainties import Uncertainties
 
-__all__ = ["FitResult", "TipLike", "draw", "fit_curve"]
+__all__ = [
+    "FitResult",
+    "Model",
+    "Parameter",
+    "TipLike",
+    "Uncertainties",
+    "draw",
+    "fit_curve",
+    "models",
+    "register",
+]

@@ -14,9 +14,8 @@ from nanotouch.errors import require
 from nanotouch.plots import BLUE, GREEN, VERMILION, engineering
 from nanotouch.record import replacing
 
-from .result import FitResult, Floats
-
-TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale"}
+from .models import Floats
+from .result import FitResult
 
 
 def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | None = None) -> Any:
@@ -34,7 +33,7 @@ def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | No
     fitted = figure.add_subplot(grid[:2, 1])
     _fitted(fitted, result)
     _residuals(figure.add_subplot(grid[2, 1], sharex=fitted), result)
-    figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {TITLES[result.model]}")
+    figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {result.title}")
     if save is not None:
         path = Path(save)
         with replacing(path) as part:
@@ -83,7 +82,7 @@ def _fitted(panel: Any, result: FitResult) -> None:
     strong, scale_f = engineering("N", result.force)
     colour = VERMILION if result.branch == "retract" else BLUE
     panel.plot(travel * scale_z, result.force * scale_f, ".", color=colour, ms=3, alpha=0.6, label="measured")
-    panel.plot(travel * scale_z, result.fitted * scale_f, color="black", lw=1.2, label=TITLES[result.model])
+    panel.plot(travel * scale_z, result.fitted * scale_f, color="black", lw=1.2, label=result.title)
     panel.axhline(0.0, color="0.4", lw=0.8, ls="--")
     panel.axvline(0.0, color=GREEN, lw=1.0, ls=":")
     panel.text(0.97, 0.95, _box(result), transform=panel.transAxes, ha="right", va="top", fontsize=8,

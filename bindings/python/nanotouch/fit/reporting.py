@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From what the C library found to a :class:`FitResult`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from nanotouch.curves import CurveReport, ForceCurve
+from nanotouch.errors import InvalidValue
+
+from .doubts import doubts
+from .models import Floats
+from .points import Branch, Points
+from .result import FitResult
+from .solving import Setup, Solution, calibration_shifts
+from .uncertainties import Uncertainties, quantile
+
+_PLAIN = (
+    "pull_off_force", "residual_rms", "contact_radius", "contact_stiffness", "transition_parameter",
+    "converged", "iterations",
+)  # fmt: skip
+_LOGARITHM = 300.0  # beyond, an exponent means "anything"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What turns E* into a modulus of the sample."""
+
+    poisson_ratio: float | None
+    tip: Any
+
+    def youngs_modulus(self, modulus: float, notes: list[str], assumptions: list[str]) -> tuple[float, float, float]:
+        """E from 1/E* = (1 - nu^2)/E + (1 - nu_t^2)/E_t [Pa], and d ln E/d ln E*, dE/dnu; NaN if the tip yields all."""
+        ratio = self.poisson_ratio
+        if ratio is None or not -1.0 < ratio <= 0.5:
+            raise InvalidValue(f"poisson_ratio {ratio}: valid is above -1, up to 0.5")
+        tip_modulus = getattr(self.tip, "youngs_modulus", np.inf)
+        tip_compliance = 0.0
+        if np.isfinite(tip_modulus):
+            tip_compliance = (1.0 - float(getattr(self.tip, "poisson_ratio", 0.0)) ** 2) / tip_modulus
+        else:
+            assumptions.append("the tip is rigid (its modulus is not given)")
+        compliance = 1.0 / modulus - tip_compliance
+        if compliance <= 0.0:
+            notes.append("E* reaches that of the tip on a rigid sample: no modulus of the sample follows from it")
+            return np.nan, np.inf, np.inf
+        return (1.0 - ratio**2) / compliance, 1.0 / (modulus * compliance), -2.0 * ratio / compliance
+
+
+@dataclass
+class Table:
+    """Values and uncertainties by name."""
+
+    values: dict[str, float]
+    statistical: dict[str, float]
+    calibration: dict[str, float]
+    from_step: dict[str, float]
+    positive: dict[str, bool]
+
+    def sigma(self) -> dict[str, float]:
+        """All together."""
+        return {key: float(np.hypot(self.statistical[key], self.calibration[key])) for key in self.values}
+
+    def interval(self) -> dict[str, tuple[float, float]]:
+        """95 %, of positive quantities symmetric in the logarithm."""
+        made = {}
+        for key, sigma in self.sigma().items():
+            value, half = self.values[key], quantile(sigma, self.from_step[key])
+            if self.positive[key] and value > 0.0:
+                factor = float(np.exp(min(half / value, _LOGARITHM)))
+                made[key] = (value / factor, value * factor)
+            else:
+                made[key] = (value - half, value + half)
+        return made
+
+
+def make_result(
+    extension: ModuleType,
+    curve: ForceCurve,
+    setup: Setup,
+    points: Points,
+    solution: Solution,
+    uncertainties: Uncertainties,
+    report: CurveReport,
+    branch: Branch,
+    sample: Sample,
+    assumptions: list[str],
+) -> FitResult:
+    """All that is known about a fit."""
+    found, options = solution.found, solution.options
+    places = [i for i, parameter in enumerate(options.parameters) if parameter is not None]
+    names = {i: options.parameters[i][0] for i in places}
+    free = [i for i in places if options.is_free(names[i])]
+    identifiable, notes = doubts(extension, setup, points, solution, uncertainties)
+    shifts = calibration_shifts(extension, setup, points, solution, uncertainties)
+    covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), np.zeros((1, 1)))
+    table = _table(found, options, names, shifts)
+    if sample.poisson_ratio is not None and "effective_modulus" in table.values:
+        _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
+    sign = np.where([names[i] == "contact_point" for i in free], -1.0, 1.0)
+    return FitResult(
+        model=setup.model.name,
+        title=setup.model.title or setup.model.name,
+        valid=setup.model.valid,
+        branch=branch,
+        values=table.values,
+        sigma=table.sigma(),
+        sigma_statistical=table.statistical,
+        sigma_calibration=table.calibration,
+        interval=table.interval(),
+        covariance=covariance[np.ix_(free, free)] * np.outer(sign, sign),
+        free=tuple(names[i] for i in free),
+        identifiable=identifiable,
+        z=points.z,
+        force=points.force,
+        fitted=solution.fitted,
+        indentation=solution.indentation,
+        misfit=solution.rms / points.noise if points.noise > 0.0 else np.inf,
+        measured_pull_off_force=report.pull_off_force,
+        measured_snap_in_force=report.snap_in_force,
+        radius=setup.radius,
+        half_angle=setup.half_angle,
+        spring_constant=setup.spring_constant,
+        report=report,
+        assumptions=tuple(assumptions),
+        notes=tuple(list(report.notes) + notes),
+        name=curve.name,
+        units={names[i]: options.parameters[i][1] for i in places} | {"youngs_modulus": "Pa"},
+        **{key: found[key] for key in _PLAIN},
+    )
+
+
+def _table(found: dict[str, Any], options: Any, names: dict[int, str], shifts: dict[str, Floats]) -> Table:
+    """Statistical: with the sensitivity known exactly, C_ii - C_is^2/C_ss. Calibration: all the rest."""
+    table = Table({}, {}, {}, {}, {})
+    covariance, last = found["covariance"], max(names)
+    by_sensitivity = np.zeros(covariance.shape[0])
+    if np.isfinite(covariance[last, last]) and covariance[last, last] > 0.0:
+        by_sensitivity = np.nan_to_num(covariance[:, last]) / np.sqrt(covariance[last, last])
+    for i, name in names.items():
+        variance = float(covariance[i, i])
+        part = min(float(by_sensitivity[i]) ** 2, variance)
+        calibration = part + sum(float(shift[i]) ** 2 for shift in shifts.values())
+        table.values[name] = float(found["value"][i])
+        table.statistical[name] = float(np.sqrt(variance - part)) if np.isfinite(variance) else np.inf
+        table.calibration[name] = float(np.sqrt(calibration))
+        total = variance + calibration - part
+        table.from_step[name] = float(found["from_tear"][i]) * variance / total if 0.0 < total < np.inf else 0.0
+        table.positive[name] = options.parameters[i][2] > 0.0
+    table.values["contact_point"] *= -1.0
+    return table
+
+
+def _add_youngs_modulus(
+    table: Table, sample: Sample, uncertainties: Uncertainties, notes: list[str], assumptions: list[str]
+) -> None:
+    modulus = table.values["effective_modulus"]
+    value, gain, by_ratio = sample.youngs_modulus(modulus, notes, assumptions)
+    scale = gain * value / modulus if np.isfinite(value) else np.inf
+    table.values["youngs_modulus"] = value
+    table.statistical["youngs_modulus"] = table.statistical["effective_modulus"] * scale
+    table.calibration["youngs_modulus"] = (
+        float(np.hypot(table.calibration["effective_modulus"] * scale, by_ratio * uncertainties.poisson_ratio))
+        if np.isfinite(scale)
+        else np.inf
+    )
+    table.from_step["youngs_modulus"] = table.from_step["effective_modulus"]
+    table.positive["youngs_modulus"] = True

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The force at a position and its derivatives.
+//
+// Derivatives at constant delta. In Maugis' units F = S_P p(d; lambda), d = delta/S_d with S_P = pi w R,
+// S_d = (pi^2 w^2 R/K^2)^(1/3) and lambda = 2 (w/h0) (R/(pi w K^2))^(1/3), so that with Lambda = S_P lambda
+// dp/dlambda|_d
+//
+//     dF/d ln E* = 2/3 (k delta - Lambda)     dF/d ln w = F - 2/3 (k delta - Lambda)     dF/d ln h0 = -Lambda (scaling)
+//
+// for every paraboloid; Lambda = 0 without a range of adhesion. Cone and pyramid: dF/d ln E* = k delta/2. For
+// Maugis-Dugdale, dp/dlambda|_d = p_lambda - k d_lambda at constant branch parameter y. Differentiating (Griffith) of
+// contact/maugis_branch.c by lambda gives, with q = 4/3 lambda^2 g2 b and r = (1 + q)/(2 - q),
+//
+//     lambda b_lambda = -r b     lambda p_lambda = p (1 - 2r) - a^3 (1 + r)     lambda d_lambda = d (1 - r) - a^2 (1 +
+//     r)
+//
+// At constant position, (cantilever) of fit.h turns dF into (dF - k ddelta0)/(1 + k/k_c); measured is F/s.
+//
+// The tear, dX/ds = 0: there X is stationary along the branch, so its derivative is that at constant delta,
+// dX = ddelta0 + dF/k_c.
+//
+// The straight continuation F = F_e - m (X - X_e) begins where dF/dX = -m. Its derivative at constant X is that of the
+// branch at X_e, whatever X_e does, because m is a constant.
+#include "contact_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nanotouch/geometry.h"
+
+namespace nanotouch
+{
+
+namespace
+{
+
+constexpr int max_iterations = 100;
+constexpr double linear = 1e-9; // of s: over a step that small the branch is straight to the last bit
+constexpr double tight = 1e-14; // of the part of the branch between its folds
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+bool is_cone(nt_fit_model model)
+{
+    return model == NT_FIT_CONE || model == NT_FIT_PYRAMID;
+}
+
+bool is_adhesive(nt_fit_model model)
+{
+    return model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
+}
+
+nt_status indentation_at(const nt_contact_law &law, double force, double *indentation)
+{
+    const nt_contact *contact = &law.maugis.contact;
+    switch (law.model) {
+    case NT_HERTZ:
+        *indentation = nt_hertz_indentation(contact, force);
+        break;
+    case NT_DMT:
+        *indentation = nt_dmt_indentation(contact, force);
+        break;
+    case NT_JKR:
+        return nt_jkr_indentation(contact, force, NT_BRANCH_STABLE, indentation);
+    case NT_MAUGIS:
+        return nt_maugis_indentation(&law.maugis, force, NT_BRANCH_STABLE, indentation, nullptr);
+    }
+    return std::isfinite(*indentation) ? NT_OK : NT_E_NO_SOLUTION;
+}
+
+} // namespace
+
+double Track::predict(double position, double otherwise) const
+{
+    const double travel = position - position_;
+    return known_ ? s_ + travel * (slope_ + 0.5 * travel * bend_) : otherwise;
+}
+
+void Track::add(double position, double s, double slope)
+{
+    bend_ = known_ && position != position_ ? (slope - slope_) / (position - position_) : 0.0;
+    known_ = true;
+    position_ = position;
+    s_ = s;
+    slope_ = slope;
+}
+
+// F1 + steepest dX/ds: negative where the curve over X is steeper than that.
+double ContactModel::steepness_at(double s, double steepest) const
+{
+    const nt_fit_state state = nt_fit_branch_at(&branch_, s);
+    return state.F1 + steepest * (state.indentation1 + compliance_ * state.F1);
+}
+
+// s between the folds where dF/dX = -steepest [N/m]; regula falsi, its bracket kept (Illinois).
+double ContactModel::where_steep(double steepest) const
+{
+    double lo = branch_.grip_fold, hi = branch_.load_fold;
+    double at_lo = steepness_at(lo, steepest), at_hi = steepness_at(hi, steepest);
+    int last = 0;
+    for (int i = 0; i < max_iterations && hi - lo > tight * (hi - branch_.grip_fold); i++) {
+        const double s = std::clamp((lo * at_hi - hi * at_lo) / (at_hi - at_lo), lo, hi);
+        const double value = steepness_at(s, steepest);
+        if (value == 0.0)
+            return s;
+        const int side = value < 0.0 ? -1 : 1;
+        (side < 0 ? lo : hi) = s;
+        (side < 0 ? at_lo : at_hi) = value;
+        if (side == last)
+            (side < 0 ? at_hi : at_lo) *= 0.5;
+        last = side;
+    }
+    return hi;
+}
+
+void ContactModel::differentiate(const nt_fit_state &state, double stiffness, Point *point) const
+{
+    const double elastic = (stiffness * state.indentation - state.range) / branch_.exponent;
+    const double softening = 1.0 / ((1.0 + compliance_ * stiffness) * value_[NT_FIT_SENSITIVITY]);
+    point->force = state.F / value_[NT_FIT_SENSITIVITY];
+    point->indentation = state.indentation;
+    point->gradient.fill(0.0);
+    point->gradient[NT_FIT_EFFECTIVE_MODULUS] = softening * elastic;
+    point->gradient[NT_FIT_WORK_OF_ADHESION] = is_adhesive(branch_.model) ? softening * (state.F - elastic) : 0.0;
+    point->gradient[NT_FIT_COHESIVE_RANGE] = softening * -state.range;
+    point->gradient[NT_FIT_CONTACT_POINT] = softening * -stiffness;
+    point->gradient[NT_FIT_SENSITIVITY] = -point->force;
+    point->held = true;
+}
+
+void ContactModel::add_background(double position, Point *point) const
+{
+    const double from = position - options_.tilt_position;
+    point->force += value_[NT_FIT_FORCE_OFFSET] + value_[NT_FIT_FORCE_TILT] * from;
+    point->gradient[NT_FIT_FORCE_OFFSET] = 1.0;
+    point->gradient[NT_FIT_FORCE_TILT] = from;
+}
+
+nt_status ContactModel::prepare(const Parameters &value)
+{
+    const double E = value[NT_FIT_EFFECTIVE_MODULUS];
+    if (is_cone(options_.model)) {
+        const int sides = options_.model == NT_FIT_PYRAMID ? 4 : 0;
+        if (!std::isfinite(E) || E <= 0.0)
+            return std::isfinite(E) ? NT_E_RANGE : NT_E_NOT_FINITE;
+        branch_ = nt_fit_branch_of_cone(options_.model, E, nt_pyramid_equivalent_angle(sides, options_.half_angle));
+    } else {
+        nt_contact contact{options_.radius, E, 0.0, 0.0};
+        if (is_adhesive(options_.model))
+            contact.work_of_adhesion = value[NT_FIT_WORK_OF_ADHESION];
+        if (options_.model == NT_FIT_MAUGIS)
+            contact.cohesive_stress = value[NT_FIT_WORK_OF_ADHESION] / value[NT_FIT_COHESIVE_RANGE];
+        const nt_status status = nt_contact_law_init(&law_, static_cast<nt_model>(options_.model), &contact);
+        if (status != NT_OK)
+            return status;
+        branch_ = nt_fit_branch_of(&law_);
+    }
+    value_ = value;
+    compliance_ = options_.spring_constant > 0.0 ? 1.0 / options_.spring_constant : 0.0;
+    const bool goes_on = compliance_ > 0.0 && branch_.grip_fold < branch_.load_fold;
+    end_ = goes_on ? where_steep(NT_FIT_STEEPEST / compliance_) : branch_.load_fold;
+    const nt_fit_state end = nt_fit_branch_at(&branch_, end_);
+    const double stiffness = goes_on ? end.F1 / end.indentation1 : 0.0;
+    end_base_ = end.indentation + compliance_ * end.F;
+    end_slope_ = stiffness / (1.0 + compliance_ * stiffness);
+    differentiate(end, stiffness, &end_point_);
+    return NT_OK;
+}
+
+// s at which delta + F/k_c, which grows with s, is `base`; the state there.
+nt_status ContactModel::search(double base, double start, double *s, nt_fit_state *state) const
+{
+    double lo = end_, hi = std::numeric_limits<double>::infinity();
+    *s = std::max(start, lo);
+    for (int i = 0; i < max_iterations; i++) {
+        *state = nt_fit_branch_at(&branch_, *s);
+        const double excess = state->indentation + compliance_ * state->F - base;
+        const double step = -excess / (state->indentation1 + compliance_ * state->F1);
+        const double next = *s + step;
+        const double resolution = 1e-15 * (std::fabs(state->indentation) + std::fabs(base));
+        if (std::fabs(step) <= linear * std::fabs(*s) || std::fabs(excess) <= resolution) {
+            state->F += state->F1 * step;
+            state->indentation += state->indentation1 * step;
+            return NT_OK;
+        }
+        (excess > 0.0 ? hi : lo) = *s;
+        if (next > lo && next < hi)
+            *s = next;
+        else
+            *s = std::isinf(hi) ? 4.0 * std::fabs(*s) + branch_.unit : 0.5 * (lo + hi);
+    }
+    return NT_E_NO_CONVERGENCE;
+}
+
+nt_status ContactModel::at(double position, Track *track, Point *point) const
+{
+    const double base = position - value_[NT_FIT_CONTACT_POINT];
+    if (std::isnan(base))
+        return NT_E_NOT_FINITE;
+    if (base <= end_base_) {
+        *point = end_point_;
+        point->held = false;
+        const double force = end_slope_ * (base - end_base_) / value_[NT_FIT_SENSITIVITY];
+        point->force += force;
+        point->gradient[NT_FIT_SENSITIVITY] -= force;
+        point->indentation += base - end_base_; /* as if the force stayed */
+        add_background(position, point);
+        return NT_OK;
+    }
+    double s;
+    nt_fit_state state;
+    const nt_status status = search(base, track->predict(position, branch_.load_fold + branch_.unit), &s, &state);
+    if (status != NT_OK)
+        return status;
+    track->add(position, s, 1.0 / (state.indentation1 + compliance_ * state.F1));
+    differentiate(state, state.F1 / state.indentation1, point);
+    add_background(position, point);
+    return NT_OK;
+}
+
+nt_status ContactModel::points_at(const nt_fit_data &data, std::vector<Point> *points) const
+{
+    points->resize(static_cast<std::size_t>(data.count));
+    Track track;
+    nt_status status = NT_OK;
+    for (long i = 0; i < data.count && status == NT_OK; i++)
+        status = at(data.position[i * data.position_stride], &track, &(*points)[static_cast<std::size_t>(i)]);
+    return status;
+}
+
+nt_status ContactModel::tear(Tear *tear) const
+{
+    if (!is_adhesive(branch_.model) || compliance_ == 0.0)
+        return NT_E_UNSUPPORTED;
+    const bool goes_on = branch_.grip_fold < branch_.load_fold;
+    const double s = goes_on ? where_steep(1e12 / compliance_) : branch_.load_fold;
+    const nt_fit_state state = nt_fit_branch_at(&branch_, s);
+    const double stiffness = goes_on ? -1.0 / compliance_ : 0.0;
+    const double elastic = (stiffness * state.indentation - state.range) / branch_.exponent;
+    tear->position = value_[NT_FIT_CONTACT_POINT] + state.indentation + compliance_ * state.F;
+    tear->gradient.fill(0.0);
+    tear->gradient[NT_FIT_EFFECTIVE_MODULUS] = compliance_ * elastic;
+    tear->gradient[NT_FIT_WORK_OF_ADHESION] = compliance_ * (state.F - elastic);
+    tear->gradient[NT_FIT_COHESIVE_RANGE] = -compliance_ * state.range;
+    tear->gradient[NT_FIT_CONTACT_POINT] = 1.0;
+    return NT_OK;
+}
+
+nt_status ContactModel::travel(double force, double *travel) const
+{
+    double indentation = force >= 0.0 ? std::sqrt(force / branch_.prefactor) : not_a_number; /* cone */
+    nt_status status = std::isnan(indentation) ? NT_E_NO_SOLUTION : NT_OK;
+    if (!is_cone(branch_.model))
+        status = indentation_at(law_, force, &indentation);
+    if (status == NT_OK)
+        *travel = indentation + compliance_ * force;
+    return status;
+}
+
+void ContactModel::describe(double deepest, nt_fit_result *result) const
+{
+    result->pull_off_force = branch_.pull_off;
+    result->transition_parameter = branch_.model == NT_FIT_MAUGIS ? branch_.lambda : not_a_number;
+    result->contact_radius = result->contact_stiffness = not_a_number;
+    Point point;
+    Track track;
+    if (at(deepest, &track, &point) != NT_OK)
+        return;
+    nt_law_value there{0.0, 0.0, 0.0, 0.0};
+    if (is_cone(branch_.model))
+        there = nt_cone_eval(value_[NT_FIT_EFFECTIVE_MODULUS],
+                             nt_pyramid_equivalent_angle(branch_.model == NT_FIT_PYRAMID ? 4 : 0, options_.half_angle),
+                             point.indentation);
+    else
+        (void)nt_contact_law_eval(&law_, point.indentation, NT_BRANCH_STABLE, &there);
+    result->contact_radius = there.a;
+    result->contact_stiffness = there.k;
+}
+
+} // namespace nanotouch

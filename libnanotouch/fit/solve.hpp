@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One fit from a given start; private to fit/.
+#pragma once
+
+#include "problem.hpp"
+
+namespace nanotouch
+{
+
+struct Found {
+    nt_fit_result result;
+    double variance, cost; // of a residual, and the sum of all squares, in the residuals' unit
+};
+
+// Nothing about the fit outlives this object.
+class Fit
+{
+  public:
+    Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start);
+    nt_status run(Found *found);
+    nt_status finish(Found *found); // the start is known to be the solution
+
+  private:
+    void build(ceres::Problem *problem);
+    bool solve(ceres::Problem *problem, ceres::Solver::Summary *summary);
+    void fill(Found *found) const;
+    void fill_values(nt_fit_result *result) const;
+
+    const nt_fit_options &options_;
+    const nt_fit_data &data_;
+    const Coordinates coordinates_;
+    Residuals residuals_;
+    std::unique_ptr<ceres::LossFunction> loss_;
+    std::deque<Residual> costs_;
+};
+
+} // namespace nanotouch

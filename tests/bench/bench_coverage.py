@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Does the 95 % interval of a fit hold the truth 95 times in 100?
+
+``python tests/bench/bench_coverage.py [--curves 2000] [--models hertz,jkr] [--seed 0]``: about 10 ms a curve.
+Curves with white noise, offset, tilt and drift, calibrated by an instrument that errs as much as the fit is told.
+"""
+
+from __future__ import annotations
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+
+RADIUS, MODULUS, WORK, STIFFNESS, CONTACT, RANGE = 20e-9, 5e6, 0.05, 0.5, 3e-7, 2e-9
+HALF_ANGLE = float(np.radians(25.0))
+MODELS = ("hertz", "cone", "pyramid", "dmt", "jkr", "maugis")
+ADHESIVE = ("dmt", "jkr", "maugis")
+NOISE, DRIFT = 30e-12, 0.02e-9  # N, m/s
+CALIBRATION = nt.fit.Uncertainties(sensitivity=0.03, spring_constant=0.05, radius=0.04)
+PARAMETERS = ("effective_modulus", "work_of_adhesion", "contact_point")
+
+
+def synthetic(model: str, seed: int, stiffness: float = STIFFNESS) -> tuple[Any, dict[str, Any]]:
+    """A curve, and what the fit is told about its tip."""
+    rng = np.random.default_rng([seed, 77])
+    error = np.exp(rng.standard_normal(3) * [CALIBRATION.sensitivity, CALIBRATION.spring_constant, CALIBRATION.radius])
+    contact = nt.Contact(RADIUS, MODULUS, WORK if model in ADHESIVE else 0.0, range=RANGE)
+    told: dict[str, Any] = {"radius": RADIUS * error[2]}
+    if model in ("cone", "pyramid"):
+        told["half_angle"] = HALF_ANGLE
+    if model == "maugis":
+        told["cohesive_range"] = RANGE
+    curve = nt.curves.synthesise(
+        contact, model, spring_constant=stiffness, noise=NOISE, offset=1e-9, tilt=1e-4 * rng.standard_normal(),
+        drift=DRIFT * rng.standard_normal(), sensitivity_error=error[0], spring_constant_error=error[1],
+        contact_point=CONTACT, seed=seed, half_angle=told.get("half_angle"),
+        depth=60e-9 + 2e-9 * rng.random(),  # so that the tear lies anywhere between two samples
+    )  # fmt: skip
+    return curve, told
+
+
+def inside(model: str, seed: int) -> dict[str, tuple[bool, float]]:
+    """For each parameter whether its interval holds the truth, and (value - truth)/sigma."""
+    curve, told = synthetic(model, seed)
+    result = nt.fit.fit_curve(curve, model, uncertainties=CALIBRATION, **told)
+    truth = {"effective_modulus": MODULUS, "work_of_adhesion": WORK, "contact_point": CONTACT}
+    found = {}
+    for name in PARAMETERS:
+        if name in result.values:
+            low, high = result.interval[name]
+            pull = (result.values[name] - truth[name]) / result.sigma[name]
+            found[name] = (bool(low <= truth[name] <= high), float(pull))
+    return found
+
+
+def coverage(model: str, curves: int, seed: int = 0) -> dict[str, tuple[float, float, float]]:
+    """Part of the curves whose interval holds the truth, mean and standard deviation of the pulls, by parameter."""
+    all_of = [inside(model, seed + i) for i in range(curves)]
+    table = {}
+    for name in all_of[0]:
+        held = np.array([row[name][0] for row in all_of])
+        pulls = np.array([row[name][1] for row in all_of])
+        table[name] = (float(held.mean()), float(pulls.mean()), float(pulls.std()))
+    return table
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--curves", type=int, default=200)
+    parser.add_argument("--models", default=",".join(MODELS))
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--processes", type=int, default=1)
+    args = parser.parse_args()
+    models = args.models.split(",")
+    print(f"{args.curves} curves: part of the 95 % intervals that hold the truth (pulls: mean, standard deviation)")
+    with ProcessPoolExecutor(args.processes) as pool:
+        for model, table in zip(models, pool.map(coverage, models, [args.curves] * len(models),
+                                                 [args.seed] * len(models)), strict=True):  # fmt: skip
+            row = "  ".join(f"{name} {100 * p:.1f} % ({m:+.2f}, {s:.2f})" for name, (p, m, s) in table.items())
+            print(f"{model:8} {row}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
