@@ -51,7 +51,23 @@ static void tip_is_a_sphere_that_runs_into_a_cone(void **state)
     assert_true(fabs(nt_tip_shape_height(&tip, 1e-15) / 2.5e-23 - 1.0) < 1e-12); /* r^2/2R, no cancellation */
 }
 
-/* The definition, without any pruning; to the rounding of the tip's heights. */
+/* Second difference of body less tip at a pixel, along one axis: what a parabola there can add. */
+static double bend_of(const nt_tip_shape *shape, const long apex[2], const long touching[2], int along_x)
+{
+    double g[3];
+    for (int k = -1; k <= 1; k++) {
+        const long p = touching[0] + (along_x ? k : 0), q = touching[1] + (along_x ? 0 : k);
+        if (p < 0 || p >= NX || q < 0 || q >= NY)
+            return 0.0;
+        const double away = hypot((double)(p - apex[0]) * DX, (double)(q - apex[1]) * DY);
+        g[k + 1] = heights[q * NX + p] - nt_tip_shape_height(shape, away);
+    }
+    const double bend = 2.0 * g[1] - g[0] - g[2];
+    return isfinite(bend) ? bend : 0.0;
+}
+
+/* The definition, without any pruning; above it at most the peak of a parabola: an eighth of the second differences, on
+ * a diagonal twice that. */
 static void agrees_with_brute_force(void **state)
 {
     (void)state;
@@ -65,15 +81,50 @@ static void agrees_with_brute_force(void **state)
         for (int j = 0; j < NY; j += 10)
             for (int i = j % 3; i < NX; i += 3) {
                 double apex = -1.0;
+                long touching[2] = {0, 0};
                 for (int q = 0; q < NY; q++)
                     for (int p = 0; p < NX; p++) {
                         const double away = hypot((p - i) * DX, (q - j) * DY);
                         const double lift = heights[q * NX + p] - nt_tip_shape_height(&shapes[n], away);
-                        apex = lift > apex ? lift : apex;
+                        if (lift > apex) {
+                            apex = lift;
+                            touching[0] = p;
+                            touching[1] = q;
+                        }
                     }
-                assert_true(dilated[j * NX + i] == apex);
+                const long at[2] = {i, j};
+                const double peak =
+                    0.25 * (bend_of(&shapes[n], at, touching, 1) + bend_of(&shapes[n], at, touching, 0));
+                assert_true(dilated[j * NX + i] >= apex && dilated[j * NX + i] <= apex + peak);
             }
     }
+}
+
+static double hills(double x, double y)
+{
+    return 5e-9 * sin(x / 15e-9) * cos(y / 19e-9); /* radii above 45 nm */
+}
+
+/* Where the body is smooth the pixels do not show: against the dilation of a grid ten times as fine. The pixels alone
+ * stand up to h^2/8 (1/R + kappa) = 30 pm along x and 80 along y too low; a cubic term of the body is left, 6 pm. */
+static void smooth_bodies_are_touched_between_the_pixels(void **state)
+{
+    (void)state;
+    for (int p = 0; p < NX * NY; p++)
+        heights[p] = hills(p % NX * DX, p / NX * DY);
+    dilate(heights, &tip, dilated);
+    double worst = 0.0;
+    for (int j = 15; j < NY - 15; j += 3)
+        for (int i = 20; i < NX - 20; i += 7) {
+            double apex = -1.0;
+            for (int q = -100; q <= 100; q++)
+                for (int p = -100; p <= 100; p++) {
+                    const double x = 0.1 * p * DX, y = 0.1 * q * DY;
+                    apex = fmax(apex, hills(i * DX + x, j * DY + y) - shape_height(&tip, hypot(x, y)));
+                }
+            worst = fmax(worst, fabs(dilated[j * NX + i] - apex));
+        }
+    assert_true(worst < 10e-12);
 }
 
 /* A spike on the floor shows the tip, upside down. */
@@ -118,28 +169,23 @@ static void flat_stays_flat(void **state)
         assert_true(dilated[p] == 3e-9);
 }
 
-/* Never below the surface, never above its top; and eroding the dilated map (by duality, dilating its negative) gives a
- * closing: never below the surface, and dilating that again changes nothing. */
+/* Never below the surface; eroding the dilated map (by duality, dilating its negative) closes it, and where the body is
+ * smooth and nowhere as hollow as the tip that gives the body back: to 10 pm, of the pixels' 110. */
 static void is_bounded_and_closes(void **state)
 {
     (void)state;
-    nt_random random = nt_random_seed(9);
-    static double closed[NX * NY];
     for (int p = 0; p < NX * NY; p++)
-        heights[p] = 30e-9 * pow(nt_random_uniform(&random), 4);
+        heights[p] = hills(p % NX * DX, p / NX * DY);
     dilate(heights, &tip, dilated);
     for (int p = 0; p < NX * NY; p++) {
-        assert_true(dilated[p] >= heights[p] && dilated[p] <= 30e-9);
+        assert_true(dilated[p] >= heights[p]);
         again[p] = -dilated[p];
     }
+    static double closed[NX * NY];
     dilate(again, &tip, closed);
-    for (int p = 0; p < NX * NY; p++) {
-        closed[p] = -closed[p];
-        assert_true(closed[p] >= heights[p] - 1e-22 && closed[p] <= dilated[p]);
-    }
-    dilate(closed, &tip, again);
-    for (int p = 0; p < NX * NY; p++)
-        assert_true(fabs(again[p] - dilated[p]) < 1e-22);
+    for (int j = 15; j < NY - 15; j++)
+        for (int i = 20; i < NX - 20; i++)
+            assert_true(fabs(-closed[j * NX + i] - heights[j * NX + i]) < 10e-12);
 }
 
 static void refuses_bad_tips_and_maps(void **state)
@@ -183,6 +229,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tip_is_a_sphere_that_runs_into_a_cone),
         cmocka_unit_test(agrees_with_brute_force),
+        cmocka_unit_test(smooth_bodies_are_touched_between_the_pixels),
         cmocka_unit_test(spike_gives_the_reflected_tip),
         cmocka_unit_test(step_gives_the_profile_of_the_tip),
         cmocka_unit_test(flat_stays_flat),

@@ -59,8 +59,8 @@ typedef struct nt_tip_shape {
 /* Height of the tip's surface above its apex at a distance r >= 0 from its axis [m]. */
 NT_API double nt_tip_shape_height(const nt_tip_shape *tip, double r);
 /* Grey-scale dilation: dilated[j, i] = max over pixels p of heights[p] - tip(|p - (j, i)|): where the apex is at first
- * touch. dilated: nx * ny doubles, not the memory of map->heights. Exact on the grid; O(nx ny k^2), k = the reach of
- * the tip within the height range of the map. */
+ * touch; between the pixels by a parabola where the body is smooth. dilated: nx * ny doubles, not the memory of
+ * map->heights. O(nx ny k^2), k = the reach of the tip within the height range of the map. */
 NT_API nt_status nt_surface_dilate(const nt_height_map *map, const nt_tip_shape *tip, double *dilated);
 
 /* --- The effective radius of the contact on a curved surface (docs/surface.md) ---
