@@ -73,6 +73,24 @@ def test_a_pause_is_kept(tmp_path: Path) -> None:
     assert curve.retract is curve.segments[2]
 
 
+def test_every_pause_is_a_pause(tmp_path: Path) -> None:
+    """Whatever order the segments have: after the approach without a retraction, before it, and after it."""
+    approach, retract = (KNOWN.approach_z, KNOWN.approach_force), (KNOWN.retract_z, KNOWN.retract_force)
+    low = (np.linspace(2.80e-7, 2.79e-7, 50), np.full(50, 1.6e-8))
+    high = (np.full(40, 8e-7), np.full(40, -3e-9))
+    for segments, roles in (
+        ([approach, low], ["approach", "pause"]),
+        ([low, retract], ["pause", "retract"]),
+        ([high, approach, low, retract, high], ["pause", "approach", "pause", "retract", "pause"]),
+        ([approach, retract, approach, retract], ["approach", "retract", "approach", "retract"]),
+    ):
+        marks = np.repeat(np.arange(len(segments)), [z.size for z, _ in segments])
+        z, force = (np.concatenate(columns) for columns in zip(*segments, strict=True))
+        (curve,) = curves.read(tab(tmp_path / "curve.tab", force=force, segment=marks, **{"height (measured)": z}))
+        assert [s.role for s in curve.segments] == roles
+        assert [len(s) for s in curve.segments] == [z.size for z, _ in segments]
+
+
 def test_an_approach_alone_is_one_segment(tmp_path: Path) -> None:
     n = KNOWN.approach_z.size
     path = tab(

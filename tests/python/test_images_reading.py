@@ -44,6 +44,24 @@ def test_orientation_scale_and_unit(tmp_path: Path, ending: str) -> None:
     assert topography.masked_pixels == 0
 
 
+def test_pixel_size_is_that_of_other_readers(tmp_path: Path) -> None:
+    """Scan size over N. gwyfile states the size and N, Igor the pitch; SurfaceTopography the size of N pixels."""
+    io = pytest.importorskip("SurfaceTopography.IO")
+    gwyfile = pytest.importorskip("gwyfile")
+    binarywave = pytest.importorskip("igor2.binarywave")
+    gwy, ibw = written(tmp_path / "image.gwy"), written(tmp_path / "image.ibw")
+    field = gwyfile.load(str(gwy))["/0/data"]
+    assert images.read(gwy).pixel_size == pytest.approx((field.yreal / field["yres"], field.xreal / field["xres"]))
+    pitch = binarywave.load(str(ibw))["wave"]["wave_header"]["sfA"]
+    assert images.read(ibw).pixel_size == pytest.approx((pitch[1], pitch[0]), rel=1e-12)
+    for path in (gwy, ibw):
+        with io.open_topography(str(path)) as reader:
+            loaded = reader.topography()
+            width = loaded.physical_sizes[0] * (1e-6 if loaded.unit == "µm" else 1.0)
+            assert images.read(path).size[1] == pytest.approx(width, rel=1e-12)
+            assert images.read(path).pixel_size[1] == pytest.approx(width / 32, rel=1e-12)
+
+
 def test_format_is_chosen_by_content_not_by_name(tmp_path: Path) -> None:
     path = written(tmp_path / "image.gwy").rename(tmp_path / "image.txt")
     assert images.read(path).source == "SurfaceTopography/gwy"

@@ -25,6 +25,7 @@ from .checks import MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
 
 NAME = "afmformats"
+PAUSE_TRAVEL = 0.1  # a segment over which the base moves less than this, of the whole travel, is a pause
 _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
 
 
@@ -82,17 +83,26 @@ def _converted(data: Any, file: Path) -> ForceCurve:
 
 
 def _parts(data: Any, z: NDArray[np.float64]) -> list[tuple[Role, slice]]:
-    """The segments as (role, run of points): as marked in the file, or cut at the deepest point where it marks one.
-
-    afmformats numbers them from 0: the first is the approach, the last the retraction, those between are pauses.
-    """
+    """The segments as (role, run of points): as marked in the file, or cut at the deepest point where it marks one."""
     marks = np.asarray(data["segment"]).astype(int) if "segment" in data.columns else np.zeros(z.size, int)
     edges = [0, *(np.flatnonzero(np.diff(marks)) + 1).tolist(), z.size]
     runs = [slice(a, b) for a, b in pairwise(edges)]
-    if len(runs) == 1:
-        return _cut_at_deepest(z)
-    roles: list[Role] = ["approach", *["pause"] * (len(runs) - 2), "retract"]  # type: ignore[list-item]
-    return list(zip(roles, runs, strict=True))
+    return _cut_at_deepest(z) if len(runs) == 1 else list(zip(_roles(runs, z), runs, strict=True))
+
+
+def _roles(runs: list[slice], z: NDArray[np.float64]) -> list[Role]:
+    """afmformats numbers the runs but does not say what they are. Those that hardly move are pauses; of the others the
+    first is the approach and the last the retraction, by order, so that a reversed sign of z is noticed."""
+    rises = [float(z[run][-1] - z[run][0]) for run in runs]
+    moving = [i for i, rise in enumerate(rises) if abs(rise) > PAUSE_TRAVEL * float(np.ptp(z))]
+    roles: list[Role] = ["pause"] * len(runs)
+    for i in moving:
+        roles[i] = "approach" if rises[i] < 0.0 else "retract"
+    if len(moving) > 1:
+        roles[moving[0]], roles[moving[-1]] = "approach", "retract"
+    elif moving:
+        roles[moving[0]] = "approach" if moving[0] == 0 else "retract"
+    return roles
 
 
 def _cut_at_deepest(z: NDArray[np.float64]) -> list[tuple[Role, slice]]:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ReadError
+from .checks import MAX_POINTS
 from .curve import ForceCurve, Segment
 
 NAME = "nanotouch/nanoscope"
@@ -147,6 +148,8 @@ def _raw(file: Path, image: _Section) -> NDArray[np.int16]:
         raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
     if length == 0 or length % (2 * sum(points)):
         raise ReadError(f"{file}: {length} bytes of data are no whole number of curves of {sum(points)} points")
+    if length // 2 > MAX_POINTS:
+        raise ReadError(f"{file}: {length // 2} points in all; up to {MAX_POINTS} are read")
     return np.fromfile(file, "<i2", length // 2, offset=offset).reshape(-1, sum(points))
 
 
