@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,12 +75,13 @@ def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
     """
     z = topography.heights
     slope, threshold = _slope_and_threshold(z)
-    means = block_means(z, _BLOCK, 1) - slope * np.arange(len(z))[:, None]
-    if not any(_starts(sign * means, rows, threshold).size for sign in (1, -1) for rows in _heights(z)):
+    means = (block_means(z, _BLOCK, 1) - slope * np.arange(len(z))[:, None]).astype(np.float32)
+    found = np.zeros(z.shape, np.uint8)
+    for sign in (1, -1):
+        _mark_streaks(found, z, sign * means, sign, (slope, threshold))
+    if not found.any():
         return topography, ScarReport(0, 0, threshold, 0.0, 0, False)
-    raised, sunk = (_streaks(z, sign, slope, threshold, means) for sign in (1, -1))
-    (up, ups, lines), (down, downs, more) = _without_lines(raised), _without_lines(sunk)
-    scar, lines = up | down, lines + more
+    scar, scars, lines = _without_lines(found)
     if lines:
         warnings.warn(f"{lines} lines along the fast axis look like scars across the whole image: left", stacklevel=2)
     if np.count_nonzero(scar) > _MOST * z.size:
@@ -87,12 +89,8 @@ def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
         warnings.warn(f"{share:.3g} % of the image look like scars: taken for its texture and left", stacklevel=2)
         return topography, ScarReport(0, 0, threshold, 0.0, lines, True)
     heights, largest = _bridged(z, scar)
-    report = ScarReport(ups + downs, int(np.count_nonzero(scar)), threshold, largest, lines, False)
+    report = ScarReport(scars, int(np.count_nonzero(scar)), threshold, largest, lines, False)
     return replace(topography, heights=heights, mask=topography.mask | scar), report
-
-
-def _heights(z: Floats) -> range:
-    return range(1, min(_HIGHEST, len(z) - 2) + 1)
 
 
 def _slope_and_threshold(z: Floats) -> tuple[float, float]:
@@ -105,59 +103,71 @@ def _slope_and_threshold(z: Floats) -> tuple[float, float]:
     return slope, max(_STANDARD_DEVIATIONS * noise, 1e-3 * height_range, digit(steps, height_range))
 
 
-def _stands_out(before: Floats, inner: Floats, after: Floats, threshold: float) -> NDArray[np.bool_]:
+def _stands_out(before: NDArray[Any], inner: NDArray[Any], after: NDArray[Any], threshold: float) -> NDArray[np.bool_]:
     """Where rows stand above those before and after, by more than these differ from each other."""
     excess = inner - np.maximum(before, after)
     return np.asarray((excess > threshold) & (excess > np.abs(before - after)))
 
 
-def _starts(means: Floats, rows: int, threshold: float) -> NDArray[np.intp]:
-    """The first row of all runs of `rows` rows that stand out in a block. What stands out pixel by pixel does so in
-    the mean."""
-    inner = means[1 : len(means) - rows].copy()
-    for k in range(1, rows):
-        np.minimum(inner, means[1 + k : len(means) - rows + k], out=inner)
-    return 1 + np.flatnonzero(_stands_out(means[: -rows - 1], inner, means[rows + 1 :], threshold).any(axis=1))
+def _mark_streaks(
+    found: NDArray[np.uint8], z: Floats, means: NDArray[np.float32], sign: int, limits: tuple[float, float]
+) -> None:
+    """Mark where one to three rows stand above (sign 1) the row before and the row after, for long enough along them.
 
-
-def _streaks(z: Floats, sign: int, slope: float, threshold: float, means: Floats) -> NDArray[np.uint8]:
-    """Where one to three rows stand above (sign 1) the row before and the row after, for long enough along the row."""
+    What stands out pixel by pixel does so in the mean: only the blocks that do, and those beside them, are looked at.
+    """
     cv2 = require("cv2", "images")
-    found = np.zeros(z.shape, np.uint8)
-    for rows in _heights(z):
-        starts = _starts(sign * means, rows, threshold)
-        if not starts.size:
+    slope, threshold = limits
+    for rows in range(1, min(_HIGHEST, len(z) - 2) + 1):
+        lowest = means[1 : len(z) - rows]
+        for k in range(1, rows):
+            lowest = np.minimum(lowest, means[1 + k : len(z) - rows + k])
+        blocks = _stands_out(means[: -rows - 1], lowest, means[rows + 1 :], threshold)
+        lines = np.flatnonzero(blocks.any(axis=1))
+        if not lines.size:
             continue
-        before, *inner, after = (sign * (z[starts + k] - slope * k) for k in range(-1, rows + 1))
-        out = _stands_out(before, np.minimum.reduce(inner), after, threshold).astype(np.uint8)
+        near = cv2.dilate(np.pad(blocks[lines].astype(np.uint8), ((0, 0), (0, 1))), np.ones((1, 5), np.uint8))
+        k, block = np.nonzero(near)
+        column = np.minimum(block[:, None] * _BLOCK + np.arange(_BLOCK), z.shape[1] - 1)
+        first = 1 + lines[k][:, None]
+        before, *inner, after = (sign * (z[first + r, column] - slope * r) for r in range(-1, rows + 1))
+        out = np.zeros((lines.size, z.shape[1]), np.uint8)
+        out[k[:, None], column] = _stands_out(before, np.minimum.reduce(inner), after, threshold)
         out = cv2.morphologyEx(out, cv2.MORPH_CLOSE, np.ones((1, _GAP + 1), np.uint8))
         out = cv2.morphologyEx(out, cv2.MORPH_OPEN, np.ones((1, _SHORTEST), np.uint8))
         for row in range(rows):
-            found[starts + row] |= out
-    return found
+            found[1 + lines + row] |= out
 
 
 def _without_lines(found: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], int, int]:
     """The streaks that do not cross the whole image, their number, and that of those that do."""
     cv2 = require("cv2", "images")
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(found, connectivity=8)
+    marked = found.any(axis=1)
+    rows = np.flatnonzero(marked | np.roll(marked, 1))  # with an empty one after each group; the last is never marked
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(found[rows], connectivity=8)
     across = stats[:, cv2.CC_STAT_WIDTH] >= found.shape[1] - 2 * _GAP
     lines, streaks = int(across[1:].sum()), int((~across[1:]).sum())
-    kept = ~across
-    kept[0] = False
-    return np.asarray(kept[labels], dtype=bool), streaks, lines
+    scar = found.view(np.bool_)
+    if lines:
+        kept = ~across
+        kept[0] = False
+        scar[rows] = kept[labels]
+    return scar, streaks, lines
 
 
 def _bridged(z: Floats, scar: NDArray[np.bool_]) -> tuple[Floats, float]:
     """Marked pixels from the nearest others above and below in their column, linearly; and the largest change [m]."""
-    j, i = np.nonzero(scar)
+    rows = np.flatnonzero(scar.any(axis=1))
+    k, i = np.nonzero(scar[rows])
+    j = rows[k]
     low, high = j - 1, j + 1
-    for _ in range(len(z)):
+    while True:
         low_in, high_in = scar[low, i], scar[high, i]
         if not (low_in.any() or high_in.any()):
             break
         low, high = low - low_in, high + high_in
     share = (j - low) / (high - low)
     heights = z.copy()
-    heights[j, i] = (1 - share) * z[low, i] + share * z[high, i]
-    return heights, float(np.abs(heights[j, i] - z[j, i]).max(initial=0.0))
+    before = z[j, i]
+    heights[j, i] = bridge = (1 - share) * z[low, i] + share * z[high, i]
+    return heights, float(np.abs(bridge - before).max(initial=0.0))
