@@ -80,6 +80,13 @@ static nt_oscillator loaded(const nt_stage_model *model, double stiffness)
     return nt_oscillator_over(&constants, model->period);
 }
 
+void nt_stage_set_plays(nt_stage_state *state, double command)
+{
+    double share = 0.5;
+    for (int i = 0; i < NT_STAGE_PLAYS; i++, share *= 0.5)
+        state->play[i] = (1.0 - share) * command;
+}
+
 void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double command, const nt_stage_load *load)
 {
     const nt_stage *stage = &model->stage;

@@ -170,6 +170,10 @@ static void hysteresis_opens_as_stated(void **state)
         const loop small = go_around(&model, share * half, 32);
         assert_true(fabs(small.opening / full.opening / (share * share) - 1.0) < 0.15); /* plays are octaves apart */
     }
+    nt_stage_state middle = {.position = 0.3 * half};
+    nt_stage_set_plays(&middle, 0.3 * half);
+    nt_stage_step(&model, &middle, 0.3 * half, &(nt_stage_load){0});
+    assert_true(fabs(middle.position / (0.3 * half) - 1.0) < 1e-12);
     nt_random random = nt_random_seed(5);
     nt_stage_state now = {0};
     double work = 0.0, u = 0.0;

@@ -53,6 +53,12 @@ class Fault(NamedTuple):
         start = 0.0 if self.at is None else self.at
         return _NUMBERS[self.name], CHANNELS.index(self.channel), start, self.duration, self.value
 
+    def __str__(self) -> str:
+        where = f" on {self.channel}" if len(KINDS[self.name].channels) > 1 else ""
+        when = " from switching on" if self.at is None else f" at {self.at:g} s"
+        lasts = f" for {self.duration:g} s" if math.isfinite(self.duration) else ""
+        return f"{self.name}{where}{when}{lasts}"
+
 
 class Faults:
     """A schedule of faults for ``Session(faults=...)`` or :meth:`nanotouch.Session.inject`.
@@ -114,11 +120,4 @@ class Faults:
         return len(self._list)
 
     def __repr__(self) -> str:
-        return f"Faults({', '.join(map(_sentence, self._list))})"
-
-
-def _sentence(fault: Fault) -> str:
-    where = f" on {fault.channel}" if len(KINDS[fault.name].channels) > 1 else ""
-    when = " from switching on" if fault.at is None else f" at {fault.at:g} s"
-    lasts = f" for {fault.duration:g} s" if math.isfinite(fault.duration) else ""
-    return f"{fault.name}{where}{when}{lasts}"
+        return f"Faults({', '.join(map(str, self._list))})"

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from operator import index
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from nanotouch import _core
 from nanotouch._arrays import check_between
 from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
+from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
 from nanotouch.operator import Input, script_for
@@ -25,8 +26,6 @@ from nanotouch.surface import Surface
 
 __all__ = ["CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "Session", "settings_for_path"]
 
-ProbeModel = Literal["auto", "quasi-static", "dynamic"]
-PROBE_MODELS: tuple[ProbeModel, ...] = get_args(ProbeModel)
 CONTROLS = ("default", "paper", "impedance")
 #: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
 Law = Callable[["_core.Signals"], tuple[float, float]]
@@ -136,9 +135,6 @@ class Session:
     ) -> None:
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
-        if probe_model not in PROBE_MODELS:
-            raise InvalidValue(f"probe_model {probe_model!r}: valid are {', '.join(PROBE_MODELS)}")
-        check_between("substep", substep, "rad", above=0.0, up_to=1e9)
         self.scene = Scene() if scene is None else scene.copy()
         self.rig = Rig() if rig is None else rig.copy()
         self.surface = surface
@@ -157,15 +153,13 @@ class Session:
             "clearance": clearance, "rise": float(heights.max() - heights[0]), "slope": _steepest(distance, heights),
             "minimum_margin": minimum_margin, "relative_accuracy": rtol, "preflight": preflight,
             "law": control if callable(control) else None,
-            "probe_model": PROBE_MODELS.index(probe_model), "substep": substep,
-            "faults": [fault.core for fault in faults or () if fault.at is None],
+            **plant_options(probe_model, substep, faults),
         }  # fmt: skip
         self.core = _core.Session(
             self.scene.core, self.rig.core, self.settings.core, surface.core if surface else None, options
         )
         self._faults: list[str] = []
-        if faults is not None:
-            self.inject(faults)
+        self.inject(Faults() if faults is None else faults)
 
     @property
     def plan(self) -> Plan:
@@ -340,7 +334,7 @@ class Session:
         for fault in faults:
             if fault.at is not None:
                 self.core.inject(fault.core)
-        self._faults.append(repr(faults))
+            self._faults.append(str(fault))
 
     @property
     def probe_model(self) -> ProbeModel:

@@ -215,7 +215,10 @@ static double tip_stiffness(const nt_sim *sim)
 
 static void pass_part(nt_sim *sim, nt_sim_part *part, const nt_command *acting)
 {
-    part->stage.stage.hysteresis = nt_sim_stage_hysteresis(sim);
+    const double hysteresis = nt_sim_stage_hysteresis(sim);
+    if (part->stage.stage.hysteresis == 0.0 && hysteresis > 0.0)
+        nt_stage_set_plays(&sim->stage, sim->stage_drive); /* begins without a jump */
+    part->stage.stage.hysteresis = hysteresis;
     const double effort = nt_hand_effort(&sim->hand) + nt_sim_push(sim);
     nt_master_step(&part->master, &sim->master, drive_motor(sim, acting->motor_force) + effort, sim->hand.rest);
     const double drive = drive_stage(sim, acting->stage_position, part->length);

@@ -101,6 +101,8 @@ typedef struct nt_stage_model {
     nt_stage stage;
 } nt_stage_model;
 NT_API nt_status nt_stage_model_init(nt_stage_model *model, const nt_stage *stage, double period);
+/* The plays as they stand at this command on the way through the middle of the loop: P[u] = u. */
+NT_API NT_REALTIME void nt_stage_set_plays(nt_stage_state *state, double command);
 /* What pushes the stage back: f, which grows by k per metre of travel. */
 typedef struct nt_stage_load {
     double force;     /* f where the stage is [N] */

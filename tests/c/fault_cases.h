@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The faults of the table in docs/safety.md and what has to happen: to be injected while the operator presses with 3 N,
+ * draws back to 1 N and presses again with 3.5 N. */
+#ifndef TESTS_FAULT_CASES_H
+#define TESTS_FAULT_CASES_H
+
+#include <math.h>
+
+#include "loop_fixture.h"
+
+#define FOREVER HUGE_VAL
+#define ONE_TICK 1e-4
+
+typedef struct fault_case {
+    const char *name;
+    nt_fault fault; /* starts with the observation */
+    nt_state first; /* the first state that is not RUN, RUN for none */
+    int within;     /* ticks until it */
+    nt_state last;  /* in the end */
+    uint32_t reason;
+} fault_case;
+
+#define CASE(kind, channel, duration, value) {NT_FAULT_##kind, NT_CHANNEL_##channel, 0.0, duration, value}
+
+static const fault_case fault_cases[] = {
+    {"one deflection that is NaN", CASE(NAN, DEFLECTION, ONE_TICK, 0.0), NT_HOLD, 1, NT_RUN, 0},
+    {"NaN deflection", CASE(NAN, DEFLECTION, FOREVER, 0.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
+    {"NaN stage position", CASE(NAN, STAGE_POSITION, FOREVER, 0.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
+    {"infinite master position", CASE(INFINITE, MASTER_POSITION, FOREVER, 1.0), NT_HOLD, 1, NT_RETRACT,
+     NT_REASON_INVALID},
+    {"infinite hand force", CASE(INFINITE, OPERATOR_FORCE, FOREVER, -1.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
+    {"deflection saturated", CASE(SATURATED, DEFLECTION, FOREVER, 1.0), NT_RETRACT, 1, NT_RETRACT, NT_REASON_SATURATED},
+    {"deflection stuck", CASE(STUCK, DEFLECTION, FOREVER, 0.0), NT_HOLD, 2000, NT_LATCHED, NT_REASON_STUCK},
+    {"stale link", CASE(STALE, RIG, FOREVER, 0.0), NT_HOLD, 3, NT_LATCHED, NT_REASON_STALE},
+    {"one bad frame", CASE(DROPOUT, RIG, ONE_TICK, 0.0), NT_HOLD, 1, NT_RUN, 0},
+    {"bad frames", CASE(DROPOUT, RIG, FOREVER, 0.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
+    {"noise of the deflection x 100", CASE(NOISE, DEFLECTION, 0.01, 100.0), NT_RUN, 0, NT_RUN, 0},
+    {"surface rises by 5 nm", CASE(JUMP, RIG, FOREVER, 5e-9), NT_RUN, 0, NT_RUN, 0},
+    {"device gone", CASE(DEVICE_LOST, RIG, FOREVER, 0.0), NT_LATCHED, 1, NT_LATCHED, NT_REASON_DEVICE},
+    {"one tick late by a period", CASE(LATE, RIG, ONE_TICK, 1.0), NT_RUN, 0, NT_RUN, 0},
+    {"every tick late by a period", CASE(LATE, RIG, FOREVER, 1.0), NT_HOLD, 20, NT_HOLD, NT_REASON_LATE},
+    {"clock an hour back", CASE(CLOCK, RIG, FOREVER, -3600.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
+    {"clock an hour on", CASE(CLOCK, RIG, FOREVER, 3600.0), NT_RETRACT, 1, NT_RETRACT, NT_REASON_STALE},
+    {"stage blocked at a limit", CASE(LIMIT, STAGE, FOREVER, 0.0), NT_HOLD, 10000, NT_LATCHED, NT_REASON_FOLLOW},
+    {"limit switch", CASE(LIMIT_SWITCH, RIG, FOREVER, 0.0), NT_RETRACT, 1, NT_RETRACT, NT_REASON_LIMIT_SWITCH},
+    {"stage with the wrong sign", CASE(GAIN, STAGE, FOREVER, -1.0), NT_HOLD, 600, NT_HOLD, NT_REASON_UNSTABLE},
+    {"stage stands still", CASE(GAIN, STAGE, FOREVER, 0.0), NT_HOLD, 4000, NT_HOLD, NT_REASON_UNSTABLE},
+    {"stage goes a tenth", CASE(GAIN, STAGE, FOREVER, 0.1), NT_HOLD, 10000, NT_HOLD, NT_REASON_UNSTABLE},
+    {"frame drifts by 10 nm/s", CASE(DRIFT, STAGE, FOREVER, 10e-9), NT_RUN, 0, NT_RUN, 0},
+    {"read-out drifts by 10 um/s", CASE(DRIFT, STAGE_POSITION, FOREVER, 10e-6), NT_HOLD, 400, NT_LATCHED,
+     NT_REASON_FOLLOW},
+    {"hysteresis of 30 %", CASE(HYSTERESIS, STAGE, FOREVER, 0.3), NT_RUN, 0, NT_RUN, 0},
+    {"hand pushes with 5 N besides", CASE(PUSH, RIG, FOREVER, 5.0), NT_RETRACT, 6000, NT_RETRACT,
+     NT_REASON_FORCE_LIMIT | NT_REASON_OPERATOR_CLIPPED},
+    {"motor with the wrong sign", CASE(GAIN, MOTOR, FOREVER, -1.0), NT_HOLD, 5000, NT_HOLD, NT_REASON_UNSTABLE},
+    {"emergency stop", CASE(EMERGENCY_STOP, RIG, FOREVER, 0.0), NT_LATCHED, 1, NT_LATCHED, NT_REASON_EMERGENCY_STOP},
+};
+enum { FAULT_CASES = (int)(sizeof fault_cases / sizeof *fault_cases) };
+
+/* What was seen. */
+typedef struct outcome {
+    nt_state first, last;
+    int ticks; /* until first */
+    uint32_t reasons;
+    double worst_force, worst_indentation; /* [N], [m] */
+    double fastest_motor, late_motor;      /* [N per tick]; [N] after 53 ms out of RUN */
+    double lifted;                         /* of the stage's reference [m] */
+    int finite;                            /* every truth was a number */
+} outcome;
+
+static inline void note(const loop *l, outcome *o, int tick)
+{
+    if (o->first == NT_RUN && l->command.state != NT_RUN) {
+        o->first = (nt_state)l->command.state;
+        o->ticks = tick + 1;
+    }
+    o->reasons |= l->command.reasons;
+    o->worst_force = fmax(o->worst_force, fabs(l->sim.truth.tip_force));
+    o->worst_indentation = fmax(o->worst_indentation, -l->sim.truth.gap);
+    o->finite &=
+        isfinite(l->sim.truth.tip_force) && isfinite(l->sim.stage.position) && isfinite(l->sim.master.position);
+}
+
+/* The operator draws back, and presses again. */
+static inline void move_hand(loop *l, int tick)
+{
+    if (tick == 0)
+        loop_push(l, 1.0, 0.2);
+    if (tick == 3000)
+        loop_push(l, 3.5, 0.3);
+}
+
+static inline nt_status observe(loop *l, int time, outcome *o)
+{
+    *o = (outcome){.worst_force = l->sim.truth.tip_force, .finite = 1};
+    const double reference = l->state.reference;
+    double motor = l->command.motor_force;
+    int coupled = 0; /* tick that was last in RUN */
+    for (int i = 0; i < time; i++) {
+        move_hand(l, i);
+        const nt_status status = loop_tick(l, NULL, NULL);
+        if (status != NT_OK)
+            return status;
+        note(l, o, i);
+        if (l->command.state == NT_RUN)
+            coupled = i;
+        o->fastest_motor = fmax(o->fastest_motor, fabs(l->command.motor_force - motor));
+        motor = l->command.motor_force;
+        if (i > coupled + 530)
+            o->late_motor = fmax(o->late_motor, fabs(motor));
+    }
+    o->last = (nt_state)l->command.state;
+    o->lifted = reference - l->state.reference;
+    return NT_OK;
+}
+
+#endif
