@@ -18,6 +18,17 @@ LIMIT_SHARE = 0.6  # of the force limit, at the hand
 SCAN_TIMES = (10.0, 60.0)  # shortest and longest default scan [s]
 
 
+#: What holds the master beside the force of the script, for ``Rig(hand=...)``: a finger pad whose rest position follows
+#: the master within 0.3 s, and a finger that moves with it. Both are what rules R2 and R3 are about (docs/control.md).
+FINGER_PAD: dict[str, float] = {"damping": 2.0, "stiffness": 1000.0, "relaxation": 0.3}
+RIGID_FINGER: dict[str, float] = {"mass": 0.02}
+
+
+def adversary(force: float = 5.0, rate: float = 30.0) -> dict[str, float]:
+    """A hand for ``Rig(hand=...)`` that adds any force within +- ``force`` [N], another one ``rate`` times per second."""
+    return {"random_force": force, "random_rate": rate}
+
+
 class Input(NamedTuple):
     """Hand and tip go there on a straight line, then stay.
 
