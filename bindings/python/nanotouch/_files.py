@@ -15,7 +15,7 @@ from .errors import Error, ReadError, require
 
 #: Largest file opened [byte]: the largest single AFM files (force maps) are a few hundred megabytes.
 MAX_FILE_SIZE = 1 << 30
-MAX_UNPACKED = 1 << 30  # of all that a container says it holds [byte]
+MAX_UNPACKED = 1 << 31  # of all that a container says it holds [byte]
 _HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk")
 
 

@@ -66,7 +66,14 @@ def _refuses(name: str, endings: str, kind: Kind, remedy: str, *signatures: tupl
     return Format(name, tuple(endings.split()), kind, remedy=remedy, signatures=signatures)
 
 
-_ST, _AF, _REAL, _MADE, _NOT = "SurfaceTopography", "afmformats", "real file", "file made by the tests", "not tried"
+_ST, _AF, _OWN, _REAL, _MADE, _NOT = (
+    "SurfaceTopography",
+    "afmformats",
+    "nanotouch",
+    "real file",
+    "file made by the tests",
+    "not tried",
+)
 
 FORMATS: tuple[Format, ...] = (
     _reads("Bruker/Veeco/DI NanoScope", ".spm .000 .001 .di", "images", _ST, f"{_REAL}, {_MADE}"),
@@ -80,7 +87,7 @@ FORMATS: tuple[Format, ...] = (
     _reads("Gwyddion", ".gwy", "images", _ST, _MADE),
     _reads("text matrix with Gwyddion's header", ".txt .asc", "images", _ST, _MADE),
     _reads("text of x, y, z", ".xyz", "images", _ST, _MADE),
-    _reads("HDF5 of nanotouch.images.write", ".h5 .hdf5", "images", "nanotouch", _MADE),
+    _reads("HDF5 of nanotouch.images.write", ".h5 .hdf5", "images", _OWN, _MADE),
     _reads("bare HDF5 array", ".h5", "images", _ST, _MADE),
     _reads("bare numpy array", ".npy .npz", "images", _ST, _MADE),
     _reads("profilers: X3P, SDF, SUR, BCR, OPD, Keyence, Zygo ...", ".x3p .sdf .sur", "images", _ST, _NOT),
@@ -101,13 +108,13 @@ FORMATS: tuple[Format, ...] = (
              (0, b"\x89PNG")),
     _refuses("a picture (JPEG)", ".jpg .jpeg", "images",
              "a picture holds colours, not heights: use the instrument's own file", (0, b"\xff\xd8\xff")),
-    _reads("JPK force curve", ".jpk-force", "curves", _AF, f"{_REAL}, {_MADE}"),
-    _reads("JPK force map", ".jpk-force-map", "curves", _AF, _REAL),
-    _reads("JPK quantitative imaging", ".jpk-qi-data", "curves", _AF, _NOT),
-    _reads("JPK quantitative imaging, series", ".jpk-qi-series", "curves", _AF, _REAL),
+    _reads("JPK force curve", ".jpk-force", "curves", _OWN, f"{_REAL}, {_MADE}"),
+    _reads("JPK force map", ".jpk-force-map", "curves", _OWN, f"{_REAL}, {_MADE}"),
+    _reads("JPK quantitative imaging", ".jpk-qi-data", "curves", _OWN, _NOT),
+    _reads("JPK quantitative imaging, series", ".jpk-qi-series", "curves", _OWN, _REAL),
     _reads("Asylum Research (Igor binary wave)", ".ibw", "curves", _AF, f"{_REAL}, {_MADE}"),
-    _reads("Bruker NanoScope ramp", ".spm .000 .001", "curves", "nanotouch", f"{_REAL}, {_MADE}"),
-    _reads("Bruker NanoScope force volume", ".spm .003", "curves", "nanotouch", f"{_REAL}, {_MADE}"),
+    _reads("Bruker NanoScope ramp", ".spm .000 .001", "curves", _OWN, f"{_REAL}, {_MADE}"),
+    _reads("Bruker NanoScope force volume", ".spm .003", "curves", _OWN, f"{_REAL}, {_MADE}"),
     _reads("NT-MDT text", ".txt", "curves", _AF, _NOT),
     _reads("AFM Workshop", ".csv .zip", "curves", _AF, _NOT),
     _reads("Optics11 Chiaro text", ".txt", "curves", _AF, _NOT),

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The reader of most force curve formats, afmformats, with segments where it marks none.
+"""The reader of most force curve formats but JPK and NanoScope, afmformats, with segments where it marks none.
 
-afmformats' heights ("height (measured)", "height (piezo)") already grow away from the sample, for Asylum (it negates
-ZSnsr and Raw there) as for JPK: they are z without a change of sign. A file where the base would rise during its
+afmformats' heights ("height (measured)", "height (piezo)") already grow away from the sample, for Asylum too (it
+negates ZSnsr and Raw there): they are z without a change of sign. A file where the base would rise during its
 approach is refused.
 """
 
 from __future__ import annotations
 
 import logging
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -31,7 +30,7 @@ _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a volta
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
-    with _quiet_and_closed(file):
+    with _quiet():
         return [_converted(data, file) for data in _loaded(file, calibration)]
 
 
@@ -53,19 +52,14 @@ def _loaded(file: Path, calibration: Calibration) -> list[Any]:
 
 
 @contextmanager
-def _quiet_and_closed(file: Path) -> Iterator[None]:
-    """Around afmformats: it logs the traceback of whatever it raises, and keeps JPK archives open by their path, so
-    that a file replaced under the same name would be read with the old contents."""
+def _quiet() -> Iterator[None]:
+    """afmformats logs the traceback of whatever it raises."""
     logger = logging.getLogger("afmformats.formats")
     was_disabled, logger.disabled = logger.disabled, True
     try:
         yield
     finally:
         logger.disabled = was_disabled
-        jpk = sys.modules.get("afmformats.formats.fmt_jpk.jpk_reader")
-        archive = None if jpk is None else jpk.ArchiveCache.open_archives.pop(file, None)
-        if archive is not None:
-            archive.close()
 
 
 def _converted(data: Any, file: Path) -> ForceCurve:

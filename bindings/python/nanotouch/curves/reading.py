@@ -12,7 +12,7 @@ from .._files import checked_path, guarded, refuse_traps
 from .._readers import head_of, registered_for
 from ..errors import ReadError
 from ..formats import refusal
-from . import afm_formats, nanoscope
+from . import afm_formats, jpk, nanoscope
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve
@@ -87,6 +87,9 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if head.startswith(nanoscope.SIGNATURES):
         with guarded(file, nanoscope.NAME):
             return nanoscope.NAME, nanoscope.read(file)
+    if file.suffix in jpk.ENDINGS:
+        with guarded(file, jpk.NAME):
+            return jpk.NAME, jpk.read(file, given)
     refused = refusal(file, head, "curves")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")

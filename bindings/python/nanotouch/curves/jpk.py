@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""JPK force curves and maps: ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``.
+
+A zip archive of Java property files and big-endian integers. A single curve has its segments in ``segments/``, a map
+in ``index/N/segments/``. A segment's ``segment-header.properties`` says style and duration, and for each channel how
+its integers become volts (*encoder*) and these what is meant, slot by slot (*conversion set*: volts, distance, force).
+What many segments share stands once in ``shared-data/header.properties``: ``channel.height.lcd-info.*=0`` stands for
+everything under ``lcd-info.0.``.
+
+afmformats reads these files too, and is what this reader is tested against; but it searches all names of the archive
+again for every curve, so that its time grows as the square of a map's, and it does not keep a segment's style.
+"""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ReadError
+from .calibration import Calibration
+from .checks import MAX_POINTS
+from .curve import ForceCurve, Role, Segment
+
+NAME = "nanotouch/jpk"
+ENDINGS = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
+_TYPES = {"signedshort": ">i2", "unsignedshort": ">u2", "signedinteger": ">i4", "unsignedinteger": ">u4",
+          "signedlong": ">i8"}  # fmt: skip
+#: Channel in the archive, slot, and column under afmformats' name; a sensor before a voltage times a constant.
+_HEIGHTS = (
+    ("measuredHeight", "nominal", "height (measured)"),
+    ("capacitiveSensorHeight", "nominal", "height (measured)"),
+    ("strainGaugeHeight", "nominal", "height (measured)"),
+    ("height", "calibrated", "height (piezo)"),
+    ("head-height", "calibrated", "height (piezo)"),
+)
+_ROLES: dict[str, Role] = {"extend": "approach", "pause": "pause", "retract": "retract"}
+_KINDS = ("force-scan-map", "force-scan-series", "quantitative-imaging-map", "quantitative-imaging-series")
+_GRID = {"center x": "xcenter", "center y": "ycenter", "shape x": "ilength", "shape y": "jlength",
+         "size x": "ulength", "size y": "vlength"}  # fmt: skip
+_SETTINGS = "force-segment-header.settings."
+
+Properties = dict[str, str]
+
+
+def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
+    """All curves with the file's own calibration; `calibration` only where the file states none."""
+    with Archive(file, calibration) as archive:
+        curves, points = [], 0
+        for number in range(len(archive)):
+            curves.append(archive[number])
+            points += sum(len(segment) for segment in curves[-1].segments)
+            if points > MAX_POINTS:
+                raise ReadError(f"{file}: more than {MAX_POINTS} points in all; read it curve by curve (jpk.Archive)")
+        return curves
+
+
+class Archive:
+    """An open file, from which single curves are read: ``archive[number]``, ``len(archive)``.
+
+    Parameters
+    ----------
+    file : Path
+        The archive.
+    calibration : Calibration
+        Used where the file states none.
+    """
+
+    def __init__(self, file: Path, calibration: Calibration | None = None) -> None:
+        self.file = file
+        self._given = (calibration or Calibration()).given
+        self._zip = zipfile.ZipFile(file)
+        try:
+            self._names = set(self._zip.namelist())
+            self._general = self._properties("header.properties")
+            shared = "shared-data/header.properties"
+            self._shared = _grouped(self._properties(shared) if shared in self._names else {})
+            self._folders = self._find_folders()
+        except BaseException:
+            self._zip.close()
+            raise
+
+    def __enter__(self) -> Archive:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._zip.close()
+
+    def __len__(self) -> int:
+        return len(self._folders)
+
+    def __getitem__(self, number: int) -> ForceCurve:
+        enum, folder = self._folders[number]
+        own = self._properties(f"{folder}header.properties")
+        segments: list[Segment] = []
+        meta: dict[str, Any] = {
+            "enum": enum,
+            "path": self.file,
+            "software": "JPK",
+            "format": f"JPK ({self.file.suffix})",
+        }
+        start = 0.0
+        while f"{folder}segments/{len(segments)}/segment-header.properties" in self._names:
+            place = f"{folder}segments/{len(segments)}/"
+            facts = _Facts(self.file, place, own | self._expanded(place) | self._general)
+            segment, duration = self._segment(facts, place, start, meta)
+            start += duration
+            segments.append(segment)
+        if not segments:
+            raise ReadError(f"{self.file}: curve {enum} has no segments")
+        meta |= {"duration": start, "segment count": len(segments), "point count": sum(len(s) for s in segments)}
+        return ForceCurve(tuple(segments), meta, self.file.name)
+
+    def _find_folders(self) -> list[tuple[int, str]]:
+        """Number and folder of each curve; numbers may be missing."""
+        if any(name.startswith("segments/") for name in self._names):
+            return [(0, "")]
+        words = (name.split("/") for name in self._names if name.startswith("index/"))
+        found = sorted({int(word[1]) for word in words if len(word) > 2 and word[1].isdecimal()})
+        return [(number, f"index/{number}/") for number in found]
+
+    def _properties(self, name: str) -> Properties:
+        if name not in self._names:
+            raise ReadError(f"{self.file}: the archive lacks {name}")
+        found = {}
+        for line in self._zip.read(name).decode("latin-1").splitlines():
+            if line and line[0] not in "#!":
+                key, _, value = line.partition("=")
+                found[key] = value.replace("\\", "") if "\\" in value else value
+        return found
+
+    def _expanded(self, place: str) -> Properties:
+        """A segment's properties, with those that it refers to."""
+        found = self._properties(f"{place}segment-header.properties")
+        for key in [key for key in found if key.endswith(".*")]:
+            head, _, kind = key[:-2].rpartition(".")
+            for rest, value in self._shared.get((kind, found[key]), {}).items():
+                found.setdefault(f"{head}.{rest}", value)
+        return found
+
+    def _segment(self, facts: _Facts, place: str, start: float, meta: dict[str, Any]) -> tuple[Segment, float]:
+        style = facts.text(f"{_SETTINGS}style")
+        if style not in _ROLES:
+            raise ReadError(f"{self.file}: a segment of style {style!r}, expected {', '.join(_ROLES)}")
+        duration = facts.number("force-segment-header.duration")
+        channel, slot, column = self._height(place)
+        z = facts.converted(channel, slot, self._raw(facts, place, channel))
+        volts = facts.converted("vDeflection", "volts", self._raw(facts, place, "vDeflection"))
+        deflection, stiffness = self._calibrated(facts, volts, meta)
+        stated = facts.number("force-segment-header.num-points")
+        if not z.size == volts.size == stated:
+            raise ReadError(f"{self.file}: {place} has {z.size} heights, {volts.size} forces, but states {stated:g}")
+        _note(meta, facts, _ROLES[style], z.size)
+        time = np.asarray(start + np.arange(z.size) * (duration / max(z.size, 1)), np.float64)
+        force = np.asarray(deflection * stiffness, np.float64)
+        return Segment(_ROLES[style], time, z, column, force, deflection), duration
+
+    def _calibrated(
+        self, facts: _Facts, volts: NDArray[np.float64], meta: dict[str, Any]
+    ) -> tuple[NDArray[np.float64], float]:
+        """Deflection and spring constant, by what the file states or by what is given in its place."""
+        stated = {"spring constant": facts.multiplier("force"), "sensitivity": facts.multiplier("distance")}
+        missing = [key for key, value in stated.items() if value is None and self._given[key] is None]
+        if missing:
+            raise ReadError(f"{self.file}: states no {' and no '.join(missing)}; give it")
+        for key, value in stated.items():
+            value = self._given[key] if value is None else value
+            if meta.setdefault(key, value) != value:
+                raise ReadError(f"{self.file}: states two values of its {key}, {meta[key]:g} and {value:g}")
+        offset = 0.0 if stated["sensitivity"] is None else facts.offset("distance")
+        return volts * meta["sensitivity"] + offset, float(meta["spring constant"])
+
+    def _height(self, place: str) -> tuple[str, str, str]:
+        for channel, slot, column in _HEIGHTS:
+            if f"{place}channels/{channel}.dat" in self._names:
+                return channel, slot, column
+        raise ReadError(f"{self.file}: {place} has no height")
+
+    def _raw(self, facts: _Facts, place: str, channel: str) -> NDArray[Any]:
+        name = f"{place}channels/{channel}.dat"
+        kind = facts.either(f"channel.{channel}.data.encoder.type", f"channel.{channel}.encoder.type")
+        if name not in self._names or kind not in _TYPES:
+            raise ReadError(f"{self.file}: {name} is missing, or of the type {kind!r}, which is not read")
+        return np.frombuffer(self._zip.read(name), _TYPES[kind])
+
+
+class _Facts:
+    """The properties of one segment."""
+
+    def __init__(self, file: Path, place: str, properties: Mapping[str, str]) -> None:
+        self.file, self.place, self.properties = file, place, properties
+
+    def text(self, key: str) -> str:
+        if key not in self.properties:
+            raise ReadError(f"{self.file}: {self.place} lacks {key!r}")
+        return self.properties[key]
+
+    def either(self, key: str, other: str) -> str:
+        return self.properties[key] if key in self.properties else self.text(other)
+
+    def number(self, key: str, other: str = "") -> float:
+        value = _number(self.either(key, other or key))
+        if value is None:
+            raise ReadError(f"{self.file}: {self.place}: {key!r} is {self.either(key, other or key)!r}, no number")
+        return value
+
+    def converted(self, channel: str, slot: str, raw: NDArray[Any]) -> NDArray[np.float64]:
+        """The integers in the unit of `slot`: what leads from the base to it, and before that the encoder."""
+        encoder, other = f"channel.{channel}.data.encoder.scaling.", f"channel.{channel}.encoder.scaling."
+        conversions = f"channel.{channel}.conversion-set."
+        base = self.text(f"{conversions}conversions.base")
+        steps: list[str] = []
+        while slot != base and slot != "volts":
+            if len(steps) > 8:
+                raise ReadError(f"{self.file}: {self.place}: the conversions of {channel} go round")
+            steps.append(f"{conversions}conversion.{slot}.")
+            slot = self.text(f"{steps[-1]}base-calibration-slot")
+        values = raw * self.number(f"{encoder}multiplier", f"{other}multiplier")
+        values += self.number(f"{encoder}offset", f"{other}offset")
+        for step in reversed(steps):
+            values *= self.number(f"{step}scaling.multiplier")
+            values += self.number(f"{step}scaling.offset")
+        return np.asarray(values, np.float64)
+
+    def multiplier(self, slot: str) -> float | None:
+        """Of a conversion of the deflection; None where the file is not calibrated."""
+        key = f"channel.vDeflection.conversion-set.conversion.{slot}.scaling.multiplier"
+        return self.number(key) if key in self.properties else None
+
+    def offset(self, slot: str) -> float:
+        return self.number(f"channel.vDeflection.conversion-set.conversion.{slot}.scaling.offset")
+
+
+def _number(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def _grouped(shared: Properties) -> dict[tuple[str, str], Properties]:
+    """``lcd-info.0.unit=V`` as ``[("lcd-info", "0")]["unit"] = "V"``."""
+    groups: dict[tuple[str, str], Properties] = {}
+    for key, value in shared.items():
+        kind, _, rest = key.partition(".")
+        number, _, rest = rest.partition(".")
+        groups.setdefault((kind, number), {})[rest] = value
+    return groups
+
+
+def _note(meta: dict[str, Any], facts: _Facts, role: Role, points: int) -> None:
+    """What a segment says of itself and of the curve, under afmformats' keys."""
+    told = facts.properties
+    for key, name in (("feedback mode", f"{_SETTINGS}feedback-mode.name"),
+                      ("session id", "force-segment-header.approach-id")):  # fmt: skip
+        if name in told:
+            meta.setdefault(key, told[name])
+    stamp = told.get("force-segment-header.time-stamp", "").split()
+    if role == "approach" and len(stamp) > 1:
+        meta.setdefault("date", stamp[0])
+        meta.setdefault("time", stamp[1])
+    numbers = {key: _number(told.get(f"{_SETTINGS}segment-settings.{key}", "")) for key in
+               ("duration", "z-start", "z-end", "setpoint")}  # fmt: skip
+    duration = numbers["duration"]
+    if duration:
+        meta[f"duration {'intermediate' if role == 'pause' else role}"] = duration
+        if role != "pause":
+            meta[f"rate {role}"] = points / duration
+            if numbers["z-start"] is not None and numbers["z-end"] is not None:
+                meta[f"speed {role}"] = abs(numbers["z-start"] - numbers["z-end"]) / duration
+    if numbers["setpoint"] is not None:
+        meta["setpoint"] = numbers["setpoint"] * meta["spring constant"] * meta["sensitivity"]
+    for kind in _KINDS:
+        _note_place(meta, told, kind)
+
+
+def _note_place(meta: dict[str, Any], told: Mapping[str, str], kind: str) -> None:
+    for key, name in (("instrument", "instrument"), ("software version", "source-software")):
+        if f"{kind}.description.{name}" in told:
+            meta.setdefault(key, told[f"{kind}.description.{name}"])
+    for key, name in _GRID.items():
+        value = _number(told.get(f"{kind}.position-pattern.grid.{name}", ""))
+        if value is not None:
+            meta.setdefault(f"grid {key}", round(value) if key.startswith("shape") else value)
+    for axis in "xy":
+        value = _number(told.get(f"{kind}.header.position.{axis}", ""))
+        if value is not None:
+            meta.setdefault(f"position {axis}", value)
+        size, shape = meta.get(f"grid size {axis}", 0.0), meta.get(f"grid shape {axis}", 0)
+        if size and shape and f"position {axis}" in meta:
+            left = meta[f"grid center {axis}"] - 0.5 * size
+            meta[f"grid index {axis}"] = math.floor((meta[f"position {axis}"] - left) / size * shape)

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""JPK archives: the same numbers as afmformats, maps in linear time, damaged archives refused."""
+
+from __future__ import annotations
+
+import time
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import synthetic
+from nanotouch import curves
+from nanotouch.curves import jpk
+from nanotouch.errors import ReadError
+
+KNOWN = synthetic.known_curve(n=100)
+REAL = sorted((synthetic.DATA / "curves").glob("*.jpk*")) if synthetic.DATA.is_dir() else []
+
+
+def single(path: Path) -> Path:
+    segments = [("extend", KNOWN.approach_z, KNOWN.approach_force), ("retract", KNOWN.retract_z, KNOWN.retract_force)]
+    return synthetic.write_jpk(path, segments, spring_constant=0.8, sensitivity=6e-8)
+
+
+def as_map(path: Path, count: int) -> Path:
+    """The single curve `count` times, as JPK writes maps: what all share stands once."""
+    with zipfile.ZipFile(single(path.with_suffix(".jpk-force"))) as one, zipfile.ZipFile(path, "w") as many:
+        lines = ["type=force-scan-map", "force-scan-map.position-pattern.grid.ilength=4"]
+        lines += [f"force-scan-map.position-pattern.grid.jlength={count // 4}"]
+        for key, value in (("xcenter", 2e-6), ("ycenter", 1e-6), ("ulength", 4e-6), ("vlength", 2e-6)):
+            lines.append(f"force-scan-map.position-pattern.grid.{key}={value}")
+        many.writestr("header.properties", "\n".join(lines) + "\n")
+        names = [name for name in one.namelist() if name.startswith("segments/")]
+        shared: dict[str, str] = {}
+        for number, channel in enumerate(("vDeflection", "measuredHeight", "height")):
+            for line in one.read("segments/0/segment-header.properties").decode().splitlines():
+                key, _, value = line.partition("=")
+                if key.startswith(f"channel.{channel}.conversion-set"):
+                    shared[f"lcd-info.{number}.{key.removeprefix(f'channel.{channel}.')}"] = value
+        many.writestr("shared-data/header.properties", "".join(f"{k}={v}\n" for k, v in shared.items()))
+        many.writestr("index/", "")
+        for index in range(count):
+            x, y = (index % 4 + 0.5) * 1e-6, (index // 4 + 0.5) * 2e-6 / (count // 4)
+            head = f"force-scan-series.header.position.x={x}\nforce-scan-series.header.position.y={y}\n"
+            many.writestr(f"index/{index}/", "")
+            many.writestr(
+                f"index/{index}/header.properties", f"{head}force-scan-series.header.position-index={index}\n"
+            )
+            for name in names:
+                content = one.read(name)
+                if name.endswith("segment-header.properties"):
+                    kept = [li for li in content.decode().splitlines() if ".conversion-set" not in li]
+                    kept += ["channel.vDeflection.lcd-info.*=0", "channel.measuredHeight.lcd-info.*=1"]
+                    kept += ["channel.height.lcd-info.*=2"]
+                    content = "\n".join(kept).encode()
+                many.writestr(f"index/{index}/{name}", content)
+    return path
+
+
+def compared(path: Path, **given: float) -> None:
+    """With afmformats' own arrays, and what both say of the curve."""
+    afmformats = pytest.importorskip("afmformats")
+    ours, theirs = curves.read(path, **given), afmformats.load_data(path)  # type: ignore[arg-type]
+    assert len(ours) == len(theirs)
+    for one, other in zip(ours, theirs, strict=True):
+        marks = np.asarray(other["segment"])
+        for number, segment in enumerate(one.segments):
+            part = marks == number
+            for key, column in (("time", "time"), ("z", segment.z_channel), ("force", "force")):
+                np.testing.assert_allclose(getattr(segment, key), np.asarray(other[column])[part], rtol=1e-12, atol=0)
+        for key in set(one.meta) & set(other.metadata) - {"format", "path", "time"}:
+            expected = other.metadata[key]
+            same = one.meta[key] == (pytest.approx(expected, rel=1e-12) if isinstance(expected, float) else expected)
+            assert same, key
+        assert one.meta["time"].startswith(other.metadata["time"][:8])
+        assert {"spring constant", "sensitivity", "enum", "duration", "point count"} <= set(one.meta)
+
+
+def test_a_single_curve_equals_afmformats(tmp_path: Path) -> None:
+    compared(single(tmp_path / "curve.jpk-force"))
+
+
+def test_a_map_equals_afmformats(tmp_path: Path) -> None:
+    path = as_map(tmp_path / "map.jpk-force-map", 8)
+    compared(path)
+    found = curves.read(path)
+    assert [(c.meta["grid index x"], c.meta["grid index y"]) for c in found] == [(i % 4, i // 4) for i in range(8)]
+    with jpk.Archive(path) as archive:
+        assert len(archive) == 8
+        np.testing.assert_array_equal(archive[5].segments[1].force, found[5].segments[1].force)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("path", REAL, ids=lambda path: path.name)
+def test_real_files_equal_afmformats(path: Path) -> None:
+    compared(path)
+
+
+def test_the_style_says_what_a_segment_is(tmp_path: Path) -> None:
+    """Also in orders that afmformats refuses."""
+    approach = ("extend", KNOWN.approach_z, KNOWN.approach_force)
+    rest = ("pause", np.full(30, 2.8e-7), np.full(30, 1.6e-8))
+    (curve,) = curves.read(synthetic.write_jpk(tmp_path / "a.jpk-force", [approach, rest, rest]))
+    assert [s.role for s in curve.segments] == ["approach", "pause", "pause"]
+    assert curve.retract is None
+
+
+def test_time_grows_as_the_number_of_curves(tmp_path: Path) -> None:
+    """afmformats' grows as its square. Four times the curves, less than eight times the processor time."""
+    times = []
+    for count in (32, 128):
+        path = as_map(tmp_path / f"{count}.jpk-force-map", count)
+        curves.read(path)
+        started = time.process_time()
+        curves.read(path)
+        times.append(time.process_time() - started)
+    assert times[1] < 8 * times[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (b"num-points=100", b"num-points=101", "100 heights, 100 forces, but states 101"),
+        (b"style=extend", b"style=lunge", "style 'lunge'"),
+        (b"type=signedinteger", b"type=float", "type 'float', which is not read"),
+        (b"force-segment-header.duration=1.0", b"", "lacks 'force-segment-header.duration'"),
+        (b"duration=1.0", b"duration=nan", "'nan', no number"),
+        (
+            b"calibration-slot=volts",
+            b"calibration-slot=force",
+            "lacks 'channel.measuredHeight.conversion-set.conversion.force",
+        ),
+        (
+            b"force.scaling.multiplier=",
+            b"force.scaling.multiplier=9",
+            "two values of its spring constant, 90.8 and 0.8",
+        ),
+    ],
+)
+def test_a_damaged_archive_is_refused(tmp_path: Path, old: bytes, new: bytes, message: str) -> None:
+    path = tmp_path / "damaged.jpk-force"
+    with zipfile.ZipFile(single(tmp_path / "whole.jpk-force")) as whole, zipfile.ZipFile(path, "w") as damaged:
+        for item in whole.infolist():
+            content = whole.read(item)
+            if item.filename == "segments/0/segment-header.properties":
+                assert old in content
+                content = content.replace(old, new)
+            damaged.writestr(item, content)
+    with pytest.raises(ReadError, match=message) as caught:
+        curves.read(path)
+    assert caught.value.reader == "nanotouch/jpk"
