@@ -32,6 +32,7 @@ nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
                           .due = DUE_SHARE * rig->master.damping * T,
                           .force_gain = gains->force_gain,
                           .damping = rig->master.damping,
+                          .credit = rig->master.gauge != 0.0 ? 0.0 : rig->master.damping,
                           .speed_filter = filter,
                           .speed_floor = master_step * filter / T,
                           .speed_limit =
@@ -42,6 +43,13 @@ nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
 static double work(const nt_port *from, const nt_port *to)
 {
     return 0.5 * (from->force + to->force) * (to->position - from->position);
+}
+
+static double hand_work(const nt_passivity *passivity, const nt_passivity_state *state, const nt_port *hand)
+{
+    if (passivity->credit == 0.0)
+        return work(&state->last_hand, hand);
+    return (hand->force + passivity->credit * state->speed) * (hand->position - state->last_hand.position);
 }
 
 /* The least that the damping has to swallow in this period [J]. */
@@ -59,7 +67,8 @@ double nt_passivity_step(const nt_passivity *passivity, nt_passivity_state *stat
                          const nt_port *tip)
 {
     const double due = energy_due(passivity, state, hand);
-    const double swallowed = work(&state->last_hand, hand) - work(&state->last_tip, tip);
+    const double given = hand_work(passivity, state, hand);
+    const double swallowed = given - work(&state->last_tip, tip);
     state->energy = lesser(state->energy + swallowed - due, NT_PASSIVITY_STORE * passivity->dead_zone);
     state->last_hand = *hand;
     state->last_tip = *tip;
@@ -72,11 +81,6 @@ double nt_passivity_step(const nt_passivity *passivity, nt_passivity_state *stat
         ++state->trips;
     }
     return state->gain;
-}
-
-double nt_passivity_hand_force(const nt_passivity *passivity, const nt_passivity_state *state, double motor_force)
-{
-    return passivity->damping * state->speed - motor_force;
 }
 
 double nt_passivity_damping_force(const nt_passivity *passivity, const nt_passivity_state *state)

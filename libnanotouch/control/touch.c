@@ -71,6 +71,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .period = period,
                      .law = nt_servo_law_of(&settings->control),
                      .stage_loop = nt_stage_loop_make(&rig->stage, &shape.gains),
+                     .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
                      .speed_filter = low_pass_factor(SPEED_BANDWIDTH, period),
                      .spike = spike_of(rig, settings),
@@ -78,6 +79,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .rescale = nt_rescale_make(rig, settings),
                      .supervisor = nt_supervisor_make(rig, settings)};
     made.passivity.damping = rig->master.damping; /* what the motor feeds forward is in its force already */
+    made.passivity.credit = rig->master.gauge != 0.0 ? 0.0 : rig->master.damping;
     *touch = made;
     return NT_OK;
 }
@@ -144,15 +146,20 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
     const nt_signals *signals = &state->signals;
     const nt_scaling *scaling = &signals->scaling;
     nt_passivity_state *passivity = &state->passivity;
-    const double hand_force = touch->rig.master.gauge != 0.0
-                                  ? signals->operator_force
-                                  : nt_passivity_hand_force(&touch->passivity, passivity, state->motor_force);
+    const uint64_t acting = state->ticks + NT_TOUCH_SENT - 1u - touch->delay; /* the tick whose force has been held */
+    const double hand_force =
+        touch->rig.master.gauge != 0.0 ? signals->operator_force : -state->sent[acting % NT_TOUCH_SENT];
     const nt_port hand = {hand_force, signals->master_position};
     const int coupled = touch->settings.gains.coupling_stiffness > 0.0;
     const double tip_step =
         coupled ? signals->master_position - passivity->last_hand.position : stage_step / scaling->alpha_p;
     const nt_port tip = {scaling->alpha_f * (coupled ? signals->felt_force : signals->slave_force),
                          passivity->last_tip.position + tip_step};
+    if (state->supervisor.reasons & NT_REASON_OPERATOR_CLIPPED) { /* the hand gives more than the gauge can tell */
+        passivity->last_hand = hand;
+        passivity->last_tip = tip;
+        return;
+    }
     nt_passivity_step(&touch->passivity, passivity, &hand, &tip);
     state->signals.gain_factor = passivity->gain;
 }
@@ -246,7 +253,7 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     state->command.stage_position = drive_stage(touch, state, sample);
     if (state->passivity.gain < 1.0)
         state->supervisor.reasons |= NT_REASON_BACKED_OFF;
-    state->command.motor_force = state->motor_force;
+    state->command.motor_force = state->sent[state->ticks % NT_TOUCH_SENT] = state->motor_force;
     state->command.state = (uint32_t)state->supervisor.state;
     state->command.reasons = state->supervisor.reasons;
     ++state->ticks;

@@ -20,6 +20,7 @@ typedef struct loop {
     int d;                      /* [periods] */
     double finger;              /* mass rigidly coupled to the sensor [kg] */
     int watched;                /* may the observer take gain away? */
+    int blind;                  /* no gauge: the impedance law */
     double relief, relief_rate; /* the surface moves under the tip [m], [Hz] */
 } loop;
 
@@ -34,9 +35,10 @@ typedef struct outcome {
 static const double m = 0.1, b = 100.0, hand_force = 1.0;
 
 /* The paper's sensors: 0.04 mm and 0.02 N of the master; 1 nm of the stage, which is 0.05 mm at alpha_p = 2e-5. */
-static nt_passivity passivity_of(double T, double K_f)
+static nt_passivity passivity_of(double T, double K_f, int blind)
 {
-    const nt_rig rig = nt_rig_defaults();
+    nt_rig rig = nt_rig_defaults();
+    rig.master.gauge = !blind;
     const nt_gains gains = {.rate = 1.0 / T, .force_gain = K_f, .alpha_p = 2e-5};
     return nt_passivity_make(&rig, &gains);
 }
@@ -50,7 +52,7 @@ static outcome run(const loop *p, double time)
 {
     const double M = m + p->finger, a = exp(-b * p->T / M), P = M / b * (1.0 - a),
                  Q = p->T / b - M / (b * b) * (1.0 - a);
-    const nt_passivity passivity = passivity_of(p->T, p->K_f);
+    const nt_passivity passivity = passivity_of(p->T, p->K_f, p->blind);
     nt_passivity_state state = {.gain = 1.0};
     nt_random random = nt_random_seed(9);
     double x = 0.0, v = 0.0, tau[3] = {0.0, 0.0, 0.0}, low = HUGE_VAL, high = -HUGE_VAL;
@@ -65,10 +67,12 @@ static outcome run(const loop *p, double time)
         f_m = push - p->finger / M * (acting + push - b * v);
         const double f_read = quantised(f_m + 0.0033 * nt_random_normal(&random), 0.02);
         const double s_read = f_s + 0.04 * nt_random_normal(&random), x_read = quantised(x, 4e-5);
-        const nt_port hand = {f_read, x_read}, tip = {s_read, quantised(x, 5e-5)};
+        const double seen = p->blind ? -tau[(k + 2 - p->d) % 3] : f_read;
+        const nt_port hand = {seen, x_read}, tip = {s_read, quantised(x, 5e-5)};
         const double factor = nt_passivity_step(&passivity, &state, &hand, &tip);
         gain = p->watched ? factor : 1.0;
-        tau[k % 3] = fmin(fmax(-s_read - gain * p->K_f * (s_read - f_read), -100.0), 100.0);
+        const double wanted = p->blind ? -gain * s_read : -s_read - gain * p->K_f * (s_read - f_read);
+        tau[k % 3] = fmin(fmax(wanted, -100.0), 100.0);
         const double force = tau[(k + 3 - p->d) % 3] + push;
         x += P * v + Q * force;
         v = a * v + (1.0 - a) / b * force;
@@ -102,6 +106,11 @@ static void never_trips_on_the_stable_set(void **state)
         {.T = 20e-6, .K_f = 2, .k_r = 500, .d = 1},
         {.T = 1e-3, .K_f = 0.5, .k_r = 500, .d = 1, .finger = 0.1},
         {.T = 1e-4, .K_f = 3, .k_r = 0, .d = 0, .finger = 0.02},
+        {.T = 3e-3, .k_r = 10e3, .d = 1, .blind = 1},
+        {.T = 1e-3, .k_r = 30e3, .d = 1, .blind = 1},
+        {.T = 1e-4, .k_r = 2e3, .d = 1, .blind = 1},
+        {.T = 1e-4, .k_r = 200e3, .d = 1, .blind = 1},
+        {.T = 1e-4, .k_r = 0, .d = 1, .blind = 1},
     };
     for (size_t i = 0; i < sizeof stable / sizeof *stable; i++) {
         const outcome found = run(&stable[i], 4.0);
@@ -125,6 +134,9 @@ static void always_trips_on_the_unstable_set_and_calms_it(void **state)
         {.T = 0.5e-3, .K_f = 20, .k_r = 10e3, .d = 1},
         {.T = 1e-3, .K_f = 4, .k_r = 500, .d = 0, .finger = 0.1},
         {.T = 1e-4, .K_f = 10, .k_r = 500, .d = 0, .finger = 0.1},
+        {.T = 10e-3, .k_r = 20e3, .d = 1, .blind = 1},
+        {.T = 20e-3, .k_r = 10e3, .d = 1, .blind = 1},
+        {.T = 10e-3, .k_r = 14e3, .d = 2, .blind = 1},
     };
     for (size_t i = 0; i < sizeof unstable / sizeof *unstable; i++) {
         loop watched = unstable[i];
@@ -141,6 +153,29 @@ static void always_trips_on_the_unstable_set_and_calms_it(void **state)
 
 /* A surface that moves the hand gives energy to it. That trips nothing, though the hand's port alone sees more of it
  * than the dead zone. */
+/* When no gain is left and it still trips, damping comes, a fifth at a time, and at last nothing is left. */
+static void damping_comes_after_the_gain(void **state)
+{
+    (void)state;
+    const nt_passivity passivity = {
+        .dead_zone = 1e-6, .period = 1e-3, .damping = 100.0, .speed_filter = 1.0, .speed_limit = 10.0};
+    nt_passivity_state s = {.gain = 1.0};
+    nt_port hand = {1.0, 0.0};
+    const nt_port tip = {0.0, 0.0};
+    s.last_hand = hand;
+    int trips = 0;
+    while (!nt_passivity_is_exhausted(&s)) {
+        hand.position -= 1e-3; /* 1 mJ out */
+        const double gain = s.gain, damping = s.damping;
+        nt_passivity_step(&passivity, &s, &hand, &tip);
+        assert_true(gain >= 0.05 ? s.damping == 0.0 && s.gain == 0.8 * gain : s.damping > damping && s.gain == gain);
+        trips++;
+    }
+    assert_int_equal(trips, 14 + 5); /* 0.8^14 = 0.044 */
+    assert_true(s.damping == 1.0);
+    assert_true(fabs(nt_passivity_damping_force(&passivity, &s) - 100.0) < 1e-9); /* at -1 m/s: against the motion */
+}
+
 static void topography_does_not_trip_it(void **state)
 {
     (void)state;
@@ -149,7 +184,7 @@ static void topography_does_not_trip_it(void **state)
         const outcome found = run(&moving, 4.0);
         assert_int_equal(found.trips, 0);
         if (rate < 4.0)
-            assert_true(found.hand_energy_low < -3.0 * passivity_of(1e-4, 2.0).dead_zone);
+            assert_true(found.hand_energy_low < -3.0 * passivity_of(1e-4, 2.0, 0).dead_zone);
     }
 }
 
@@ -220,7 +255,7 @@ static void the_dead_zone_covers_the_steps(void **state)
 static void a_wrong_reading_is_not_an_instability(void **state)
 {
     (void)state;
-    const nt_passivity passivity = passivity_of(1e-4, 2.0);
+    const nt_passivity passivity = passivity_of(1e-4, 2.0, 0);
     nt_passivity_state s = {.gain = 1.0};
     const nt_port tip = {1.5, 0.0};
     for (int i = 0; i < 10000; i++) {
@@ -235,6 +270,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(never_trips_on_the_stable_set),
         cmocka_unit_test(always_trips_on_the_unstable_set_and_calms_it),
+        cmocka_unit_test(damping_comes_after_the_gain),
         cmocka_unit_test(topography_does_not_trip_it),
         cmocka_unit_test(energy_is_the_work_of_both_ports),
         cmocka_unit_test(the_store_is_bounded),

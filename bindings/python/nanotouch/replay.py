@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from nanotouch import _core
+from nanotouch._path import core_mode
 from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
 from nanotouch.errors import InvalidValue
 from nanotouch.record import Recording
 from nanotouch.scene import Rig, Settings
-from nanotouch._path import core_mode
 from nanotouch.session import Law
 
 MEASURED = (
@@ -24,12 +24,14 @@ MEASURED = (
 def replay(recording: Recording, control: Law | None = None) -> Recording:
     """Settings, requests and samples are those recorded; motor force, stage command, state and reasons are new.
 
-    Bit by bit the same on one machine and build. Elsewhere the compiler may round differently: then 1e-9 of the range of
-    a column, until a limit or a fold is met at another tick.
+    Bit by bit the same on one machine and build. Elsewhere a compiler may round differently: then within 1e-9 of the
+    range of a column, until a limit is met at another tick.
     """
     metadata = recording.metadata
     missing = [name for name in MEASURED if name not in recording]
-    missing += [name for name in ("settings", "rig", "control", "events", "master_start", "path") if name not in metadata]
+    missing += [
+        name for name in ("settings", "rig", "control", "events", "master_start", "path") if name not in metadata
+    ]
     if missing:
         raise InvalidValue(f"the recording cannot be replayed: it lacks {', '.join(missing)}")
     if len(recording) and recording.time[0] != 0.0:

@@ -92,10 +92,14 @@ static nt_sample sample_at(const Measured &measured, py::ssize_t i)
 static Measured measured_of(const py::dict &columns)
 {
     const auto column = [&](const char *name) { return columns[name].cast<Array>(); };
-    return {column("age"),          column("lateness"),
-            column("master_position"), column("operator_force"),
-            column("stage_position"), column("deflection"),
-            column("x"),            column("y"),
+    return {column("age"),
+            column("lateness"),
+            column("master_position"),
+            column("operator_force"),
+            column("stage_position"),
+            column("deflection"),
+            column("x"),
+            column("y"),
             columns["flags"].cast<py::array_t<uint32_t>>()};
 }
 
@@ -133,7 +137,7 @@ static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings
                        const py::dict &start, const py::dict &columns)
 {
     nt_settings chosen = settings.value;
-    OwnLaw law{control};
+    OwnLaw law{control, nullptr};
     if (py::isinstance<py::str>(control))
         set_control(chosen, control.cast<std::string>());
     else
@@ -142,8 +146,8 @@ static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings
     nt_problem problem{};
     const nt_mode mode = mode_of(start["mode"].cast<std::string>());
     raise_on(nt_touch_make(&touch, &rig.value, &chosen, mode, &problem), problem, "replay");
-    nt_touch_state state = nt_touch_start(&touch, start["master"].cast<double>(), start["x"].cast<double>(),
-                                          start["y"].cast<double>());
+    nt_touch_state state =
+        nt_touch_start(&touch, start["master"].cast<double>(), start["x"].cast<double>(), start["y"].cast<double>());
     const auto events = start["events"].cast<py::list>();
     std::set<py::ssize_t> eventful;
     for (const py::handle event : events)
@@ -183,6 +187,7 @@ static void bind_signals(py::module_ &module)
         .def_readonly("operator_force", &nt_signals::operator_force)
         .def_readonly("smooth_force", &nt_signals::smooth_force)
         .def_readonly("slave_force", &nt_signals::slave_force)
+        .def_readonly("felt_force", &nt_signals::felt_force)
         .def_readonly("stage_position", &nt_signals::stage_position)
         .def_readonly("stage_speed", &nt_signals::stage_speed)
         .def_readonly("target", &nt_signals::target)
@@ -203,13 +208,11 @@ void bind_control(py::module_ &module)
              [](Supervisor &self, const py::dict &numbers, double reference, bool moves_sideways, bool unstable) {
                  return supervise(self, sample_of(numbers), {reference, moves_sideways, unstable});
              })
-        .def("arm", [](Supervisor &self, bool confirmed) {
-            raise_on(nt_supervisor_arm(&self.state, confirmed), "arm");
-        });
+        .def("arm",
+             [](Supervisor &self, bool confirmed) { raise_on(nt_supervisor_arm(&self.state, confirmed), "arm"); });
     module.def("replay", &replay);
-    module.def("set_control", [](Described<nt_settings> &settings, const std::string &name) {
-        set_control(settings.value, name);
-    });
+    module.def("set_control",
+               [](Described<nt_settings> &settings, const std::string &name) { set_control(settings.value, name); });
     py::list reasons;
     for (uint32_t bit = 1; nt_reason_name(bit)[0] != 0; bit <<= 1)
         reasons.append(nt_reason_name(bit));

@@ -18,6 +18,7 @@ typedef struct nt_passivity {
     double due;          /* b_m T times the share of the damping that must show [N s^2/m] */
     double force_gain;   /* K_f, which divides the damping that the operator feels [-] */
     double damping;      /* b_m [N s/m] */
+    double credit;       /* b_m where no gauge sees the hand, which then also gives what the damping takes [N s/m] */
     double speed_filter; /* of the low-pass of the master's speed, per period [-] */
     double speed_floor;  /* what one step of the master seems to be [m/s] */
     double speed_limit;  /* the master cannot be so fast, a reading is wrong [m/s] */
@@ -38,12 +39,10 @@ typedef struct nt_passivity_state {
 } nt_passivity_state;
 #define NT_PASSIVITY_STORE 10.0
 NT_API nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains);
-/* hand: (f_m, x_m), in; tip: (alpha_f f_s, x_s/alpha_p), out. Returns the gain factor. */
+/* hand: (f_m, x_m), in; where there is no gauge (-tau_m, x_m), of the motor force that has been held since the last
+ * step; tip: (alpha_f f_s, x_s/alpha_p), out. Returns the gain factor. */
 NT_API NT_REALTIME double nt_passivity_step(const nt_passivity *passivity, nt_passivity_state *state,
                                             const nt_port *hand, const nt_port *tip);
-/* For masters without a gauge: the hand's force as far as the master's damping and the motor show it, b v - tau [N]. */
-NT_API NT_REALTIME double nt_passivity_hand_force(const nt_passivity *passivity, const nt_passivity_state *state,
-                                                  double motor_force);
 /* What the motor shall add: -damping b v, 0 where steps of the sensor cannot be told from motion [N]. */
 NT_API NT_REALTIME double nt_passivity_damping_force(const nt_passivity *passivity, const nt_passivity_state *state);
 /* Neither gain to take away nor damping to add is left. */

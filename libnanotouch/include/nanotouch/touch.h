@@ -24,6 +24,7 @@ typedef struct nt_touch {
     nt_servo_law law;
     nt_stage_loop stage_loop;
     double force_filter; /* of the low-pass of f_m, per period [-] */
+    uint32_t delay;      /* after which a motor force acts, as far as it is remembered [periods] */
     double speed_filter; /* of the master's speed estimate, per period [-] */
     double spike;        /* a deflection that jumps by more than this may be a wrong reading [m] */
     nt_passivity passivity;
@@ -33,6 +34,8 @@ typedef struct nt_touch {
 
 /* Of a mode that ends: approach and curve. */
 typedef enum nt_phase { NT_PHASE_DOWN, NT_PHASE_UP, NT_PHASE_DONE } nt_phase;
+
+enum { NT_TOUCH_SENT = 32 };
 
 typedef struct nt_touch_state {
     nt_mode mode, wanted_mode; /* they differ while the force of the old one fades out */
@@ -53,6 +56,7 @@ typedef struct nt_touch_state {
     double coupled_force;                   /* what is left of the last command given while coupled [N] */
     double retracted;                       /* lifted so far [m] */
     double target_x, target_y, target_time; /* lateral set-point [m], time left to get there [s] */
+    double sent[NT_TOUCH_SENT];             /* motor forces of the last ticks, by their number [N] */
     nt_command command;                     /* last command */
     uint64_t ticks;
 } nt_touch_state;

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws, modes, running changes, replay and the supervisor on plain numbers, from Python."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from nanotouch import Input, Recording, Rig, Session, Supervisor, Surface, record, surface
+from nanotouch._core import Signals
+from nanotouch.errors import Error, InvalidValue
+
+GRATING = Surface(surface.grating(pixels=128), 20e-9)
+RUN = record.STATES.index("RUN")
+PRESS = [Input(0.3, 0.0, 0.0, 2.0), Input(1.0, 0.0, 0.0, 1.0), Input(1.0, 0.0, 0.0, 3.0)]
+COMMANDS = ("motor_force", "stage_command", "state", "reasons")
+
+
+def same(one: Recording, other: Recording) -> bool:
+    return all(np.array_equal(one.columns[name], other.columns[name]) for name in COMMANDS)
+
+
+# ---- laws ----
+
+
+@pytest.mark.parametrize("control", ["default", "impedance"])
+def test_every_law_lets_the_hand_feel_the_scaled_force(control: str) -> None:
+    session = Session(control=control, gains={"force_gain": 5.0})
+    recording = session.run(operator=[*PRESS, Input(1.0, 0.0, 0.0, 3.0)])
+    rest = recording[-8000:]
+    assert (rest.state == RUN).all()
+    # noise of the probe at the hand 0.007 N over sqrt(8000), and half a step of the gauge
+    assert np.mean(session.settings.gains.alpha_f * rest.tip_force) == pytest.approx(1.0, abs=0.011)
+
+
+def test_the_papers_stage_does_not_reach_its_target() -> None:
+    """Eq. 17 has no integrator: x_s = alpha_p x_m K_p/(1 + K_p). At 20 kHz, without delay, K_p = 0.5 is stable."""
+    gains = {"stage_proportional": 0.5, "delay": 0.0, "force_gain": 1.0}
+    session = Session(control="paper", rate=20e3, gains=gains, clearance=2e-6, minimum_margin=0.5)
+    recording = session.run(operator=[Input(0.5, 0.0, 0.0, 0.2), Input(0.0, 0.0, 0.0, 1.0), Input(0.0, 0.0, 0.0, 0.5)])
+    end = recording[-1000:]
+    wanted = session.settings.gains.alpha_p * (end.master_position - session.core.master_start)
+    assert np.mean(end.stage_position) / np.mean(wanted) == pytest.approx(1.0 / 3.0, rel=0.02)
+
+
+def test_the_papers_gains_are_refused() -> None:
+    """Fig. 17: K_f = 2, kappa far above R1 at 3 ms (docs/control.md)."""
+    gains = {"alpha_p": 4e-3, "alpha_f": 2e6, "force_gain": 2.0}
+    with pytest.raises(InvalidValue, match="margin"):
+        Session(control="paper", rate=333.0, gains=gains)
+
+
+def test_a_law_in_python() -> None:
+    calls = []
+
+    def law(signals: Signals) -> tuple[float, float]:
+        calls.append(signals.period)
+        reflected = signals.alpha_f * signals.felt_force
+        return -reflected - 2.0 * (reflected - signals.smooth_force), signals.target
+
+    one, other = Session(control=law), Session()
+    script = [Input(0.5, 0.0, 0.0, 0.3)]
+    mine, theirs = one.run(operator=script), other.run(operator=script)
+    assert len(calls) == 3000
+    np.testing.assert_allclose(mine.motor_force, theirs.motor_force, atol=1e-12)
+    assert mine.metadata["control"] == "own"
+    with pytest.raises(InvalidValue, match="law of one's own"):
+        mine.replay()
+    assert same(mine, mine.replay(law))
+
+
+def test_a_law_that_fails_stops_the_loop_and_says_why() -> None:
+    def law(signals: Signals) -> tuple[float, float]:
+        if signals.master_position > -7.9e-3:
+            raise ZeroDivisionError("my law")
+        return 0.0, signals.target
+
+    session = Session(control=law)
+    with pytest.raises(ZeroDivisionError, match="my law"):
+        session.advance(1.0, Input(1.0, 0.0, 0.0, 0.1))
+    left = session.core.read(50_000)
+    assert left["state"][-1] == record.STATES.index("RETRACT")
+    assert np.isfinite(left["motor_force"]).all()
+
+
+def test_a_rig_without_a_gauge_is_felt_all_the_same() -> None:
+    rig = Rig(master={"gauge": 0.0})
+    session = Session(rig=rig)
+    recording = session.run(operator=[*PRESS, Input(1.0, 0.0, 0.0, 3.0)])
+    assert (recording.state == RUN).all()
+    rest = recording[-5000:]
+    assert session.settings.gains.alpha_f * np.mean(rest.tip_force) == pytest.approx(1.0, abs=0.01)
+    assert same(recording, recording.replay())
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"control": "fuzzy"}, ["'fuzzy'", "default, paper, impedance"]),
+        ({"gains": {"force": 1.0}}, ["'force'", "force_gain"]),
+        ({"gains": {"force_gain": -1.0}}, ["force_gain", "-1"]),
+        ({"delay": -1.0}, ["delay = -1.0 s"]),
+        ({"rate": 1.0}, ["rate = 1 Hz"]),
+    ],
+)
+def test_bad_choices_are_refused(options: dict[str, Any], words: list[str]) -> None:
+    with pytest.raises(InvalidValue) as caught:
+        Session(**options)
+    assert all(word in str(caught.value) for word in words), caught.value
+
+
+def test_a_link_delay_costs_margin() -> None:
+    near, far = Session(), Session(delay=0.5e-3)
+    assert far.settings.gains.delay == near.settings.gains.delay + 5.0
+    assert far.margins().loop_delay == pytest.approx(near.margins().loop_delay + 2 * 0.5e-3, rel=1e-9)
+
+
+# ---- modes ----
+
+
+@pytest.mark.parametrize("clearance", [30e-9, 0.5e-6, 3e-6])
+def test_an_approach_finds_the_surface(clearance: float) -> None:
+    session = Session(mode="approach", clearance=clearance)
+    recording = session.run()
+    assert session.is_done
+    set_point = session.settings.gains.set_point
+    assert np.median(recording.slave_force[-500:]) == pytest.approx(set_point, rel=0.03)
+    assert recording.tip_force.max() < set_point + session.force_overshoot
+    session.set_mode("point")
+    after = session.run(operator=[Input(0.5, 0.0, 0.0, 0.5), Input(0.5, 0.0, 0.0, 3.0)])
+    assert (after.state == RUN).all()
+    assert session.settings.gains.alpha_f * np.mean(after.tip_force[-3000:]) == pytest.approx(0.5, abs=0.011)
+
+
+def test_a_curve_is_one_for_the_curves_module() -> None:
+    session = Session(mode="curve", clearance=0.1e-6)
+    recording = session.run()
+    assert session.is_done
+    curve = recording.curve()
+    assert [segment.role for segment in curve.segments] == ["approach", "retract"]
+    assert curve.spring_constant == 8.0
+    approach, retract = curve.approach, curve.retract
+    assert approach is not None
+    assert retract is not None
+    assert approach.z[0] > approach.z[-1]
+    assert retract.z[0] < retract.z[-1]
+    assert approach.force is not None
+    assert retract.force is not None
+    # 6 sigma of the reading: 13 nN
+    assert approach.force.max() == pytest.approx(session.settings.gains.set_point, abs=14e-9)
+    assert -retract.force.min() == pytest.approx(session.plan.pull_off_force, abs=14e-9)
+    assert same(recording, recording.replay())
+    with pytest.raises(InvalidValue, match="'point'"):
+        Session().run(operator=[Input(0.0, 0.0, 0.0, 0.01)]).curve()
+
+
+# ---- while it runs ----
+
+
+def test_a_new_scale_while_it_runs() -> None:
+    session = Session()
+    gains = session.settings.gains
+    session.run(operator=PRESS)
+    session.rescale(alpha_f=0.5 * gains.alpha_f)
+    recording = session.run(operator=[Input(1.0, 0.0, 0.0, 4.0)])
+    assert (recording.state == RUN).all()
+    assert np.abs(np.diff(recording.stage_command)).max() < 1e-9
+    rest = recording[-3000:]
+    assert 0.5 * gains.alpha_f * np.mean(rest.tip_force) == pytest.approx(1.0, abs=0.015)
+    with pytest.raises(Error, match="rescale"):
+        session.rescale(alpha_f=1e3 * gains.alpha_f)  # closer to its limit than 1.5
+
+
+def test_the_clutch_holds_the_stage() -> None:
+    session = Session()
+    session.run(operator=PRESS)
+    session.clutch()
+    recording = session.run(operator=[Input(-0.5, 0.0, 0.0, 0.01), Input(-0.5, 0.0, 0.0, 0.2)])
+    assert recording.master_position[-1] < recording.master_position[0] - 0.1e-3
+    assert np.ptp(recording.stage_command) < 2e-9
+    session.clutch(open=False)
+    assert (session.run(operator=[Input(0.2, 0.0, 0.0, 0.5)]).state == RUN).all()
+
+
+# ---- replay ----
+
+
+def test_a_replay_is_the_same_to_the_last_bit(tmp_path: Path) -> None:
+    """Through a file, with every kind of request."""
+    session = Session(surface=GRATING, mode="scan", path=[(0.5e-6, 3e-6), (1.5e-6, 3e-6)], seed=3)
+    blocks = [session.advance(1.0, Input(0.3, 0.5e-6, 3e-6, 0.5))]
+    session.rescale(alpha_f=0.7 * session.settings.gains.alpha_f)
+    blocks.append(session.advance(1.0, Input(0.6, 0.8e-6, 3e-6, 1.0)))
+    session.clutch()
+    blocks.append(session.advance(0.1))
+    session.clutch(open=False)
+    session.set_mode("topography")
+    blocks.append(session.advance(0.5, Input(0.0, 0.9e-6, 3e-6, 0.5)))
+    session.emergency_stop()
+    blocks.append(session.advance(0.1))
+    session.emergency_stop(False)
+    session.arm(confirmed=True)
+    session.set_mode("scan")
+    blocks.append(session.advance(0.5, Input(-0.3, 1.0e-6, 3e-6, 0.2)))
+    columns = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+    recording = Recording(columns, session.metadata())
+    assert len(np.unique(recording.state)) >= 2
+    record.write(tmp_path / "touch.mcap", recording)
+    again = record.read(tmp_path / "touch.mcap")
+    assert same(recording, again.replay())
+    other = {name: values.copy() for name, values in columns.items()}
+    other["deflection"][5000] += 1e-12  # the comparison can fail
+    assert not same(recording, Recording(other, recording.metadata).replay())
+
+
+def test_what_cannot_be_replayed_says_why() -> None:
+    recording = Session().run(operator=[Input(0.1, 0.0, 0.0, 0.01)])
+    with pytest.raises(InvalidValue, match="begins at time 0 s"):
+        recording[10:].replay()
+    with pytest.raises(InvalidValue, match="lacks age"):
+        Recording({name: v for name, v in recording.columns.items() if name != "age"}, recording.metadata).replay()
+
+
+# ---- supervisor and guarantee ----
+
+
+def test_the_supervisor_on_plain_numbers() -> None:
+    supervise = Supervisor()
+    assert supervise() == ("RUN", ())
+    assert supervise(operator_force=math.nan) == ("HOLD", ("invalid sample",))
+    assert supervise() == ("RUN", ())
+    assert supervise(age=2.5e-4) == ("HOLD", ("stale sample",))
+    assert supervise(operator_force=5.0) == ("RUN", ("operator force clipped",))
+    assert supervise(deflection=0.3e-6) == ("RETRACT", ("force limit",))
+    assert supervise() == ("RETRACT", ("force limit",))
+    assert supervise(flags=("emergency_stop",)).state == "LATCHED"
+    with pytest.raises(Error):
+        supervise.arm()
+    supervise.arm(confirmed=True)
+    assert supervise() == ("RUN", ())
+    assert supervise(flags=("device_lost",)).state == "LATCHED"
+
+
+def test_the_guarantee_is_the_sum_of_its_terms() -> None:
+    flat, rough = Session(), Session(surface=GRATING, mode="scan")
+    for session in (flat, rough):
+        found = session.guarantee()
+        terms = found.motion + found.ringing + found.snap_in + found.noise
+        assert found.force == pytest.approx(session.settings.limits.force + terms, rel=1e-12)
+        assert found.snap_in == session.plan.pull_off_force
+        assert f"{found.force * 1e9:.0f} nN" in str(found)
+    assert rough.guarantee().motion > 3.0 * flat.guarantee().motion  # the flank of the grating
+
+
+def test_a_bias_is_tared_and_a_large_one_refused() -> None:
+    assert abs(Session().core.tare[0]) < 5e-9 / math.sqrt(1000)
+    settings = Session().settings
+    settings.limits.deflection_drift = 0.0
+    with pytest.raises(InvalidValue, match="deflection drift"):
+        Session(settings=settings)
+    assert Session(preflight=False).core.tare == (0.0, 0.0)
