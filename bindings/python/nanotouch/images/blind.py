@@ -21,10 +21,12 @@ from numpy.typing import NDArray
 from .._arrays import Floats
 from ..errors import InvalidValue, require
 from ._robust import pixel_noise
+from .tips import dilated, eroded
 from .topography import Topography
 
 _POINTS = 256  # image points per round, those first that the tip so far explains worst
 _ROUNDS = 40
+_IDLE = 2  # rounds that change nothing end it
 _NOISE = 7.0  # standard deviations of the noise: differences of two pixels of 5 sigma of themselves
 
 
@@ -43,7 +45,7 @@ class TipEstimate:
     points : int
         Image points that formed the tip.
     converged : bool
-        False if points were left that would change it.
+        False if it was still changing when the rounds ran out.
     """
 
     heights: Floats
@@ -99,10 +101,10 @@ def estimate_tip(topography: Topography, size: int = 21, threshold: float | None
     done[size // 2 : -(size // 2), size // 2 : -(size // 2)] = False
     outside = done | topography.mask
     done = outside.copy()
-    used, converged = 0, False
+    used, idle, converged = 0, 0, False
     for _ in range(_ROUNDS):
         points = _worst_explained(topography, tip, threshold, done)
-        converged = not len(points)
+        converged = not len(points) or idle == _IDLE
         if converged:
             break
         raised = 0
@@ -112,6 +114,7 @@ def estimate_tip(topography: Topography, size: int = 21, threshold: float | None
             done[j, i] = True  # until others have raised the tip
             tip = better
         used += raised
+        idle = 0 if raised else idle + 1
         if raised:
             done = outside.copy()
     return TipEstimate(tip, topography.pixel_size, threshold, used, converged)
@@ -121,13 +124,13 @@ def _worst_explained(
     topography: Topography, tip: Floats, threshold: float, done: NDArray[np.bool_]
 ) -> NDArray[np.intp]:
     """Points, (n, 2), where the image is higher than this tip could have shown it (its opening), worst first."""
-    ndimage = require("scipy.ndimage", "images")
-    z = topography.heights
-    mirrored = tip[::-1, ::-1]
-    surface = ndimage.grey_erosion(z, structure=-mirrored, mode="constant", cval=np.inf)
-    shown = ndimage.grey_dilation(surface, structure=-mirrored, mode="constant", cval=-np.inf)
-    excess = np.where(done, 0.0, z - shown)
-    candidates = np.flatnonzero(excess > 2.0 * threshold)
+    z = topography.heights - topography.heights.mean()
+    scale = max(topography.height_range, 1e-15)
+    narrow = (z / scale).astype(np.float32)  # quick, and 1e-7 of the heights is enough to choose points
+    excess = narrow - dilated(eroded(narrow, tip / scale), tip / scale)
+    excess[done] = 0.0
+    peak = excess >= require("cv2", "images").dilate(excess, np.ones((3, 3), np.uint8))  # neighbours say the same
+    candidates = np.flatnonzero(peak & (excess > max(2.0 * threshold / scale, 1e-6)))
     worst = candidates[np.argsort(-excess.ravel()[candidates], kind="stable")[:_POINTS]]
     return np.stack(np.divmod(worst, z.shape[1]), axis=1)
 

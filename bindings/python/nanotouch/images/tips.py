@@ -9,13 +9,14 @@ lies below, and is the same wherever the tip at some place touches this one poin
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
 from .._arrays import Floats, check_between
-from ..errors import InvalidValue, require
+from ..errors import InvalidValue
 from .topography import Topography
 
 _BLOCK = 64  # [pixel]; 64 columns of 1024 rows stay in the cache
@@ -84,9 +85,7 @@ def dilate(topography: Topography, tip: Tip) -> Topography:
     elif isinstance(tip, RoundedCone):
         heights = _core.dilate(z, dy, dx, tip.radius, tip.half_angle)
     else:
-        ndimage = require("scipy.ndimage", "images")
-        structure = -_checked(tip)[::-1, ::-1]
-        heights = ndimage.grey_dilation(z, structure=structure, mode="constant", cval=-np.inf)
+        heights = dilated(z, _checked(tip))
     return replace(topography, heights=heights)
 
 
@@ -112,11 +111,38 @@ def erode(topography: Topography, tip: Tip) -> tuple[Topography, NDArray[np.bool
         mirrored = dilate(replace(topography, heights=-topography.heights), tip)
         heights = -mirrored.heights
     else:
-        ndimage = require("scipy.ndimage", "images")
-        structure = -_checked(tip)[::-1, ::-1]
-        heights = ndimage.grey_erosion(topography.heights, structure=structure, mode="constant", cval=np.inf)
+        heights = eroded(topography.heights, _checked(tip))
     certain = _touched_alone(topography.heights, heights, _raster(tip, topography))
     return replace(topography, heights=heights), certain & ~topography.mask
+
+
+def dilated(z: NDArray[Any], tip: Floats) -> NDArray[Any]:
+    """``max_d z(x + d) - t(d)`` with any raster tip, in the precision of `z`; nothing outside counts.
+
+    Block by block, the lowest pixels of the tip first: once the highest pixel around cannot lift the block's lowest any
+    more, the rest cannot either.
+    """
+    (ky, kx), nx = (n // 2 for n in tip.shape), z.shape[1]
+    padded = np.pad(z, ((ky, ky), (kx, kx)), constant_values=-np.inf)
+    order = np.argsort(tip, axis=None, kind="stable")[: np.count_nonzero(np.isfinite(tip))]
+    rows, columns = np.divmod(order, tip.shape[1])
+    places = list(zip(tip.ravel()[order].tolist(), rows.tolist(), columns.tolist(), strict=True))
+    out = z.copy()
+    for first in range(0, len(z), _BLOCK):
+        block = out[first : first + _BLOCK]
+        around = padded[first : first + len(block) + 2 * ky]
+        top, apex = around.max(), np.empty_like(block)
+        for number, (height, j, i) in enumerate(places):
+            if number % _BLOCK == 0 and top - height <= block.min():
+                break
+            np.subtract(around[j : j + len(block), i : i + nx], height, out=apex)
+            np.maximum(block, apex, out=block)
+    return out
+
+
+def eroded(z: NDArray[Any], tip: Floats) -> NDArray[Any]:
+    """``min_x z(x) + t(p - x)``: the dilation of the image turned over by the tip turned round."""
+    return np.asarray(-dilated(-z, tip[::-1, ::-1]))
 
 
 def _checked(tip: Floats) -> Floats:
