@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The cheapest combination of forms whose errors add up to no more than the demand: all of them are tried, a few hundred
- * at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
+ * The cheapest combination of forms whose errors add up to no more than the demand: all of them are tried, a few
+ * hundred at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
 #include <math.h>
 
 #include "scene/parts.h"

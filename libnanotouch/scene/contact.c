@@ -56,6 +56,21 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
     }
 }
 
+int nt_plan_has_local_form(const nt_plan *plan)
+{
+    const nt_form form = nt_plan_contact_form(plan);
+    return form == NT_FORM_EXACT || (form == NT_FORM_SHAPE && plan->shape.kind == NT_SHAPE_PARABOLOID);
+}
+
+nt_bank_value nt_plan_local_eval(const nt_plan *plan, double radius, double indentation)
+{
+    nt_bank_value value = {{NAN, NAN, NAN, NAN}, NAN};
+    nt_contact contact = plan->contact;
+    contact.radius = radius;
+    (void)nt_maugis_bank_eval_radius(plan->bank, &contact, indentation, NT_BRANCH_STABLE, &value);
+    return value;
+}
+
 /* Where the contact carries `load` [m]: bracket upwards from first touch, where it cannot push, then bisect. NaN if it
  * never does. */
 static double indentation_at(const nt_plan *plan, nt_form form, double load)
@@ -106,6 +121,7 @@ nt_status nt_plan_contact_laws(nt_plan *plan, const nt_scene *scene)
     if (!isfinite(deepest))
         return NT_E_NO_CONVERGENCE;
     const nt_law_value loaded = nt_plan_contact_eval(plan, form, deepest);
+    plan->largest_indentation = deepest;
     plan->maximum_stiffness = loaded.k;
     plan->length = plan->source == NT_ADHESION_NONE ? 1e-3 * plan->contact.radius
                                                     : plan->contact.work_of_adhesion / plan->contact.cohesive_stress;

@@ -3,8 +3,8 @@
  *
  * Every term is a potential of the gap that acts on any history; the tail is held inside the gap where adhesion takes
  * hold, and what it pulls there has been taken out of w (laws.c). History only says whether the adhesive contact has
- * been made. It is made at the capture gap, where its energy is 0 or below, and lost at the release gap, the fold of its
- * law, where its energy is 0 or above; what is lost at either is dissipated. No cycle can give out energy. */
+ * been made. It is made at the capture gap, where its energy is 0 or below, and lost at the release gap, the fold of
+ * its law, where its energy is 0 or above; what is lost at either is dissipated. No cycle can give out energy. */
 #include <math.h>
 
 #include "nanotouch/interaction.h"
@@ -20,62 +20,101 @@ static void add(nt_law_value *sum, nt_law_value term)
 
 nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
 {
-    nt_place place = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}};
+    nt_place place = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {plan->contact.radius, 0.0, 0.0}};
     if (plan->surface)
         place.surface = nt_surface_eval(plan->surface, x, y);
+    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL)
+        place.radius = nt_radius_map_eval(plan->radii, x, y);
     return place;
 }
 
+static double radius_at(const nt_plan *plan, const nt_place *place)
+{
+    return place ? place->radius.radius : plan->contact.radius;
+}
+
+/* Where grips let go: the fold of the law, which follows the radius. */
+static double release_gap(const nt_plan *plan, const nt_place *place)
+{
+    if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_LOCAL)
+        return plan->release_gap;
+    nt_contact contact = plan->contact;
+    contact.radius = radius_at(plan, place);
+    return -nt_maugis_bank_grip_indentation(plan->bank, &contact);
+}
+
 /* Captured by contact or meniscus: already, or because the gap is inside the capture range. */
-static int is_attached(const nt_plan *plan, const nt_interaction_state *state, double gap)
+static int is_attached(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
 {
     if (gap <= plan->capture_gap)
         return 1;
-    return state->attached && gap <= plan->release_gap;
+    return state->attached && gap <= release_gap(plan, place);
+}
+
+static nt_bank_value contact_at(const nt_plan *plan, const nt_place *place, double gap)
+{
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    if (form == NT_FORM_LOCAL)
+        return nt_plan_local_eval(plan, radius_at(plan, place), -gap);
+    return (nt_bank_value){nt_plan_contact_eval(plan, form, -gap), 0.0};
+}
+
+/* The vertical law, with dU/dR where the radius varies. */
+static nt_bank_value eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+{
+    nt_bank_value sum = {{0.0, 0.0, 0.0, 0.0}, 0.0};
+    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
+        if (plan->terms[term].form != NT_FORM_OFF)
+            add(&sum.law, nt_plan_law_eval(plan, term, plan->terms[term].form, gap));
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    if (form == NT_FORM_LOCAL) { /* beside contact all is proportional to the effective radius */
+        const double ratio = radius_at(plan, place) / plan->contact.radius;
+        sum.dU_dR = sum.law.U / plan->contact.radius;
+        sum.law.U *= ratio;
+        sum.law.F *= ratio;
+        sum.law.k *= ratio;
+    }
+    if (form != NT_FORM_OFF && (isnan(gap) || is_attached(plan, state, place, gap))) {
+        const nt_bank_value contact = contact_at(plan, place, gap);
+        add(&sum.law, contact.law);
+        sum.dU_dR += contact.dU_dR;
+    }
+    if (isnan(gap))
+        sum.law.U = sum.law.F = sum.law.k = sum.law.a = gap;
+    return sum;
 }
 
 nt_law_value nt_interaction_eval_gap(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place,
                                      double gap)
 {
-    (void)place;
-    nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
-    const nt_form contact = plan->terms[NT_PLAN_CONTACT].form;
-    if (contact != NT_FORM_OFF && (is_attached(plan, state, gap) || isnan(gap)))
-        sum = nt_plan_contact_eval(plan, contact, -gap);
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
-        if (plan->terms[term].form != NT_FORM_OFF)
-            add(&sum, nt_plan_law_eval(plan, term, plan->terms[term].form, gap));
-    if (isnan(gap))
-        sum.U = sum.F = sum.k = sum.a = gap;
-    return sum;
+    return eval_at(plan, state, place, gap).law;
 }
 
 nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interaction_state *state, const nt_pose *pose)
 {
     const nt_place place = nt_interaction_place(plan, pose->x, pose->y);
     const double gap = pose->z - place.surface.z;
-    const nt_law_value law = nt_interaction_eval_gap(plan, state, &place, gap);
-    /* U(h), h = z - z_s(x, y): F = -grad U = F_z (-dz_s/dx, -dz_s/dy, 1) */
-    nt_interaction_value value = {.U = law.U,
-                                  .Fx = -law.F * place.surface.zx,
-                                  .Fy = -law.F * place.surface.zy,
-                                  .Fz = law.F,
-                                  .k = law.k,
-                                  .a = law.a,
+    const nt_bank_value here = eval_at(plan, state, &place, gap);
+    /* U(h, R) with h = z - z_s(x, y) and R(x, y): F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx */
+    nt_interaction_value value = {.U = here.law.U,
+                                  .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx,
+                                  .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy,
+                                  .Fz = here.law.F,
+                                  .k = here.law.k,
+                                  .a = here.law.a,
                                   .gap = gap};
     return value;
 }
 
 void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state, const nt_place *place, double gap)
 {
-    (void)place;
     if (isnan(gap))
         return;
-    const int attached = is_attached(plan, state, gap);
-    if (attached && !state->attached)
-        state->dissipated += plan->capture_energy;
-    if (!attached && state->attached)
-        state->dissipated += plan->release_energy;
+    const int attached = is_attached(plan, state, place, gap);
+    if (attached != state->attached && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF) {
+        const double U = contact_at(plan, place, attached ? plan->capture_gap : release_gap(plan, place)).law.U;
+        state->dissipated += fmax(0.0, attached ? -U : U);
+    }
     state->attached = attached;
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The terms of a scene beside contact: their parameters, their forms, and the largest they can be.
  *
- * The van der Waals tail and the adhesion in contact are the same surface forces (erratum E5b). The tail keeps its value
- * inside the gap where adhesion takes hold, and what it pulls there is taken out of w: together they pull 2 pi R w in
- * the rigid limit, both are potentials, and there is no seam. */
+ * The van der Waals tail and the adhesion in contact are the same surface forces (erratum E5b). The tail keeps its
+ * value inside the gap where adhesion takes hold, and what it pulls there is taken out of w: together they pull 2 pi R
+ * w in the rigid limit, both are potentials, and there is no seam. */
 #include <math.h>
 
 #include "scene/parts.h"
@@ -20,7 +20,7 @@ static void vdw_of(nt_plan *plan, const nt_scene *scene)
     const double hamaker = has_tail(plan) ? scene->adhesion.hamaker_constant : 0.0;
     /* the gap is measured between atoms in contact, z0 apart, and between the means of rough surfaces */
     const double roughness = scene->sample.roughness + 2.0 * distance;
-    const double hold = fmax(plan->capture_gap, 1e-3 * distance);
+    const double hold = fmax(plan->capture_gap, 1e-12);
     plan->laws.vdw = (nt_vdw){scene->tip.radius, hamaker, roughness, hold};
     plan->laws.vdw_tip =
         (nt_vdw_tip){scene->tip.radius, hamaker, scene->tip.half_angle, scene->tip.height, roughness, hold};
@@ -31,8 +31,7 @@ static void charges_of(nt_plan *plan, const nt_scene *scene)
     const double R = scene->tip.radius, hold = scene->adhesion.equilibrium_distance;
     const double potential = nt_scene_potential(scene);
     plan->laws.electrostatic = (nt_electrostatic){R, potential, hold};
-    plan->laws.electrostatic_tip =
-        (nt_electrostatic_tip){R, scene->tip.half_angle, scene->tip.height, potential, hold};
+    plan->laws.electrostatic_tip = (nt_electrostatic_tip){R, scene->tip.half_angle, scene->tip.height, potential, hold};
     const int felt = scene->tip.conducting && scene->medium.kind != NT_MEDIUM_LIQUID;
     plan->laws.charge = (nt_point_charge){R, felt ? scene->sample.charge : 0.0, hold};
 }
@@ -53,9 +52,8 @@ static void liquid_of(nt_plan *plan, const nt_scene *scene)
     const double sample = potential_of(medium, scene->sample.surface_potential, scene->sample.isoelectric_point);
     plan->laws.double_layer = (nt_double_layer){
         .radius = R,
-        .debye_length = ions ? nt_debye_length(medium->ionic_strength, medium->relative_permittivity,
-                                               medium->temperature)
-                             : 1e-9,
+        .debye_length =
+            ions ? nt_debye_length(medium->ionic_strength, medium->relative_permittivity, medium->temperature) : 1e-9,
         .relative_permittivity = medium->relative_permittivity,
         .tip_potential = ions ? tip : 0.0,
         .sample_potential = ions ? sample : 0.0,

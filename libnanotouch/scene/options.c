@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The forms in which every term of a plan could be computed, each with a bound of its error and its cost.
  *
- * An error is a share of the demand: over max(|X|, S), X the demanded quantity of the whole and S its scale. Let T be the
- * largest that the terms beside contact come to. Contact is off by at most e max(|X_c|, S), and |X_c| <= |X| + T, so that
- * its share is e (1 + T/S). A term left out is off by its largest value in the range; one in a simpler form by the
- * largest difference of the two forms. */
+ * An error is a share of the demand: over max(|X|, S), X the demanded quantity of the whole and S its scale. Let T be
+ * the largest that the terms beside contact come to. Contact is off by at most e max(|X_c|, S), and |X_c| <= |X| + T,
+ * so that its share is e (1 + T/S). A term left out is off by its largest value in the range; one in a simpler form by
+ * the largest difference of the two forms. */
 #include <math.h>
 
 #include "scene/parts.h"
 
 /* Measured cost of {U, F, k, a}, in evaluations of an inlined Hertz law (tests/bench/bench_plan.cpp). */
-#define COST_GAP 1.0 /* what every evaluation needs, whatever is computed */
 #define COST_SHAPE 6.0
 #define COST_HERTZ 1.5
 #define COST_JKR 40.0
 #define COST_TABLE 6.0
 #define COST_POLISHED 30.0
 #define COST_EXACT 400.0
+#define COST_LOCAL 60.0   /* with the effective radius and its slope */
+#define COST_SURFACE 10.0 /* height and slopes of a surface */
 static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
     [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 3.0, [NT_FORM_SPHERE] = 8.0, [NT_FORM_TIP] = 20.0},
     [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 30.0},
@@ -42,14 +43,15 @@ static double contact_distance(const nt_plan *plan, nt_law_value (*other)(const 
 {
     enum { SAMPLES = 96 };
     const double fold = -plan->release_gap;
-    const double deepest = plan->table.cells ? plan->table.largest_indentation : 0.0;
+    const double deepest = plan->largest_indentation;
+    const nt_form exact = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : nt_plan_contact_form(plan);
     const double scale = quantity == NT_QUANTITY_FORCE ? fmax(plan->pull_off_force, plan->scale) : plan->scale;
     double largest = 0.0;
     for (int i = 1; i <= SAMPLES; ++i) {
         const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
         if (d < lowest)
             continue;
-        const double truth = pick(nt_plan_contact_eval(plan, NT_FORM_POLISHED, d), quantity);
+        const double truth = pick(nt_plan_contact_eval(plan, exact, d), quantity);
         largest = fmax(largest, fabs(pick(other(plan, d), quantity) - truth) / fmax(fabs(truth), scale));
     }
     return largest;
@@ -72,6 +74,21 @@ static nt_law_value jkr_at(const nt_plan *plan, double indentation)
     return value;
 }
 
+static nt_law_value nominal_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_local_eval(plan, plan->contact.radius, indentation).law;
+}
+
+static nt_law_value sharpest_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_local_eval(plan, plan->radii->minimum, indentation).law;
+}
+
+static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_local_eval(plan, plan->radii->maximum, indentation).law;
+}
+
 static nt_law_value table_at(const nt_plan *plan, double indentation)
 {
     return nt_plan_contact_eval(plan, NT_FORM_TABLE, indentation);
@@ -86,6 +103,19 @@ static void rivals_of(nt_plan *plan)
     plan->rivals.jkr = contact_distance(plan, jkr_at, last, NT_QUANTITY_FORCE);
 }
 
+/* The pull-off force of contact alone: that of the whole may be 0 where repulsion hides it. */
+static double contact_pull_off(const nt_plan *plan)
+{
+    switch (nt_plan_contact_form(plan)) {
+    case NT_FORM_EXACT:
+        return nt_maugis_pull_off_force(&plan->maugis);
+    case NT_FORM_JKR:
+        return nt_jkr_shape_pull_off_force(&plan->jkr);
+    default:
+        return 0.0;
+    }
+}
+
 /* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
 static double scale_of(const nt_plan *plan)
 {
@@ -96,11 +126,13 @@ static double scale_of(const nt_plan *plan)
     case NT_QUANTITY_STIFFNESS:
         return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
     case NT_QUANTITY_RADIUS:
-        return maugis ? m->folds.zero_load_radius * m->radius_scale : plan->contact.radius * plan->validity.radius_ratio;
+        return maugis ? m->folds.zero_load_radius * m->radius_scale
+                      : plan->contact.radius * plan->validity.radius_ratio;
     case NT_QUANTITY_FOLDS:
         return fmax(fabs(plan->release_gap), plan->length);
     default:
-        return fmax(plan->pull_off_force, accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
+        return fmax(fmax(plan->pull_off_force, contact_pull_off(plan)),
+                    accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
     }
 }
 
@@ -117,6 +149,43 @@ static double share(double error, double scale)
     return error == 0.0 ? 0.0 : error / scale;
 }
 
+static int is_curved(const nt_plan *plan)
+{
+    return plan->radii && plan->bank && nt_plan_has_local_form(plan);
+}
+
+/* What leaving out the curvature of the surface costs beside contact. */
+static double curved_laws(const nt_plan *plan, double beside)
+{
+    const double R = plan->contact.radius;
+    if (!is_curved(plan))
+        return 0.0;
+    const double ratio = fmax(fabs(plan->radii->minimum / R - 1.0), fabs(plan->radii->maximum / R - 1.0));
+    return share(ratio * beside, plan->scale);
+}
+
+/* And in contact: force grows with the radius, so that the smallest and the largest on the map are the worst. */
+static double curved_contact(const nt_plan *plan)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const double R = plan->contact.radius;
+    if (!is_curved(plan) || (plan->radii->minimum == R && plan->radii->maximum == R))
+        return 0.0;
+    return SAMPLED * fmax(contact_distance(plan, sharpest_at, -INFINITY, quantity),
+                          contact_distance(plan, bluntest_at, -INFINITY, quantity));
+}
+
+/* The tables' error at the largest radius; a contact without adhesion is exact. */
+static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
+{
+    if (!is_curved(plan))
+        return;
+    const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
+    const double here = contact_distance(plan, nominal_at, -INFINITY, (nt_quantity)(int)plan->demand.quantity);
+    const double error = plan->source == NT_ADHESION_NONE ? 0.0 : TABLED * fmax(here, plan->bank->accuracy.force_error);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * ratio * error + ROUNDING, COST_LOCAL);
+}
+
 /* Contact of tips that adhesion makes Maugis-Dugdale's. */
 static void offer_maugis(nt_plan *plan, nt_plan_options *options, double beside)
 {
@@ -129,13 +198,15 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double beside)
         table = TABLED * contact_distance(plan, table_at, -INFINITY, quantity);
     else
         table *= fmax(1.0, share(nt_maugis_pull_off_force(&plan->maugis), plan->scale));
+    const double curved = curved_contact(plan) + curved_laws(plan, beside);
     const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
     if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
         offer(options, NT_PLAN_CONTACT, NT_FORM_SHAPE,
-              SAMPLED * more * contact_distance(plan, hertz_at, -INFINITY, quantity), COST_HERTZ);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_TABLE, more * table + ROUNDING, COST_TABLE);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_POLISHED, more * 2.0 * ROUNDING, COST_POLISHED);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_EXACT, more * ROUNDING, COST_EXACT);
+              SAMPLED * more * contact_distance(plan, hertz_at, -INFINITY, quantity) + curved, COST_HERTZ);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_TABLE, more * table + ROUNDING + curved, COST_TABLE);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_POLISHED, more * 2.0 * ROUNDING + curved, COST_POLISHED);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_EXACT, more * ROUNDING + curved, COST_EXACT);
+    offer_local(plan, options, more);
 }
 
 static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
@@ -144,7 +215,8 @@ static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options 
     nt_plan_term *term = &plan->terms[NT_PLAN_CONTACT];
     if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
         term->force = 0.0; /* never touched */
-        offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, 0.0, 0.0);
+        offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, curved_laws(plan, beside), 0.0);
+        offer_local(plan, options, 1.0);
         return;
     }
     term->force = scene->range.maximum_load;
@@ -152,9 +224,11 @@ static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options 
         offer_maugis(plan, options, beside);
     else if (full == NT_FORM_JKR)
         offer(options, NT_PLAN_CONTACT, full, ROUNDING, COST_JKR);
-    else
-        offer(options, NT_PLAN_CONTACT, full, ROUNDING,
+    else {
+        offer(options, NT_PLAN_CONTACT, full, ROUNDING + curved_contact(plan) + curved_laws(plan, beside),
               plan->shape.kind == NT_SHAPE_PARABOLOID ? COST_HERTZ : COST_SHAPE);
+        offer_local(plan, options, 1.0);
+    }
 }
 
 /* The largest difference of a form to the fullest one, over the gaps of the range. */
@@ -173,18 +247,22 @@ static double form_distance(const nt_plan *plan, int term, nt_form form, double 
     return SAMPLED * fmax(largest, held);
 }
 
+/* Beside contact every term grows with the effective radius, as for gaps that are small against it. */
 static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_options *options)
 {
+    const double blunter = plan->radii ? fmax(1.0, plan->radii->maximum / plan->contact.radius) : 1.0;
     static const nt_form simpler[] = {NT_FORM_DERJAGUIN, NT_FORM_SPHERE};
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     const nt_form full = nt_plan_full_form(plan, term);
-    offer(options, term, NT_FORM_OFF, share(nt_plan_law_limit(plan, term, nearest, quantity), plan->scale), 0.0);
+    offer(options, term, NT_FORM_OFF, blunter * share(nt_plan_law_limit(plan, term, nearest, quantity), plan->scale),
+          0.0);
     if (full == NT_FORM_OFF)
         return;
     for (int i = 0; i < 2; ++i) {
         const double cost = law_costs[term][simpler[i]];
         if (cost > 0.0 && simpler[i] != full)
-            offer(options, term, simpler[i], share(form_distance(plan, term, simpler[i], nearest), plan->scale), cost);
+            offer(options, term, simpler[i],
+                  blunter * share(form_distance(plan, term, simpler[i], nearest), plan->scale), cost);
     }
     offer(options, term, full, 0.0, law_costs[term][full]);
 }

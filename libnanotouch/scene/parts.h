@@ -6,13 +6,19 @@
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
-/* contact.c: source, shape, contact with all of w, capture; and, with what the tail leaves of w, the laws of contact. */
+/* contact.c: source, shape, contact with all of w, capture; and, with what the tail leaves of w, the laws of contact.
+ */
 nt_status nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 nt_status nt_plan_contact_laws(nt_plan *plan, const nt_scene *scene);
 /* The fullest form of the scene's contact. */
 nt_form nt_plan_contact_form(const nt_plan *plan);
 /* {U, F, k, a} of the contact in a form; all NaN where it refuses the indentation. */
 nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation);
+
+/* Whether the contact follows the effective radius of each place, where one is given. */
+int nt_plan_has_local_form(const nt_plan *plan);
+/* {U, F, k, a} and dU/dR of the local form at an effective radius [m]; all NaN where it refuses. */
+nt_bank_value nt_plan_local_eval(const nt_plan *plan, double radius, double indentation);
 
 /* laws.c: everything beside contact. */
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);

@@ -36,8 +36,8 @@ nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem)
 
 const char *nt_form_name(nt_form form)
 {
-    static const char *const names[] = {"off",  "on",    "derjaguin", "sphere", "tip",  "shape",
-                                        "jkr",  "table", "polished",  "exact",  "local"};
+    static const char *const names[] = {"off", "on",    "derjaguin", "sphere", "tip",  "shape",
+                                        "jkr", "table", "polished",  "exact",  "local"};
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
 }
 
@@ -78,6 +78,8 @@ nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *
     *plan = empty;
     plan->demand = demand;
     plan->surface = inputs->surface;
+    plan->radii = inputs->radii;
+    plan->bank = inputs->bank;
     if (inputs->probe)
         plan->demand.force_floor = fmax(demand.force_floor, nt_probe_force_noise(inputs->probe));
     status = nt_plan_contact_of(plan, inputs->scene, problem);

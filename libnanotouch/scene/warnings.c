@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a plan's bound does not cover: where a law is used outside its validity, and what is no part of the potential. */
+ * What a plan's bound does not cover: where a law is used outside its validity, and what is no part of the potential.
+ */
 #include <math.h>
 
 #include "scene/parts.h"
@@ -33,11 +34,11 @@ static void check_meniscus(nt_plan *plan, const nt_scene *scene)
     if (plan->source != NT_ADHESION_MENISCUS)
         return;
     const double r1 = nt_scene_meniscus_radius(scene);
-    const double kelvin = nt_kelvin_radius(medium->surface_tension, medium->molar_volume, medium->temperature,
-                                           medium->relative_humidity);
+    const double kelvin =
+        nt_kelvin_radius(medium->surface_tension, medium->molar_volume, medium->temperature, medium->relative_humidity);
     if (fabs(r1 - kelvin) > 0.25 * kelvin)
-        warn(plan, (nt_plan_warning){"meniscus radius, which the Kelvin equation gives otherwise for this humidity", "m",
-                                     r1, kelvin});
+        warn(plan, (nt_plan_warning){"meniscus radius, which the Kelvin equation gives otherwise for this humidity",
+                                     "m", r1, kelvin});
     if (medium->film_thickness > r1)
         warn(plan, (nt_plan_warning){"film thicker than the meniscus radius, which no one humidity makes", "m",
                                      medium->film_thickness, r1});
@@ -54,8 +55,8 @@ static void check_liquid(nt_plan *plan)
         return;
     const double potential = fmax(fabs(layer->tip_potential), fabs(layer->sample_potential));
     if (potential > 0.025)
-        warn(plan, (nt_plan_warning){"surface potential, beyond the linear theory of double layers", "V", potential,
-                                     0.025});
+        warn(plan,
+             (nt_plan_warning){"surface potential, beyond the linear theory of double layers", "V", potential, 0.025});
     if (layer->debye_length > 0.2 * layer->radius)
         warn(plan, (nt_plan_warning){"Debye length, not small against the tip", "m", layer->debye_length,
                                      0.2 * layer->radius});
@@ -71,6 +72,16 @@ static void check_drag(nt_plan *plan, const nt_scene *scene)
         warn(plan, (nt_plan_warning){"viscous drag at the fastest approach, left out", "N", drag, felt});
 }
 
+static void check_surface(nt_plan *plan)
+{
+    if (plan->radii && !nt_plan_has_local_form(plan))
+        warn(plan, (nt_plan_warning){"curvature of the surface, which this tip's law does not know: least radius", "m",
+                                     plan->radii->minimum, plan->contact.radius});
+    if (plan->radii && plan->radii->limited > 0)
+        warn(plan, (nt_plan_warning){"pixels whose curvature is beyond what the map resolves", "",
+                                     (double)plan->radii->limited, 0.0});
+}
+
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
 {
     plan->warning_count = 0;
@@ -78,4 +89,5 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_meniscus(plan, scene);
     check_liquid(plan);
     check_drag(plan, scene);
+    check_surface(plan);
 }

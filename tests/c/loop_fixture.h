@@ -20,7 +20,8 @@ static inline nt_status loop_open(loop *l, const nt_session_setup *setup)
 {
     nt_scene scene = setup->scene;
     scene.range.maximum_load = setup->settings.limits.force;
-    const nt_plan_inputs inputs = {&scene, &setup->demand, &setup->rig.probe, setup->surface};
+    const nt_plan_inputs inputs = {
+        .scene = &scene, .demand = &setup->demand, .probe = &setup->rig.probe, .surface = setup->surface};
     nt_status status = nt_plan_make(&l->plan, &inputs, NULL);
     if (status == NT_OK)
         status = nt_touch_make(&l->touch, &setup->rig, &setup->settings, setup->mode, NULL);

@@ -78,12 +78,12 @@ static void force_is_minus_the_gradient(void **state)
                 continue;
             const nt_pose p = {x, y, nt_surface_eval(&surface, x, y).z + gap};
             const nt_interaction_value v = nt_interaction_eval(&plan, &history, &p);
-            const double dx = energy_at(&history, (nt_pose){x + h, y, p.z}) -
-                              energy_at(&history, (nt_pose){x - h, y, p.z});
-            const double dy = energy_at(&history, (nt_pose){x, y + h, p.z}) -
-                              energy_at(&history, (nt_pose){x, y - h, p.z});
-            const double dz = energy_at(&history, (nt_pose){x, y, p.z + h}) -
-                              energy_at(&history, (nt_pose){x, y, p.z - h});
+            const double dx =
+                energy_at(&history, (nt_pose){x + h, y, p.z}) - energy_at(&history, (nt_pose){x - h, y, p.z});
+            const double dy =
+                energy_at(&history, (nt_pose){x, y + h, p.z}) - energy_at(&history, (nt_pose){x, y - h, p.z});
+            const double dz =
+                energy_at(&history, (nt_pose){x, y, p.z + h}) - energy_at(&history, (nt_pose){x, y, p.z - h});
             const double tolerance = 1e-12 + 1e-6 * fabs(v.Fz);
             assert_true(fabs(v.Fx + dx / (2 * h)) < tolerance);
             assert_true(fabs(v.Fy + dy / (2 * h)) < tolerance);

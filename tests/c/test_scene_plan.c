@@ -47,7 +47,7 @@ static void the_contact_law_follows_from_the_scene(void **state)
     assert_int_equal(contact_form(&none, &demand), NT_FORM_SHAPE);
     assert_int_equal(contact_form(&cone, &demand), NT_FORM_JKR);
     assert_int_equal(contact_form(&far, &demand), NT_FORM_OFF); /* never touches */
-    demand.relative_accuracy = 1e-8; /* below the table's error */
+    demand.relative_accuracy = 1e-8;                            /* below the table's error */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_POLISHED);
     demand.relative_accuracy = 0.0; /* everything, exact */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_EXACT);
@@ -109,9 +109,10 @@ static void bounds_of_what_is_left_out_are_true_maxima(void **state)
             double largest = 0.0;
             assert_int_equal(plan.terms[term].form, NT_FORM_OFF);
             for (double gap = -5e-9; gap < 100e-9; gap += 1e-12) {
-                const double F = term == NT_PLAN_VDW             ? nt_vdw_eval(&plan.laws.vdw, gap).F
-                                 : term == NT_PLAN_ELECTROSTATIC ? nt_electrostatic_eval(&plan.laws.electrostatic, gap).F
-                                                                 : nt_point_charge_eval(&plan.laws.charge, gap).F;
+                const double F = term == NT_PLAN_VDW ? nt_vdw_eval(&plan.laws.vdw, gap).F
+                                 : term == NT_PLAN_ELECTROSTATIC
+                                     ? nt_electrostatic_eval(&plan.laws.electrostatic, gap).F
+                                     : nt_point_charge_eval(&plan.laws.charge, gap).F;
                 largest = fmax(largest, fabs(F));
             }
             assert_true(largest > 0.0 && fabs(plan.terms[term].force / largest - 1.0) < 1e-9);

@@ -179,6 +179,11 @@ def electrostatic_tip(
     )
 
 
+def point_charge(gap: ArrayLike, *, radius: ArrayLike, charge: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> Law:
+    """Charge [C] trapped under a grounded sphere (image charge, exact): -q^2 R (R + h)/(4 pi eps0 (h (h + 2R))^2)."""
+    return _evaluate(_core.point_charge_eval, gap, radius=radius, charge=charge, minimum_gap=minimum_gap)
+
+
 def electrostatic_lever(
     gap: ArrayLike,
     *,

@@ -68,7 +68,7 @@ class Interaction:
 
     @state.setter
     def state(self, state: State) -> None:
-        self._core.state = tuple(state)
+        self._core.state = (state.attached, state.dissipated, state.port)
 
     def eval(self, pose: ArrayLike) -> Value:
         """Energy and force at a pose (x, y, z) or poses (n, 3) [m], on the present history."""

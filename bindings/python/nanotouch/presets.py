@@ -77,6 +77,25 @@ def inas_dots() -> tuple[Scene, Rig]:
     return Scene(sample={"youngs_modulus": 51.4e9, "poisson_ratio": 0.35}), Rig()  # InAs, handbook
 
 
+def cell_in_liquid() -> tuple[Scene, Rig]:
+    """A living cell in physiological saline under a colloidal probe: soft, thin, with a brush of sugars, no adhesion."""
+    scene = Scene(
+        tip={"shape": "sphere", "radius": 2.5e-6, "material": "silica", "surface_potential": -0.02},
+        # E, T and the brush: Sokolov et al., Nat. Nanotechnol. 4 (2009) 605; potential: some -15 mV of zeta
+        sample={
+            "youngs_modulus": 1e3, "poisson_ratio": 0.5, "thickness": 5e-6, "conducting": "no",
+            "surface_potential": -0.015,
+        },
+        medium={
+            "kind": "liquid", "temperature": 310.15, "relative_humidity": 0.0, "ionic_strength": 150.0,
+            "brush_thickness": 0.5e-6, "brush_spacing": 80e-9, "relative_permittivity": 74.0,
+        },
+        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 1e-21},
+        range={"maximum_load": 2e-9, "viscosity": 0.7e-3, "speed": 1e-6},
+    )  # fmt: skip
+    return scene, Rig(probe={"spring_constant": 0.06})
+
+
 def _work_of_adhesion(hamaker_constant: float, equilibrium_distance: float) -> float:
     """w = H/(12 pi a0^2) [J/m^2]: what the van der Waals attraction of two half-spaces holds at contact."""
     return hamaker_constant / (12.0 * math.pi * equilibrium_distance**2)

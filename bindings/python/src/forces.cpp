@@ -98,6 +98,8 @@ void bind_forces(py::module_ &module)
     bind<nt_electrostatic_lever>(
         module, "electrostatic_lever_eval",
         {"electrostatic force", &nt_electrostatic_lever_check, &nt_electrostatic_lever_eval_n});
+    bind<nt_point_charge>(module, "point_charge_eval",
+                          {"force of a charge", &nt_point_charge_check, &nt_point_charge_eval_n});
     bind<nt_lennard_jones>(module, "lennard_jones_eval",
                            {"Lennard-Jones force", &nt_lennard_jones_check, &nt_lennard_jones_eval_n});
     bind<nt_double_layer>(module, "double_layer_potential_eval",

@@ -8,8 +8,11 @@
 static std::unique_ptr<nt_plan> plan_of(const Described<nt_scene> &scene, const Described<nt_demand> &demand,
                                         const Described<nt_rig> *rig, const Surface *surface)
 {
-    const nt_plan_inputs inputs = {&scene.value, &demand.value, rig ? &rig->value.probe : nullptr,
-                                   surface ? &surface->surface : nullptr};
+    nt_plan_inputs inputs{};
+    inputs.scene = &scene.value;
+    inputs.demand = &demand.value;
+    inputs.probe = rig ? &rig->value.probe : nullptr;
+    inputs.surface = surface ? &surface->surface : nullptr;
     auto plan = std::make_unique<nt_plan>();
     nt_problem problem{};
     nt_status status;
@@ -60,6 +63,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["pull_off_force"] = plan.pull_off_force;
     out["minimum_spring"] = plan.minimum_spring;
     out["maximum_stiffness"] = plan.maximum_stiffness;
+    out["largest_indentation"] = plan.largest_indentation;
     out["length"] = plan.length;
     out["contact_strain"] = plan.validity.radius_ratio;
 }

@@ -21,6 +21,7 @@ typedef struct nt_interaction_state {
 /* A place on the surface: all that does not depend on the gap there. */
 typedef struct nt_place {
     nt_surface_value surface;
+    nt_radius_value radius; /* effective radius of the contact there, and its slope */
 } nt_place;
 NT_API NT_REALTIME nt_place nt_interaction_place(const nt_plan *plan, double x, double y);
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What has to be computed for a scene, and why. Every term of the scene's potential has forms of rising cost, from "left
- * out" to exact; each form's error is bounded over the whole range that the scene says will be visited. The plan is the
- * cheapest choice whose bounds add up to no more than the demand. */
+ * What has to be computed for a scene, and why. Every term of the scene's potential has forms of rising cost, from
+ * "left out" to exact; each form's error is bounded over the whole range that the scene says will be visited. The plan
+ * is the cheapest choice whose bounds add up to no more than the demand. */
 #ifndef NANOTOUCH_PLAN_H
 #define NANOTOUCH_PLAN_H
 
+#include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/rig.h"
@@ -15,7 +16,12 @@
 extern "C" {
 #endif
 
-typedef enum nt_quantity { NT_QUANTITY_FORCE, NT_QUANTITY_STIFFNESS, NT_QUANTITY_RADIUS, NT_QUANTITY_FOLDS } nt_quantity;
+typedef enum nt_quantity {
+    NT_QUANTITY_FORCE,
+    NT_QUANTITY_STIFFNESS,
+    NT_QUANTITY_RADIUS,
+    NT_QUANTITY_FOLDS
+} nt_quantity;
 
 /* How true the felt force must be, and what it may cost. */
 typedef struct nt_demand {
@@ -97,12 +103,12 @@ enum { NT_PLAN_CELLS = 256 };
 /* Immutable after nt_plan_make. It refers to itself: share it by pointer; copy it with nt_plan_copy only. */
 typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
-    nt_accuracy bound;   /* force_error: of the demanded quantity; model_error: of Maugis-Dugdale beside Lennard-Jones, NaN
-                            where not known */
-    double cost;         /* of one evaluation [Hertz evaluations] */
-    double full_cost;    /* of everything on, exact [Hertz evaluations] */
-    double scale;        /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy) [N, N/m, m] */
-    nt_demand demand;    /* as given, the floor raised to what the probe can measure */
+    nt_accuracy bound; /* force_error: of the demanded quantity; model_error: of Maugis-Dugdale beside Lennard-Jones,
+                          NaN where not known */
+    double cost;       /* of one evaluation [Hertz evaluations] */
+    double full_cost;  /* of everything on, exact [Hertz evaluations] */
+    double scale;      /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy) [N, N/m, m] */
+    nt_demand demand;  /* as given, the floor raised to what the probe can measure */
     nt_plan_rivals rivals;
     nt_plan_warning warnings[NT_PLAN_WARNINGS_MAX];
     int warning_count;
@@ -117,25 +123,30 @@ typedef struct nt_plan {
     nt_maugis_cell cells[NT_PLAN_CELLS];
     nt_plan_laws laws;
 
-    double capture_gap;       /* on approach adhesion takes hold here [m] */
-    double release_gap;       /* on retraction under grips it lets go here [m] */
-    double capture_energy;    /* that is lost when it takes hold, >= 0 [J] */
-    double release_energy;    /* that is lost when it lets go, >= 0 [J] */
-    double pull_off_force;    /* of everything on, under load control, positive [N] */
-    double minimum_spring;    /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
-    double maximum_stiffness; /* k of the contact at the largest load [N/m] */
-    double length;            /* the shortest distance over which the force changes its shape [m] */
+    double capture_gap;           /* on approach adhesion takes hold here [m] */
+    double release_gap;           /* on retraction under grips it lets go here [m] */
+    double capture_energy;        /* that is lost when it takes hold, >= 0 [J] */
+    double release_energy;        /* that is lost when it lets go, >= 0 [J] */
+    double pull_off_force;        /* of everything on, under load control, positive [N] */
+    double minimum_spring;        /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
+    double maximum_stiffness;     /* k of the contact at the largest load [N/m] */
+    double largest_indentation;   /* at that load [m] */
+    double length;                /* the shortest distance over which the force changes its shape [m] */
     nt_contact_validity validity; /* of the contact law at the largest load */
 
     const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
+    const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
+    const nt_maugis_bank *bank; /* borrowed; NULL where no term is local */
 } nt_plan;
 
 /* What a plan is made from. */
 typedef struct nt_plan_inputs {
     const nt_scene *scene;
-    const nt_demand *demand; /* NULL: nt_demand_defaults */
-    const nt_probe *probe;   /* raises the floor to its force noise; NULL: none */
-    const nt_surface *surface; /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
+    const nt_demand *demand;    /* NULL: nt_demand_defaults */
+    const nt_probe *probe;      /* raises the floor to its force noise; NULL: none */
+    const nt_surface *surface;  /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
+    const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not asked for */
+    const nt_maugis_bank *bank; /* for the contact with the radius of each place, borrowed; NULL: not on offer */
 } nt_plan_inputs;
 
 /* Decides. Some 100 us. On failure *plan is not to be used and *problem (NULL allowed) names the field of scene, demand

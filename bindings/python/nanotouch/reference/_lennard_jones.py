@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the models are measured against: computed off-line, slower and truer than anything that runs in a loop.
-
-So far: a sphere on an elastic half-space under the Lennard-Jones law, self-consistent (the surface yields to the very
-attraction that its shape decides). Its curves depend on Tabor's mu alone and are shipped as a table made by
-``tools/lennard_jones``. :func:`model_error` says what Hertz, DMT, JKR and Maugis-Dugdale are worth beside it.
+"""A sphere on an elastic half-space under the Lennard-Jones law, self-consistent: the surface yields to the very
+attraction that its shape decides. Its curves depend on Tabor's mu alone and are shipped as a table made by
+``tools/lennard_jones``.
 
 Units are Maugis': load in pi w R, indentation in (pi^2 w^2 R/K^2)^(1/3), K = 4/3 E*. Indentation 0 puts the undeformed
 apex at z0 from the surface, the gap at which half-spaces neither attract nor repel; force + repulsive.

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Say what has to be computed for a scene, at which cost and with which error bound.
+
+The scene is a TOML file or a preset of the paper; the demand may stand in the file ([demand]) or be given here.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+import nanotouch as nt
+from nanotouch import presets
+from nanotouch.errors import InvalidValue
+from nanotouch.scene import Demand, Rig, Scene, read_tables
+from nanotouch.units import parse_quantity
+
+PRESETS = (
+    "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots", "cell_in_liquid",
+)  # fmt: skip
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "plan", help="say what has to be computed for a scene, and why", description=__doc__
+    )
+    parser.add_argument("scene", metavar="SCENE", help=f"TOML file, or a preset: {', '.join(PRESETS)}")
+    parser.add_argument("--rtol", metavar="SHARE", help="largest relative error, such as 1%% (default: of the file, 1%%)")
+    parser.add_argument("--atol", metavar="FORCE", help="forces below this cannot be felt, such as 10pN")
+    parser.add_argument("--quantity", choices=("force", "stiffness", "radius", "folds"), help="of what (default: force)")
+    parser.add_argument("--budget", type=float, metavar="N", help="what an evaluation may cost, in Hertz evaluations")
+    parser.add_argument("--probe", action="store_true", help="leave out what the rig's probe cannot measure")
+    parser.add_argument("--json", action="store_true", help="print the plan as data, SI")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    scene, rig, demand = _descriptions(args.scene)
+    if args.rtol is not None:
+        demand["demand.relative_accuracy"] = parse_quantity(args.rtol, "")
+    if args.atol is not None:
+        demand["demand.force_floor"] = parse_quantity(args.atol, "N")
+    if args.quantity is not None:
+        demand["demand.quantity"] = args.quantity
+    if args.budget is not None:
+        demand["demand.budget"] = args.budget
+    plan = nt.Plan.make(scene, demand, rig if args.probe else None)
+    print(json.dumps(plan.explain(), indent=2) if args.json else plan)
+    return 0
+
+
+def _descriptions(name: str) -> tuple[Scene, Rig, Demand]:
+    if name in PRESETS:
+        return *getattr(presets, name)(), Demand()
+    if not name.endswith(".toml"):
+        raise InvalidValue(f"{name!r} is neither a TOML file nor a preset; presets are {', '.join(PRESETS)}")
+    tables = read_tables(name)
+    return Scene.from_tables(tables), Rig.from_tables(tables), Demand.from_tables(tables)

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the models are measured against: slower and truer than anything that runs in a loop.
+
+- :func:`force`: a scene with every term on, Maugis-Dugdale exact, composed here from the laws one by one; plans are
+  measured against it.
+- :func:`lennard_jones`: a sphere on an elastic half-space under the Lennard-Jones law, self-consistent;
+  :func:`model_error` says what Hertz, DMT, JKR and Maugis-Dugdale are worth beside it.
+"""
+
+from nanotouch.reference._lennard_jones import (
+    LAMBDA_PER_MU,
+    PEAK_STRESS,
+    LennardJones,
+    TableError,
+    lennard_jones,
+    model_error,
+    mu_range,
+    pull_off,
+    table_error,
+    tabor_mu,
+)
+from nanotouch.reference._scene import SceneForces, force, forces
+
+__all__ = [
+    "LAMBDA_PER_MU",
+    "PEAK_STRESS",
+    "LennardJones",
+    "SceneForces",
+    "TableError",
+    "force",
+    "forces",
+    "lennard_jones",
+    "model_error",
+    "mu_range",
+    "pull_off",
+    "table_error",
+    "tabor_mu",
+]

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The force of a scene with every term on and exact, composed in Python from the laws of :mod:`nanotouch.contact`,
+:mod:`nanotouch.geometry` and :mod:`nanotouch.forces` by the rules of docs/scene.md; it shares no code with plans."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any, Literal, NamedTuple, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nanotouch import contact as contacts
+from nanotouch import forces as laws
+from nanotouch import geometry
+from nanotouch._arrays import Floats, as_floats, plain
+from nanotouch.errors import InvalidValue
+from nanotouch.scene import Scene
+
+History = Literal["approach", "retract"]
+
+
+class SceneForces(NamedTuple):
+    """The terms of a scene at gaps; each an array [N], 0 where the scene has no such term."""
+
+    contact: Floats
+    vdw: Floats
+    electrostatic: Floats
+    charge: Floats
+    double_layer: Floats
+    hydration: Floats
+    steric: Floats
+
+
+def force(scene: Scene, gap: ArrayLike, *, history: History = "approach") -> Any:
+    """Force on the tip [N] at gaps [m], each reached from far away (``"approach"``) or from contact (``"retract"``)."""
+    return plain(np.sum(forces(scene, gap, history=history), axis=0))
+
+
+def forces(scene: Scene, gap: ArrayLike, *, history: History = "approach") -> SceneForces:
+    """The same, term by term."""
+    if history not in get_args(History):
+        raise InvalidValue(f"history {history!r}: valid are {', '.join(get_args(History))}")
+    scene.check()
+    gaps = as_floats(gap, "gap")
+    whole = _contact(scene)
+    capture = _capture_gap(scene, whole)
+    tail = functools.partial(_vdw, scene, hold=max(capture, 1e-12))
+    pulled = -float(tail(0.0)) / (2.0 * np.pi * whole.radius) if whole.work_of_adhesion > 0.0 else 0.0
+    return SceneForces(
+        _touch(scene, gaps, _less(whole, pulled), capture, history),
+        np.asarray(tail(gaps)),
+        np.asarray(_electrostatic(scene, gaps)),
+        np.asarray(_charge(scene, gaps)),
+        np.asarray(_double_layer(scene, gaps)),
+        np.asarray(_hydration(scene, gaps)),
+        np.asarray(_steric(scene, gaps)),
+    )
+
+
+# ---- contact ----
+
+
+def _has_meniscus(scene: Scene) -> bool:
+    medium = scene.medium
+    return bool(medium.kind == "air" and medium.relative_humidity > 0.0 and medium.surface_tension > 0.0)
+
+
+def _meniscus_radius(scene: Scene) -> float:
+    medium = scene.medium
+    return float(medium.meniscus_radius) or laws.kelvin_radius(
+        medium.relative_humidity,
+        surface_tension=medium.surface_tension,
+        molar_volume=medium.molar_volume,
+        temperature=medium.temperature,
+    )
+
+
+def _contact(scene: Scene) -> contacts.Contact:
+    """R, E*, all of w, and its stress."""
+    modulus = contacts.effective_modulus(
+        scene.tip.youngs_modulus, scene.tip.poisson_ratio, scene.sample.youngs_modulus, scene.sample.poisson_ratio
+    )
+    adhesion = scene.adhesion
+
+    def with_work(work: float) -> contacts.Contact:
+        if work == 0.0:
+            return contacts.Contact(scene.tip.radius, modulus)
+        if _has_meniscus(scene):  # the stress is the Laplace pressure over 2 r1 (E12)
+            return contacts.Contact(scene.tip.radius, modulus, work, work / (2.0 * _meniscus_radius(scene)))
+        stress = contacts.cohesive_stress_atomic(work, adhesion.equilibrium_distance)
+        return contacts.Contact(scene.tip.radius, modulus, work, stress)
+
+    if adhesion.given == "pull_off_force" and adhesion.pull_off_force > 0.0:
+        from scipy.optimize import brentq
+
+        root = brentq(lambda w: _pull_off(scene, with_work(w)) - adhesion.pull_off_force, 1e-12, 1e2, xtol=1e-18)
+        return with_work(float(root))
+    if _has_meniscus(scene):
+        return with_work(2.0 * scene.medium.surface_tension)
+    if adhesion.given == "surface_energies":
+        return with_work(2.0 * float(np.sqrt(adhesion.tip_surface_energy * adhesion.sample_surface_energy)))
+    return with_work(0.0 if adhesion.given == "pull_off_force" else adhesion.work_of_adhesion)
+
+
+def _shape(scene: Scene) -> geometry.Shape:
+    tip = scene.tip
+    sizes: dict[str, Any] = {}
+    if tip.shape != "cone":
+        sizes["radius"] = tip.radius
+    if tip.shape in ("cone", "blunted", "truncated"):
+        sizes |= {"half_angle": tip.half_angle, "sides": int(tip.sides)}
+    return geometry.Shape(tip.shape, **sizes)
+
+
+def _is_jkr(scene: Scene) -> bool:
+    return scene.tip.shape in ("cone", "punch")
+
+
+def _pull_off(scene: Scene, contact: contacts.Contact) -> float:
+    if _is_jkr(scene):
+        return geometry.jkr_pull_off_force(_shape(scene), contact.effective_modulus, contact.work_of_adhesion)
+    return contacts.pull_off_force("maugis", contact)
+
+
+def _less(contact: contacts.Contact, pulled: float) -> contacts.Contact:
+    """What the tail leaves of w, over the same range (E5b)."""
+    w = contact.work_of_adhesion
+    if w == 0.0 or pulled == 0.0:
+        return contact
+    if pulled >= w:
+        raise InvalidValue(
+            f"adhesion.hamaker_constant: the tail alone pulls as much as w = {pulled:g} J/m2 would, of {w:g} J/m2"
+        )
+    assert contact.cohesive_stress is not None
+    left = w - pulled
+    return contacts.Contact(contact.radius, contact.effective_modulus, left, left * contact.cohesive_stress / w)
+
+
+def _capture_gap(scene: Scene, contact: contacts.Contact) -> float:
+    """Where adhesion takes hold on approach."""
+    if contact.work_of_adhesion == 0.0 or _is_jkr(scene):
+        return 0.0
+    assert contact.cohesive_stress is not None
+    reach = contact.work_of_adhesion / contact.cohesive_stress
+    return min(2.0 * scene.medium.film_thickness, reach) if _has_meniscus(scene) else reach
+
+
+def _touch(scene: Scene, gaps: Floats, contact: contacts.Contact, capture: float, history: History) -> Floats:
+    """The contact law where it has been captured and holds."""
+    if contact.work_of_adhesion == 0.0:
+        return np.asarray(geometry.evaluate(_shape(scene), -gaps, contact.effective_modulus).F)
+    if _is_jkr(scene):
+        branch = geometry.jkr(_shape(scene), -gaps, contact.effective_modulus, contact.work_of_adhesion)
+    else:
+        branch = contacts.evaluate("maugis", -gaps, contact)
+    held = np.asarray(branch.F)
+    return held if history == "retract" else np.where(gaps <= capture, held, 0.0)
+
+
+# ---- beside contact ----
+
+
+def _vdw(scene: Scene, gaps: ArrayLike, hold: float) -> Any:
+    tip, adhesion = scene.tip, scene.adhesion
+    if adhesion.hamaker_constant == 0.0 or _is_jkr(scene):
+        return np.zeros(np.shape(gaps))
+    common: dict[str, Any] = {
+        "radius": tip.radius,
+        "hamaker_constant": adhesion.hamaker_constant,
+        "roughness": scene.sample.roughness + 2.0 * adhesion.equilibrium_distance,
+        "minimum_gap": hold,
+    }
+    if tip.height > 0.0:
+        return laws.vdw_tip(gaps, half_angle=tip.half_angle, height=tip.height, **common).F
+    return laws.vdw(gaps, **common).F
+
+
+def _electrostatic(scene: Scene, gaps: Floats) -> Any:
+    tip, sample = scene.tip, scene.sample
+    connected = tip.conducting == "yes" and sample.conducting == "yes" and sample.grounded == "yes"
+    if not connected or scene.medium.kind == "liquid":
+        return np.zeros(gaps.shape)
+    known = tip.work_function > 0.0 and sample.work_function > 0.0
+    potential = scene.adhesion.contact_potential + (tip.work_function - sample.work_function if known else 0.0)
+    common: dict[str, Any] = {
+        "radius": tip.radius, "potential": potential, "minimum_gap": scene.adhesion.equilibrium_distance,
+    }  # fmt: skip
+    if tip.height > 0.0:
+        return laws.electrostatic_tip(gaps, half_angle=tip.half_angle, height=tip.height, **common).F
+    return laws.electrostatic(gaps, **common).F
+
+
+def _charge(scene: Scene, gaps: Floats) -> Any:
+    if scene.tip.conducting == "no" or scene.medium.kind == "liquid":
+        return np.zeros(gaps.shape)
+    return laws.point_charge(
+        gaps,
+        radius=scene.tip.radius,
+        charge=scene.sample.charge,
+        minimum_gap=scene.adhesion.equilibrium_distance,
+    ).F
+
+
+def _double_layer(scene: Scene, gaps: Floats) -> Any:
+    medium = scene.medium
+    if medium.kind != "liquid" or medium.ionic_strength == 0.0:
+        return np.zeros(gaps.shape)
+
+    def potential(body: Any) -> float:
+        if medium.ph > 0.0:
+            return float(medium.potential_per_ph * (body.isoelectric_point - medium.ph))
+        return float(body.surface_potential)
+
+    return laws.double_layer(
+        gaps,
+        radius=scene.tip.radius,
+        debye_length=laws.debye_length(
+            medium.ionic_strength,
+            relative_permittivity=medium.relative_permittivity,
+            temperature=medium.temperature,
+        ),
+        tip_potential=potential(scene.tip),
+        sample_potential=potential(scene.sample),
+        relative_permittivity=medium.relative_permittivity,
+        minimum_gap=scene.adhesion.equilibrium_distance,
+    ).F
+
+
+def _hydration(scene: Scene, gaps: Floats) -> Any:
+    medium = scene.medium
+    if medium.kind != "liquid":
+        return np.zeros(gaps.shape)
+    return laws.hydration(
+        gaps,
+        radius=scene.tip.radius,
+        amplitude=medium.hydration_energy,
+        decay_length=medium.hydration_length,
+        minimum_gap=scene.adhesion.equilibrium_distance,
+    ).F
+
+
+def _steric(scene: Scene, gaps: Floats) -> Any:
+    medium, hold = scene.medium, scene.adhesion.equilibrium_distance
+    if medium.kind != "liquid" or medium.brush_thickness <= hold:
+        return np.zeros(gaps.shape)
+    return laws.steric(
+        gaps,
+        radius=scene.tip.radius,
+        thickness=medium.brush_thickness,
+        spacing=medium.brush_spacing,
+        temperature=medium.temperature,
+        minimum_gap=hold,
+    ).F
