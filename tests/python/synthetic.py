@@ -291,22 +291,24 @@ def write_nanoscope(
     ramp: float = 300e-9,
     sensitivity: float = 41e-9,
     spring_constant: float = 0.999,
+    version: str = "0x08150305",
 ) -> Path:
     """Bruker's NanoScope 8 force file: deflections [V] of (approach, retraction), both from the deepest outwards."""
     near, far = (len(branch) for branch in curves[0])
-    volts_per_lsb, piezo, offset = 0.000375, 12.18e-9, 4096
-    data = b"".join(np.round(branch / volts_per_lsb).astype("<i2").tobytes() for curve in curves for branch in curve)
+    kind, volts_per_lsb = ("<i4", 0.000375 / 65536) if version >= "0x092" else ("<i2", 0.000375)
+    piezo, offset = 12.18e-9, 4096
+    data = b"".join(np.round(branch / volts_per_lsb).astype(kind).tobytes() for curve in curves for branch in curve)
     volts = ramp / piezo
     lines = [
-        "*Force file list", "Version: 0x08150305", "Date: 01:06:11 PM Wed Oct 09 2019", f"Data length: {offset}",
+        "*Force file list", f"Version: {version}", "Date: 01:06:11 PM Wed Oct 09 2019", f"Data length: {offset}",
         "*Scanner list", f"@Sens. Zsens: V {piezo * 1e9:.5f} nm/V",
         "*Ciao scan list", f"@Sens. DeflSens: V {sensitivity * 1e9:.5f} nm/V",
         "*Ciao force list", f"Forward vel.: {4 * volts}", f"Reverse vel.: {2 * volts}", "Ramp delay: 0",
         "Reverse delay: 0", f"force/line: {max(1, int(len(curves) ** 0.5))} 0",
-        "*Ciao force image list", f"Data offset: {offset}", f"Data length: {len(data)}", "Bytes/pixel: 2",
+        "*Ciao force image list", f"Data offset: {offset}", f"Data length: {len(data)}", f"Bytes/pixel: {kind[2]}",
         f"Samps/line: {near} {far}", f"Spring Constant: {spring_constant}",
         '@4:Image Data: S [DeflectionError] "Deflection Error"', "@Z magnify: C [4:Z scale] 1.000000",
-        f"@4:Z scale: V [Sens. DeflSens] ({volts_per_lsb:.10f} V/LSB) 2.500000 V",
+        f"@4:Z scale: V [Sens. DeflSens] ({volts_per_lsb:.16f} V/LSB) 2.500000 V",
         f"@4:Ramp size: V [Sens. Zsens] (0.006103497 V/LSB) {volts:.6f} V", "*File list end",
     ]  # fmt: skip
     header = "".join(f"\\{line}\r\n" for line in lines).encode("latin-1") + b"\x1a"

@@ -75,6 +75,8 @@ _ST, _AF, _OWN, _REAL, _MADE, _NOT = (
     "not tried",
 )
 
+_RAMPS = f"2 bytes per value: {_REAL}, {_MADE}; 4 bytes (from version 9.2): {_MADE}"
+
 FORMATS: tuple[Format, ...] = (
     _reads("Bruker/Veeco/DI NanoScope", ".spm .000 .001 .di", "images", _ST, f"{_REAL}, {_MADE}"),
     _reads("Asylum Research (Igor binary wave)", ".ibw", "images", _ST, f"{_REAL}, {_MADE}"),
@@ -113,8 +115,8 @@ FORMATS: tuple[Format, ...] = (
     _reads("JPK quantitative imaging", ".jpk-qi-data", "curves", _OWN, _NOT),
     _reads("JPK quantitative imaging, series", ".jpk-qi-series", "curves", _OWN, _REAL),
     _reads("Asylum Research (Igor binary wave)", ".ibw", "curves", _AF, f"{_REAL}, {_MADE}"),
-    _reads("Bruker NanoScope ramp", ".spm .000 .001", "curves", _OWN, f"{_REAL}, {_MADE}"),
-    _reads("Bruker NanoScope force volume", ".spm .003", "curves", _OWN, f"{_REAL}, {_MADE}"),
+    _reads("Bruker NanoScope ramp", ".spm .000 .001", "curves", _OWN, _RAMPS),
+    _reads("Bruker NanoScope force volume", ".spm .003", "curves", _OWN, _RAMPS),
     _reads("NT-MDT text", ".txt", "curves", _AF, _NOT),
     _reads("AFM Workshop", ".csv .zip", "curves", _AF, _NOT),
     _reads("Optics11 Chiaro text", ".txt", "curves", _AF, _NOT),

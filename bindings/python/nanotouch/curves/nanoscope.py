@@ -3,9 +3,10 @@
 
 A text header of sections ``\\*Name`` and lines ``\\Key: value``; a value with a scale is written
 ``\\@4:Z scale: V [Sens. DeflSens] (0.000375 V/LSB) 2.5 V``: the integers times the number in brackets times the named
-sensitivity (``\\@Sens. DeflSens: V 41.1 nm/V``, in another section). The data of a force image are int16, for each
-curve the approach and then the retraction, both from the deepest point outwards. The samples of a ramp of n points are
-1/n of its size apart: ``Effective BW`` is n over the time that its size takes at its velocity.
+sensitivity (``\\@Sens. DeflSens: V 41.1 nm/V``, in another section). The data of a force image are int16, from version
+9.2 on int32, times the same number: for each curve the approach and then the retraction, both from the deepest point
+outwards. The samples of a ramp of n points are 1/n of its size apart: ``Effective BW`` is n over the time that its size
+takes at its velocity.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from .curve import ForceCurve, Segment
 
 NAME = "nanotouch/nanoscope"
 SIGNATURES = (b"\\*File list", b"\\*Force file list", b"\\*Ciao")  # how Bruker's headers begin
+_VERSION_32BIT = 0x09200000  # from here on integers take 4 bytes, whatever "Bytes/pixel" says of their scale
 _HEADER_LIMIT = 1 << 20  # byte; those seen have 40 KiB
 _DEFLECTION = ("DeflectionError", "Deflection")
 _UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
@@ -76,7 +78,7 @@ def read(file: Path) -> list[ForceCurve]:
     ramp_list = next((s for s in sections if s.name == "Ciao force list"), None)
     if ramp_list is None:
         raise ReadError(f"{file}: its header lacks the section 'Ciao force list'")
-    raw = _raw(file, image)
+    raw = _raw(file, image, _version(sections[0]))
     sensor, volts_per_lsb, _ = image.scaled(":Z scale")
     piezo, _, ramp_volts = image.scaled(":Ramp size")
     size = ramp_volts * _sensitivity(file, sections, piezo)
@@ -134,11 +136,11 @@ def _deflection_image(file: Path, sections: list[_Section]) -> _Section:
     raise ReadError(f"{file}: no deflection among its channels ({', '.join(shown)})")
 
 
-def _raw(file: Path, image: _Section) -> NDArray[np.int16]:
+def _raw(file: Path, image: _Section, version: int) -> NDArray[np.signedinteger[Any]]:
     """The integers, shape (curves, approach + retraction)."""
-    width = image.counts("Bytes/pixel")[0]
-    if width != 2:
-        raise ReadError(f"{file}: {width} bytes per value; NanoScope force files of 2 are read, export it as text")
+    width = 4 if version >= _VERSION_32BIT else image.counts("Bytes/pixel")[0]
+    if width not in (2, 4):
+        raise ReadError(f"{file}: {width} bytes per value; NanoScope force files of 2 or 4 are read, export it as text")
     points = image.counts("Samps/line")
     if len(points) != 2 or min(points) == 0:
         raise ReadError(f"{file}: 'Samps/line' is {image['Samps/line']!r}, expected the points of both directions")
@@ -146,11 +148,15 @@ def _raw(file: Path, image: _Section) -> NDArray[np.int16]:
     held = file.stat().st_size
     if offset + length > held:
         raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
-    if length == 0 or length % (2 * sum(points)):
+    if length == 0 or length % (width * sum(points)):
         raise ReadError(f"{file}: {length} bytes of data are no whole number of curves of {sum(points)} points")
-    if length // 2 > MAX_POINTS:
-        raise ReadError(f"{file}: {length // 2} points in all; up to {MAX_POINTS} are read")
-    return np.fromfile(file, "<i2", length // 2, offset=offset).reshape(-1, sum(points))
+    if length // width > MAX_POINTS:
+        raise ReadError(f"{file}: {length // width} points in all; up to {MAX_POINTS} are read")
+    return np.fromfile(file, f"<i{width}", length // width, offset=offset).reshape(-1, sum(points))
+
+
+def _version(first: _Section) -> int:
+    return int(first["Version"], 16) if re.fullmatch("0x[0-9A-Fa-f]{8}", first.get("Version", "")) else 0
 
 
 def _sensitivity(file: Path, sections: list[_Section], name: str) -> float:
