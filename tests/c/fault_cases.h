@@ -53,9 +53,16 @@ static const fault_case fault_cases[] = {
     {"hand pushes with 5 N besides", CASE(PUSH, RIG, FOREVER, 5.0), NT_RETRACT, 6000, NT_RETRACT,
      NT_REASON_FORCE_LIMIT | NT_REASON_OPERATOR_CLIPPED},
     {"motor with the wrong sign", CASE(GAIN, MOTOR, FOREVER, -1.0), NT_HOLD, 5000, NT_HOLD, NT_REASON_UNSTABLE},
+    {"motor gain x 150 at 1 kHz", CASE(GAIN, MOTOR, FOREVER, 150.0), NT_HOLD, 2000, NT_HOLD, NT_REASON_UNSTABLE},
     {"emergency stop", CASE(EMERGENCY_STOP, RIG, FOREVER, 0.0), NT_LATCHED, 1, NT_LATCHED, NT_REASON_EMERGENCY_STOP},
 };
 enum { FAULT_CASES = (int)(sizeof fault_cases / sizeof *fault_cases) };
+
+/* Too much gain is made with a loop of 1 kHz, whose margin is 17; all else at 10 kHz. */
+static inline int is_slow(const fault_case *f)
+{
+    return f->fault.channel == NT_CHANNEL_MOTOR && f->fault.value > 1.0;
+}
 
 /* What was seen. */
 typedef struct outcome {

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Faults by name, channel and time; what Session does with them; the table of docs/safety.md has every kind."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from nanotouch import Faults, Input, Rig, Session, operator, record
+from nanotouch.errors import InvalidValue
+from nanotouch.faults import CHANNELS, KINDS
+
+RUN, HOLD, RETRACT, LATCHED = (record.STATES.index(name) for name in ("RUN", "HOLD", "RETRACT", "LATCHED"))
+SAFETY = Path(__file__).parents[2] / "docs" / "safety.md"
+
+
+def states(faults: Faults, duration: float = 0.1) -> Any:
+    return Session(faults=faults).advance(duration)["state"]
+
+
+def test_a_fault_begins_and_ends_where_it_is_told_to() -> None:
+    """One sample from 50 ms on: HOLD in tick 500 and nowhere else."""
+    state = states(Faults().add("nan", "deflection", at=0.05, duration=1e-4))
+    assert np.flatnonzero(state).tolist() == [500]
+    assert state[500] == HOLD
+
+
+def test_two_samples_in_a_row_retract() -> None:
+    state = states(Faults().add("nan", "deflection", at=0.05, duration=2e-4))
+    assert state[500:502].tolist() == [HOLD, RETRACT]
+
+
+def test_injected_while_it_runs() -> None:
+    session = Session()
+    session.advance(0.02)
+    session.inject(Faults().add("emergency-stop", at=0.03))
+    state = session.advance(0.02)["state"]
+    assert np.flatnonzero(state == LATCHED)[0] == 100
+    assert session.metadata()["faults"] == ["emergency-stop at 0.03 s"]
+
+
+def test_late_ticks_are_lost() -> None:
+    """The rig goes on meanwhile: 30 periods are lost, so that what happens at 20 ms is seen 30 records earlier."""
+    faults = Faults().add("late", at=0.01, duration=1e-4, value=30).add("emergency-stop", at=0.02)
+    columns = Session(faults=faults).advance(0.03)
+    assert columns["lateness"].max() == pytest.approx(3e-3)
+    assert np.flatnonzero(columns["state"] == LATCHED)[0] == 200 - 30
+
+
+def test_a_restless_hand_is_refused_by_the_preflight() -> None:
+    with pytest.raises(InvalidValue, match="gauge"):
+        Session(rig=Rig(hand=operator.adversary()))
+
+
+def test_the_hand_pushes_and_the_surface_jumps() -> None:
+    """A push is measured by the gauge; a surface that rises is seen in the truth at once."""
+    columns = Session(faults=Faults().add("push", at=0.01, value=1.0).add("jump", at=0.02, value=5e-9)).advance(0.05)
+    assert columns["operator_force"][99] == pytest.approx(0.0, abs=0.03)
+    assert columns["operator_force"][101] == pytest.approx(1.0, abs=0.03)
+    height = columns["surface_height"]
+    assert height[-1] - height[0] == pytest.approx(5e-9, rel=1e-9)
+
+
+def test_a_stage_with_the_wrong_sign_is_found_before_it_starts() -> None:
+    with pytest.raises(InvalidValue, match="stage"):
+        Session(faults=Faults().add("gain", "stage", at=None, value=-1.0))
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_every_kind_on_every_channel_leaves_numbers(name: str) -> None:
+    for channel in KINDS[name].channels:
+        columns = Session(faults=Faults().add(name, channel, at=0.01)).advance(0.05)
+        for truth in ("gap", "tip_force", "motor_force", "stage_command"):
+            assert np.isfinite(columns[truth]).all(), (name, channel, truth)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"name": "gremlin"}, "'gremlin': valid are nan, infinite"),
+        ({"name": "nan"}, "channel None: valid are deflection"),
+        ({"name": "nan", "channel": "motor"}, "'motor': valid are deflection"),
+        ({"name": "stale", "at": -1.0}, "at = -1.0 s"),
+        ({"name": "stale", "at": math.nan}, "at = nan s"),
+        ({"name": "stale", "duration": 0.0}, "duration = 0.0 s"),
+        ({"name": "push", "value": math.inf}, "value = inf"),
+    ],
+)
+def test_refusals(arguments: dict[str, Any], words: str) -> None:
+    with pytest.raises(InvalidValue, match=words.replace("(", r"\(")):
+        Faults().add(**arguments)
+
+
+def test_a_schedule_is_finite() -> None:
+    faults = Faults()
+    for _ in range(16):
+        faults.add("late", duration=1e-4)
+    with pytest.raises(InvalidValue, match="16 faults"):
+        faults.add("late")
+    assert len(faults) == 16
+
+
+def test_the_page_names_every_row() -> None:
+    """The table in the docs was printed by test_session_faults; every row that has a kind is in it."""
+    rows = {line.split("|")[1].strip() for line in SAFETY.read_text().splitlines() if line.startswith("| ")}
+    assert {str(kind.row) for kind in KINDS.values()} <= rows
+    assert set(CHANNELS) == {channel for kind in KINDS.values() for channel in kind.channels}
+
+
+# ---- the plant's options ----
+
+
+def test_probe_models_agree_at_rest() -> None:
+    """Pressed with 1 N: the mean of the felt force is the same, the thermal motion 0.18 nN RMS."""
+    push = Input(1.0, 0.0, 0.0, 0.05)
+    rest: dict[str, float] = {}
+    for model in ("quasi-static", "dynamic"):
+        session = Session(clearance=2e-9, probe_model=model, substep=20.0)  # type: ignore[arg-type]
+        session.advance(0.25, push)
+        rest[model] = float(np.mean(session.advance(0.05)["tip_force"]))
+        assert session.probe_model == model
+    assert rest["dynamic"] == pytest.approx(rest["quasi-static"], rel=0.05)  # still on its way: 0.25 s
+
+
+@pytest.mark.parametrize(
+    ("probe", "model"),
+    [({}, "quasi-static"), ({"quality": 1e5}, "dynamic"), ({"resonance": 300.0}, "dynamic")],
+)
+def test_auto_takes_the_model_that_is_good_enough(probe: dict[str, float], model: str) -> None:
+    """In vacuum the lever rings for longer than touch cannot feel; a slow lever lags."""
+    assert Session(rig=Rig(probe=probe), preflight=False).probe_model == model
+
+
+def test_unknown_models_are_refused() -> None:
+    with pytest.raises(InvalidValue, match="'quick': valid are auto, quasi-static, dynamic"):
+        Session(probe_model="quick")  # type: ignore[arg-type]
+    with pytest.raises(InvalidValue, match="substep"):
+        Session(substep=0.0)
+
+
+@pytest.mark.parametrize("hand", [operator.FINGER_PAD, operator.RIGID_FINGER, operator.adversary()])
+def test_hands_touch_and_let_go(hand: dict[str, float]) -> None:
+    session = Session(rig=Rig(hand=hand), preflight="random_force" not in hand)
+    recording = session.run()
+    assert recording.tip_force.max() < session.guarantee().force
+    assert np.isfinite(recording.motor_force).all()
+    still = Session(rig=Rig()).run()
+    assert not np.array_equal(recording.operator_force[: len(still)], still.operator_force[: len(recording)])
