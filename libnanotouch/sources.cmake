@@ -100,7 +100,7 @@ set(nanotouch_sources_sim hal/sim/faults.c hal/sim/probe.c hal/sim/sim.c)
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
-set(nanotouch_sources_session session/run.c session/session.c)
+set(nanotouch_sources_session session/arming.c session/run.c session/session.c)
 set(nanotouch_sources_fit
     fit/branch.c
     fit/contact_model.cpp

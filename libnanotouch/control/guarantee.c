@@ -38,9 +38,9 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     found.snap_in = hazard->snap_in_force;
     found.noise = probe->spring_constant * (SIGMAS * sigma + step);
     found.force = limits->force + found.motion + found.ringing + found.snap_in + found.noise;
-    /* first touch is noticed where the force leaves the noise, or after the tip has snapped in over what that stretched
-     * the lever by */
-    const double unseen = (2.0 * found.noise + hazard->snap_in_force) / probe->spring_constant;
-    found.indentation = limits->indentation + closer + ringing + unseen;
+    /* first touch is noticed where the force leaves the noise, and read with it; a tip that snaps in goes over what
+     * that stretches the lever by */
+    const double read = (2.0 * found.noise + hazard->snap_in_force) / probe->spring_constant;
+    found.indentation = limits->indentation + closer + ringing + read + hazard->unseen;
     return found;
 }

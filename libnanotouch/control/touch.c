@@ -177,10 +177,15 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
         watch_energy(touch, state, stage_step);
 }
 
+static int moves_sideways(const nt_touch_state *state)
+{
+    return state->target_x != state->command.x || state->target_y != state->command.y;
+}
+
 static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
     const nt_situation situation = {.reference = state->reference,
-                                    .moves_sideways = state->target_time > 0.0,
+                                    .moves_sideways = moves_sideways(state),
                                     .unstable =
                                         state->mode == NT_MODE_TOUCH && nt_passivity_is_exhausted(&state->passivity)};
     return nt_supervisor_step(&touch->supervisor, &state->supervisor, sample, &situation);

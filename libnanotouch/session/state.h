@@ -25,8 +25,15 @@ struct nt_session {
     nt_record *records;
 };
 
+/* Names what is wrong, and returns the status for it. */
+nt_status nt_session_refuse(nt_problem *problem, const char *field, const char *unit, double value, double minimum,
+                            double maximum);
 /* The margin that counts in the session's mode, of these settings at the stiffest contact of the plan; all in *margins.
  */
 double nt_session_margin(const nt_session *session, const nt_settings *settings, nt_margins *margins);
+/* Keeps margins and guarantee; refuses below the minimum margin. */
+nt_status nt_session_promise(nt_session *session, const nt_session_setup *setup, nt_problem *problem);
+/* Tare and sign test, on the rig's own time. */
+nt_status nt_session_fly(nt_session *session, nt_problem *problem);
 
 #endif

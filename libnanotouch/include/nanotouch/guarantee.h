@@ -15,6 +15,7 @@ typedef struct nt_hazard {
     double slope;         /* of the surface where it is steepest, dilated by the tip [-] */
     double snap_in_force; /* largest attraction that can pull the tip in, positive [N] */
     double stiffness;     /* of the stiffest contact [N/m] */
+    double unseen;        /* indentation at which the force leaves the noise of the reading [m] */
 } nt_hazard;
 
 typedef struct nt_guarantee {
