@@ -83,7 +83,7 @@ class _Process:
         self.owner = os.getpid()
         self.socket = ours
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p), "OMP_NUM_THREADS": "1"}
-        environment |= {"OPENBLAS_NUM_THREADS": "1", "OPENCV_FOR_THREADS_NUM": "1"}
+        environment |= {"OPENBLAS_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}  # no filters from elsewhere
         with theirs:
             self.popen = subprocess.Popen(
                 [sys.executable, "-m", "nanotouch._worker_process", str(theirs.fileno())],

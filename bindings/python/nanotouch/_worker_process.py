@@ -12,13 +12,20 @@ import signal
 import socket
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from . import _transfer
+from . import _transfer, curves, images
 from ._readers import _registered
+from .errors import Error
 
 _READERS = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO", "afmformats")
+_JOBS: dict[str, Callable[..., Any]] = {
+    "images.read": images.read,
+    "images.channels": images.channels,
+    "curves.read": curves.read,
+}
 _CLONE_NEWUSER, _CLONE_NEWNET = 0x10000000, 0x40000000
 
 
@@ -30,7 +37,8 @@ def main() -> None:
             importlib.import_module(name)
         except ImportError:  # an extra that is not installed; asking for it will say so
             continue
-    _registered()
+    with suppress(Error):  # a reader that cannot be loaded is named when it is wanted
+        _registered()
     _leave_network()
     control.sendall(b"ready\n")
     while True:
@@ -55,17 +63,9 @@ def _leave_network() -> None:
 
 
 def _serve(request: dict[str, Any], pipe: int) -> int:
-    from nanotouch import curves, images  # imported before the limits
-    from nanotouch.errors import Error
-
-    jobs: dict[str, Callable[..., Any]] = {
-        "images.read": images.read,
-        "images.channels": images.channels,
-        "curves.read": curves.read,
-    }
     _limit(request["limits"])
     try:
-        answer = _transfer.packed(jobs[request["job"]](Path(request["file"]), **request["options"]))
+        answer = _transfer.packed(_JOBS[request["job"]](Path(request["file"]), **request["options"]))
     except Error as error:
         reader = getattr(error, "reader", "")
         answer = _transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
