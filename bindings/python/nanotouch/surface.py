@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,6 +33,7 @@ class Surface:
         if tip_radius is not None:
             heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
         self.topography = topography
+        self.tip_radius = tip_radius
         self.core = _core.Surface(heights, dy, dx, overwrite=True)  # `heights` is nobody else's
 
     @property
@@ -44,6 +46,55 @@ class Surface:
         """Height [m] of the apex at first touch over (x, y) [m], broadcast."""
         xs, ys = np.broadcast_arrays(as_floats(x, "x"), as_floats(y, "y"))
         return plain(self.core.heights(np.array(xs, order="C"), np.array(ys, order="C")))
+
+    @cached_property
+    def radius_map(self) -> RadiusMap:
+        """Effective radius of the contact over the surface, made at first use."""
+        return RadiusMap(self)
+
+
+class Radii(NamedTuple):
+    """Effective radius and its slopes; arrays of the broadcast shape, or floats."""
+
+    radius: Any
+    """[m]"""
+    dx: Any
+    """dR/dx [-]"""
+    dy: Any
+    """dR/dy [-]"""
+
+
+class RadiusMap:
+    """The effective radius of the contact over a dilated surface: less than the tip's on a bump, more in a hollow.
+
+    Parameters
+    ----------
+    surface : Surface
+        Dilated by a tip.
+    minimum, maximum : float
+        Limits of the ratio of effective to tip radius: an edge that is sharper than a pixel has none.
+    """
+
+    def __init__(self, surface: Surface, minimum: float = 0.1, maximum: float = 10.0) -> None:
+        if surface.tip_radius is None:
+            raise InvalidValue("a radius map needs a surface that was dilated by a tip: give it a tip_radius [m]")
+        self.core = _core.RadiusMap(surface.core, surface.tip_radius, minimum, maximum)
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Least and largest effective radius anywhere [m]."""
+        return self.core.minimum, self.core.maximum
+
+    @property
+    def limited(self) -> int:
+        """Pixels whose ratio was beyond the limits."""
+        return self.core.limited
+
+    def radius(self, x: ArrayLike, y: ArrayLike) -> Radii:
+        """Effective radius [m] and its slopes over (x, y) [m], broadcast."""
+        xs, ys = np.broadcast_arrays(as_floats(x, "x"), as_floats(y, "y"))
+        columns = self.core.radii(np.array(xs, order="C"), np.array(ys, order="C"))
+        return Radii(*(plain(column) for column in columns))
 
 
 def grating(

@@ -14,6 +14,7 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 void bind_contact(py::module_ &module);
 void bind_contact_reduced(py::module_ &module);
+void bind_contact_bank(py::module_ &module);
 void bind_forces(py::module_ &module);
 void bind_geometry(py::module_ &module);
 void bind_materials(py::module_ &module);

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, module)
     module.attr("version") = nt_version();
     bind_contact(module);
     bind_contact_reduced(module);
+    bind_contact_bank(module);
     bind_forces(module);
     bind_geometry(module);
     bind_materials(module);

@@ -62,6 +62,44 @@ static py::array_t<double> heights_at(const Surface &self, const Array &x, const
     return out;
 }
 
+static std::shared_ptr<RadiusMap> make_radius_map(const Surface &surface, double tip_radius, double minimum,
+                                                  double maximum)
+{
+    const nt_radius_limits limits = {minimum, maximum};
+    auto made = std::make_shared<RadiusMap>();
+    made->coefficients = Array({surface.surface.ny, surface.surface.nx});
+    double *coefficients = made->coefficients.mutable_data();
+    nt_status status;
+    {
+        py::gil_scoped_release release;
+        status = nt_radius_map_init(&made->map, &surface.surface, tip_radius, &limits, coefficients);
+    }
+    raise_on(status, "radius map");
+    return made;
+}
+
+// {R, dR/dx, dR/dy}
+static py::tuple radii_at(const RadiusMap &self, const Array &x, const Array &y)
+{
+    if (x.size() != y.size())
+        throw py::value_error("x and y must have the same shape");
+    const std::vector<py::ssize_t> shape(x.shape(), x.shape() + x.ndim());
+    py::array_t<double> radius(shape), dx(shape), dy(shape);
+    double *out[3] = {radius.mutable_data(), dx.mutable_data(), dy.mutable_data()};
+    const double *xs = x.data(), *ys = y.data();
+    const py::ssize_t count = x.size();
+    {
+        py::gil_scoped_release release;
+        for (py::ssize_t i = 0; i < count; ++i) {
+            const nt_radius_value at = nt_radius_map_eval(&self.map, xs[i], ys[i]);
+            out[0][i] = at.radius;
+            out[1][i] = at.dx;
+            out[2][i] = at.dy;
+        }
+    }
+    return py::make_tuple(radius, dx, dy);
+}
+
 static py::array_t<double> sample(double (*height)(const void *, double, double), const void *what, long ny, long nx,
                                   double dy, double dx)
 {
@@ -78,6 +116,13 @@ void bind_surface(py::module_ &module)
     py::class_<Surface, std::shared_ptr<Surface>>(module, "Surface")
         .def(py::init(&make), py::arg("heights"), py::arg("dy"), py::arg("dx"), py::arg("overwrite") = false)
         .def("heights", &heights_at, py::arg("x"), py::arg("y"));
+    py::class_<RadiusMap, std::shared_ptr<RadiusMap>>(module, "RadiusMap")
+        .def(py::init(&make_radius_map), py::arg("surface"), py::arg("tip_radius"), py::arg("minimum"),
+             py::arg("maximum"))
+        .def("radii", &radii_at, py::arg("x"), py::arg("y"))
+        .def_property_readonly("minimum", [](const RadiusMap &self) { return self.map.minimum; })
+        .def_property_readonly("maximum", [](const RadiusMap &self) { return self.map.maximum; })
+        .def_property_readonly("limited", [](const RadiusMap &self) { return self.map.limited; });
     module.def("dilate", &dilate);
     module.def("grating",
                [](long ny, long nx, double dy, double dx, double period, double height, double duty, double offset) {

@@ -7,3 +7,9 @@ struct Surface {
     Array coefficients;
     nt_surface surface;
 };
+
+// The effective radius over a surface, and the array that holds its coefficients.
+struct RadiusMap {
+    Array coefficients;
+    nt_radius_map map;
+};

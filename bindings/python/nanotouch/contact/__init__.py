@@ -137,6 +137,6 @@ def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> La
 
 
 def __getattr__(name: str) -> Any:
-    if name == "reduced":
-        return importlib.import_module("nanotouch.contact.reduced")
+    if name in ("bank", "reduced"):
+        return importlib.import_module(f"nanotouch.contact.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
