@@ -20,7 +20,7 @@
 // dX = ddelta0 + dF/k_c.
 //
 // The straight continuation F = F_e - m (X - X_e) begins where dF/dX = -m. Its derivative at constant X is that of the
-// branch at X_e, whatever X_e does, because m is a constant.
+// branch at X_e, whatever X_e does, because m is a constant. It ends at F = 0, where the tip is apart.
 #include "contact_model.hpp"
 
 #include <algorithm>
@@ -200,10 +200,14 @@ nt_status ContactModel::at(double position, Track *track, Point *point) const
     if (base <= end_base_) {
         *point = end_point_;
         point->held = false;
-        const double force = end_slope_ * (base - end_base_) / value_[NT_FIT_SENSITIVITY];
-        point->force += force;
-        point->gradient[NT_FIT_SENSITIVITY] -= force;
         point->indentation += base - end_base_; /* as if the force stayed */
+        const double gained = end_slope_ * (base - end_base_) / value_[NT_FIT_SENSITIVITY];
+        point->force += gained;
+        point->gradient[NT_FIT_SENSITIVITY] -= gained;
+        if (end_slope_ < 0.0 && point->force > 0.0) { /* apart */
+            point->force = 0.0;
+            point->gradient.fill(0.0);
+        }
         add_background(position, point);
         return NT_OK;
     }

@@ -16,7 +16,7 @@
 
 enum { POINTS = 250 };
 
-static const double truth[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 0.0, 3e-9, 0.0, 0.0, 1.0}; /* lambda = 2.0 */
+static const double truth[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 0.0, 3e-9, 0.0, 0.0, 1.0}; /* lambda = 7.1 */
 
 typedef struct {
     double position[POINTS], force[POINTS];

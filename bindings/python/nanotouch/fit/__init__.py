@@ -11,20 +11,27 @@ the noise of the force does not enter the abscissa, and a curve whose slope is t
 one that does not determine the modulus. How and why: docs/fit.md.
 """
 
+from .choice import Candidate, Choice, choose_model
 from .fitting import TipLike, fit_curve
 from .models import Model, Parameter, models, register
 from .picture import draw
 from .result import FitResult
+from .stability import Stability, stability
 from .uncertainties import Uncertainties
 
 __all__ = [
+    "Candidate",
+    "Choice",
     "FitResult",
     "Model",
     "Parameter",
+    "Stability",
     "TipLike",
     "Uncertainties",
+    "choose_model",
     "draw",
     "fit_curve",
     "models",
     "register",
+    "stability",
 ]

@@ -16,7 +16,7 @@ from .models import Model, extension, find
 from .points import Branch, Points, Window, points_of
 from .reporting import Sample, make_result
 from .result import FitResult
-from .solving import Setup, Solution, solve
+from .solving import Setup, Solution, solve, steep_part
 from .uncertainties import Uncertainties
 
 Loss = Literal["squares", "huber", "soft_l1", "cauchy"]
@@ -96,7 +96,7 @@ def fit_curve(
         Also fit a constant force offset, instead of trusting the baseline to its uncertainty.
     loss : {"squares", "huber", "soft_l1", "cauchy"}
         All but the first resist outliers beyond `loss_scale` [N] (default three times the noise).
-    baseline : {"auto", "line", "wave", "constant"}
+    baseline : {"auto", "line", "wave", "constant"} or (float, float)
         As of :func:`nanotouch.curves.analyse`.
     report : CurveReport, optional
         Of this curve, where it was analysed before.
@@ -138,8 +138,9 @@ def fit_curve(
     _check_names(setup, chosen.options(compiled, setup.radius).parameters)
     assumptions += uncertainties.assumptions(sharp=chosen.name in _SHARP)
     solution = solve(compiled, setup, points, uncertainties)
-    if not solution.held.all():  # so close to the tear that the model is only continued there
-        points = points.kept(solution.held, curve.name)
+    width = steep_part(compiled, solution)
+    if points.tear is not None and width > points.tear[0] - points.z[-1]:
+        points = points.kept(points.tear[0] - points.z > width, curve.name)
         solution = solve(compiled, setup, points, uncertainties)
     if window is not None and window_of == "indentation":
         points, solution = _inside(window, points, solution, curve.name)

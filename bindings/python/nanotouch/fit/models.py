@@ -148,7 +148,8 @@ def check(model: Model) -> None:
 def find(model: str | Model) -> Model:
     """The model of a name; a Model is returned as it is."""
     if isinstance(model, Model):
-        check(model)
+        if model.force is not None or model.name not in {built_in.name for built_in in BUILT_IN}:
+            check(model)
         return model
     if model not in _known:
         raise InvalidValue(f"model {model!r}: valid are {', '.join(_known)}; nanotouch.fit.register adds your own")

@@ -104,6 +104,19 @@ def _contradicts_tear(extension: ModuleType, solution: Solution) -> bool:
     return bool(abs(off) > _TORN_ELSEWHERE * options.tear_sigma)
 
 
+def steep_part(extension: ModuleType, solution: Solution) -> float:
+    """How far before the tear the model is only a straight continuation [m]; 0 where the tear is not used.
+
+    What was measured there is left out, by its distance from the measured tear: the model must not choose its points.
+    """
+    options, value = solution.options, solution.found["value"]
+    if options.tear_sigma == 0.0:
+        return 0.0
+    distance = np.geomspace(1e-13, 1e-7, 100)
+    held = extension.evaluate(options, value, extension.tear_position(options, value) + distance)[2]
+    return float(distance[np.argmax(held)])
+
+
 def _let_vary(options: Any, setup: Setup, points: Points, uncertainties: Uncertainties, noise: float) -> None:
     """What is known to some uncertainty becomes a datum: sensitivity, level and tilt of the baseline, the tear."""
     options.force_noise = noise
@@ -116,7 +129,8 @@ def _let_vary(options: Any, setup: Setup, points: Points, uncertainties: Uncerta
         options.know("force_offset", 0.0, points.level_sigma)
     if points.tilt_sigma > 0.0 and "force_tilt" not in setup.held:
         options.know("force_tilt", 0.0, points.tilt_sigma)
-    if points.tear is not None and setup.model.force is None:
+    adhesive = any(parameter is not None and parameter[0] == "work_of_adhesion" for parameter in options.parameters)
+    if points.tear is not None and setup.model.force is None and adhesive:
         options.tear_position, options.tear_sigma = -points.tear[0], points.tear[1]
 
 
