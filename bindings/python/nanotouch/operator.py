@@ -25,7 +25,7 @@ RIGID_FINGER: dict[str, float] = {"mass": 0.02}
 
 
 def adversary(force: float = 5.0, rate: float = 30.0) -> dict[str, float]:
-    """A hand for ``Rig(hand=...)`` that adds any force within +- ``force`` [N], another one ``rate`` times per second."""
+    """A hand for ``Rig(hand=...)`` that adds any force within +- ``force`` [N], changing ``rate`` times per second."""
     return {"random_force": force, "random_rate": rate}
 
 
@@ -55,12 +55,12 @@ def script_for(session: Session) -> list[Input]:
 def _slave_speed(session: Session, force: float) -> float:
     """Speed of the stage [m/s] when the hand pushes with a force [N] in free air: alpha_p (1 + K_f) f_m/b_m."""
     gains = session.settings.gains
-    return gains.alpha_p * (1.0 + gains.force_gain) * force / session.rig.master.damping
+    return float(gains.alpha_p * (1.0 + gains.force_gain) * force / session.rig.master.damping)
 
 
 def _contact_force(session: Session, wanted: float) -> float:
     """No more than a share of what the force limit lets through to the hand."""
-    return min(wanted, LIMIT_SHARE * session.settings.gains.alpha_f * session.settings.limits.force)
+    return min(wanted, float(LIMIT_SHARE * session.settings.gains.alpha_f * session.settings.limits.force))
 
 
 def _approach(session: Session) -> list[Input]:
@@ -71,10 +71,10 @@ def _approach(session: Session) -> list[Input]:
 
 def _depth(session: Session, force: float) -> float:
     """Travel of the stage past first touch to press with a hand force [N]: indentation and deflection [m]."""
-    load = force / session.settings.gains.alpha_f
+    load = force / float(session.settings.gains.alpha_f)
     indentation = np.geomspace(1e-11, 1e-5, 1000)
     reached = np.interp(load, session.plan.force(-indentation, "retract"), indentation)
-    return float(reached) + load / session.rig.probe.spring_constant
+    return float(reached + load / session.rig.probe.spring_constant)
 
 
 def _retract(session: Session, pressed: float) -> list[Input]:
