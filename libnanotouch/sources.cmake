@@ -82,6 +82,7 @@ set(nanotouch_sources_dynamics
     dynamics/stage.c)
 set(nanotouch_sources_control
     control/guarantee.c
+    control/impedance.c
     control/margins.c
     control/modes.c
     control/motor.c
@@ -89,9 +90,11 @@ set(nanotouch_sources_control
     control/preflight.c
     control/requests.c
     control/rescale.c
+    control/sampled.c
     control/scaling.c
     control/servo.c
     control/settings.c
+    control/stability.c
     control/stage_loop.c
     control/supervisor.c
     control/touch.c)

@@ -39,7 +39,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "stability_margin": session.stability_margin,
         "force_limit_N": session.settings.limits.force,
         "force_overshoot_N": session.force_overshoot,
-        "stability": margins._asdict(),
+        "stability": {name: _finite(value) for name, value in margins._asdict().items()},
         "states": {name: int(np.count_nonzero(recording.state == code)) for code, name in enumerate(STATES)},
         "reasons": _reasons(recording),
         "seed": session.seed,
@@ -107,6 +107,10 @@ def _rms(error: Any) -> float | None:
 
 def _number(value: float) -> float | None:
     return None if math.isnan(value) else float(value)
+
+
+def _finite(value: float | str) -> float | str | None:
+    return value if isinstance(value, str) or math.isfinite(value) else None
 
 
 def _reasons(recording: Recording) -> list[str]:

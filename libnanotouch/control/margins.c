@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How far the loop is from its stability limit (docs/control.md, rules R1, R4, R5).
+ * How far the loop is from its stability limit (docs/margins.md).
  *
  * Loop gain kappa C(s)/(s (m s + b)), kappa = (1 + K_f) alpha_f alpha_p k_eff. C: two sampled hops (stage command and
- * motor force), each half a period of hold and d periods of delay, and the stage. */
+ * motor force), each half a period of hold and a dead time, and the stage. */
+#include "nanotouch/margins.h"
+
 #include <math.h>
 
-#include "nanotouch/control.h"
+#include "control/sampled.h"
 #include "nanotouch/material.h"
+#include "nanotouch/servo.h"
 
 /* The stage's share of D = sup -Im C(jw)/w. At w = 0 it is the delay of notch and stage, 2 zeta/wn and, where samples
  * are few, what the sampled notch adds; below zeta = 1/sqrt(2) the resonance has more, without a notch nearly Q/wn. */
@@ -21,6 +24,17 @@ static double stage_lag(const nt_stage *stage, const nt_gains *gains)
     return 2.0 * zeta * zeta < 1.0 ? delay / (4.0 * zeta * zeta * (1.0 - zeta * zeta)) : delay;
 }
 
+/* One hop: half a period of hold and the dead time. */
+static double hop_delay(const nt_rig *rig, const nt_gains *gains)
+{
+    return 0.5 / gains->rate + nt_sampled_dead_time(rig, gains);
+}
+
+static double loop_delay(const nt_rig *rig, const nt_gains *gains)
+{
+    return 2.0 * hop_delay(rig, gains) + stage_lag(&rig->stage, gains);
+}
+
 /* Standard deviation of the gauge behind the low-pass y += c (u - y), which passes c/(2 - c) of the variance. */
 static double filtered_gauge_noise(const nt_master *master, const nt_gains *gains)
 {
@@ -28,33 +42,98 @@ static double filtered_gauge_noise(const nt_master *master, const nt_gains *gain
     return sqrt(c / (2.0 - c)) * hypot(master->gauge_noise, master->gauge_resolution / sqrt(12.0));
 }
 
-nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+/* R2: v[k+1] = v[k] - (K_f b_h T/m) v[k-d] turns over at 2 sin(pi/(4 d + 2)). */
+static double pad_limit(const nt_rig *rig, const nt_gains *gains)
+{
+    const double delay = nt_sampled_dead_time(rig, gains) * gains->rate; /* [periods] */
+    return rig->master.mass * gains->rate / rig->hand.damping * 2.0 * sin(NT_PI / (4.0 * delay + 2.0));
+}
+
+/* alpha_f alpha_p k_eff: the contact at the operator's scale; k_c on a rigid sample. */
+static double reflected_stiffness(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
 {
     const double k_c = rig->probe.spring_constant;
-    const double k_eff = k_c / (1.0 + k_c / contact_stiffness); /* k_c on a rigid sample */
-    const double T = 1.0 / gains->rate;
-    const double reflected = (1.0 + gains->force_gain) * gains->alpha_f;
+    return gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
+}
+
+nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+{
+    const double k_r = reflected_stiffness(rig, gains, contact_stiffness), K_f = gains->force_gain;
+    const double step = fmax(rig->stage.command_resolution, gains->alpha_p * rig->master.resolution);
     nt_margins margins = {
-        .loop_stiffness = reflected * gains->alpha_p * k_eff,
-        .loop_delay = 2.0 * (0.5 * T + gains->delay * T) + stage_lag(&rig->stage, gains),
-        .quantisation_step =
-            reflected * k_eff * fmax(rig->stage.command_resolution, gains->alpha_p * rig->master.resolution),
-        .force_noise = hypot(reflected * nt_probe_force_noise(&rig->probe),
-                             gains->force_gain * filtered_gauge_noise(&rig->master, gains)),
+        .loop_stiffness = (1.0 + K_f) * k_r,
+        .loop_delay = loop_delay(rig, gains),
+        .pad_limit = pad_limit(rig, gains),
+        .mass_limit = 1.0 + rig->master.mass / rig->hand.mass,
+        .quantisation_step = (1.0 + K_f) * k_r / gains->alpha_p * step,
+        .force_noise = hypot((1.0 + K_f) * gains->alpha_f * nt_probe_force_noise(&rig->probe),
+                             K_f * filtered_gauge_noise(&rig->master, gains)),
     };
     margins.stability_limit = rig->master.damping / margins.loop_delay; /* R1 */
     margins.margin = margins.stability_limit / margins.loop_stiffness;
-    const double hop = 0.5 * T + gains->delay * T;
-    const double servo = gains->height_gain * k_eff / k_c * (margins.loop_delay - hop); /* integral gain times lag */
-    margins.height_margin = fmin(1.0 / servo, rig->master.damping / (hop * gains->height_stiffness));
+    const double servo = gains->height_gain * k_r / (gains->alpha_f * gains->alpha_p * rig->probe.spring_constant) *
+                         (margins.loop_delay - hop_delay(rig, gains)); /* integral gain times lag */
+    margins.height_margin = fmin(1.0 / servo, rig->master.damping / (hop_delay(rig, gains) * gains->height_stiffness));
+    const nt_sampled_loop loop = nt_sampled_loop_make(rig, gains);
+    const nt_sampled_limits limits = nt_sampled_limits_of(&loop, K_f, k_r);
+    margins.exact_limit = limits.loop_stiffness;
+    margins.exact_frequency = limits.angle / (2.0 * NT_PI) * gains->rate;
+    margins.force_gain_limit = limits.force_gain;
     return margins;
+}
+
+/* In touch; rig and gains are those that the law amounts to. */
+static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, const nt_gains *gains, double coupling)
+{
+    const nt_verdict verdicts[] = {
+        {margins->margin, "R1 contact"},
+        {margins->exact_limit / margins->loop_stiffness, "exact contact"},
+        {gains->force_gain > 0.0 ? margins->force_gain_limit / gains->force_gain : (double)INFINITY, "finger"},
+        {rig->master.max_force / margins->quantisation_step, "R4 steps"},
+        {rig->master.max_force / (3.0 * margins->force_noise), "R5 noise"},
+        {coupling, "virtual coupling"},
+    };
+    nt_verdict least = verdicts[0];
+    for (int i = 1; i < (int)(sizeof verdicts / sizeof verdicts[0]); i++)
+        if (!(verdicts[i].margin >= least.margin))
+            least = verdicts[i];
+    return least;
+}
+
+nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
+                            nt_margins *margins)
+{
+    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
+    *margins = nt_margins_compute(&shape.rig, &shape.gains, shape.contact_stiffness);
+    if (mode == NT_MODE_CURVE)
+        return (nt_verdict){INFINITY, "none"};
+    if (mode != NT_MODE_TOUCH)
+        return (nt_verdict){margins->height_margin, "height servo"};
+    const double coupling = nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness, margins->loop_delay);
+    return judge_touch(margins, &shape.rig, &shape.gains, coupling);
+}
+
+nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, double slave_path)
+{
+    const double k_c = rig->probe.spring_constant;
+    const double range = 2.0 * k_c * nt_probe_deflection_range(&rig->probe); /* 20 k_c S in the paper */
+    nt_resolution found = {
+        .slave_step = fmax(rig->stage.command_resolution, rig->stage.resolution),
+        .master_steps = rig->master.travel / rig->master.resolution,
+        .gauge_steps = rig->master.gauge > 0.0 ? 2.0 * rig->master.gauge_range / rig->master.gauge_resolution : 0.0,
+        .master_travel = slave_path / gains->alpha_p};
+    found.slave_force = fmax(6.0 * nt_probe_force_noise(&rig->probe), k_c * found.slave_step);
+    found.slave_steps = slave_path / found.slave_step;
+    found.force_steps = range / found.slave_force;
+    found.master_force = gains->alpha_f * found.slave_force;
+    return found;
 }
 
 double nt_margins_force_overshoot(const nt_rig *rig, const nt_settings *settings, double slope)
 {
     const nt_limits *limits = &settings->limits;
     const double speed = limits->stage_speed + slope * limits->lateral_speed;
-    const double delay = nt_margins_compute(rig, &settings->gains, INFINITY).loop_delay;
+    const double delay = loop_delay(rig, &settings->gains);
     return rig->probe.spring_constant * speed * delay + 6.0 * nt_probe_force_noise(&rig->probe);
 }
 

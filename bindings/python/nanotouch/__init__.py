@@ -29,7 +29,7 @@ _HOMES = {
     "Surface": "surface",
 }
 _MODULES = (
-    "contact", "curves", "errors", "faults", "fit", "forces", "geometry", "hal", "images", "interaction", "materials", "operator",
+    "contact", "curves", "errors", "faults", "fit", "forces", "geometry", "hal", "images", "interaction", "margins", "materials", "operator",
     "plan", "plots",    "presets", "record", "reference", "scene", "session", "surface", "units",
 )  # fmt: skip
 

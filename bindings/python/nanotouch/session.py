@@ -6,17 +6,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from operator import index
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nanotouch import _core
+from nanotouch import _core, margins
 from nanotouch._arrays import check_between
 from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
+from nanotouch.margins import Margins
 from nanotouch.operator import Input, script_for
 from nanotouch.plan import Plan
 from nanotouch.record import Recording, Writer
@@ -172,14 +173,13 @@ class Session:
         return self.settings.gains.rate
 
     def margins(self) -> Margins:
-        """Stability margins at the stiffest contact of the plan."""
-        return Margins(**_core.margins(self.rig.core, self.settings.core, self.plan.maximum_stiffness))
+        """Margins at the stiffest contact of the plan, and why the session was to be refused, if it was."""
+        return margins.compute(self.rig, self.settings, self.plan.maximum_stiffness, self.mode)
 
     @property
     def stability_margin(self) -> float:
-        """The margin that counts in this mode; 1 is the limit."""
-        margins = self.margins()
-        return margins.height_margin if self.mode == "topography" else margins.margin
+        """The smallest margin of those that count in this mode; 1 is the limit."""
+        return self.margins().least
 
     def guarantee(self) -> Guarantee:
         """What holds whatever the operator does, on this path; to be read before anything moves."""

@@ -17,6 +17,7 @@ void bind_contact_reduced(py::module_ &module);
 void bind_contact_bank(py::module_ &module);
 void bind_forces(py::module_ &module);
 void bind_geometry(py::module_ &module);
+void bind_margins(py::module_ &module);
 void bind_materials(py::module_ &module);
 void bind_surface(py::module_ &module);
 void bind_descriptions(py::module_ &module);

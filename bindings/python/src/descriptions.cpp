@@ -55,20 +55,4 @@ void bind_descriptions(py::module_ &module)
         const nt_scaling scaling = nt_scaling_heuristic(&rig.value, slave_path, attraction);
         return py::make_tuple(scaling.alpha_p, scaling.alpha_f);
     });
-    module.def("force_overshoot",
-               [](const Described<nt_rig> &rig, const Described<nt_settings> &settings, double slope) {
-                   return nt_margins_force_overshoot(&rig.value, &settings.value, slope);
-               });
-    module.def("margins", [](const Described<nt_rig> &rig, const Described<nt_settings> &settings, double stiffness) {
-        const nt_margins m = nt_margins_compute(&rig.value, &settings.value.gains, stiffness);
-        py::dict out;
-        out["loop_stiffness"] = m.loop_stiffness;
-        out["loop_delay"] = m.loop_delay;
-        out["stability_limit"] = m.stability_limit;
-        out["margin"] = m.margin;
-        out["height_margin"] = m.height_margin;
-        out["quantisation_step"] = m.quantisation_step;
-        out["force_noise"] = m.force_noise;
-        return out;
-    });
 }

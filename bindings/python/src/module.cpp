@@ -15,6 +15,7 @@ PYBIND11_MODULE(_core, module)
     bind_materials(module);
     bind_surface(module);
     bind_descriptions(module);
+    bind_margins(module);
     bind_plan(module);
     bind_interaction(module);
     bind_control(module);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * How far the loop is from its stability limit, from numbers alone (docs/control.md, rules R1 to R5). */
+ * How far the loop is from its stability limit, from numbers alone, before anything moves (docs/margins.md). Rules R1
+ * to R5 are sums of delays that a reader can check; beside them stands the exact limit of the sampled linear loop. For
+ * another law than the default one take rig and gains from nt_servo_shape_of. Every function is thread-safe. */
 #ifndef NANOTOUCH_MARGINS_H
 #define NANOTOUCH_MARGINS_H
 
@@ -9,17 +11,62 @@
 extern "C" {
 #endif
 
+/* Limits that nothing comes near are infinite. */
 typedef struct nt_margins {
     double loop_stiffness;    /* kappa = (1 + K_f) alpha_f alpha_p k_eff at the stiffest contact [N/m] */
-    double loop_delay;        /* D = 2 (T/2 + d T) + tau_stage [s] */
+    double loop_delay;        /* D = 2 (T/2 + dead time) + tau_stage [s] */
     double stability_limit;   /* R1: b_m/D [N/m] */
     double margin;            /* stability_limit/loop_stiffness [-]; 1 is the limit */
-    double height_margin;     /* topography: of the height servo or of the master's spring, the smaller one [-] */
+    double pad_limit;         /* R2: K_f at which a pad b_h on the gauge oscillates, f_m unfiltered [-] */
+    double mass_limit;        /* R3: K_f at which a finger m_h rigidly on the gauge does, f_m unfiltered [-] */
     double quantisation_step; /* R4: motor force of one step of stage or scaled master [N] */
     double force_noise;       /* R5: motor noise that the sensors' noise makes, RMS [N] */
+    double height_margin;     /* topography: of the height servo or of the master's spring, the smaller one [-] */
+    double exact_limit;       /* kappa at which the sampled loop, hand and filters included, is unstable [N/m] */
+    double exact_frequency;   /* at which it then oscillates [Hz]; NaN if exact_limit is infinite */
+    double force_gain_limit;  /* K_f at which it is, in air or at the stiffest contact, whichever comes first [-] */
 } nt_margins;
-/* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). Thread-safe. */
+/* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). */
 NT_API nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
+
+/* What a session is to be judged by: the smallest of its margins, each scaled so that 1 is the limit. */
+typedef struct nt_verdict {
+    double margin;    /* [-] */
+    const char *rule; /* which one: "R1 contact", "exact contact", "finger", "R4 steps", ...; static */
+} nt_verdict;
+/* The margins of these settings' law into *margins, and the verdict. In touch: R1 and the exact limit over kappa, K_f's
+ * limit over K_f, the motor's force over one step and over three standard deviations of its noise, and the virtual
+ * coupling. Topography and approach: the height servo alone. A curve moves no master: infinite. */
+NT_API nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
+                                   nt_mode mode, nt_margins *margins);
+
+/* The loop at one frequency. */
+typedef struct nt_loop_response {
+    double path[2]; /* C, real and imaginary: from x_m to the force at the motor, held and delayed, 1 at rest [-] */
+    double impedance[2]; /* Z = f_m/x_m', felt by the hand at the contact [N s/m] */
+    double llewellyn;    /* 2 Re h11 Re h22/|h12 h21| - cos(arg(h12 h21)): absolutely stable where >= 1 [-] */
+} nt_loop_response;
+/* frequency: above 0, below half the rate [Hz]. NaN beyond. */
+NT_API nt_loop_response nt_margins_response(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
+                                            double frequency);
+/* Where |Z| leaves +-3 dB of alpha_f alpha_p k_eff/w, the contact as it should be felt [Hz]; half the rate if nowhere
+ * below; 0 without a contact. */
+NT_API double nt_margins_bandwidth(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
+
+/* How many steps a session has to work with (Eq. 20, 21 in SI). */
+typedef struct nt_resolution {
+    double slave_step;   /* delta_p: of the stage, command or read-out, the coarser [m] */
+    double slave_force;  /* delta_f: of the probe's noise, peak to peak, or of one step of the stage, the coarser [N] */
+    double slave_steps;  /* N_p over the path [-] */
+    double force_steps;  /* N_f over the probe's range [-] */
+    double master_steps; /* N_p of the master [-] */
+    double gauge_steps;  /* N_f of the gauge; 0 without one [-] */
+    double master_travel; /* what of the master's travel the path needs [m] */
+    double master_force;  /* alpha_f delta_f: one step of force at the hand [N] */
+} nt_resolution;
+/* slave_path: L + delta_max [m]. */
+NT_API nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, double slave_path);
+
 /* How far the force on the sample may exceed limits.force before a reaction shows [N]: what stage and surface come
  * closer during the loop's delay, times k_c, and 6 sigma of the reading. slope: of the surface, at its steepest [-]. */
 NT_API double nt_margins_force_overshoot(const nt_rig *rig, const nt_settings *settings, double slope);

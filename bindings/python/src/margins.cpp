@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// margins.h
+#include "control.h"
+#include "descriptions.h"
+
+using Rig = Described<nt_rig>;
+using Settings = Described<nt_settings>;
+
+static py::dict margins(const Rig &rig, const Settings &settings, double stiffness, const std::string &mode)
+{
+    nt_margins m;
+    const nt_verdict verdict = nt_margins_judge(&rig.value, &settings.value, stiffness, mode_of(mode), &m);
+    const nt_servo_shape shape = nt_servo_shape_of(&rig.value, &settings.value, stiffness);
+    py::dict out;
+    out["loop_stiffness"] = m.loop_stiffness;
+    out["loop_delay"] = m.loop_delay;
+    out["stability_limit"] = m.stability_limit;
+    out["margin"] = m.margin;
+    out["pad_limit"] = m.pad_limit;
+    out["mass_limit"] = m.mass_limit;
+    out["quantisation_step"] = m.quantisation_step;
+    out["force_noise"] = m.force_noise;
+    out["height_margin"] = m.height_margin;
+    out["exact_limit"] = m.exact_limit;
+    out["exact_frequency"] = m.exact_frequency;
+    out["force_gain_limit"] = m.force_gain_limit;
+    out["bandwidth"] = nt_margins_bandwidth(&shape.rig, &shape.gains, shape.contact_stiffness);
+    out["least"] = verdict.margin;
+    out["rule"] = verdict.rule;
+    out["force_gain"] = shape.gains.force_gain;
+    return out;
+}
+
+// path (real, imaginary), impedance (real, imaginary) and Llewellyn's number at every frequency, one row each.
+static py::array_t<double> response(const Rig &rig, const Settings &settings, double stiffness,
+                                    const Array &frequencies)
+{
+    const py::ssize_t count = frequencies.size();
+    const nt_servo_shape shape = nt_servo_shape_of(&rig.value, &settings.value, stiffness);
+    py::array_t<double> out({count, py::ssize_t{5}});
+    double *row = out.mutable_data();
+    for (py::ssize_t i = 0; i < count; ++i, row += 5) {
+        const nt_loop_response at =
+            nt_margins_response(&shape.rig, &shape.gains, shape.contact_stiffness, frequencies.data()[i]);
+        row[0] = at.path[0];
+        row[1] = at.path[1];
+        row[2] = at.impedance[0];
+        row[3] = at.impedance[1];
+        row[4] = at.llewellyn;
+    }
+    return out;
+}
+
+static py::dict resolution(const Rig &rig, const Settings &settings, double slave_path)
+{
+    const nt_resolution r = nt_resolution_compute(&rig.value, &settings.value.gains, slave_path);
+    py::dict out;
+    out["slave_step"] = r.slave_step;
+    out["slave_force"] = r.slave_force;
+    out["slave_steps"] = r.slave_steps;
+    out["force_steps"] = r.force_steps;
+    out["master_steps"] = r.master_steps;
+    out["gauge_steps"] = r.gauge_steps;
+    out["master_travel"] = r.master_travel;
+    out["master_force"] = r.master_force;
+    return out;
+}
+
+void bind_margins(py::module_ &module)
+{
+    module.def("margins", &margins);
+    module.def("loop_response", &response);
+    module.def("resolution", &resolution);
+    module.def("force_overshoot", [](const Rig &rig, const Settings &settings, double slope) {
+        return nt_margins_force_overshoot(&rig.value, &settings.value, slope);
+    });
+    module.def("jury_limit",
+               [](const Rig &rig, double period) { return nt_margins_jury_limit(&rig.value.master, period); });
+}

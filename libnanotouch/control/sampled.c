@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The linear loop as its samples see it. Between samples every part is a second-order system under a held command,
+ * which a dead time of n + eps periods divides in two: x[k+1] = Phi x[k] + Phi(T - eps) Gamma(eps) u[k-n-1] + Gamma(T -
+ * eps) u[k-n]. Rational functions of z are evaluated in z - 1, which keeps its accuracy at high rates. */
+#include "control/sampled.h"
+
+#include <math.h>
+
+#include "nanotouch/material.h"
+
+nt_sampled nt_sampled_make(double mass, double damping, double stiffness, double period, double dead_time)
+{
+    nt_sampled part = {.mass = mass,
+                       .damping = damping,
+                       .stiffness = stiffness,
+                       .period = period,
+                       .whole = (int)floor(dead_time / period + 1e-9)};
+    const double split = fmax(0.0, dead_time / period - part.whole);
+    const nt_lti continuous = {.order = 2,
+                               .a = {{0.0, 1.0}, {-stiffness * period / mass * period, -damping / mass * period}},
+                               .b = {0.0, period / mass * period}};
+    nt_lti all = {.order = 2}, before = {.order = 2, .a = {{1.0, 0.0}, {0.0, 1.0}}}, after = {.order = 2};
+    nt_status status = nt_lti_discretise(&continuous, 1.0, &all);
+    if (status == NT_OK && split > 0.0)
+        status = nt_lti_discretise(&continuous, split, &before);
+    if (status == NT_OK)
+        status = nt_lti_discretise(&continuous, 1.0 - split, &after);
+    for (int i = 0; i < 2; i++) {
+        for (int j = 0; j < 2; j++)
+            part.step[i][j] = status == NT_OK ? all.a[i][j] - (i == j) : (double)NAN;
+        part.early[i] = after.a[i][0] * before.b[0] + after.a[i][1] * before.b[1];
+        part.late[i] = after.b[i];
+    }
+    return part;
+}
+
+/* exp(j theta) - 1 */
+static double complex from_one(double theta)
+{
+    const double half = sin(0.5 * theta);
+    return CMPLX(-2.0 * half * half, sin(theta));
+}
+
+/* exp(-j theta) */
+static double complex back_by(double theta)
+{
+    return CMPLX(cos(theta), -sin(theta));
+}
+
+nt_sampled_value nt_sampled_at(const nt_sampled *part, double theta)
+{
+    const double complex less = from_one(theta), delay = back_by(theta), dead = back_by(part->whole * theta);
+    const double complex first = dead * (part->early[0] * delay + part->late[0]);
+    const double complex second = dead * (part->early[1] * delay + part->late[1]);
+    const double complex a = less - part->step[0][0], d = less - part->step[1][1];
+    nt_sampled_value value = {
+        .position = d * first + part->step[0][1] * second,
+        .speed = (part->step[1][0] * first + a * second) / part->period,
+        .determinant = a * d - part->step[0][1] * part->step[1][0],
+    };
+    value.acceleration =
+        (delay * dead * value.determinant - part->damping * value.speed - part->stiffness * value.position) /
+        part->mass;
+    return value;
+}
+
+double nt_sampled_angle(const nt_sampled *part)
+{
+    const double decay = 0.5 * part->damping / part->mass;
+    const double square = part->stiffness / part->mass - decay * decay;
+    const double angle = fmod(sqrt(fmax(0.0, square)) * part->period, 2.0 * NT_PI);
+    return fmin(angle, 2.0 * NT_PI - angle);
+}
+
+double nt_sampled_dead_time(const nt_rig *rig, const nt_gains *gains)
+{
+    return gains->delay / gains->rate + rig->converters.adc_latency + rig->converters.dac_latency;
+}
+
+nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)
+{
+    const double T = 1.0 / gains->rate, dead_time = nt_sampled_dead_time(rig, gains);
+    const double wn = 2.0 * NT_PI * rig->stage.resonance;
+    const nt_hand *hand = &rig->hand;
+    nt_sampled_loop loop = {
+        .master = nt_sampled_make(rig->master.mass + hand->mass, rig->master.damping + hand->damping, hand->stiffness,
+                                  T, dead_time),
+        .stage = nt_sampled_make(1.0 / (wn * wn), 1.0 / (wn * rig->stage.quality), 1.0, T, dead_time),
+        .stage_loop = nt_stage_loop_make(&rig->stage, gains),
+        .hand = *hand,
+        .force_filter = -expm1(-2.0 * NT_PI * gains->force_filter * T),
+    };
+    loop.notched = loop.stage_loop.a[2] != 0.0;
+    return loop;
+}
+
+/* H, from the stage's reference to its position, as numerator and denominator. The notch's zeros are the stage's
+ * poles: both are left out. */
+static double complex stage_numerator(const nt_sampled_loop *loop, double theta, double complex *denominator)
+{
+    const nt_sampled_value stage = nt_sampled_at(&loop->stage, theta);
+    const double complex less = from_one(theta);
+    const double *a = loop->stage_loop.a;
+    *denominator = loop->notched ? less * less + (2.0 + a[1]) * less + (1.0 + a[1] + a[2]) : stage.determinant;
+    return loop->notched ? loop->stage_loop.b[0] * stage.position : stage.position;
+}
+
+nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
+{
+    const double complex less = from_one(theta), z = 1.0 + less;
+    double complex below;
+    const double complex above = stage_numerator(loop, theta, &below);
+    const nt_sampled_value master = nt_sampled_at(&loop->master, theta);
+    const nt_hand *hand = &loop->hand;
+    const double complex reaction =
+        -(hand->mass * master.acceleration + hand->damping * master.speed + hand->stiffness * master.position);
+    const double complex low_pass = loop->force_filter * z / (less + loop->force_filter);
+    const nt_sampled_terms terms = {.stage = less * below,
+                                    .tracking = z * above,
+                                    .master = master.determinant,
+                                    .finger = low_pass * reaction,
+                                    .contact = (less + loop->stage_loop.integral * z) * above * master.position};
+    return terms;
+}
+
+double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta)
+{
+    const double complex less = from_one(theta), integral = loop->stage_loop.integral * (1.0 + less);
+    double complex below;
+    const double complex above = stage_numerator(loop, theta, &below);
+    return (less + integral) * above / (less * below + integral * above);
+}

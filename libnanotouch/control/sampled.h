@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The linear loop as its samples see it, at one point z = exp(j theta) of the unit circle; exact under the holds.
+ * Private to control/. */
+#ifndef NANOTOUCH_CONTROL_SAMPLED_H
+#define NANOTOUCH_CONTROL_SAMPLED_H
+
+#include <complex.h>
+
+#include "core/lti.h"
+#include "nanotouch/settings.h"
+#include "nanotouch/stage_loop.h"
+
+/* M x'' + B x' + K x = u behind a hold and a dead time. States (x, v T), so that the entries are of like size. */
+typedef struct nt_sampled {
+    double mass, damping, stiffness; /* [kg], [N s/m], [N/m] */
+    double period;                   /* T [s] */
+    double step[2][2];               /* Phi - 1 */
+    double early[2], late[2];        /* what the command of the period before, and of this one, adds */
+    int whole;                       /* periods of dead time; the fraction is in early and late */
+} nt_sampled;
+/* All but the stiffness above 0. NaN all over where nt_lti_discretise refuses. */
+nt_sampled nt_sampled_make(double mass, double damping, double stiffness, double period, double dead_time);
+
+/* x, v and u to det(z - Phi) over it: the numerators apart from their common denominator. */
+typedef struct nt_sampled_value {
+    double complex position;     /* [m/N] times determinant */
+    double complex speed;        /* [m/(N s)] times determinant */
+    double complex acceleration; /* just before the sample [1/kg] times determinant */
+    double complex determinant;
+} nt_sampled_value;
+nt_sampled_value nt_sampled_at(const nt_sampled *part, double theta);
+/* Where its poles lie on the circle, nearest, between 0 and pi. */
+double nt_sampled_angle(const nt_sampled *part);
+
+/* All parts of the loop. */
+typedef struct nt_sampled_loop {
+    nt_sampled master; /* with the hand on it */
+    nt_sampled stage;
+    nt_stage_loop stage_loop;
+    int notched;
+    nt_hand hand;
+    double force_filter; /* c of the low-pass of f_m, per period [-] */
+} nt_sampled_loop;
+nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains);
+/* Dead time of one hop: computing, conversion [s]. */
+double nt_sampled_dead_time(const nt_rig *rig, const nt_gains *gains);
+
+/* The characteristic function is (P + g Q) (M - K_f F) + kappa E, g the stage loop's integral gain per period, with
+ * common factors taken out so that nothing has a pole. */
+typedef struct nt_sampled_terms {
+    double complex stage;    /* P: (z - 1), as there is an integral */
+    double complex tracking; /* Q: from the stage's integral over the stage back to it */
+    double complex master;   /* M */
+    double complex finger;   /* F: from the motor over the hand on the gauge and the low-pass back to the motor */
+    double complex contact;  /* E: from the motor over x_m, stage and contact back to the motor */
+} nt_sampled_terms;
+nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta);
+/* x_s over its reference, dead time included. */
+double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta);
+
+/* Where the loop turns unstable; INFINITY where it never does, 0 where it is unstable anyhow. */
+typedef struct nt_sampled_limits {
+    double loop_stiffness; /* kappa, K_f given [N/m] */
+    double angle;          /* at which it oscillates there, w T [rad] */
+    double force_gain;     /* K_f, in air or with alpha_f alpha_p k_eff given, whichever comes first [-] */
+} nt_sampled_limits;
+/* reflected_stiffness: alpha_f alpha_p k_eff [N/m]. */
+nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness);
+
+#endif

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Where the sampled loop turns unstable, exactly. The characteristic function is A + g B in every gain g that is asked
+ * for. As g grows from a value where all its roots are inside the unit circle, the first root to leave passes through
+ * the circle at some z = exp(j theta), where -A/B = g is real and positive: the limit is the smallest such value over
+ * theta. That asks for no eigenvalue and no polynomial, and loses nothing at high rates, where all roots crowd at z
+ * = 1. */
+#include <math.h>
+
+#include "control/sampled.h"
+#include "nanotouch/material.h"
+
+/* Gains, each with the others as they are given. */
+typedef enum gain { STAGE_INTEGRAL, FORCE_GAIN_IN_AIR, FORCE_GAIN_IN_CONTACT, KAPPA_WITHOUT_GAIN, KAPPA, GAINS } gain;
+
+typedef struct asked {
+    const nt_sampled_loop *loop;
+    double force_gain;
+    double reflected_stiffness;
+} asked;
+
+typedef struct crossing {
+    double limit; /* smallest so far */
+    double angle; /* where */
+} crossing;
+
+/* -A conj(B), of the phase of g, and |g|. */
+static double complex phasor(const asked *question, gain which, const nt_sampled_terms *terms, double *size)
+{
+    const double g = question->loop->stage_loop.integral, k = question->reflected_stiffness;
+    const double complex servo = terms->stage + g * terms->tracking;
+    double complex A, B;
+    switch (which) {
+    case STAGE_INTEGRAL:
+        A = terms->stage;
+        B = terms->tracking;
+        break;
+    case FORCE_GAIN_IN_AIR:
+        A = terms->master;
+        B = -terms->finger;
+        break;
+    case FORCE_GAIN_IN_CONTACT:
+        A = servo * terms->master + k * terms->contact;
+        B = k * terms->contact - servo * terms->finger;
+        break;
+    default:
+        A = servo * (terms->master - (which == KAPPA ? question->force_gain : 0.0) * terms->finger);
+        B = terms->contact;
+    }
+    const double a = cabs(A), b = cabs(B);
+    *size = a / b;
+    return a > 0.0 && b > 0.0 ? -(A / a) * (conj(B) / b) : 0.0;
+}
+
+/* Halves [low, high], over which the phase of g passes through 0. */
+static void refine(const asked *question, gain which, double low, double high, crossing *found)
+{
+    double size;
+    nt_sampled_terms terms = nt_sampled_terms_at(question->loop, low);
+    const int rising = cimag(phasor(question, which, &terms, &size)) < 0.0;
+    for (int i = 0; i < 60 && high - low > 1e-14 * high; i++) {
+        const double middle = 0.5 * (low + high);
+        terms = nt_sampled_terms_at(question->loop, middle);
+        *((cimag(phasor(question, which, &terms, &size)) < 0.0) == rising ? &low : &high) = middle;
+    }
+    terms = nt_sampled_terms_at(question->loop, high);
+    if (creal(phasor(question, which, &terms, &size)) > 0.0 && size < found->limit)
+        *found = (crossing){size, high};
+}
+
+/* Slowest corner of all parts, as an angle: nothing crosses far below it. */
+static double slowest(const nt_sampled_loop *loop)
+{
+    const nt_sampled *master = &loop->master, *stage = &loop->stage;
+    double corner = fmin(1.0, sqrt(stage->stiffness / stage->mass) * stage->period);
+    corner = fmin(corner, stage->stiffness / stage->damping * stage->period);
+    corner = fmin(corner, master->damping / master->mass * master->period);
+    if (master->stiffness > 0.0) {
+        corner = fmin(corner, master->stiffness / master->damping * master->period);
+        corner = fmin(corner, sqrt(master->stiffness / master->mass) * master->period);
+    }
+    return corner;
+}
+
+/* The next angle: an eighth of the way to or from the nearest resonance, where the phase turns fastest, no closer than
+ * a fraction of its width; and so near that dead times do not turn the phase by more than a quarter. */
+static double next(const nt_sampled_loop *loop, double theta)
+{
+    const nt_sampled *parts[] = {&loop->stage, &loop->master};
+    double step = fmin(0.125 * theta, 0.25 * NT_PI / (2.0 * loop->master.whole + 8.0));
+    for (int i = loop->notched; i < 2; i++) {
+        const double width = 0.5 * parts[i]->damping / parts[i]->mass * parts[i]->period;
+        const double distance = fabs(theta - nt_sampled_angle(parts[i]));
+        step = fmin(step, fmax(0.125 * distance, 0.05 * width));
+    }
+    return theta + fmax(step, 1e-12);
+}
+
+/* The phases of all gains along the circle. */
+static void march(const asked *question, crossing found[GAINS])
+{
+    double last_theta = 1e-3 * slowest(question->loop), last[GAINS] = {0.0}, size;
+    for (double theta = last_theta;; theta = fmin(next(question->loop, theta), NT_PI)) {
+        const nt_sampled_terms terms = nt_sampled_terms_at(question->loop, theta);
+        for (int which = 0; which < GAINS; which++) {
+            const double complex g = phasor(question, (gain)which, &terms, &size);
+            if (last[which] * cimag(g) < 0.0)
+                refine(question, (gain)which, last_theta, theta, &found[which]);
+            if (theta >= NT_PI && creal(g) > 0.0 && size < found[which].limit) /* all is real there */
+                found[which] = (crossing){size, NT_PI};
+            last[which] = cimag(g);
+        }
+        last_theta = theta;
+        if (!(theta < NT_PI))
+            return;
+    }
+}
+
+nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness)
+{
+    nt_sampled_limits limits = {0.0, NAN, 0.0};
+    if (!(loop->master.damping > 0.0))
+        return limits; /* nothing takes out what the holds put in */
+    const asked question = {loop, force_gain, reflected_stiffness};
+    crossing found[GAINS];
+    for (int which = 0; which < GAINS; which++)
+        found[which] = (crossing){INFINITY, NAN};
+    march(&question, found);
+    if (loop->stage_loop.integral >= found[STAGE_INTEGRAL].limit)
+        return limits;
+    if (force_gain < found[FORCE_GAIN_IN_AIR].limit) {
+        limits.loop_stiffness = found[KAPPA].limit;
+        limits.angle = found[KAPPA].angle;
+    }
+    if (reflected_stiffness < found[KAPPA_WITHOUT_GAIN].limit)
+        limits.force_gain = fmin(found[FORCE_GAIN_IN_AIR].limit, found[FORCE_GAIN_IN_CONTACT].limit);
+    return limits;
+}
