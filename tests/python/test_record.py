@@ -27,7 +27,8 @@ def columns(rows: int, seed: int = 0) -> dict[str, np.ndarray]:
     made = {name: rng.standard_normal(rows) * 1e-9 for name in COLUMNS}
     made["time"] = np.arange(rows) * 1e-4
     made["state"] = rng.integers(0, 4, rows)
-    made["reasons"] = rng.integers(0, 2**32, rows)
+    made["phase"] = rng.integers(0, 3, rows)
+    made["reasons"], made["flags"] = rng.integers(0, 2**32, (2, rows))
     return made
 
 
