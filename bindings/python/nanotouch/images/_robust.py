@@ -28,9 +28,10 @@ def sample(values: NDArray[Any], enough: int = _ENOUGH) -> NDArray[Any]:
 
 
 def digit(steps: Floats, height_range: float) -> float:
-    """One and a half steps of the digitiser [m]: the smallest difference there is, unless it is a structure's."""
-    size = np.abs(steps)
-    smallest = 1.5 * float(size[size > 0].min(initial=np.inf))
+    """One and a half steps of the digitiser [m]: by how much differences differ, at least, unless by a structure."""
+    known = steps[np.isfinite(steps)]
+    size = np.abs(known - middle(known))
+    smallest = 1.5 * float(size[size > 1e-9 * height_range].min(initial=np.inf))  # less is rounding
     return smallest if smallest < 0.05 * height_range else 0.0
 
 

@@ -20,7 +20,7 @@ from ..errors import require
 from ._robust import MAD, block_means, middle, reduction, sample
 
 SMALLEST_PIECE = 16  # [block]
-_ROUNDS = 4  # cutting and fitting alternate; two rounds settle a grating, the others are for rough films
+_ROUNDS = 6  # cutting and fitting alternate; two rounds settle a grating, the others are for rough films
 _STEEP = 4.0  # a place is steep where the slope differs from the background's by more than so many standard deviations
 _HUBER = 1.345  # 95 % efficiency on Gaussian noise
 _ENOUGH = 1 << 14  # blocks, of a quarter of a million pixels
@@ -100,16 +100,15 @@ def fit(strips: Floats, shape: tuple[int, int], order: int, floor: float) -> Bac
     known = np.isfinite(blocks)
     if np.count_nonzero(known) < SMALLEST_PIECE and fy > 1:
         fy, blocks, known = 1, strips, np.isfinite(strips)
-    height_range = float(np.nanmax(blocks) - np.nanmin(blocks))
     vy, vx = basis(shape[0], order, fy), basis(shape[1], order, fx)
     coefficients = np.zeros((order + 1, order + 1))
     # P_1 rises by this much from block to block
     rise = [2.0 * f / (n - 1) for n, f in zip(shape, (fy, fx), strict=True)]
     coefficients[1, 0] = _known_middle(np.diff(blocks, axis=0)) / rise[0]
     coefficients[0, 1] = _known_middle(np.diff(blocks, axis=1)) / rise[1]
-    floor = max(floor, 1e-3 * height_range)
     rest, labels, pieces = blocks - vy @ coefficients @ vx.T, known.astype(np.int32), 1
-    settled = 0.01 * MAD * _known_middle(np.abs(np.diff(blocks, axis=1)))
+    floor = max(floor, 1e-3 * float(np.nanmax(rest) - np.nanmin(rest)))
+    settled = 0.01 * MAD * _known_middle(np.abs(np.diff(rest, axis=1)))
     for _ in range(_ROUNDS):
         labels, pieces = _cut(rest, known, floor)
         change = _change(rest, labels, vy, vx)
