@@ -59,7 +59,7 @@ static reach reach_of(double u, long n)
         i = n - 2;
     const double t = inside - (double)i, s = 1.0 - t;
     reach r = {
-        .index = {mirror(i - 1, n), i, i + 1, mirror(i + 2, n)},
+        .index = {i > 0 ? i - 1 : 1, i, i + 1, i + 2 < n ? i + 2 : n - 2}, /* mirrored */
         .value = {s * s * s / 6.0, (4.0 - 3.0 * t * t * (2.0 - t)) / 6.0, (4.0 - 3.0 * s * s * (2.0 - s)) / 6.0,
                   t * t * t / 6.0},
     };

@@ -12,8 +12,9 @@
 #include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/material.h"
+#include "nanotouch/surface.h"
 
-enum { COUNT = 4096, RUNS = 60, CELLS = 2000, PANELS = 120, BANK_CELLS = 7000 };
+enum { COUNT = 4096, RUNS = 60, CELLS = 2000, PANELS = 120, BANK_CELLS = 7000, PIXELS = 128 };
 
 typedef struct {
     nt_maugis maugis;
@@ -28,6 +29,9 @@ static nt_maugis_bank_cell bank_cells[BANK_CELLS];
 static nt_maugis_bank bank;
 static double lambdas[COUNT]; /* one for every element */
 static setting now;
+static double heights[PIXELS * PIXELS], ratios[PIXELS * PIXELS];
+static nt_surface surface;
+static nt_radius_map radii;
 static volatile double sink;
 
 static double seconds(void)
@@ -120,6 +124,46 @@ static void bank_array(void)
     (void)nt_maugis_bank_load_n(&bank, lambdas, now.in, now.out, COUNT);
 }
 
+/* The next call's argument hangs on the last one's result by a rounding that does not change it. */
+static void bank_slope_chain(void)
+{
+    nt_bank_value value = {{0}, 0.0};
+    for (int i = 0; i < COUNT; i++) {
+        const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.5 * lambdas[i]};
+        (void)nt_maugis_bank_eval_radius(&bank, &contact, now.in[i] + 1e-300 * value.law.F, NT_BRANCH_STABLE, &value);
+        now.out[i] = value.dU_dR;
+    }
+}
+
+static void bank_pairs(void)
+{
+    static nt_contact contacts[COUNT];
+    static double U[COUNT], k[COUNT], a[COUNT], slope[COUNT];
+    if (contacts[0].radius == 0.0)
+        for (int i = 0; i < COUNT; i++)
+            contacts[i] = (nt_contact){1.0, 0.75, 1.0 / NT_PI, 0.5 * lambdas[i]};
+    const nt_bank_pairs pairs = {contacts, now.in, U, now.out, k, a, slope, COUNT, 1, 1, 1};
+    (void)nt_maugis_bank_pairs_n(&bank, NT_BRANCH_STABLE, &pairs);
+}
+
+static void surface_chain(void)
+{
+    double z = 0.0;
+    for (int i = 0; i < COUNT; i++) {
+        z = nt_surface_eval(&surface, (i % 251) * 3.1e-10 + 1e-300 * z, (i % 97) * 7.3e-10).z;
+        now.out[i] = z;
+    }
+}
+
+static void radius_chain(void)
+{
+    double R = 0.0;
+    for (int i = 0; i < COUNT; i++) {
+        R = nt_radius_map_eval(&radii, (i % 251) * 3.1e-10 + 1e-300 * R, (i % 97) * 7.3e-10).radius;
+        now.out[i] = R;
+    }
+}
+
 static void load_array(void)
 {
     for (int i = 0; i < COUNT; i++)
@@ -196,6 +240,10 @@ static void run(double lambda)
         {"maugis exact latency", exact_chain, hertz_chain},
         {"maugis exact indentation array", load_array, hertz_array},
         {"maugis bank array", bank_array, hertz_array},
+        {"maugis bank latency, with dU/dR", bank_slope_chain, hertz_chain},
+        {"maugis bank pairs, checked, with dU/dR", bank_pairs, hertz_chain},
+        {"surface latency", surface_chain, hertz_chain},
+        {"radius map latency", radius_chain, hertz_chain},
         {"jkr closed form array", jkr_closed_array, hertz_array},
         {"jkr closed form latency", jkr_closed_chain, hertz_chain},
     };
@@ -220,6 +268,12 @@ int main(int count, char **arguments)
         return 1;
     for (int i = 0; i < COUNT; i++)
         lambdas[i] = 0.01 * pow(10.0, 4.0 * (i * 37 % COUNT) / COUNT);
+    const nt_height_map map = {heights, PIXELS, PIXELS, 1e-9, 1e-9};
+    for (int i = 0; i < PIXELS * PIXELS; i++)
+        heights[i] = 1e-9 * sin(0.1 * (i % PIXELS)) * cos(0.07 * (double)(i / PIXELS));
+    if (nt_surface_init(&surface, &map, heights) != NT_OK || //
+        nt_radius_map_init(&radii, &surface, 20e-9, NULL, ratios) != NT_OK)
+        return 1;
     printf("{\n  \"instructions\": \"%s\",\n  \"benchmarks\": [", count > 1 ? arguments[1] : "dispatched");
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
         run(settings[i]);
