@@ -37,25 +37,6 @@ ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
 Columns = dict[str, NDArray[Any]]
 
 
-class Margins(NamedTuple):
-    """How far the loop is from its stability limit (rules R1, R4, R5 of docs/control.md)."""
-
-    loop_stiffness: float
-    """(1 + K_f) alpha_f alpha_p k_eff at the stiffest contact [N/m]"""
-    loop_delay: float
-    """two hops of hold and delay, and the stage's lag [s]"""
-    stability_limit: float
-    """b_m over the loop delay [N/m]"""
-    margin: float
-    """limit over stiffness; 1 is the limit"""
-    height_margin: float
-    """topography mode: of the height servo or of the master's spring, the smaller one"""
-    quantisation_step: float
-    """motor force of one step of stage or scaled master [N]"""
-    force_noise: float
-    """motor noise that the sensors make, RMS [N]"""
-
-
 def settings_for_path(rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6) -> Settings:
     """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m]."""
     check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
