@@ -35,7 +35,7 @@ HEADERS = {
     "geometry": "contact",
     **dict.fromkeys(["guarantee", "margins", "passivity", "preflight", "scaling", "servo"], "control"),
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
-    "plan": "scene",
+    **dict.fromkeys(["plan", "interaction"], "scene"),
     "sim": "hal/sim",
     "faults": "hal/sim",
     "hal_linux": "hal/linux",

@@ -28,8 +28,7 @@ static int make_plan(void **state)
         heights[i] = 5e-9 * sin(0.8 * (i % N)) + 1e-9 * (i / N);
     const nt_height_map map = {heights, N, N, 20e-9, 20e-9};
     rig = nt_rig_defaults();
-    return nt_surface_init(&surface, &map, coefficients) != NT_OK ||
-           nt_plan_make(&plan, &inputs, NULL) != NT_OK;
+    return nt_surface_init(&surface, &map, coefficients) != NT_OK || nt_plan_make(&plan, &inputs, NULL) != NT_OK;
 }
 
 static nt_sim_setup setup_of(uint64_t seed, int delay)

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What stands between the simulated plant and the loop: parts of a period, latencies, rates, bits, a gauge or none; and
+ * the two models of the probe behind the same contract. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/sim.h"
+
+#define T 1e-4
+#define BOLTZMANN 1.380649e-23
+static nt_plan plan;
+
+static int make_plan(void **state)
+{
+    (void)state;
+    const nt_scene scene = nt_scene_defaults();
+    const nt_plan_inputs inputs = {.scene = &scene};
+    return nt_plan_make(&plan, &inputs, NULL) != NT_OK;
+}
+
+/* Without noise and steps. */
+static nt_rig ideal_rig(void)
+{
+    nt_rig rig = nt_rig_defaults();
+    rig.probe.noise = rig.probe.resolution = rig.probe.temperature = 0.0;
+    rig.stage.resolution = rig.stage.command_resolution = 0.0;
+    rig.stage.max_speed = 1.0;
+    rig.master.resolution = rig.master.gauge_noise = rig.master.gauge_resolution = 0.0;
+    return rig;
+}
+
+static nt_sim sim_of(const nt_rig *rig, double period, double delay)
+{
+    const nt_sim_setup setup = {
+        .plan = &plan, .rig = rig, .period = period, .clearance = 500e-9, .seed = 5, .delay = delay};
+    nt_sim sim;
+    assert_int_equal(nt_sim_init(&sim, &setup), NT_OK);
+    return sim;
+}
+
+/* 1.3 periods of delay are 13 tenths: master and stage are the same at every tick, friction and hand included. */
+static void a_part_of_a_period_is_exact(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig();
+    rig.master.friction = 0.2;
+    rig.hand = (nt_hand){.mass = 0.02, .damping = 1.0, .stiffness = 500.0};
+    nt_sim coarse = sim_of(&rig, T, 1.3), fine = sim_of(&rig, T / 10.0, 13.0);
+    for (int i = 0; i < 2000; i++) {
+        const nt_command command = {.motor_force = 2.0 * sin(0.05 * i), .stage_position = 50e-9 * sin(0.03 * i)};
+        assert_int_equal(nt_sim_write(&coarse, &command), NT_OK);
+        for (int part = 0; part < 10; part++)
+            assert_int_equal(nt_sim_write(&fine, &command), NT_OK);
+        assert_true(fabs(coarse.master.position - fine.master.position) < 1e-14);
+        assert_true(fabs(coarse.stage.position - fine.stage.position) < 1e-18);
+    }
+}
+
+/* Half of a latency that the converters add to the delay is the same as a delay. */
+static void the_output_latency_is_a_delay(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig(), late = rig;
+    late.converters.dac_latency = 0.7 * T;
+    nt_sim a = sim_of(&rig, T, 1.7), b = sim_of(&late, T, 1.0);
+    for (int i = 0; i < 500; i++) {
+        const nt_command command = {.motor_force = sin(0.1 * i)};
+        assert_int_equal(nt_sim_write(&a, &command), NT_OK);
+        assert_int_equal(nt_sim_write(&b, &command), NT_OK);
+        assert_true(fabs(a.master.position - b.master.position) < 1e-16);
+    }
+}
+
+/* A sample that is 2.25 periods old shows a speed that does not change where it was 2.25 periods ago. */
+static void the_input_latency_shows_the_past(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig();
+    rig.converters.adc_latency = 2.25 * T;
+    nt_sim sim = sim_of(&rig, T, 0.0);
+    const nt_command push = {.motor_force = 1.0};
+    for (int i = 0; i < 500; i++) {
+        nt_sample sample;
+        assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
+        assert_true(fabs(sample.age - 2.25 * T) < 1e-18);
+        if (i > 300) /* 30 time constants: b v = f */
+            assert_true(fabs(sample.master_position - (sim.master.position - 2.25 * T * 1.0 / 100.0)) < 1e-14);
+        assert_int_equal(nt_sim_write(&sim, &push), NT_OK);
+    }
+}
+
+/* 3 kHz beneath a loop of 10 kHz: three conversions in ten periods, held between them, ageing. */
+static void a_slow_converter_repeats_itself(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig();
+    rig.converters.adc_rate = 3e3;
+    nt_sim sim = sim_of(&rig, T, 0.0);
+    const nt_command push = {.motor_force = 1.0};
+    double last = NAN;
+    int fresh = 0;
+    for (int i = 0; i < 1000; i++) {
+        nt_sample sample;
+        assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
+        assert_int_equal(sample.tick, i);
+        fresh += sample.age == 0.0;
+        assert_true(sample.age == 0.0 ? sample.master_position != last : sample.master_position == last);
+        assert_true(sample.age < 3.5 * T);
+        last = sample.master_position;
+        assert_int_equal(nt_sim_write(&sim, &push), NT_OK);
+    }
+    assert_true(fresh >= 300 && fresh <= 301);
+}
+
+static int is_multiple(double value, double step)
+{
+    return fabs(value / step - round(value / step)) < 1e-6;
+}
+
+/* 8 bits over +-10 V are 78 mV: 2.6 nm; over the stage's travel 0.4 um. */
+static void bits_are_steps(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig();
+    rig.converters.adc_bits = rig.converters.dac_bits = 8.0;
+    rig.probe.noise = 0.05;
+    nt_sim sim = sim_of(&rig, T, 0.0);
+    for (int i = 0; i < 200; i++) {
+        const nt_command command = {.stage_position = -1e-7 * i, .motor_force = 0.03 * i};
+        nt_sample sample;
+        assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
+        assert_true(is_multiple(sample.deflection, 0.033e-6 * 20.0 / 256.0));
+        assert_true(is_multiple(sample.stage_position, rig.stage.travel / 256.0));
+        assert_true(is_multiple(sample.master_position, rig.master.travel / 256.0));
+        assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
+    }
+    for (int i = 0; i < 5000; i++) {
+        const nt_command command = {.stage_position = -1.1e-6, .motor_force = 0.03};
+        assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
+    }
+    assert_true(fabs(sim.stage.position + 3.0 * rig.stage.travel / 256.0) < 1e-12); /* 1.17 um is nearest */
+    assert_true(fabs(sim.master.speed - 10.0 / 256.0 / 100.0) < 1e-6 || sim.master.speed == 0.0);
+}
+
+static void without_a_gauge_nothing_is_said(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    rig.master.gauge = 0.0;
+    nt_sim sim = sim_of(&rig, T, 0.0);
+    nt_sample sample;
+    assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
+    assert_true(isnan(sample.operator_force) && sample.flags == 0 && isfinite(sample.deflection));
+}
+
+/* In air the dynamic probe moves by k_B T/k_c, sampled at any rate. 20 000 samples are known to 1 %, 5 sigma are 5 %.
+ */
+static void the_probe_trembles_in_air(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig();
+    rig.probe.spring_constant = 0.1;
+    rig.probe.temperature = 300.0;
+    rig.probe.quality = 5.0;
+    const nt_sim_setup setup = {
+        .plan = &plan, .rig = &rig, .period = T, .clearance = 500e-9, .seed = 5, .probe_model = NT_PROBE_DYNAMIC};
+    static nt_sim sim;
+    assert_int_equal(nt_sim_init(&sim, &setup), NT_OK);
+    double squares = 0.0;
+    for (int i = 0; i < 20000; i++) {
+        const nt_command rest = {0};
+        nt_sample sample;
+        assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
+        squares += sample.deflection * sample.deflection;
+        assert_int_equal(nt_sim_write(&sim, &rest), NT_OK);
+    }
+    assert_true(fabs(squares / 20000.0 * 0.1 / (BOLTZMANN * 300.0) - 1.0) < 0.05);
+}
+
+/* The same approach, press and retraction by both models, damped: the forces agree within the lag that is promised, but
+ * for the ticks of the two jumps. */
+static void both_models_tell_the_same(void **state)
+{
+    (void)state;
+    nt_rig rig = ideal_rig();
+    rig.probe.quality = 3.0;
+    rig.stage.quality = 0.5;
+    rig.stage.max_speed = 1e-6;
+    const double bound = nt_cantilever_lag_of(&rig.probe, &rig.stage).force;
+    nt_sim_setup setup = {.plan = &plan, .rig = &rig, .period = T, .clearance = 20e-9, .substep = 1.0};
+    static nt_sim still, moving;
+    setup.probe_model = NT_PROBE_QUASI_STATIC;
+    assert_int_equal(nt_sim_init(&still, &setup), NT_OK);
+    setup.probe_model = NT_PROBE_DYNAMIC;
+    assert_int_equal(nt_sim_init(&moving, &setup), NT_OK);
+    assert_true(!still.dynamic && moving.dynamic);
+    int apart = 0;
+    double deepest = 0.0;
+    for (int i = 0; i <= 2000; i++) {
+        const nt_command command = {.stage_position = 30e-9 * (1.0 - fabs(i / 1000.0 - 1.0))};
+        assert_int_equal(nt_sim_write(&still, &command), NT_OK);
+        assert_int_equal(nt_sim_write(&moving, &command), NT_OK);
+        const double error =
+            rig.probe.spring_constant * fabs(still.cantilever.deflection - moving.cantilever.deflection);
+        apart += error > bound;
+        deepest = fmax(deepest, still.truth.tip_force);
+    }
+    print_message("bound %.2g N, passed in %d of 2000 ticks\n", bound, apart);
+    assert_true(deepest > 50e-9 && apart <= 10);
+}
+
+/* The paper's rig in air is quasi-static; in vacuum, or with a slow lever, it is not. */
+static void the_model_is_chosen_by_its_error(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    assert_false(nt_sim_needs_dynamics(&plan, &rig, T));
+    rig.probe.quality = 1e4; /* rings for 32 ms */
+    assert_true(nt_sim_needs_dynamics(&plan, &rig, T));
+    assert_false(nt_sim_needs_dynamics(&plan, &rig, 0.1)); /* but is at rest when it is looked at */
+    rig = nt_rig_defaults();
+    rig.probe.resonance = 500.0;
+    rig.probe.quality = 1.0;
+    assert_true(nt_sim_needs_dynamics(&plan, &rig, T)); /* lags by 0.5 uN at the stage's full speed */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_part_of_a_period_is_exact),
+        cmocka_unit_test(the_output_latency_is_a_delay),
+        cmocka_unit_test(the_input_latency_shows_the_past),
+        cmocka_unit_test(a_slow_converter_repeats_itself),
+        cmocka_unit_test(bits_are_steps),
+        cmocka_unit_test(without_a_gauge_nothing_is_said),
+        cmocka_unit_test(the_probe_trembles_in_air),
+        cmocka_unit_test(both_models_tell_the_same),
+        cmocka_unit_test(the_model_is_chosen_by_its_error),
+    };
+    return cmocka_run_group_tests(tests, make_plan, NULL);
+}
