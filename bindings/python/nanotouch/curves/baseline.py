@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from ..errors import InvalidValue
 
 Floats = NDArray[np.float64]
-Kind = Literal["auto", "line", "wave", "constant"]
-KINDS: tuple[Kind, ...] = ("auto", "line", "wave", "constant")
+Kind = Literal["auto", "line", "wave", "constant"] | tuple[float, float]
+KINDS = ("auto", "line", "wave", "constant")
 
+_FEWEST = 16  # points of a baseline between given ends
 _FAR = 0.5  # part of the travel taken for the first baseline
 _MARGIN = 0.05  # of the travel, kept between an event and the baseline that judges it
 EVENT = 5.0  # standard deviations of the noise: one in 2e6 points
@@ -97,8 +98,16 @@ class Baseline:
 
 
 def point_noise(force: Floats) -> float:
-    """Standard deviation of white noise, from differences of neighbours, so that no shape of the curve enters [N]."""
-    return MAD * float(np.median(np.abs(np.diff(force)))) / float(np.sqrt(2.0))
+    """Standard deviation of white noise, from differences of neighbours, so that no shape of the curve enters [N].
+
+    Where more than half of them are 0, because the converter's step exceeds the noise, from the root mean square of all
+    but the largest hundredth.
+    """
+    differences = np.abs(np.diff(force))
+    middle = MAD * float(np.median(differences))
+    if middle == 0.0:
+        middle = float(np.sqrt(np.mean(np.sort(differences)[: int(0.99 * differences.size)] ** 2)))
+    return middle / float(np.sqrt(2.0))
 
 
 def fit_baseline(z: Floats, force: Floats, kind: Kind = "auto") -> Baseline:
@@ -108,10 +117,13 @@ def fit_baseline(z: Floats, force: Floats, kind: Kind = "auto") -> Baseline:
     ----------
     z, force : ndarray, shape (n,)
         Height of the base [m] and force [N].
-    kind : {"auto", "line", "wave", "constant"}
+    kind : {"auto", "line", "wave", "constant"} or (float, float)
         ``"auto"``: a line, with a wave where there is very strong evidence for one. ``"constant"``: the median of the
-        far half, which leaves the tilt in the force, as many published values do.
+        far half, which leaves the tilt in the force, as many published values do. A pair: a line through the points
+        with z between these [m].
     """
+    if not isinstance(kind, str):
+        return _between(z, force, kind)
     if kind not in KINDS:
         raise InvalidValue(f"baseline {kind!r}: valid are {', '.join(KINDS)}")
     far = np.asarray(z >= z.max() - _FAR * np.ptp(z), dtype=bool)
@@ -125,6 +137,15 @@ def fit_baseline(z: Floats, force: Floats, kind: Kind = "auto") -> Baseline:
     if waved is None or (kind == "auto" and _evidence(line, waved, z[free], force[free]) < _EVIDENCE):
         return line
     return waved
+
+
+def _between(z: Floats, force: Floats, ends: tuple[float, float]) -> Baseline:
+    inside = (z >= ends[0]) & (z <= ends[1])
+    if np.count_nonzero(inside) < _FEWEST:
+        raise InvalidValue(
+            f"baseline {ends[0]:g} .. {ends[1]:g} m holds {np.count_nonzero(inside)} points, expected {_FEWEST} or more"
+        )
+    return _line(z[inside], force[inside])
 
 
 def _constant(z: Floats, force: Floats) -> Baseline:

@@ -12,6 +12,7 @@ from ..errors import InvalidValue
 from .baseline import EVENT, WAVE, Baseline, Floats, Kind, fit_baseline, point_noise
 from .curve import Segment
 
+_END = 0.1  # part of the travel
 _NEIGHBOURS = 5
 _BEFORE, _AFTER = 0.5, 0.25  # of the depth: a tear leads from below the first past the second within two points
 
@@ -54,15 +55,16 @@ class Branch:
 
     @cached_property
     def lowest(self) -> int:
-        """The point of the smallest force."""
-        return int(np.argmin(self.force))
+        """The point of the smallest force; not at the far end, where no baseline is left beyond to judge it by."""
+        inner = int(np.searchsorted(self.z, self.z[-1] - _END * (self.z[-1] - self.z[0])))
+        return int(np.argmin(self.force[:inner]))
 
     @cached_property
     def dips(self) -> bool:
         """Whether it lies visibly below the baseline: alone, or together with its neighbours."""
         if -self.force[self.lowest] > self.visible:
             return True
-        mean = np.convolve(self.force, np.full(_NEIGHBOURS, 1.0 / _NEIGHBOURS), mode="valid")
+        mean = np.convolve(self.force[: self.lowest + _NEIGHBOURS], np.full(_NEIGHBOURS, 1.0 / _NEIGHBOURS), mode="valid")
         return bool(-mean.min() > max(EVENT / _NEIGHBOURS**0.5 * self.noise, WAVE * self.baseline.scatter))
 
     def dip(self) -> tuple[float, float, float]:

@@ -42,7 +42,8 @@ def doubts(
     misfit = solution.rms / points.noise if points.noise > 0.0 else np.inf
     notes = _doubt_calibration(extension, points, solution, uncertainties, misfit, identifiable)
     notes += _doubt_contact(model, found, options, identifiable)
-    if points.tear is not None and model.force is None and options.force_noise > 0.0 and options.tear_sigma == 0.0:
+    tear_unused = points.tear is not None and "work_of_adhesion" in identifiable and options.tear_sigma == 0.0
+    if tear_unused and not solution.exact:
         notes.append(
             "the tip was torn off elsewhere than where this contact and cantilever let go (by a shock, or the model is "
             "wrong): where it happened is not used"
@@ -52,7 +53,7 @@ def doubts(
             f"the residuals are {misfit:.2g} times the noise: this model does not describe the curve, and sigma covers "
             "only part of that"
         )
-        if solution.rms > _WRONG * float(np.ptp(points.force)):
+        if tear_unused or solution.rms > _WRONG * float(np.ptp(points.force)):
             identifiable = dict.fromkeys(identifiable, False)
             notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
     if not found["converged"]:
@@ -74,7 +75,7 @@ def _doubt_calibration(
         return []
     sensitivity = solution.found["value"][-1]
     if abs(np.log(sensitivity)) > _CONTRADICTION * uncertainties.sensitivity:
-        identifiable["effective_modulus"] = False
+        identifiable.update({name: False for name in ("effective_modulus", "work_of_adhesion") if name in identifiable})
         return [
             f"the curve disagrees with its calibration: it asks for {sensitivity:.3g} times the deflection sensitivity "
             f"given, known to {100 * uncertainties.sensitivity:.2g} %; either it or the model is wrong"

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from .result import FitResult
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 MEANING = {
     "effective_modulus": "E*, of tip and sample together",
     "youngs_modulus": "E of the sample",
@@ -76,13 +77,11 @@ def _outcome(result: FitResult) -> str:
 
 
 def _parts(result: FitResult, key: str) -> str:
-    """Statistical and calibration sigma of what both enter."""
-    total, calibration = result.sigma[key], result.sigma_calibration[key]
-    if not np.isfinite(total) or calibration == 0.0:
+    """Statistical and calibration sigma of a property of the sample that both enter."""
+    total, calibration, value = result.sigma[key], result.sigma_calibration[key], result.values[key]
+    if key in _PLACES or not np.isfinite(total) or calibration == 0.0 or value == 0.0 or total > 10.0 * abs(value):
         return ""
-    scale = 100.0 / abs(result.values[key]) if result.values[key] else 0.0
-    if not 0.0 < scale * total < 1e3:
-        return ""
+    scale = 100.0 / abs(value)
     return f"  (statistical {scale * result.sigma_statistical[key]:.2g} %, calibration {scale * calibration:.2g} %)"
 
 

@@ -83,10 +83,14 @@ def solve(extension: ModuleType, setup: Setup, points: Points, uncertainties: Un
     if noise > _EXACT * float(np.max(np.abs(points.force))):
         _let_vary(options, setup, points, uncertainties, noise)
     solution = _run(extension, options, points)
-    if _contradicts_tear(extension, solution):
-        options.tear_sigma = 0.0
+    if not solution.exact and options.force_noise > 0.0 and abs(solution.scatter / noise - 1.0) > _AS_GIVEN:
+        options.force_noise = solution.scatter
         solution = _run(extension, options, points)
-    if solution.exact or options.force_noise == 0.0 or abs(solution.scatter / noise - 1.0) < _AS_GIVEN:
+    if not _contradicts_tear(extension, solution):
+        return solution
+    options.tear_sigma, options.force_noise = 0.0, noise
+    solution = _run(extension, options, points)
+    if abs(solution.scatter / noise - 1.0) <= _AS_GIVEN:
         return solution
     options.force_noise = solution.scatter
     return _run(extension, options, points)
