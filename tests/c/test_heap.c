@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The malloc trap: the heap is touched in open and close only. The program brings its own malloc and its family, which
  * the C library calls too, and counts the calls while the trap is armed. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -126,16 +127,17 @@ static void surface_and_interaction_use_no_heap(void **unused)
 {
     (void)unused;
     const nt_scene scene = nt_scene_defaults();
-    const nt_demand demand = nt_demand_defaults();
     nt_surface surface;
-    nt_plan plan;
+    static nt_plan plan;
+    const nt_plan_inputs inputs = {.scene = &scene, .surface = &surface};
     nt_status status = make_surface(&surface);
     if (status == NT_OK)
-        status = nt_plan_make(&plan, &scene, &demand, &surface, NULL);
+        status = nt_plan_make(&plan, &inputs, NULL);
     nt_interaction_state contact = {0};
     for (int i = 0; i < 100 && status == NT_OK; i++) {
         const nt_pose pose = {.x = i * 30e-9, .y = 1e-6, .z = 481e-9 - i * 20e-12};
-        nt_interaction_advance(&plan, &contact, nt_interaction_eval(&plan, &contact, &pose).gap);
+        nt_interaction_advance(&plan, &contact, &pose);
+        status = isfinite(nt_interaction_eval(&plan, &contact, &pose).U) ? NT_OK : NT_E_NOT_FINITE;
     }
     assert_int_equal(calls_so_far(), 0);
     assert_int_equal(status, NT_OK);
@@ -155,13 +157,14 @@ static void problems_are_printed_without_heap(void **unused)
     assert_non_null(printed);
 }
 
-/* Approach, press, retract: 6000 ticks of simulated rig and touch step. */
-static void open_session_uses_no_heap(void **unused)
+/* Approach, press, retract: 6000 ticks of simulated rig and touch step; the probe by either model, with faults. */
+static void run_session(nt_probe_model model)
 {
-    (void)unused;
     const nt_input inputs[] = {{.operator_force = 1.0, .duration = 0.1}, {.operator_force = -1.0, .duration = 0.1}};
     static nt_record records[1000];
-    const nt_session_setup setup = nt_session_defaults();
+    nt_session_setup setup = nt_session_defaults();
+    setup.probe_model = model;
+    setup.substep = 50.0;
     nt_session *session = NULL;
     long count = 0;
     armed = 0;
@@ -174,6 +177,12 @@ static void open_session_uses_no_heap(void **unused)
             status = nt_session_advance(session, 1000);
         count += nt_session_read(session, records, 1000);
     }
+    const nt_fault noise = {NT_FAULT_NOISE, NT_CHANNEL_DEFLECTION, 0.61, 0.01, 10.0};
+    const nt_fault late = {NT_FAULT_LATE, NT_CHANNEL_RIG, 0.605, 1e-4, 2.0};
+    if (status == NT_OK)
+        status = nt_session_inject(session, &noise);
+    if (status == NT_OK)
+        status = nt_session_inject(session, &late);
     nt_session_emergency_stop(session, 1);
     if (status == NT_OK)
         status = nt_session_advance(session, 100);
@@ -182,6 +191,14 @@ static void open_session_uses_no_heap(void **unused)
     assert_int_equal(touched, 0);
     assert_int_equal(status, NT_OK);
     assert_int_equal(count, 6000);
+}
+
+static void open_session_uses_no_heap(void **unused)
+{
+    (void)unused;
+    run_session(NT_PROBE_QUASI_STATIC);
+    armed = 1;
+    run_session(NT_PROBE_DYNAMIC);
 }
 
 /* The touch step in each state, both modes, good samples and bad. */
