@@ -19,14 +19,8 @@ nt_status nt_session_refuse(nt_problem *problem, const char *field, const char *
 /* Of this law at the stiffest contact of the plan; the margin that counts in a mode comes back. */
 double nt_session_margin(const nt_session *session, const nt_settings *settings, nt_margins *margins)
 {
-    const nt_servo_shape shape = nt_servo_shape_of(&session->touch.rig, settings, session->plan.maximum_stiffness);
-    *margins = nt_margins_compute(&shape.rig, &shape.gains, shape.contact_stiffness);
-    if (session->touch.mode == NT_MODE_TOUCH) {
-        const double coupling =
-            nt_servo_coupling_margin(&shape.rig, &shape.gains, session->plan.maximum_stiffness, margins->loop_delay);
-        return fmin(margins->margin, coupling);
-    }
-    return session->touch.mode == NT_MODE_CURVE ? (double)INFINITY : margins->height_margin;
+    const double stiffness = session->plan.maximum_stiffness;
+    return nt_margins_judge(&session->touch.rig, settings, stiffness, session->touch.mode, margins).margin;
 }
 
 /* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be off

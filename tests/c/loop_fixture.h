@@ -35,7 +35,8 @@ static inline nt_status loop_open(loop *l, const nt_session_setup *setup)
                               .clearance = setup->clearance,
                               .master_position = -0.4 * setup->rig.master.travel,
                               .seed = setup->seed,
-                              .delay = (int)setup->settings.gains.delay};
+                              .delay = setup->settings.gains.delay,
+                              .probe_model = setup->probe_model};
     l->state = nt_touch_start(&l->touch, sim.master_position, setup->x, setup->y);
     return nt_sim_init(&l->sim, &sim);
 }
