@@ -5,6 +5,7 @@ and drawn."""
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -105,7 +106,9 @@ def _topography(args: argparse.Namespace) -> nt.Topography:
         raise InvalidValue(f"give an IMAGE or --surface {args.surface}, not both")
     pixel_size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
     raw = nt.images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
-    topography, reports = nt.images.prepare(raw)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # the reports hold them
+        topography, reports = nt.images.prepare(raw)
     if raw.masked_pixels:
         print(f"{raw.masked_pixels} missing pixels filled from their neighbours")
     for report in reports:

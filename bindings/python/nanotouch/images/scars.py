@@ -127,12 +127,12 @@ def _mark_streaks(
         if not lines.size:
             continue
         near = cv2.dilate(np.pad(blocks[lines].astype(np.uint8), ((0, 0), (0, 1))), np.ones((1, 5), np.uint8))
-        k, block = np.nonzero(near)
+        line, block = np.nonzero(near)
         column = np.minimum(block[:, None] * _BLOCK + np.arange(_BLOCK), z.shape[1] - 1)
-        first = 1 + lines[k][:, None]
+        first = 1 + lines[line][:, None]
         before, *inner, after = (sign * (z[first + r, column] - slope * r) for r in range(-1, rows + 1))
         out = np.zeros((lines.size, z.shape[1]), np.uint8)
-        out[k[:, None], column] = _stands_out(before, np.minimum.reduce(inner), after, threshold)
+        out[line[:, None], column] = _stands_out(before, np.minimum.reduce(inner), after, threshold)
         out = cv2.morphologyEx(out, cv2.MORPH_CLOSE, np.ones((1, _GAP + 1), np.uint8))
         out = cv2.morphologyEx(out, cv2.MORPH_OPEN, np.ones((1, _SHORTEST), np.uint8))
         for row in range(rows):
