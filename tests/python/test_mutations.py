@@ -8,7 +8,6 @@ import os
 import resource
 import struct
 import sys
-import time
 import zipfile
 from pathlib import Path
 
@@ -119,12 +118,11 @@ def test_bombs_are_refused(tmp_path: Path, name: str, untrusted: bool) -> None:
     path = tmp_path / name
     make(path)
     assert path.stat().st_size < 8 << 20
-    before, started = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.monotonic()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     options = {} if path.suffix in (".jpk-force", ".000") else {"pixel_size": 1e-8, "z_unit": "m"}
     read = images.read if options else curves.read
     with pytest.raises(ReadError, match=message):
         read(path, untrusted=untrusted, **options)  # type: ignore[operator]
-    assert time.monotonic() - started < 60.0  # the worker's limit of time; most take a tenth of a second
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 500 << 10  # KiB, in this process
 
 

@@ -7,7 +7,6 @@ import os
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -175,12 +174,9 @@ def test_whatever_a_file_does_to_the_worker_is_a_read_error(
     tmp_path: Path, registered: None, monkeypatch: pytest.MonkeyPatch, what: str, message: str
 ) -> None:
     monkeypatch.setattr(_worker, "LIMITS", _worker.Limits(time=0.4))
-    started = time.monotonic()
     with pytest.raises(ReadError, match=message):
         images.read(fake(tmp_path / what, what), untrusted=True)
     assert images.read(fake(tmp_path / "next", "normal"), untrusted=True).source == "fake"  # the next file is read
-    # start of the worker (imports, up to 20 s on a loaded machine), 1.2 s of the clock for a sleeper
-    assert time.monotonic() - started < 30.0
     assert not (tmp_path / "write.written").exists() or (tmp_path / "write.written").stat().st_size == 0
 
 

@@ -71,7 +71,7 @@ def refuse_traps(file: Path, head: bytes) -> None:
     """Refuse containers that unpack to too much, or make the reader open other files, or loop."""
     if head.startswith(b"PK\3\4"):
         with guarded(file, "zipfile"), zipfile.ZipFile(file) as archive:
-            _check_unpacked(file, sum(item.file_size for item in archive.infolist()))
+            check_unpacked(file, sum(item.file_size for item in archive.infolist()))
     elif head[:2] in (b"\5\0", b"\0\5"):
         _check_igor(file, head)
     elif head.startswith(b"\x89HDF") or file.suffix.lower() in _HDF5_ENDINGS:
@@ -114,9 +114,10 @@ def _refuse_hdf5_traps(file: Path) -> None:
                         if node.external or node.is_virtual:
                             raise ReadError(f"{file}: keeps {name!r} in another file; such HDF5 files are refused")
                         unpacked += int(node.nbytes) if node.shape else 0
-        _check_unpacked(file, unpacked)
+        check_unpacked(file, unpacked)
 
 
-def _check_unpacked(file: Path, size: int) -> None:
+def check_unpacked(file: Path, size: int) -> None:
+    """Refuse a container that says it holds more than is read."""
     if size > MAX_UNPACKED:
         raise ReadError(f"{file}: unpacks to {size / 2**20:.0f} MiB; up to {MAX_UNPACKED >> 20} MiB are read")

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._files import check_unpacked
 from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS
@@ -44,6 +45,7 @@ _ROLES: dict[str, Role] = {"extend": "approach", "pause": "pause", "retract": "r
 _KINDS = ("force-scan-map", "force-scan-series", "quantitative-imaging-map", "quantitative-imaging-series")
 _GRID = {"center x": "xcenter", "center y": "ycenter", "shape x": "ilength", "shape y": "jlength",
          "size x": "ulength", "size y": "vlength"}  # fmt: skip
+_MAX_PROPERTIES = 1 << 24  # of one file of properties [byte]; those seen have 40 KiB
 _SETTINGS = "force-segment-header.settings."
 
 Properties = dict[str, str]
@@ -77,6 +79,7 @@ class Archive:
         self._given = (calibration or Calibration()).given
         self._zip = zipfile.ZipFile(file)
         try:
+            check_unpacked(file, sum(item.file_size for item in self._zip.infolist()))
             self._names = set(self._zip.namelist())
             self._general = self._properties("header.properties")
             shared = "shared-data/header.properties"
@@ -130,6 +133,8 @@ class Archive:
     def _properties(self, name: str) -> Properties:
         if name not in self._names:
             raise ReadError(f"{self.file}: the archive lacks {name}")
+        if self._zip.getinfo(name).file_size > _MAX_PROPERTIES:
+            raise ReadError(f"{self.file}: {name} is longer than {_MAX_PROPERTIES >> 20} MiB")
         found = {}
         for line in self._zip.read(name).decode("latin-1").splitlines():
             if line and line[0] not in "#!":
