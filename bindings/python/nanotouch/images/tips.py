@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
 from .._arrays import Floats, check_between
 from ..errors import InvalidValue
 from .topography import Topography
@@ -82,10 +81,8 @@ def dilate(topography: Topography, tip: Tip) -> Topography:
     z, (dy, dx) = topography.heights, topography.pixel_size
     if isinstance(tip, Paraboloid):
         heights = _paraboloid(_paraboloid(z.T, dx, tip.radius).T, dy, tip.radius)
-    elif isinstance(tip, RoundedCone):
-        heights = _core.dilate(z, dy, dx, tip.radius, tip.half_angle)
     else:
-        heights = dilated(z, _checked(tip))
+        heights = dilated(z, _raster(tip, topography))
     return replace(topography, heights=heights)
 
 
