@@ -30,6 +30,9 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("file", type=Path, metavar="RECORDING|CURVE", help="recording.mcap, or a force curve file")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="table to write: .csv, .h5 or .hdf5")
+    parser.add_argument(
+        "--untrusted", action="store_true", help="open CURVE in a worker with limits on memory, time and open files"
+    )
     parser.set_defaults(run=run)
 
 
@@ -39,8 +42,11 @@ def run(args: argparse.Namespace) -> int:
     if ending not in (".csv", *HDF5_ENDINGS):
         raise InvalidValue(f"--out {args.out}: the ending must be .csv, .h5 or .hdf5")
     with progress_bar("exporting") as progress:
-        export = _export_recording if record.is_recording(args.file) else _export_curves
-        what = export(args.file, args.out, ending == ".csv", progress)
+        if record.is_recording(args.file):
+            what = _export_recording(args.file, args.out, ending == ".csv", progress)
+        else:
+            found = curves.read(args.file, untrusted=args.untrusted)
+            what = _export_curves(found, args.out, ending == ".csv", progress)
     print(f"{args.out}: {what}")
     return 0
 
@@ -58,8 +64,9 @@ def _export_recording(file: Path, out: Path, as_csv: bool, progress: Callable[[f
     return f"{len(recording)} rows, {len(recording.columns)} columns"
 
 
-def _export_curves(file: Path, out: Path, as_csv: bool, progress: Callable[[float], None]) -> str:
-    found = curves.read(file)
+def _export_curves(
+    found: Sequence[curves.ForceCurve], out: Path, as_csv: bool, progress: Callable[[float], None]
+) -> str:
     if as_csv:
         _write_csv(out, found, progress)
     else:
