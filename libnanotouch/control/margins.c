@@ -129,14 +129,6 @@ nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, do
     return found;
 }
 
-double nt_margins_force_overshoot(const nt_rig *rig, const nt_settings *settings, double slope)
-{
-    const nt_limits *limits = &settings->limits;
-    const double speed = limits->stage_speed + slope * limits->lateral_speed;
-    const double delay = loop_delay(rig, &settings->gains);
-    return rig->probe.spring_constant * speed * delay + 6.0 * nt_probe_force_noise(&rig->probe);
-}
-
 double nt_margins_jury_limit(const nt_master *master, double period)
 {
     const double m = master->mass;

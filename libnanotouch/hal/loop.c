@@ -65,11 +65,12 @@ nt_status nt_loop_run(double period, uint64_t ticks, nt_loop_step step, void *co
             status = read_clock(&now);
         if (status != NT_OK)
             break;
-        count(&found, 1e-9 * (double)(now - deadline), period);
+        const double lateness = 1e-9 * (double)(now - deadline);
+        count(&found, lateness, period);
         const uint64_t lost = (uint64_t)((now - deadline) / length);
         found.missed += lost;
         tick += lost;
-        if (tick >= ticks || step(context, tick) != 0)
+        if (tick >= ticks || step(context, tick, lateness) != 0)
             break;
     }
     if (statistics)

@@ -19,6 +19,7 @@ typedef struct witness {
     uint64_t count, last, stop_at;
     double stall; /* that the first step takes [s] */
     int rising;
+    double latest, earliest; /* what the steps were told [s] */
 } witness;
 
 static double now(void)
@@ -28,9 +29,11 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-static int step(void *context, uint64_t tick)
+static int step(void *context, uint64_t tick, double lateness)
 {
     witness *w = context;
+    w->latest = fmax(w->latest, lateness);
+    w->earliest = fmin(w->earliest, lateness);
     if (w->count && tick <= w->last)
         w->rising = 0;
     w->last = tick;
@@ -56,6 +59,7 @@ static void every_period_is_accounted_for(void **state)
     assert_true(now() - begin >= 0.199);
     assert_true(w.rising && w.count >= found.ticks - 1);
     assert_true(found.ticks + found.missed >= 200 && w.count + found.missed >= 200);
+    assert_true(w.earliest >= 0.0 && fabs(w.latest - found.worst_delay) < 1e-12);
     assert_true(found.mean_delay >= 0.0 && found.mean_delay <= found.worst_delay);
     assert_true(found.late >= (found.worst_delay > 0.2e-3) && found.late <= found.ticks);
 }

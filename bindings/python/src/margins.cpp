@@ -71,9 +71,6 @@ void bind_margins(py::module_ &module)
     module.def("margins", &margins);
     module.def("loop_response", &response);
     module.def("resolution", &resolution);
-    module.def("force_overshoot", [](const Rig &rig, const Settings &settings, double slope) {
-        return nt_margins_force_overshoot(&rig.value, &settings.value, slope);
-    });
     module.def("jury_limit",
                [](const Rig &rig, double period) { return nt_margins_jury_limit(&rig.value.master, period); });
 }

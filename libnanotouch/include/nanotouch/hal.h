@@ -32,8 +32,9 @@ typedef struct nt_loop_statistics {
     double worst_delay; /* [s] */
     double mean_delay;  /* [s] */
 } nt_loop_statistics;
-/* tick: number of the period, 0 first, strictly rising. Returns 0 to go on; anything else ends the loop. */
-typedef int (*nt_loop_step)(void *context, uint64_t tick);
+/* tick: number of the period, 0 first, strictly rising; lateness of this wake-up against its deadline, with the periods
+ * that were lost before it: for nt_sample.lateness [s]. Returns 0 to go on; anything else ends the loop. */
+typedef int (*nt_loop_step)(void *context, uint64_t tick, double lateness);
 /* Periods 0 .. ticks - 1 of `period` seconds (1e-6 .. 0.999, NT_E_RANGE), the first one at once. statistics may be
  * NULL; it is written unless the arguments are refused. NT_E_DEVICE if the clock fails. */
 NT_API nt_status nt_loop_run(double period, uint64_t ticks, nt_loop_step step, void *context,

@@ -67,9 +67,6 @@ typedef struct nt_resolution {
 /* slave_path: L + delta_max [m]. */
 NT_API nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, double slave_path);
 
-/* How far the force on the sample may exceed limits.force before a reaction shows [N]: what stage and surface come
- * closer during the loop's delay, times k_c, and 6 sigma of the reading. slope: of the surface, at its steepest [-]. */
-NT_API double nt_margins_force_overshoot(const nt_rig *rig, const nt_settings *settings, double slope);
 /* Largest loop stiffness of master and zero-order hold alone, without delay: the exact (Jury) limit [N/m]. */
 NT_API double nt_margins_jury_limit(const nt_master *master, double period);
 
