@@ -105,15 +105,19 @@ set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
 set(nanotouch_sources_session session/arming.c session/run.c session/session.c)
 set(nanotouch_sources_fit
+    fit/batch.cpp
     fit/branch.c
     fit/contact_model.cpp
+    fit/curve.cpp
     fit/custom_model.cpp
     fit/data.cpp
     fit/guess.cpp
     fit/linear.cpp
     fit/model.cpp
     fit/options.cpp
+    fit/points.cpp
     fit/problem.cpp
+    fit/reading.cpp
     fit/run.cpp
     fit/solve.cpp
     fit/uncertainty.cpp)

@@ -12,16 +12,33 @@ from nanotouch import curves
 from nanotouch import fit as fitting
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app import output
+from nanotouch_app import fit_many, output
 from nanotouch_app.quantity import parse_quantity
 
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser = subparsers.add_parser("fit", help="fit a contact model to a measured force curve", description=__doc__)
-    parser.add_argument("curve", metavar="CURVE", help="force curve file (JPK, Asylum .ibw, ...)")
-    parser.add_argument("--model", choices=fitting.models(), default="maugis", help="contact model (default: %(default)s)")
+    parser.add_argument(
+        "curve",
+        nargs="+",
+        metavar="CURVE",
+        help="force curve file (JPK, Asylum .ibw, ...); or files, folders, patterns",
+    )
+    add_knowledge(parser)
     parser.add_argument("--index", type=int, default=0, metavar="N", help="which curve of a map (default: %(default)s)")
+    parser.add_argument(
+        "--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand, for a table"
+    )
+    parser.add_argument(
+        "--out", default="nanotouch-out", metavar="DIR|FILE.csv",
+        help="folder for the results, or a table with a row for each curve (default: %(default)s)",
+    )  # fmt: skip
+
+
+def add_knowledge(parser: argparse.ArgumentParser) -> None:
+    """What is known of tip, sample and cantilever, and the law: the options of all that fits."""
+    parser.add_argument("--model", choices=fitting.models(), default="maugis", help="default: %(default)s")
     parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract for adhesive models")
     parser.add_argument("--radius", metavar="LENGTH", help="tip radius, as 20nm")
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
@@ -32,30 +49,24 @@ def add_parser(subparsers: Any) -> None:
         "--calibration", metavar="FILE", help="CSV table of both for many files: file,spring_constant,sensitivity"
     )
     parser.add_argument(
-        "--untrusted", action="store_true", help="open CURVE in a worker with limits on memory, time and open files"
+        "--untrusted", action="store_true", help="open files in a worker with limits on memory, time and open files"
     )
     parser.add_argument(
         "--poisson-ratio", type=float, metavar="NU", help="of the sample: also gives its Young's modulus"
     )
     parser.add_argument("--scene", metavar="FILE", help="TOML file with tip, sample and adhesion")
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
-    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    found = curves.read(
-        args.curve,
-        spring_constant=_quantity(args.spring_constant, "N/m"),
-        sensitivity=_quantity(args.sensitivity, "m/V"),
-        calibration=args.calibration,
-        untrusted=args.untrusted,
-    )
+    if fit_many.is_meant(args):
+        return fit_many.run(args, reading(args), knowledge(args))
+    file = args.curve[0]
+    found = curves.read(file, **reading(args))
     if not 0 <= args.index < len(found):
-        raise InvalidValue(f"--index {args.index}: {args.curve} holds the curves 0 .. {len(found) - 1}")
+        raise InvalidValue(f"--index {args.index}: {file} holds the curves 0 .. {len(found) - 1}")
     curve = found[args.index]
-    result = fitting.fit_curve(curve, args.model, branch=args.branch, **_knowledge(args))
+    result = fitting.fit_curve(curve, args.model, branch=args.branch, **knowledge(args))
     out = output.folder(args.out)
     output.write_json(out / "fit.json", as_json(result))
     fitting.draw(curve, result, save=out / "fit.png")
@@ -64,6 +75,16 @@ def run(args: argparse.Namespace) -> int:
     print(result)
     print(f"written to {out}/: fit.json, fit.png")
     return 0
+
+
+def reading(args: argparse.Namespace) -> dict[str, Any]:
+    """How files are read, as arguments of :func:`nanotouch.curves.read`."""
+    return {
+        "spring_constant": _quantity(args.spring_constant, "N/m"),
+        "sensitivity": _quantity(args.sensitivity, "m/V"),
+        "calibration": args.calibration,
+        "untrusted": args.untrusted,
+    }
 
 
 def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
@@ -106,7 +127,7 @@ def _quantity(text: str | None, unit: str) -> float | None:
     return None if text is None else parse_quantity(text, unit)
 
 
-def _knowledge(args: argparse.Namespace) -> dict[str, Any]:
+def knowledge(args: argparse.Namespace) -> dict[str, Any]:
     """What the scene and the options say about tip and sample, as arguments of the fit."""
     radius = _quantity(args.radius, "m")
     if args.scene is None:

@@ -3,6 +3,7 @@
 #include "nanotouch/fit.h"
 
 #include "../src/chapters.h"
+#include "batch.h"
 #include "law.h"
 
 static Array column(const Array &values, const char *name)
@@ -18,11 +19,6 @@ static nt_fit_data data_of(const Array &position, const Array &force)
         throw py::value_error("position and force differ in length");
     return {position.data(), force.data(), static_cast<long>(position.size()), 1, 1};
 }
-
-// Options together with the law of the user's own that they may point to.
-struct Options : nt_fit_options {
-    std::shared_ptr<PythonLaw> own;
-};
 
 static Options options_of_model(const std::string &name)
 {
@@ -209,6 +205,7 @@ PYBIND11_MODULE(_fit, module)
         models.append(nt_fit_model_name(static_cast<nt_fit_model>(i)));
     module.attr("models") = py::tuple(models);
     bind_options(module);
+    bind_batch(module);
     module.def("run", &run, py::arg("options"), py::arg("position"), py::arg("force"));
     module.def("evaluate", &evaluate, py::arg("options"), py::arg("value"), py::arg("position"));
     module.def("gradient", &gradient, py::arg("options"), py::arg("value"), py::arg("position"));

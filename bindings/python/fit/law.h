@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "../src/chapters.h"
@@ -28,4 +29,9 @@ class PythonLaw
     std::deque<std::string> texts_;
     py::function force_;
     std::exception_ptr raised_;
+};
+
+// Options together with the law of the user's own that they may point to.
+struct Options : nt_fit_options {
+    std::shared_ptr<PythonLaw> own;
 };

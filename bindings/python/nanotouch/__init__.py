@@ -29,8 +29,9 @@ _HOMES = {
     "Surface": "surface",
 }
 _MODULES = (
-    "contact", "curves", "errors", "faults", "fit", "forces", "geometry", "hal", "images", "interaction", "margins", "materials", "operator",
-    "plan", "plots",    "presets", "record", "reference", "scene", "session", "surface", "units",
+    "batch", "contact", "curves", "errors", "faults", "fit", "forces", "geometry", "hal", "images", "interaction",
+    "maps", "margins", "materials", "operator", "plan", "plots", "presets", "record", "reference", "scene", "session",
+    "surface", "units",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]

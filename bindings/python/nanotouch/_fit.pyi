@@ -2,12 +2,14 @@
 from collections.abc import Callable, Sequence
 from typing import Any, overload
 
-from numpy import bool_, float64
+from numpy import bool_, float64, int64
 from numpy.typing import NDArray
 
 Floats = NDArray[float64]
 
 models: tuple[str, ...]
+flags: dict[str, int]
+statuses: dict[str, int]
 
 class Options:
     radius: float
@@ -42,3 +44,18 @@ def run(options: Options, position: Floats, force: Floats) -> dict[str, Any]: ..
 def evaluate(options: Options, value: Sequence[float], position: Floats) -> tuple[Floats, Floats, NDArray[bool_]]: ...
 def gradient(options: Options, value: Sequence[float], position: Floats) -> Floats: ...
 def tear_position(options: Options, value: Sequence[float]) -> float: ...
+
+class Recipe:
+    approach: bool
+    fit_offset: bool
+    loss_scale: float
+    lowest_force: float
+    highest_force: float
+    sensitivity_uncertainty: float
+    def __init__(self, options: Options) -> None: ...
+    def check(self) -> None: ...
+    def hold(self, place: int, /) -> None: ...
+
+def batch(
+    recipe: Recipe, z: Floats, force: Floats, edges: NDArray[int64], spring_constant: Floats, threads: int
+) -> dict[str, Any]: ...

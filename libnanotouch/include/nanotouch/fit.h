@@ -12,9 +12,9 @@
  *
  * F(delta) is what a retraction shows: the stable branch, and beyond its lowest force (the load fold) the part that no
  * dead weight but this cantilever holds, until it tears the tip off (dF/ddelta = -k_c). Shortly before that, where the
- * curve has become steeper than NT_FIT_STEEPEST k_c, the model goes on as a straight line, so that it is C1 in delta
- * and in every parameter: what lies there (nt_fit_point.held = 0) is not to be fitted. Without a spring constant the
- * force stays at that of the load fold.
+ * curve has become steeper than NT_FIT_STEEPEST k_c, the model goes on as a straight line to F = 0, so that up to there
+ * it is C1 in delta and in every parameter: what lies on it (nt_fit_point.held = 0) is not to be fitted. Without a
+ * spring constant, and for DMT, the force stays at that of the load fold.
  *
  * All functions: thread-safe, no state between calls, nothing printed, no exception escapes. Not real-time (heap). */
 #ifndef NANOTOUCH_FIT_H
@@ -61,7 +61,7 @@ typedef struct nt_fit_quantity {
 
 /* A law of the user's own. force fills force[i] [N] at indentation[i] [m] for i < count, NaN where there is none, and
  * is a pure function of its arguments; it is differentiated numerically (central differences, 1e-9). Where there is a
- * spring constant, X must grow with delta. What it returns but NT_OK ends the fit with that status. */
+ * spring constant, X must grow with delta. What it returns but NT_OK means that there is no such contact. */
 typedef struct nt_fit_law {
     const char *name;
     int count; /* of parameters, 1 .. NT_FIT_OWN */
@@ -158,6 +158,79 @@ NT_API nt_status nt_fit_model_n(const nt_fit_options *options, const double valu
 /* X at which the cantilever tears the tip off [m]; NT_E_UNSUPPORTED without spring constant or adhesion. */
 NT_API nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
                                       double *position);
+
+/* ---- Curves as they were recorded, many at once: a straight baseline, what is fitted of each, the fit ---- */
+
+/* One movement of the base in the order of time. */
+typedef struct nt_fit_segment {
+    const double *z;     /* height of the base, away from the sample [m] */
+    const double *force; /* + repulsive, baseline still in it [N] */
+    long count;          /* fewer than NT_FIT_MIN_POINTS: as if there were none */
+} nt_fit_segment;
+enum { NT_FIT_MIN_POINTS = 16 };
+
+typedef struct nt_fit_curve {
+    nt_fit_segment approach, retract;
+    double spring_constant; /* k_c [N/m] */
+} nt_fit_curve;
+
+/* How each curve is fitted. */
+typedef struct nt_fit_recipe {
+    nt_fit_options options; /* as for nt_fit_run; spring constant, noise, tear and what is known of sensitivity, offset
+                               and tilt come from each curve; loss_scale 0: three times its noise. Positions are -z. */
+    int approach;           /* 1: the approach is fitted; 0: the retraction */
+    int fit_offset;         /* 1: the force offset is free; 0: known as well as the baseline is */
+    int held[NT_FIT_PARAMETERS];        /* 1: of sensitivity, offset, tilt, stays at its value in options */
+    double lowest_force, highest_force; /* only points between these are fitted [N]; -inf, inf: all */
+    double sensitivity_uncertainty;     /* of the deflection, relative; 0: exact */
+} nt_fit_recipe;
+/* The retraction for adhesive models, else the approach; all its points, a sensitivity known to 3 %. */
+NT_API nt_fit_recipe nt_fit_recipe_defaults(nt_fit_model model);
+/* As nt_fit_check, of the recipe with any valid spring constant. */
+NT_API nt_status nt_fit_recipe_check(const nt_fit_recipe *recipe, nt_problem *problem);
+
+typedef struct nt_fit_measured {
+    double value, sigma; /* SI; NaN where the curve does not show it */
+} nt_fit_measured;
+
+/* What a curve shows without any model. */
+typedef struct nt_fit_reading {
+    double noise;                  /* of the force from point to point, standard deviation [N] */
+    double baseline_tilt;          /* [N/m]; of the approach, of the retraction where there is no approach */
+    nt_fit_measured snap_in_force; /* depth below the baseline, positive [N]; 0 where no dip is visible */
+    nt_fit_measured pull_off_force;
+    nt_fit_measured adhesion_work; /* area of the retraction below its baseline [J]; 0 without pull-off */
+    nt_fit_measured contact_slope; /* -dF/dz over the upper half of the load [N/m] */
+} nt_fit_reading;
+
+/* What the user of a fit has to know, one bit each. */
+typedef enum nt_fit_flag {
+    NT_FIT_NOT_CONVERGED = 1,   /* stopped at max_iterations */
+    NT_FIT_STIFF = 2,           /* contact much stiffer than the cantilever: E* hardly shows */
+    NT_FIT_MISFIT = 4,          /* residuals above 3 times the noise */
+    NT_FIT_WIDE = 8,            /* contact radius above R/2: no paraboloid on a half-space */
+    NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
+    NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
+    NT_FIT_WAVES = 64,          /* the residuals of the baseline hang together: perhaps interference */
+    NT_FIT_TORN_ELSEWHERE = 128 /* than where this contact and cantilever let go: the tear is not used */
+} nt_fit_flag;
+
+typedef struct nt_fit_outcome {
+    nt_status status;       /* NT_OK; NT_E_NOT_FINITE, NT_E_RANGE (values or too few points); or as nt_fit_run */
+    nt_problem problem;     /* what is wrong with the curve; field NULL where that says no more than the status */
+    nt_fit_reading reading; /* NaN where the curve could not be read */
+    nt_fit_result fit;      /* value, sigma, rms, ... NaN and identifiable 0 where status is not NT_OK */
+    unsigned flags;         /* nt_fit_flag */
+} nt_fit_outcome;
+
+/* Fits count curves in up to `threads` threads (0: one per processor). Every outcome is written; none depends on
+ * another curve or on the number of threads. NT_OK, or what is wrong with the arguments, with nothing written. */
+typedef struct nt_fit_curves {
+    const nt_fit_curve *curve;
+    long count;
+    int threads;
+} nt_fit_curves;
+NT_API nt_status nt_fit_batch(const nt_fit_recipe *recipe, const nt_fit_curves *curves, nt_fit_outcome *outcome);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch fit`` for folders, patterns and several files: one row for each curve, and contact sheets."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from nanotouch import batch
+from nanotouch.batch import sheet
+from nanotouch.errors import InvalidValue
+
+from nanotouch_app import output
+
+
+def is_meant(args: argparse.Namespace) -> bool:
+    """Whether the names stand for more than one file, or a table is asked for."""
+    return len(args.curve) > 1 or Path(args.out).suffix == ".csv" or not Path(args.curve[0]).is_file()
+
+
+def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, Any]) -> int:
+    """Fit all, write table and sheets; the status is 1 where not a single curve was fitted.
+
+    `reading` and `knowledge` are the arguments of :func:`nanotouch.curves.read` and :func:`nanotouch.fit.fit_curve`.
+    """
+    if Path(args.out).suffix != ".csv":
+        raise InvalidValue(f"--out {args.out}: for many curves give a table, as results.csv")
+    if args.index:
+        raise InvalidValue("--index picks a curve of one file; a table has them all")
+    out = Path(args.out)
+    folder = output.folder(out.parent)
+    with output.progress_bar("fit") as progress:
+        summary = batch.fit_files(
+            args.curve, out, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
+            branch=args.branch, **knowledge,
+        )  # fmt: skip
+    sheets = sheet.draw(summary.pictures, folder, out.stem)
+    print(summary)
+    for row in _worst(summary.rows):
+        print(
+            f"  {row['status']}: {row['file']}{'' if row['curve'] == '' else '#' + str(row['curve'])}: {row['reason']}"
+        )
+    for name in summary.unused:
+        print(f"  note: the sidecar's {name!r} is none of these files")
+    print(f"written to {folder}/: {', '.join([out.name, f'{out.name}.json', *(path.name for path in sheets)])}")
+    return 0 if summary.count("ok") else 1
+
+
+def _worst(rows: list[dict[str, Any]], most: int = 20) -> list[dict[str, Any]]:
+    without = [row for row in rows if row["status"] != "ok"]
+    return without[:most]

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fit every curve of a force volume or QI map; write the maps as netCDF (HDF5), a picture and a summary."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from nanotouch import maps
+from nanotouch.errors import Error, InvalidValue, require
+from nanotouch.fit.result import with_sigma
+
+from nanotouch_app import fit, output
+
+SHOWN = ("effective_modulus", "youngs_modulus", "work_of_adhesion", "pull_off_force", "adhesion_work", "contact_point")
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser = subparsers.add_parser("map", help="fit every curve of a force map", description=__doc__)
+    parser.add_argument("file", metavar="FILE", help="force map (JPK .jpk-force-map, .jpk-qi-data, NanoScope, ...)")
+    fit.add_knowledge(parser)
+    parser.add_argument("--threads", type=int, default=0, metavar="N", help="default: one per processor")
+    parser.add_argument(
+        "--cluster", metavar="ADDRESS", help="Dask scheduler, as tcp://host:8786, or 'local' for processes here"
+    )
+    parser.add_argument(
+        "--restart", action="store_true", help="drop what a run that was stopped has left, instead of going on from it"
+    )
+    parser.add_argument(
+        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    for module in ("xarray", "h5netcdf"):
+        require(module, "maps")
+    if args.threads < 0:
+        raise InvalidValue(f"--threads {args.threads}: expected 0 or more")
+    out = output.folder(args.out)
+    blocks = out / "map.blocks"
+    if args.restart:
+        _remove(blocks)
+    with output.progress_bar("map") as progress:
+        data = maps.fit(
+            args.file, args.model, cluster=args.cluster, resume=blocks, threads=args.threads, progress=progress,
+            branch=args.branch, **fit.reading(args), **fit.knowledge(args),
+        )  # fmt: skip
+    maps.write(data, out / "map.nc")
+    maps.draw(data, save=out / "map.png")
+    summary = summarise(data)
+    output.write_json(out / "map.json", summary)
+    _remove(blocks)
+    print(_text(data, summary))
+    print(f"written to {out}/: map.nc, map.png, map.json")
+    return 0
+
+
+def summarise(data: Any) -> dict[str, Any]:
+    """Medians and quartiles of what is determined, counts, and what the map was made of."""
+    known = data["status"].values == 0
+    quantities = {}
+    for name in SHOWN:
+        if name not in data:
+            continue
+        values = data[name].values[known & maps.determined(data, name)]
+        quartiles = [float(v) for v in np.percentile(values, (25, 50, 75))] if values.size else [None] * 3
+        unit = data[name].attrs["units"]
+        quantities[name] = {"unit": unit, "curves": int(values.size)} | dict(
+            zip(("lower_quartile", "median", "upper_quartile"), quartiles, strict=True)
+        )
+    reasons: dict[str, int] = {}
+    for reason in data["reason"].values[~known].ravel():
+        reasons[str(reason)] = reasons.get(str(reason), 0) + 1
+    return {
+        "input": data.attrs["input_name"],
+        "input_sha256": data.attrs["input_sha256"],
+        "shape": [data.sizes["y"], data.sizes["x"]],
+        "curves_without_result": data.attrs["curves_without_result"],
+        "reasons": reasons,
+        "flags": maps.flag_counts(data),
+        "quantities": quantities,
+        "settings": json.loads(data.attrs["settings"]),
+        "calibration": json.loads(data.attrs["calibration"]),
+        "assumptions": data.attrs["assumptions"],
+        "versions": json.loads(data.attrs["versions"]),
+    }
+
+
+def _text(data: Any, summary: dict[str, Any]) -> str:
+    count, without = data.attrs["curves"], data.attrs["curves_without_result"]
+    lines = [f"{data.attrs['title']}: {data.sizes['y']} x {data.sizes['x']} curves, {count - without} fitted"]
+    for name, found in summary["quantities"].items():
+        if found["median"] is None:
+            lines.append(f"  {name:18} not determined by any curve")
+            continue
+        spread = 0.5 * (found["upper_quartile"] - found["lower_quartile"])
+        text = with_sigma(found["median"], spread, found["unit"])
+        lines.append(f"  {name:18} {text} (median +- half the distance of the quartiles, {found['curves']} curves)")
+    lines += [f"  {number} x no result: {reason}" for reason, number in summary["reasons"].items()]
+    lines += [f"  {number} x flag {name}" for name, number in summary["flags"].items()]
+    return "\n".join([*lines, f"  assumed: {summary['assumptions']}"])
+
+
+def _remove(folder: Path) -> None:
+    try:
+        shutil.rmtree(folder)
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        raise Error(f"cannot remove {folder}: {error.strerror}") from error

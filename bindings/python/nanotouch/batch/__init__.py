@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many force curve files: one row of results for each curve, whatever some of the files are like.
+
+>>> import nanotouch as nt
+>>> summary = nt.batch.fit_files(["day1"], "results.csv", model="jkr", radius=20e-9)         # doctest: +SKIP
+
+A killed or repeated run goes on from what is in the journal beside the results: docs/maps.md.
+"""
+
+from .files import Summary, files_of, fit_files
+from .sidecar import Sidecar
+
+__all__ = ["Sidecar", "Summary", "files_of", "fit_files"]

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact sheets: a small picture of every fit, to be looked through."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import require
+from ..plots import VERMILION, engineering
+from ..record import replacing
+
+ACROSS, DOWN = 5, 6
+_NAME = 36  # characters that fit over a picture
+
+
+def draw(
+    pictures: Sequence[Mapping[str, Any]], folder: str | os.PathLike[str], name: str = "sheet", most: int = 20
+) -> list[Path]:
+    """Write ``name-01.png``, ... with 30 fits each; red is what a curve does not determine.
+
+    Parameters
+    ----------
+    pictures : sequence
+        ``Summary.pictures``.
+    most : int
+        Sheets; further fits are left out.
+    """
+    each = ACROSS * DOWN
+    written = []
+    for number in range(min(most, -(-len(pictures) // each))):
+        path = Path(folder) / f"{name}-{number + 1:02d}.png"
+        _sheet(pictures[number * each : (number + 1) * each], path)
+        written.append(path)
+    return written
+
+
+def _sheet(pictures: Sequence[Mapping[str, Any]], path: Path) -> None:
+    down = -(-len(pictures) // ACROSS)
+    figure = require("matplotlib.figure", "app").Figure(figsize=(3.0 * ACROSS, 2.4 * down + 0.3), layout="constrained")
+    panels = figure.subplots(down, ACROSS, squeeze=False).ravel()
+    for panel, picture in zip(panels, pictures, strict=False):
+        _curve(panel, picture)
+    for panel in panels[len(pictures) :]:
+        panel.set_axis_off()
+    with replacing(path) as part:
+        figure.savefig(part, dpi=100, format="png")
+
+
+def _curve(panel: Any, picture: Mapping[str, Any]) -> None:
+    z, force, fitted = (np.array(picture[key]) for key in ("z", "force", "fitted"))
+    wide, scale_z = engineering("m", z - z.min())
+    strong, scale_f = engineering("N", force)
+    colour = "black" if picture["good"] else VERMILION
+    panel.plot((z - z.min()) * scale_z, force * scale_f, ".", ms=2.5, color="0.55")
+    panel.plot((z - z.min()) * scale_z, fitted * scale_f, lw=1.0, color=colour)
+    panel.axhline(0.0, color="0.8", lw=0.6, zorder=0)
+    panel.set_title(f"{_short(picture['name'])}\n{picture['text'].replace('+-', '±')}", fontsize=6.5, color=colour)
+    panel.tick_params(labelsize=6)
+    panel.set_xlabel(wide, fontsize=6, labelpad=1)
+    panel.set_ylabel(strong, fontsize=6, labelpad=1)
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= _NAME else f"…{name[-_NAME + 1 :]}"

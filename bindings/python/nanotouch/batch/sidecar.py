@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a person decided about single curves, in a TOML file that re-runs read again.
+
+::
+
+    ["bad.ibw"]
+    exclude = "tip crashed"
+
+    ["day1/b.jpk-force"]               # name of the file, or the end of its path
+    contact_point_nm = 812.5           # z of the base, held
+    baseline_nm = [900.0, 1400.0]      # z of the base between which the baseline is fitted
+
+    ["map.jpk-force-map#3"]            # one curve of a file that holds several, counted from 0
+    exclude = "no contact"
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .._files import checked_path
+from ..errors import ReadError
+
+_NM = 1e-9
+
+
+@dataclass(frozen=True)
+class Decision:
+    """About one curve; lengths are z of the base [m]."""
+
+    exclude: str = ""
+    contact_point: float | None = None
+    baseline: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Sidecar:
+    """Decisions by ``"file"`` or ``"file#index"``."""
+
+    decisions: Mapping[str, Decision] = field(default_factory=dict)
+
+    @classmethod
+    def from_toml(cls, path: str | os.PathLike[str]) -> Sidecar:
+        """Read one; ReadError names what is wrong in it."""
+        file = checked_path(path)
+        try:
+            tables = tomllib.loads(file.read_text(encoding="utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise ReadError(f"{file}: no valid TOML: {error}") from error
+        return cls({name: _decision(f"{file}: [{name!r}]", table) for name, table in tables.items()})
+
+    def of(self, file: Path, index: int) -> Decision:
+        """For one curve: what is said of it, or else of its whole file."""
+        for end in (f"#{index}", ""):
+            for name, decision in self.decisions.items():
+                if _is_end_of(name, f"{file.as_posix()}{end}"):
+                    return decision
+        return Decision()
+
+    def unused(self, files: list[Path]) -> list[str]:
+        """Names that are those of no file: surely misspelt."""
+        return [
+            name for name in self.decisions
+            if not any(_is_end_of(n, f.as_posix()) for f in files for n in (name, name.rsplit("#", 1)[0]))
+        ]  # fmt: skip
+
+
+def _is_end_of(name: str, path: str) -> bool:
+    return path == name or path.endswith(f"/{name}")
+
+
+def _decision(where: str, table: Any) -> Decision:
+    known = {"exclude", "contact_point_nm", "baseline_nm"}
+    if not isinstance(table, dict) or not table or not table.keys() <= known:
+        raise ReadError(f"{where}: expected one or more of {', '.join(sorted(known))}")
+    exclude = table.get("exclude", "")
+    if not isinstance(exclude, str) or ("exclude" in table and not exclude):
+        raise ReadError(f"{where}: exclude is {exclude!r}, expected the reason in words")
+    contact = table.get("contact_point_nm")
+    if contact is not None and not _is_number(contact):
+        raise ReadError(f"{where}: contact_point_nm is {contact!r}, expected a number")
+    ends = table.get("baseline_nm")
+    if ends is not None and not (
+        isinstance(ends, list) and len(ends) == 2 and all(map(_is_number, ends)) and ends[0] < ends[1]
+    ):
+        raise ReadError(f"{where}: baseline_nm is {ends!r}, expected two numbers that grow")
+    return Decision(
+        exclude, None if contact is None else contact * _NM, None if ends is None else (ends[0] * _NM, ends[1] * _NM)
+    )
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

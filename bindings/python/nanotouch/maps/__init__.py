@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Maps of force curves: every curve of a force volume or QI map fitted, in threads or on a cluster.
+
+>>> import nanotouch as nt
+>>> data = nt.maps.fit("map.jpk-force-map", model="hertz", radius=20e-9, resume="map.blocks")    # doctest: +SKIP
+>>> nt.maps.write(data, "map.nc"); nt.maps.draw(data, save="map.png")                            # doctest: +SKIP
+
+What is stored, how a killed run goes on, how a cluster is used: docs/maps.md.
+"""
+
+from .dataset import determined, flag_counts, read, write
+from .picture import draw
+from .run import fit
+from .synthesis import synthesise
+from .volume import ArrayVolume, CurveVolume
+
+__all__ = ["ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "read", "synthesise", "write"]

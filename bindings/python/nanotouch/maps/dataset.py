@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The results of a map as an xarray Dataset, with what a reader needs to know in its attributes; HDF5 (netCDF-4)."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ReadError, require
+from ..record import replacing
+from .block import MEASURED, PLAIN, flag_names, status_names
+from .settings import Settings
+from .store import Columns
+from .volume import Volume
+
+_MEANINGS = {
+    "effective_modulus": "E*, 1/E* = sum of (1 - nu^2)/E",
+    "youngs_modulus": "E of the sample",
+    "work_of_adhesion": "w",
+    "cohesive_range": "h0 = w/sigma0",
+    "contact_point": "height of the base where the undeformed bodies touch: the sample's topography at no force",
+}
+_KINDS = {"": ", all together", "_statistical": ", of noise and sampling", "_calibration": ", of the calibration"}
+
+
+def assemble(volume: Volume, settings: Settings, blocks: list[Columns], made_of: dict[str, Any]) -> Any:
+    """One Dataset of all blocks."""
+    xarray = require("xarray", "maps")
+    units = _units(settings)
+    variables: dict[str, Any] = {}
+    for key in blocks[0]:
+        values = np.concatenate([block[key] for block in blocks]).reshape(volume.shape)
+        if key == "reason":
+            values = values.astype(object)
+        variables[key] = (("y", "x"), values, _attributes(key, units, settings.model))
+    data = xarray.Dataset(variables, _coordinates(volume))
+    status, flags = data["status"].values, data["flags"].values
+    data.attrs = {
+        "title": f"{settings.model} fit of {volume.name}",
+        "model": settings.model,
+        "input_name": volume.name,
+        "input_sha256": made_of["input"]["sha256"],
+        "settings": json.dumps(made_of["settings"]),
+        "calibration": json.dumps(made_of["calibration"]),
+        "assumptions": "; ".join(settings.assumptions()),
+        "versions": json.dumps(
+            {"nanotouch": made_of["version"], "numpy": np.__version__, "xarray": xarray.__version__}
+        ),
+        "curves": int(status.size),
+        "curves_without_result": int(np.count_nonzero(status)),
+        "curves_flagged": int(np.count_nonzero(flags)),
+    }
+    return data
+
+
+def write(data: Any, path: str | os.PathLike[str]) -> Path:
+    """Write a Dataset as HDF5 that netCDF tools open, whole or not at all."""
+    require("h5netcdf", "maps")
+    with replacing(path) as part:
+        data.to_netcdf(part, engine="h5netcdf")
+    return Path(path)
+
+
+def read(path: str | os.PathLike[str]) -> Any:
+    """What :func:`write` wrote, in memory."""
+    xarray = require("xarray", "maps")
+    require("h5netcdf", "maps")
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf") as data:
+            return data.load()
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{path}: not a map that can be read: {error}") from error
+
+
+def determined(data: Any, name: str) -> NDArray[np.bool_]:
+    """Where the curves determine a quantity of a map, shape (y, x); measured quantities wherever there is a result."""
+    bit = _bits(data).get(f"{'effective_modulus' if name == 'youngs_modulus' else name}_undetermined", 0)
+    return np.asarray(np.isfinite(data[name].values) & ((data["flags"].values & bit) == 0))
+
+
+def flag_counts(data: Any) -> dict[str, int]:
+    """How many curves carry each flag, without those that none carries."""
+    flags = data["flags"].values
+    counts = {name: int(np.count_nonzero(flags & bit)) for name, bit in _bits(data).items()}
+    return {name: count for name, count in counts.items() if count}
+
+
+def _bits(data: Any) -> dict[str, int]:
+    attributes = data["flags"].attrs
+    return {
+        name: int(bit) for name, bit in zip(attributes["flag_meanings"].split(), attributes["flag_masks"], strict=True)
+    }
+
+
+def _units(settings: Settings) -> dict[str, str]:
+    known = {name: unit for name, (_, unit) in settings.parameters().items()} | {"youngs_modulus": "Pa"}
+    return known | {name: unit for name, (unit, _) in (MEASURED | PLAIN).items()}
+
+
+def _attributes(key: str, units: dict[str, str], model: str) -> dict[str, Any]:
+    """As the CF conventions have it."""
+    if key == "status":
+        names = status_names()
+        values = np.array(list(names.values()), np.int8)
+        return {"long_name": "why there is no result", "flag_values": values, "flag_meanings": " ".join(names)}
+    if key == "flags":
+        bits = flag_names(model)
+        masks = np.array(list(bits.values()), np.uint32)
+        return {"long_name": "what to know before use", "flag_masks": masks, "flag_meanings": " ".join(bits)}
+    if key == "reason":
+        return {"long_name": "why there is no result, in words"}
+    name, _, kind = key.partition("_sigma")
+    said = _MEANINGS.get(name) or (MEASURED | PLAIN).get(name, ("", name.replace("_", " ")))[1]
+    if key != name:
+        said = f"standard uncertainty of {name}{_KINDS[kind] if name not in MEASURED else _KINDS['_statistical']}"
+    return {"units": units[name] or "1", "long_name": said}
+
+
+def _coordinates(volume: Volume) -> dict[str, Any]:
+    if volume.coordinates:
+        return {axis: (axis, values, {"units": "m"}) for axis, values in volume.coordinates.items()}
+    return {axis: (axis, np.arange(count), {"long_name": f"{what} (pixel size unknown)"})
+            for axis, count, what in zip("yx", volume.shape, ("row", "column"), strict=True)}  # fmt: skip

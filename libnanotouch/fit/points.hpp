@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which points of a branch are fitted; private to fit/.
+#pragma once
+
+#include "reading.hpp"
+
+namespace nanotouch
+{
+
+// Positions towards the sample, from the deepest point outwards, and where the tip was torn off.
+struct Fitted {
+    std::vector<double> position, force;
+    bool torn = false;
+    double tear_position = 0.0, tear_sigma = 0.0;
+    double largest() const; // size of a force [N]
+    nt_fit_data data() const
+    {
+        return {position.data(), force.data(), static_cast<long>(position.size()), 1, 1};
+    }
+};
+
+// Those that the law can describe. NT_E_RANGE if they are too few.
+nt_status take_points(const nt_fit_recipe &recipe, const Branch &branch, Fitted *fitted, nt_problem *problem);
+nt_status check_count(const Fitted &fitted, nt_problem *problem);
+
+} // namespace nanotouch

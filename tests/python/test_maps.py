@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Maps: every curve as fit_curve fits it, whatever the threads; bad curves are reported; what is stored reads back."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from synthetic import DATA
+
+pytest.importorskip("nanotouch._fit", reason="built without Ceres")
+pytest.importorskip("xarray")
+
+from nanotouch import maps
+
+SOFT, HARD, WEAK, STRONG = 2e8, 1e9, 0.015, 0.04  # Pa, Pa, J/m^2, J/m^2
+SETTINGS: dict[str, Any] = {"radius": 20e-9, "cohesive_range": 0.2e-9}
+
+
+def pattern(n: int = 8) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Two moduli in a chequerboard, a sticky patch, a step of 5 nm: shapes (n, n)."""
+    y, x = np.mgrid[:n, :n] / n
+    modulus = np.where((x // 0.25 + y // 0.25) % 2 == 0, SOFT, HARD)
+    work = np.where((x - 0.65) ** 2 + (y - 0.35) ** 2 < 0.2**2, STRONG, WEAK)
+    return modulus, work, np.where(x + 2 * y > 1.6, 5e-9, 0.0)
+
+
+def volume(n: int = 8, points: int = 500, **given: Any) -> maps.ArrayVolume:
+    known: dict[str, Any] = {"radius": 20e-9, "spring_constant": 1.0, "noise": 30e-12, "depth": 20e-9, "tilt": 1e-4}
+    return maps.synthesise(*pattern(n), points=points, **(known | given))
+
+
+def curve_of(source: maps.ArrayVolume, y: int, x: int) -> nt.ForceCurve:
+    half = source.z.size // 2
+    parts = [("approach", slice(0, half)), ("retract", slice(half, None))]
+    segments = tuple(
+        nt.curves.Segment(role, np.full(half, np.nan), source.z[part], "height (measured)", source.values[y, x, part])  # type: ignore[arg-type]
+        for role, part in parts
+    )
+    return nt.ForceCurve(segments, {"spring constant": source.spring_constant})
+
+
+@pytest.mark.parametrize("model", ["hertz", "dmt", "jkr", "maugis", "cone", "pyramid"])
+def test_every_curve_is_fitted_as_fit_curve_does(model: str) -> None:
+    """The procedure stands twice, in numpy for one curve and in C++ for many: both must give the same.
+
+    Their sums differ in order, so in the last digits: 1e-13 of sigma is found, 1e-6 allowed. (A curve that determines
+    nothing can end anywhere; none is here.)
+    """
+    settings: dict[str, Any] = (
+        SETTINGS if model == "maugis" else {} if model in ("cone", "pyramid") else {"radius": 20e-9}
+    )
+    source = volume(3)
+    source.values[1, 1] *= 1.15  # a calibration that is wrong by five standard deviations
+    data = maps.fit(source, model, **settings)
+    flags = dict(zip(data.flags.attrs["flag_meanings"].split(), data.flags.attrs["flag_masks"], strict=True))
+    for y, x in np.ndindex(3, 3):
+        one = nt.fit.fit_curve(curve_of(source, y, x), model, baseline="line", **settings)
+        here = data.isel(y=y, x=x)
+        for name in one.free:
+            assert float(here[name]) == pytest.approx(one.values[name], abs=1e-6 * one.sigma[name])
+            assert float(here[f"{name}_sigma"]) == pytest.approx(one.sigma[name], rel=1e-6, abs=0.0)
+            assert float(here[f"{name}_sigma_statistical"]) == pytest.approx(
+                one.sigma_statistical[name], abs=1e-6 * one.sigma[name]
+            )
+            if name in one.identifiable:
+                assert bool(int(here.flags) & flags[f"{name}_undetermined"]) == (not one.identifiable[name])
+        for name in ("pull_off_force", "snap_in_force", "adhesion_work", "contact_slope"):
+            assert float(here[name]) == pytest.approx(getattr(one.report, name), rel=1e-9, abs=0.0)
+            assert float(here[f"{name}_sigma"]) == pytest.approx(one.report.sigma[name], rel=1e-9, abs=0.0, nan_ok=True)
+        assert float(here.noise) == pytest.approx(one.report.noise, rel=1e-12, abs=0.0)
+        assert float(here.residual_rms) == pytest.approx(one.residual_rms, rel=1e-6, abs=0.0)
+
+
+def test_the_pattern_is_found() -> None:
+    modulus, work, height = pattern()
+    data = maps.fit(volume(), "maugis", **SETTINGS)
+    for name, truth in (("effective_modulus", modulus), ("work_of_adhesion", work)):
+        pull = (data[name].values - truth) / data[f"{name}_sigma"].values
+        assert abs(np.median(pull)) < 1.0  # 64 curves; sigma includes the calibration's 3 %, which is exact here
+        assert np.percentile(np.abs(pull), 95) < 4.0
+    step = data.contact_point.values[height > 0].mean() - data.contact_point.values[height == 0].mean()
+    assert step == pytest.approx(5e-9, abs=0.1e-9)
+    sticky = data.pull_off_force.values[work == STRONG]
+    assert sticky.min() > 1.5 * data.pull_off_force.values[work == WEAK].max()
+
+
+def test_neither_threads_nor_blocks_change_a_bit() -> None:
+    source = volume(6)
+    first = maps.fit(source, "jkr", radius=20e-9, threads=1, block=100)
+    for threads, block in ((2, 100), (5, 7), (1, 1)):
+        assert maps.fit(source, "jkr", radius=20e-9, threads=threads, block=block).equals(first)
+
+
+def test_poisonous_curves_are_reported_and_harm_no_other() -> None:
+    clean = volume(4)
+    healthy = maps.fit(clean, "jkr", radius=20e-9)
+    spoilt = maps.ArrayVolume(clean.values.copy(), clean.z, clean.spring_constant)
+    bad = {"nan": (0, 1), "infinite": (0, 2), "constant": (1, 0), "huge": (2, 3), "one spike": (3, 3)}
+    spoilt.values[0, 1, 100] = np.nan
+    spoilt.values[0, 2, 700] = -np.inf
+    spoilt.values[1, 0] = 3e-9
+    spoilt.values[2, 3] *= 1e12
+    spoilt.values[3, 3, 5] = 1e300
+    data = maps.fit(spoilt, "jkr", radius=20e-9)
+    names = dict(zip(data.status.attrs["flag_values"], data.status.attrs["flag_meanings"].split(), strict=True))
+    places = np.zeros((4, 4), bool)
+    for y, x in bad.values():
+        places[y, x] = True
+        assert np.isnan(data.effective_modulus.values[y, x])
+        assert np.isnan(data.pull_off_force.values[y, x])
+        assert data.reason.values[y, x]
+    assert names[data.status.values[0, 1]] == names[data.status.values[0, 2]] == "NT_E_NOT_FINITE"
+    assert names[data.status.values[1, 0]] == names[data.status.values[2, 3]] == "NT_E_RANGE"
+    assert "force (span)" in data.reason.values[1, 0]
+    assert np.array_equal(data.status.values != 0, places)
+    assert data.attrs["curves_without_result"] == len(bad)
+    for name in healthy:
+        assert np.array_equal(data[name].values[~places], healthy[name].values[~places], equal_nan=name != "reason")
+
+
+def test_missing_and_short_curves_have_a_reason() -> None:
+    source = volume(2)
+    curves = []
+    for y, x in ((0, 0), (1, 1)):
+        one = curve_of(source, y, x)
+        place = {"grid index x": x, "grid index y": y, "grid shape x": 2, "grid shape y": 2}
+        curves.append(nt.ForceCurve(one.segments, dict(one.meta) | place))
+    short = curves[1]
+    cut = tuple(
+        nt.curves.Segment(s.role, s.time[:9], s.z[:9], s.z_channel, s.force[:9])  # type: ignore[index]
+        for s in short.segments
+    )
+    data = maps.fit([curves[0], nt.ForceCurve(cut, short.meta)], "jkr", radius=20e-9)
+    assert data.status.values[0, 0] == 0
+    assert (data.status.values != 0).sum() == 3
+    assert "count" in data.reason.values[1, 1]
+    assert "count" in data.reason.values[0, 1]
+
+
+def test_deflections_and_a_height_of_each_curve_give_the_same_as_forces() -> None:
+    source = volume(3, spring_constant=0.5)
+    forces = maps.fit(source.values, "jkr", z=source.z, spring_constant=0.5, radius=20e-9)
+    each = np.broadcast_to(source.z, source.values.shape).copy()
+    bent = maps.fit(source.values / 0.5, "jkr", z=each, deflection=True, spring_constant=0.5, radius=20e-9)
+    assert np.allclose(bent.effective_modulus, forces.effective_modulus, rtol=1e-9)
+
+
+@pytest.mark.parametrize("model", ["jkr", "cone"])
+def test_youngs_modulus_and_the_uncertainty_of_the_calibration(model: str) -> None:
+    """Both take differences of refitted curves, with steps of another size: they agree to first order."""
+    source = volume(2)
+    given: dict[str, Any] = {"tip": nt.Scene().tip, "poisson_ratio": 0.3}
+    given["uncertainties"] = nt.fit.Uncertainties(spring_constant=0.05, radius=0.1, half_angle=0.02, poisson_ratio=0.05)
+    here = maps.fit(source, model, **given).isel(y=1, x=1)
+    one = nt.fit.fit_curve(curve_of(source, 1, 1), model, baseline="line", **given)
+    assert float(here.youngs_modulus) == pytest.approx(one.values["youngs_modulus"], rel=1e-6)
+    for name in ("youngs_modulus", "effective_modulus", "contact_point"):
+        assert float(here[f"{name}_sigma"]) == pytest.approx(one.sigma[name], rel=0.02, abs=0.0)
+        assert float(here[f"{name}_sigma_calibration"]) == pytest.approx(one.sigma_calibration[name], rel=0.02, abs=0.0)
+
+
+def test_a_wavy_baseline_is_flagged() -> None:
+    """fit_curve would look for interference; a map takes a straight line and says so."""
+    source = volume(2)
+    source.values[0, 1] += 200e-12 * np.sin(2 * np.pi * source.z / 150e-9)
+    data = maps.fit(source, "jkr", radius=20e-9)
+    assert maps.flag_counts(data)["waves"] == 1
+
+
+def test_what_is_written_reads_back_with_all_that_it_was_made_of(tmp_path: Path) -> None:
+    source = volume(3)
+    source.values[0, 0, 3] = np.nan
+    data = maps.fit(source, "jkr", radius=20e-9)
+    again = maps.read(maps.write(data, tmp_path / "map.nc"))
+    assert again.equals(data)
+    assert again.effective_modulus.attrs["units"] == "Pa"
+    assert json.loads(again.attrs["settings"])["radius"] == 20e-9
+    assert json.loads(again.attrs["versions"])["nanotouch"] == nt.__version__
+    assert again.attrs["input_sha256"] == source.digest()
+    assert again.x.attrs["units"] == "m"
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "map.nc") as file:  # any HDF5 tool reads it
+        assert file["effective_modulus"].attrs["units"] == "Pa"
+
+
+def test_a_picture_shows_all_of_it(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    source = volume(4)
+    source.values[0, 0, 3] = np.nan
+    data = maps.fit(source, "maugis", **SETTINGS)
+    figure = maps.draw(data, save=tmp_path / "map.png")
+    titles = [axes.get_title() for axes in figure.axes if axes.get_title()]
+    assert len(titles) == 4
+    assert "1 without" in titles[0]
+    assert (tmp_path / "map.png").stat().st_size > 20_000
+    with pytest.raises(nt.errors.InvalidValue, match="nonsense"):
+        maps.draw(data, ("nonsense",))
+
+
+def test_what_cannot_be_a_map_is_refused_in_one_sentence() -> None:
+    source = volume(2)
+    with pytest.raises(nt.errors.InvalidValue, match="shape"):
+        maps.fit(np.zeros((4, 5)), "jkr", z=np.zeros(5), spring_constant=1.0)
+    with pytest.raises(nt.errors.InvalidValue, match="needs z"):
+        maps.fit(source.values, "jkr")
+    with pytest.raises(nt.errors.InvalidValue, match="radus"):
+        maps.fit(source, "jkr", radus=3e-9)
+    with pytest.raises(nt.errors.InvalidValue, match="stiffness"):
+        maps.fit(source, "jkr", fixed={"stiffness": 1.0})
+    with pytest.raises(nt.errors.InvalidValue, match="radius"):
+        maps.fit(source, "jkr", radius=-1.0)
+
+
+@pytest.mark.parametrize(("name", "shape"), [("fsas/Test.003", (16, 16)),
+                                             ("map-data-2022.10.29-12.27.34.564.jpk-force-map", (4, 4))])  # fmt: skip
+def test_measured_maps(name: str, shape: tuple[int, int]) -> None:
+    pytest.importorskip("afmformats")
+    file = DATA / "curves" / name
+    if not file.exists():
+        pytest.skip(f"{file} is not there")
+    data = maps.fit(file, "dmt", radius=20e-9)
+    assert data.status.shape == shape
+    assert data.attrs["curves_without_result"] == 0
