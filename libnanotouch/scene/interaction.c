@@ -20,11 +20,11 @@ static void add(nt_law_value *sum, nt_law_value term)
 
 nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
 {
-    nt_place place = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {plan->contact.radius, 0.0, 0.0}};
-    if (plan->surface)
-        place.surface = nt_surface_eval(plan->surface, x, y);
     if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL)
-        place.radius = nt_radius_map_eval(plan->radii, x, y);
+        return nt_surface_place(plan->surface, plan->radii, x, y);
+    nt_place place = {.radius = {.radius = plan->contact.radius}};
+    if (plan->surface)
+        place.surface = nt_surface_height(plan->surface, x, y);
     return place;
 }
 

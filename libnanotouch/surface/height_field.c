@@ -44,10 +44,13 @@ static void filter_line(double *c, long n, long stride)
         c[k * stride] = POLE * (c[(k + 1) * stride] - 6.0 * c[k * stride]);
 }
 
-/* The four pixels whose splines reach a point, with their weights for value, slope and curvature. */
+/* The four pixels whose splines reach a point, with their weights for value and slope. */
 typedef struct reach {
     long index[4];
-    double value[4], slope[4], curvature[4];
+    double value[4], slope[4];
+    double t;     /* place between the second and the third */
+    int mirrored; /* they do not lie side by side */
+    int outside;  /* beyond the map, where the surface is level */
 } reach;
 
 /* u in pixels, clamped to the map; beyond it the surface is level across the border. */
@@ -60,18 +63,55 @@ static reach reach_of(double u, long n)
     const double t = inside - (double)i, s = 1.0 - t;
     reach r = {
         .index = {i > 0 ? i - 1 : 1, i, i + 1, i + 2 < n ? i + 2 : n - 2}, /* mirrored */
-        .value = {s * s * s / 6.0, (4.0 - 3.0 * t * t * (2.0 - t)) / 6.0, (4.0 - 3.0 * s * s * (2.0 - s)) / 6.0,
-                  t * t * t / 6.0},
+        .value = {s * s * s * (1.0 / 6.0), 2.0 / 3.0 - t * t * (1.0 - 0.5 * t), 2.0 / 3.0 - s * s * (1.0 - 0.5 * s),
+                  t * t * t * (1.0 / 6.0)},
+        .t = t,
+        .mirrored = i == 0 || i == n - 2,
+        .outside = inside != u,
     };
-    if (inside == u) {
-        const double slope[4] = {-0.5 * s * s, t * (1.5 * t - 2.0), s * (2.0 - 1.5 * s), 0.5 * t * t};
-        const double curvature[4] = {s, 3.0 * t - 2.0, 3.0 * s - 2.0, t};
-        for (int k = 0; k < 4; k++) {
-            r.slope[k] = slope[k];
-            r.curvature[k] = curvature[k];
-        }
+    if (!r.outside) {
+        r.slope[0] = -0.5 * s * s;
+        r.slope[1] = t * (1.5 * t - 2.0);
+        r.slope[2] = s * (2.0 - 1.5 * s);
+        r.slope[3] = 0.5 * t * t;
     }
     return r;
+}
+
+/* Weights of the second derivative. */
+static void bend_of(const reach *r, double curvature[4])
+{
+    const double t = r->t, s = 1.0 - t, bent[4] = {s, 3.0 * t - 2.0, 3.0 * s - 2.0, t};
+    for (int k = 0; k < 4; k++)
+        curvature[k] = r->outside ? 0.0 : bent[k];
+}
+
+/* The rows are summed first: four columns side by side, which processors do at once. */
+static nt_height_value height_at(const nt_surface *surface, const reach *rx, const reach *ry)
+{
+    double value[4] = {0.0}, slope[4] = {0.0}; /* of each column, along y */
+    for (int j = 0; j < 4; j++) {
+        const double *row = surface->coefficients + ry->index[j] * surface->nx, *four = row + rx->index[0];
+        double gathered[4];
+        if (rx->mirrored) {
+            for (int i = 0; i < 4; i++)
+                gathered[i] = row[rx->index[i]];
+            four = gathered;
+        }
+        for (int i = 0; i < 4; i++) {
+            value[i] += ry->value[j] * four[i];
+            slope[i] += ry->slope[j] * four[i];
+        }
+    }
+    nt_height_value at = {0.0, 0.0, 0.0};
+    for (int i = 0; i < 4; i++) {
+        at.z += rx->value[i] * value[i];
+        at.zx += rx->slope[i] * value[i];
+        at.zy += rx->value[i] * slope[i];
+    }
+    at.zx /= surface->dx;
+    at.zy /= surface->dy;
+    return at;
 }
 
 nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem)
@@ -143,6 +183,9 @@ nt_surface_value nt_surface_eval(const nt_surface *surface, double x, double y)
         return v;
     const double dx = surface->dx, dy = surface->dy;
     const reach rx = reach_of(x / dx, surface->nx), ry = reach_of(y / dy, surface->ny);
+    double bend_x[4], bend_y[4];
+    bend_of(&rx, bend_x);
+    bend_of(&ry, bend_y);
     for (int j = 0; j < 4; j++) {
         const double *row = surface->coefficients + ry.index[j] * surface->nx;
         double value = 0.0, slope = 0.0, curvature = 0.0; /* along x, of this row */
@@ -150,16 +193,41 @@ nt_surface_value nt_surface_eval(const nt_surface *surface, double x, double y)
             const double c = row[rx.index[i]];
             value += rx.value[i] * c;
             slope += rx.slope[i] * c;
-            curvature += rx.curvature[i] * c;
+            curvature += bend_x[i] * c;
         }
         v.z += ry.value[j] * value;
         v.zx += ry.value[j] * slope / dx;
         v.zy += ry.slope[j] * value / dy;
         v.zxx += ry.value[j] * curvature / (dx * dx);
         v.zxy += ry.slope[j] * slope / (dx * dy);
-        v.zyy += ry.curvature[j] * value / (dy * dy);
+        v.zyy += bend_y[j] * value / (dy * dy);
     }
     return v;
+}
+
+nt_height_value nt_surface_height(const nt_surface *surface, double x, double y)
+{
+    if (isnan(x) || isnan(y))
+        return (nt_height_value){x + y, x + y, x + y};
+    if (surface->coefficients == NULL)
+        return (nt_height_value){0.0, 0.0, 0.0};
+    const reach rx = reach_of(x / surface->dx, surface->nx), ry = reach_of(y / surface->dy, surface->ny);
+    return height_at(surface, &rx, &ry);
+}
+
+nt_place nt_surface_place(const nt_surface *surface, const nt_radius_map *radii, double x, double y)
+{
+    nt_place place = {.radius = {.radius = radii->tip_radius}};
+    if (isnan(x) || isnan(y) || surface->coefficients == NULL || radii->ratio.coefficients == NULL) {
+        place.surface = nt_surface_height(surface, x, y);
+        return place;
+    }
+    const double R = radii->tip_radius;
+    const reach rx = reach_of(x / surface->dx, surface->nx), ry = reach_of(y / surface->dy, surface->ny);
+    const nt_height_value ratio = height_at(&radii->ratio, &rx, &ry);
+    place.surface = height_at(surface, &rx, &ry);
+    place.radius = (nt_radius_value){.radius = R * ratio.z, .dx = R * ratio.zx, .dy = R * ratio.zy};
+    return place;
 }
 
 int nt_surface_contains(const nt_surface *surface, double x, double y)

@@ -80,7 +80,7 @@ nt_radius_value nt_radius_map_eval(const nt_radius_map *map, double x, double y)
 {
     if (map->ratio.coefficients == NULL)
         return (nt_radius_value){.radius = isnan(x) || isnan(y) ? x + y : map->tip_radius};
-    const nt_surface_value ratio = nt_surface_eval(&map->ratio, x, y);
+    const nt_height_value ratio = nt_surface_height(&map->ratio, x, y);
     const double R = map->tip_radius;
     return (nt_radius_value){.radius = R * ratio.z, .dx = R * ratio.zx, .dy = R * ratio.zy};
 }

@@ -268,11 +268,11 @@ static void the_surface_under_the_tip_is_the_maps(void **state)
     setup.x = 100e-9;
     setup.y = 60e-9;
     nt_sim sim = sim_of(&setup);
-    assert_true(sim.start_height == nt_surface_eval(&surface, 100e-9, 60e-9).z + 50e-9);
+    assert_true(sim.start_height == nt_surface_height(&surface, 100e-9, 60e-9).z + 50e-9);
     for (int i = 0; i < 1000; i++) {
         const nt_command command = {.x = (100.0 + 0.1 * i) * 1e-9, .y = (60.0 + 0.05 * i) * 1e-9};
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
-        assert_true(sim.truth.surface_height == nt_surface_eval(&surface, command.x, command.y).z);
+        assert_true(sim.truth.surface_height == nt_surface_height(&surface, command.x, command.y).z);
         assert_true(sim.x == command.x && sim.y == command.y);
     }
 }

@@ -160,13 +160,41 @@ static void flat_is_the_tip_and_bad_input_is_refused(void **state)
     assert_true(map.tip_radius == R);
 }
 
+/* Height and radius of a place are the same as one by one, and the same as with all derivatives to rounding: 16
+ * products of 1e-16 of the range of the coefficients; inside, at the borders, beyond them, at NaN. */
+static void a_place_has_both(void **state)
+{
+    (void)state;
+    nt_surface surface;
+    const nt_radius_map map = map_of(ball, &surface);
+    nt_random random = nt_random_seed(5);
+    for (int n = 0; n < 20000; n++) {
+        const double x = (1.2 * nt_random_uniform(&random) - 0.1) * NX * DX;
+        const double y = (1.2 * nt_random_uniform(&random) - 0.1) * NY * DY;
+        const nt_place place = nt_surface_place(&surface, &map, x, y);
+        const nt_height_value height = nt_surface_height(&surface, x, y);
+        const nt_radius_value radius = nt_radius_map_eval(&map, x, y);
+        const nt_surface_value all = nt_surface_eval(&surface, x, y);
+        assert_true(place.surface.z == height.z && place.surface.zx == height.zx && place.surface.zy == height.zy);
+        assert_true(place.radius.radius == radius.radius && place.radius.dx == radius.dx);
+        assert_true(place.radius.dy == radius.dy);
+        assert_true(fabs(height.z - all.z) < 16 * 1.2e-16 * 80e-9);
+        assert_true(fabs(height.zx - all.zx) < 32 * 1.2e-16 * 80e-9 / DX);
+        assert_true(fabs(height.zy - all.zy) < 32 * 1.2e-16 * 80e-9 / DX);
+    }
+    assert_true(isnan(nt_surface_place(&surface, &map, NAN, Y0).surface.z));
+    const nt_surface flat = nt_surface_flat();
+    const nt_radius_map same = {.tip_radius = R};
+    const nt_place place = nt_surface_place(&flat, &same, 1.0, -1.0);
+    assert_true(place.surface.z == 0.0 && place.radius.radius == R && place.radius.dx == 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_on_spheres),
-        cmocka_unit_test(bounds_are_kept_and_counted),
-        cmocka_unit_test(slopes_are_the_derivatives),
-        cmocka_unit_test(flat_is_the_tip_and_bad_input_is_refused),
+        cmocka_unit_test(spheres_on_spheres),         cmocka_unit_test(bounds_are_kept_and_counted),
+        cmocka_unit_test(slopes_are_the_derivatives), cmocka_unit_test(flat_is_the_tip_and_bad_input_is_refused),
+        cmocka_unit_test(a_place_has_both),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,7 +57,7 @@ static py::array_t<double> heights_at(const Surface &self, const Array &x, const
     {
         py::gil_scoped_release release;
         for (py::ssize_t i = 0; i < count; ++i)
-            z[i] = nt_surface_eval(&self.surface, xs[i], ys[i]).z;
+            z[i] = nt_surface_height(&self.surface, xs[i], ys[i]).z;
     }
     return out;
 }

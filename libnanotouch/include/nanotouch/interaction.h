@@ -18,11 +18,7 @@ typedef struct nt_interaction_state {
     double port;       /* energy put in by slow changes so far (nt_interaction_change) [J] */
 } nt_interaction_state;
 
-/* A place on the surface: all that does not depend on the gap there. */
-typedef struct nt_place {
-    nt_surface_value surface;
-    nt_radius_value radius; /* effective radius of the contact there, and its slope */
-} nt_place;
+/* Height, slopes and effective radius at a place (surface.h); of a plan without local forms the tip's own radius. */
 NT_API NT_REALTIME nt_place nt_interaction_place(const nt_plan *plan, double x, double y);
 
 /* Force on the tip at a pose. */

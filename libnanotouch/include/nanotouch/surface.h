@@ -28,6 +28,12 @@ typedef struct nt_surface_value {
     double zxx, zxy, zyy; /* curvatures [1/m] */
 } nt_surface_value;
 
+/* Without the curvatures, which a force does not need. */
+typedef struct nt_height_value {
+    double z;      /* height [m] */
+    double zx, zy; /* slopes [-] */
+} nt_height_value;
+
 /* A touchable surface. Immutable after nt_surface_init; `coefficients` stays the caller's and must outlive it. */
 typedef struct nt_surface {
     const double *coefficients; /* B-spline coefficients [m], nx * ny; NULL for a flat at z = 0 */
@@ -48,6 +54,8 @@ NT_API nt_surface nt_surface_flat(void);
 /* Value at a point. Outside the map the border continues level (slopes across it 0): nt_surface_contains() tells.
  * NaN in, NaN out. Real-time safe. */
 NT_API NT_REALTIME nt_surface_value nt_surface_eval(const nt_surface *surface, double x, double y);
+/* Height and slopes alone, at half the cost. */
+NT_API NT_REALTIME nt_height_value nt_surface_height(const nt_surface *surface, double x, double y);
 /* 1 if (x, y) lies on the map (always for a flat). */
 NT_API int nt_surface_contains(const nt_surface *surface, double x, double y);
 
@@ -97,6 +105,14 @@ NT_API nt_status nt_radius_map_init(nt_radius_map *map, const nt_surface *dilate
                                     const nt_radius_limits *limits, double *coefficients);
 /* Effective radius and its slope at a point; beyond the map as nt_surface_eval. NaN in, NaN out. Real-time safe. */
 NT_API NT_REALTIME nt_radius_value nt_radius_map_eval(const nt_radius_map *map, double x, double y);
+
+/* A place on the surface: all of the geometry that does not depend on the gap there. */
+typedef struct nt_place {
+    nt_height_value surface;
+    nt_radius_value radius; /* effective radius of the contact there, and its slope */
+} nt_place;
+/* Both at a point, at less than the cost of one after the other; `radii` is of this surface. NaN in, NaN out. */
+NT_API NT_REALTIME nt_place nt_surface_place(const nt_surface *surface, const nt_radius_map *radii, double x, double y);
 
 /* Built-in samples. */
 
