@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import nanotouch as nt
 
-COMMANDS = ("touch", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff", "bench", "doctor")
+COMMANDS = ("touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff", "bench", "doctor")
 
 
 def build_parser() -> argparse.ArgumentParser:
