@@ -11,11 +11,11 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import margins
-from nanotouch._path import MODES
 from nanotouch.errors import require
 from nanotouch.margins import Margins, Resolution
 from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION
 from nanotouch.record import replacing, write_csv
+from nanotouch.session import MODES
 from nanotouch.scene import read_tables
 from nanotouch.session import INDENTATION_RANGE, settings_for_path
 

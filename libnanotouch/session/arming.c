@@ -23,8 +23,8 @@ double nt_session_margin(const nt_session *session, const nt_settings *settings,
     return nt_margins_judge(&session->touch.rig, settings, stiffness, session->touch.mode, margins).margin;
 }
 
-/* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be off
- * by all of it [m]. */
+/* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be
+ * off by all of it [m]. */
 static double unseen_indentation(const nt_plan *plan, double free_force)
 {
     const nt_interaction_state attached = {.attached = 1};

@@ -32,7 +32,8 @@ static void every_field_is_refused_by_name(void **state)
     const nt_rig rig = nt_rig_defaults();
     int count = 0;
     const nt_field *fields = nt_settings_fields(&count);
-    assert_int_equal((size_t)count * sizeof(double), sizeof(nt_gains) + sizeof(nt_limits)); /* no number is without a check */
+    assert_int_equal((size_t)count * sizeof(double),
+                     sizeof(nt_gains) + sizeof(nt_limits)); /* no number is without a check */
     for (int i = 0; i < count; i++) {
         const nt_field *field = &fields[i];
         const double outside[] = {nextafter(field->minimum, -HUGE_VAL), nextafter(field->maximum, HUGE_VAL), NAN,

@@ -151,7 +151,7 @@ class Session:
     @property
     def rate(self) -> float:
         """Rate of the force loop [Hz]."""
-        return self.settings.gains.rate
+        return float(self.settings.gains.rate)
 
     def margins(self) -> Margins:
         """Margins at the stiffest contact of the plan, and why the session was to be refused, if it was."""
@@ -169,7 +169,7 @@ class Session:
     @property
     def force_overshoot(self) -> float:
         """How far the force on the sample may exceed the set limit before the reaction shows, on this path [N]."""
-        return self.guarantee().force - self.settings.limits.force
+        return self.guarantee().force - float(self.settings.limits.force)
 
     @property
     def is_done(self) -> bool:

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the supervisor follows over many ticks: lateness, the way into the sample, laws that fail. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/touch.h"
+
+static nt_touch touch;
+
+static int make_touch(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    return nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL) != NT_OK;
+}
+
+static nt_state step(nt_supervisor_state *state, const nt_sample *sample)
+{
+    const nt_situation situation = {.reference = sample->stage_position};
+    return nt_supervisor_step(&touch.supervisor, state, sample, &situation);
+}
+
+/* One late tick is counted, five in a row hold, five punctual ones let go; late ticks now and then never hold. */
+static void late_ticks_hold(void **unused)
+{
+    (void)unused;
+    nt_supervisor_state state = nt_supervisor_start();
+    nt_sample sample = {0};
+    sample.lateness = 0.3 * touch.period;
+    for (int i = 1; i <= 20; i++)
+        assert_int_equal(step(&state, &sample), i < 5 ? NT_RUN : NT_HOLD);
+    sample.lateness = 0.0;
+    for (int i = 1; i <= 10; i++)
+        assert_int_equal(step(&state, &sample), i < 5 ? NT_HOLD : NT_RUN);
+    for (int i = 0; i < 1000; i++) {
+        sample.lateness = i % 5 ? touch.period : 0.0;
+        assert_int_equal(step(&state, &sample), NT_RUN);
+    }
+    assert_int_equal(state.late_ticks, 20 + 800);
+    sample.lateness = NAN;
+    for (int i = 1; i <= 5; i++)
+        step(&state, &sample);
+    assert_int_equal(state.state, NT_HOLD);
+}
+
+/* Past first touch 0.3 um and no more; what a rising surface does under a tip that goes sideways is not counted. */
+static void indentation_counts_from_first_touch(void **unused)
+{
+    (void)unused;
+    const double k_c = touch.rig.probe.spring_constant, limit = touch.settings.limits.indentation;
+    const double softness = 20e-9 / limit; /* deflection per indentation */
+    for (double surface = 0.5e-6; surface < 3e-6; surface += 0.7e-6) {
+        nt_supervisor_state state = nt_supervisor_start();
+        double indentation = 0.0;
+        for (double z = 0.0; state.state == NT_RUN && z < 5e-6; z += 1e-9) {
+            indentation = fmax(0.0, z - surface) / (1.0 + softness);
+            const nt_sample sample = {.stage_position = z,
+                                      .deflection = softness * indentation + 1e-12 * fmod(z, 2e-9)};
+            const nt_situation situation = {.reference = z};
+            nt_supervisor_step(&touch.supervisor, &state, &sample, &situation);
+        }
+        assert_int_equal(state.reasons, NT_REASON_INDENTATION);
+        /* first touch is seen when the force leaves the noise */
+        const double unseen = touch.supervisor.free_force / k_c / softness;
+        assert_true(indentation > limit && indentation < limit + unseen + 2e-9);
+    }
+    nt_supervisor_state state = nt_supervisor_start();
+    for (int i = 0; i < 3000; i++) { /* the stage draws back by 0.3 um to let the surface rise by 0.3 um, and returns */
+        const double hill = 0.3e-6 * sin(i * 1e-3 * 3.14159);
+        const nt_sample sample = {.stage_position = 1e-6 - hill, .deflection = 50e-9 + 1e-12 * (i % 2)};
+        const nt_situation situation = {.reference = 1e-6 - hill, .moves_sideways = 1};
+        assert_int_equal(nt_supervisor_step(&touch.supervisor, &state, &sample, &situation), NT_RUN);
+    }
+}
+
+static void a_law_without_numbers_holds_then_retracts(void **unused)
+{
+    (void)unused;
+    nt_supervisor_state state = nt_supervisor_start();
+    assert_int_equal(nt_supervisor_fail_law(&state), NT_HOLD);
+    assert_int_equal(nt_supervisor_fail_law(&state), NT_RETRACT);
+    assert_int_equal(state.reasons, NT_REASON_LAW);
+    assert_int_equal(nt_supervisor_arm(&state, 0), NT_OK);
+    state.state = NT_LATCHED;
+    assert_int_equal(nt_supervisor_arm(&state, 0), NT_E_STATE);
+    assert_int_equal(state.state, NT_LATCHED);
+    assert_int_equal(nt_supervisor_arm(&state, 1), NT_OK);
+    assert_int_equal(state.state, NT_RUN);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(late_ticks_hold),
+        cmocka_unit_test(indentation_counts_from_first_touch),
+        cmocka_unit_test(a_law_without_numbers_holds_then_retracts),
+    };
+    return cmocka_run_group_tests(tests, make_touch, NULL);
+}
