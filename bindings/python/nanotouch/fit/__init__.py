@@ -11,6 +11,7 @@ the noise of the force does not enter the abscissa, and a curve whose slope is t
 one that does not determine the modulus. How and why: docs/fit.md.
 """
 
+from .arrays import PointsFit, fit_points
 from .choice import Candidate, Choice, choose_model
 from .fitting import TipLike, fit_curve
 from .models import Model, Parameter, models, register
@@ -25,12 +26,14 @@ __all__ = [
     "FitResult",
     "Model",
     "Parameter",
+    "PointsFit",
     "Stability",
     "TipLike",
     "Uncertainties",
     "choose_model",
     "draw",
     "fit_curve",
+    "fit_points",
     "models",
     "register",
     "stability",

@@ -49,6 +49,9 @@ class Setup:
             options.start("cohesive_range", np.nan)
         for name, (minimum, maximum) in self.bounds.items():
             options.bound(name, minimum, maximum)
+        for parameter in self.model.parameters:
+            if parameter.initial is not None and parameter.name in self.bounds:  # a start has to lie within
+                options.start(parameter.name, float(np.clip(parameter.initial, *self.bounds[parameter.name])))
         for name, value in self.held.items():
             options.hold(name, value)
         return options

@@ -20,6 +20,7 @@ from .models import Floats, Model
 from .result import FitResult
 
 _FIRST = 0.1  # of the deepest indentation: the first window ends there
+_KNOWN = 0.1  # relative sigma of a window that counts for the spread
 _NOWHERE = -1.0  # m: below every indentation
 
 
@@ -44,10 +45,9 @@ class Stability:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of ln E* over the deeper half of the windows: what E* depends on where one stops."""
-        deeper = self.modulus[self.modulus.size // 2 :]
-        deeper = deeper[np.isfinite(deeper)]
-        return float(np.std(np.log(deeper))) if deeper.size > 1 else np.nan
+        """Standard deviation of ln E* over the windows that know it to 10 %: what E* depends on where one stops."""
+        known = self.modulus[self.sigma < _KNOWN * self.modulus]
+        return float(np.std(np.log(known))) if known.size > 1 else np.nan
 
     def draw(self, save: str | os.PathLike[str] | None = None) -> Any:
         """The plot; also written to `save`, whole or not at all."""
