@@ -18,9 +18,10 @@ import numpy as np
 
 from .errors import Error
 
-MAX_JSON = 1 << 26  # [byte]
+MAX_JSON = 1 << 28  # of 65536 curves with what their file says of them: 1 << 27 [byte]
 MAX_ARRAYS = 1 << 30  # of all arrays of an answer [byte]
 _DTYPES = ("<f8", "|b1")
+_Arrays = dict[tuple[int, tuple[int, ...], str], tuple[int, np.ndarray[Any, Any]]]  # by where they lie
 
 
 class BadAnswer(Error):
@@ -35,19 +36,21 @@ def _types() -> dict[str, type]:
     return {kind.__name__: kind for kind in (Channel, ForceCurve, Segment, Topography)}
 
 
-def packed(value: Any) -> list[bytes]:
-    """The frame, in pieces."""
-    arrays: list[np.ndarray[Any, Any]] = []
+def packed(value: Any) -> list[bytes | memoryview]:
+    """The frame, in pieces, without a copy of the arrays; one that several objects share is sent once."""
+    arrays: _Arrays = {}
     tree = _flattened(value, arrays)
-    listed = [[a.dtype.str, list(a.shape)] for a in arrays]
+    listed = [[a.dtype.str, list(a.shape)] for _, a in arrays.values()]
     text = json.dumps({"tree": tree, "arrays": listed}).encode()
-    return [struct.pack("<Q", len(text)), text, *(a.tobytes() for a in arrays)]
+    return [struct.pack("<Q", len(text)), text, *(a.data.cast("B") for _, a in arrays.values() if a.size)]
 
 
-def _flattened(value: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
+def _flattened(value: Any, arrays: _Arrays) -> Any:
     if isinstance(value, np.ndarray):
-        arrays.append(value)
-        return {"array": len(arrays) - 1}
+        flat = np.ascontiguousarray(value)
+        place = (flat.__array_interface__["data"][0], flat.shape, flat.dtype.str)
+        number, _ = arrays.setdefault(place, (len(arrays), flat))
+        return {"array": number}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = {f.name: _flattened(getattr(value, f.name), arrays) for f in dataclasses.fields(value)}
         return {"type": type(value).__name__, "fields": fields}
