@@ -199,10 +199,12 @@ def _parted(over: Floats, labels: NDArray[np.int32], least: float) -> NDArray[np
     cv2 = require("cv2", "images")
     smooth = cv2.GaussianBlur(over, (0, 0), 1.0)
     smooth[labels == 0] = -np.inf
-    basins = _ascended(smooth)
+    target = _ascended(smooth)
     inside = np.flatnonzero(labels)
-    roots, basin = np.unique(basins[inside], return_inverse=True)
+    roots = inside[target[inside] == inside]
     index = np.full(over.size, -1, np.int64)
+    index[roots] = np.arange(len(roots))
+    basin = index[target[inside]]
     index[inside] = basin
     peaks = smooth.ravel()[roots]
     joined = _joined(index.reshape(over.shape), smooth, peaks, least)
@@ -215,33 +217,42 @@ def _ascended(z: Floats) -> NDArray[np.int64]:
     """For every pixel the index of the peak to which steepest ascent over 3 x 3 pixels leads."""
     ny, nx = z.shape
     padded = np.pad(z, 1, constant_values=-np.inf)
-    highest, target = z.copy(), np.arange(z.size).reshape(z.shape)
-    own = target.copy()
+    highest, offset = z.copy(), np.zeros(z.shape, np.int64)
     for dj in (-1, 0, 1):
         for di in (-1, 0, 1):
             neighbour = padded[1 + dj : 1 + dj + ny, 1 + di : 1 + di + nx]
-            better = neighbour > highest
-            highest[better] = neighbour[better]
-            target[better] = own[better] + dj * nx + di
-    flat = target.ravel()
+            np.copyto(offset, dj * nx + di, where=neighbour > highest)
+            np.maximum(highest, neighbour, out=highest)
+    target = np.arange(z.size) + offset.ravel()
     while True:  # each round doubles the steps taken
-        further = flat[flat]
-        if np.array_equal(further, flat):
-            return flat
-        flat = further
+        further = target[target]
+        if np.array_equal(further, target):
+            return target
+        target = further
 
 
-def _joined(index: NDArray[np.int64], z: Floats, peaks: Floats, least: float) -> NDArray[np.int64]:
-    """Which basins are one particle: saddles from the highest down, a peak that stands too little above one joins."""
-    pairs, saddles = [], []
+def _saddles(index: NDArray[np.int64], z: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
+    """Pairs of basins that meet, and the highest place where they do, highest first."""
+    keys, heights = [], []
+    count = int(index.max()) + 1
     for dj, di in ((0, 1), (1, 0), (1, 1), (1, -1)):
         here = (slice(None, -dj or None), slice(max(-di, 0), -di if di > 0 else None))
         there = (slice(dj, None), slice(max(di, 0), di if di < 0 else None))
         near, far = index[here], index[there]
         meet = (near != far) & (near >= 0) & (far >= 0)
-        pairs.append(np.stack([near[meet], far[meet]], axis=1))
-        saddles.append(np.minimum(z[here][meet], z[there][meet]))
-    pair, saddle = np.concatenate(pairs), np.concatenate(saddles)
+        one, other = near[meet], far[meet]
+        keys.append(np.minimum(one, other) * count + np.maximum(one, other))
+        heights.append(np.minimum(z[here][meet], z[there][meet]))
+    pairs, which = np.unique(np.concatenate(keys), return_inverse=True)
+    saddle = np.full(len(pairs), -np.inf)
+    np.maximum.at(saddle, which, np.concatenate(heights))
+    order = np.argsort(-saddle, kind="stable")
+    low, high = np.divmod(pairs[order], count)
+    return low, high, saddle[order]
+
+
+def _joined(index: NDArray[np.int64], z: Floats, peaks: Floats, least: float) -> NDArray[np.int64]:
+    """Which basins are one particle: saddles from the highest down, a peak that stands too little above one joins."""
     parent = list(range(len(peaks)))
 
     def top(k: int) -> int:
@@ -250,8 +261,7 @@ def _joined(index: NDArray[np.int64], z: Floats, peaks: Floats, least: float) ->
             k = parent[k]
         return k
 
-    order = np.argsort(-saddle, kind="stable")
-    for (one, other), height in zip(pair[order].tolist(), saddle[order].tolist(), strict=True):
+    for one, other, height in zip(*(column.tolist() for column in _saddles(index, z)), strict=True):
         a, b = top(one), top(other)
         low, high = (a, b) if peaks[a] < peaks[b] else (b, a)
         if a != b and peaks[low] - height < max(_SADDLE * peaks[low], least):
@@ -262,13 +272,11 @@ def _joined(index: NDArray[np.int64], z: Floats, peaks: Floats, least: float) ->
 def _numbered(over: Floats, labels: NDArray[np.int32], smallest: int) -> NDArray[np.int32]:
     """Numbers from 1 by falling height; 0 for particles of fewer than `smallest` pixels."""
     inside = np.flatnonzero(labels)
-    found, which = np.unique(labels.ravel()[inside], return_inverse=True)
-    if not found.size:
-        return np.zeros(labels.shape, np.int32)
-    top = np.full(found.size, -np.inf)
+    which = labels.ravel()[inside]
+    top = np.full(int(which.max(initial=0)) + 1, -np.inf)
     np.maximum.at(top, which, over.ravel()[inside])
-    keep = np.bincount(which) >= smallest
-    number = np.zeros(found.size, np.int32)
+    keep = np.bincount(which, minlength=len(top)) >= smallest
+    number = np.zeros(len(top), np.int32)
     order = np.argsort(np.where(keep, -top, np.inf), kind="stable")[: np.count_nonzero(keep)]
     number[order] = np.arange(1, len(order) + 1)
     out = np.zeros(labels.size, np.int32)
