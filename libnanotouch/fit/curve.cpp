@@ -94,6 +94,7 @@ class Curve
     void let_vary(nt_fit_options *options) const;
     void know(nt_fit_options *options, nt_fit_parameter parameter, double value, double sigma) const;
     nt_status run();
+    nt_status run_with_scatter();
     nt_status contradicts_tear(bool *contradicts) const;
     nt_status solve();
     bool is_exact() const;
@@ -165,6 +166,18 @@ bool Curve::is_exact() const
     return solution_.scatter < computed * fitted_.largest();
 }
 
+// With the noise from point to point; then once more with the scatter that was found.
+nt_status Curve::run_with_scatter()
+{
+    const nt_status status = run();
+    double *noise = &solution_.options.force_noise;
+    const bool as_known = std::fabs(solution_.scatter / branch_.noise - 1.0) <= as_given;
+    if (status != NT_OK || is_exact() || *noise == 0.0 || as_known)
+        return status;
+    *noise = solution_.scatter;
+    return run();
+}
+
 nt_status Curve::solve()
 {
     nt_fit_options &options = solution_.options;
@@ -174,19 +187,15 @@ nt_status Curve::solve()
         options.loss_scale = std::max(loss_scale * outcome_.reading.noise, least_loss_scale);
     if (branch_.noise > computed * fitted_.largest())
         let_vary(&options);
-    nt_status status = run();
+    nt_status status = run_with_scatter();
     bool contradicts = false;
     if (status == NT_OK)
         status = contradicts_tear(&contradicts);
-    if (contradicts) {
-        options.tear_sigma = 0.0;
-        status = run();
-    }
-    const bool enough = std::fabs(solution_.scatter / branch_.noise - 1.0) < as_given;
-    if (status != NT_OK || is_exact() || options.force_noise == 0.0 || enough)
+    if (!contradicts)
         return status;
-    options.force_noise = solution_.scatter;
-    return run();
+    options.tear_sigma = 0.0;
+    options.force_noise = branch_.noise;
+    return run_with_scatter();
 }
 
 // How far before the tear the model is only a straight continuation [m]; 0 where the tear is not used.

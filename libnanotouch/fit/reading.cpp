@@ -27,6 +27,7 @@ constexpr int weightings = 10;       // at most
 constexpr double settled = 1e-3;     // of the scatter, by which the line may still move
 constexpr std::size_t blocks = 10;   // whose means show the correlation of the residuals
 constexpr double wavy = 5.0;         // of white noise the correlation is 1 +- 0.45
+constexpr double end_part = 0.1;     // of the travel, beyond which no baseline is left to judge a point by
 constexpr std::size_t neighbours = 5;
 constexpr double before_tear = 0.5, after_tear = 0.25; // of the depth: a tear leads past both within two points
 constexpr double largest_value = 1.0;                  // m or N: beyond, the unit is surely not SI
@@ -201,15 +202,18 @@ double Branch::sigma(double at) const
 
 std::size_t Branch::lowest() const
 {
-    return static_cast<std::size_t>(std::min_element(force.begin(), force.end()) - force.begin());
+    const double end = z.back() - end_part * (z.back() - z.front());
+    const auto inner = std::lower_bound(z.begin(), z.end(), end) - z.begin();
+    return static_cast<std::size_t>(std::min_element(force.begin(), force.begin() + inner) - force.begin());
 }
 
 bool Branch::dips() const
 {
-    if (-force[lowest()] > visible())
+    const std::size_t deepest = lowest(), end = std::min(deepest + neighbours, force.size());
+    if (-force[deepest] > visible())
         return true;
     double smallest = 0.0;
-    for (std::size_t i = 0; i + neighbours <= force.size(); i++) {
+    for (std::size_t i = 0; i + neighbours <= end; i++) {
         const auto start = force.begin() + static_cast<std::ptrdiff_t>(i);
         const double sum = std::accumulate(start, start + static_cast<std::ptrdiff_t>(neighbours), 0.0);
         smallest = std::min(smallest, sum / double(neighbours));

@@ -24,7 +24,7 @@ def analyse(curve: ForceCurve, *, baseline: Kind = "auto") -> CurveReport:
     ----------
     curve : ForceCurve
         With force in its segments; an approach, a retraction or both.
-    baseline : {"auto", "line", "wave", "constant"}
+    baseline : {"auto", "line", "wave", "constant"} or (float, float)
         What the free cantilever shows: a line, with a wave of interference where there is very strong evidence for
         one. ``"constant"`` takes the median of the far half and leaves the tilt in, as many published values do.
 

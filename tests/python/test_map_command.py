@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch map``: on a NanoScope force volume with a known answer."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from nanotouch_app.main import main
+from synthetic import write_nanoscope
+
+pytest.importorskip("nanotouch._fit", reason="built without Ceres")
+pytest.importorskip("xarray")
+pytest.importorskip("h5netcdf")
+pytest.importorskip("matplotlib")
+
+from nanotouch import maps
+
+RAMP, SENSITIVITY, STIFFNESS = 300e-9, 41e-9, 0.5  # m, m/V, N/m
+KNOWN = ["--model", "dmt", "--radius", "20nm", "--spring-constant", "0.5N/m"]
+
+
+@pytest.fixture
+def volume_file(tmp_path: Path) -> Path:
+    """2 x 2 curves of one contact, more adhesive in the second row; both directions as stored, deepest first."""
+    sample = maps.synthesise(
+        np.full((2, 2), 1e8), np.array([[0.01], [0.02]]), radius=20e-9, spring_constant=STIFFNESS, depth=20e-9,
+        clearance=RAMP - 20e-9, points=600, noise=20e-12, model="dmt",
+    )  # fmt: skip
+    volts = sample.values / STIFFNESS / SENSITIVITY
+    curves = [(curve[:600][::-1], curve[600:]) for curve in volts.reshape(4, 1200)]
+    return write_nanoscope(tmp_path / "volume.000", curves, ramp=RAMP, sensitivity=SENSITIVITY)
+
+
+def test_leaves_the_map_a_picture_and_a_summary(
+    volume_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["map", str(volume_file), *KNOWN, "--out", str(out)]) == 0
+    assert sorted(path.name for path in out.iterdir()) == ["map.json", "map.nc", "map.png"]
+    data = maps.read(out / "map.nc")
+    assert data.effective_modulus.shape == (2, 2)
+    assert data.work_of_adhesion.values == pytest.approx(np.array([[0.01, 0.01], [0.02, 0.02]]), rel=0.15)
+    found = json.loads((out / "map.json").read_text())
+    assert found["quantities"]["pull_off_force"]["unit"] == "N"
+    assert found["calibration"]["spring_constant"] == STIFFNESS
+    assert found["curves_without_result"] == 0
+    said = capsys.readouterr().out
+    assert "2 x 2 curves, 4 fitted" in said
+    assert "effective_modulus" in said
+
+
+def test_goes_on_from_what_a_stopped_run_left(
+    volume_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+
+    def stop(*_: Any, **__: Any) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("nanotouch.maps.write", stop)
+        assert main(["map", str(volume_file), *KNOWN, "--out", str(out)]) == 130
+    assert len(list((out / "map.blocks").glob("block-*.npz"))) == 1
+    other = [*KNOWN[:3], "30nm", *KNOWN[4:]]
+    assert main(["map", str(volume_file), *other, "--out", str(out)]) == 2
+    assert "radius" in capsys.readouterr().err
+    assert main(["map", str(volume_file), *other, "--out", str(out), "--restart"]) == 0
+    assert not (out / "map.blocks").exists()
+
+
+def test_names_the_extra_that_is_missing(
+    volume_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "h5netcdf", None)
+    assert main(["map", str(volume_file), *KNOWN, "--out", str(tmp_path / "out")]) == 2
+    assert "nanotouch[maps]" in capsys.readouterr().err
+
+
+def test_a_file_that_is_no_map_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "notes.txt").write_text("a good day")
+    assert main(["map", str(tmp_path / "notes.txt"), "--out", str(tmp_path / "out")]) == 2
+    assert "notes.txt" in capsys.readouterr().err
