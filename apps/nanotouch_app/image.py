@@ -155,7 +155,7 @@ def _without_tip(
         radius = float("inf") if flat else estimate.radius(max(height, float(shape[shape > 0].min())))
         state = "" if estimate.converged else ", not settled"
         print(
-            f"tip from the image: at most {_nm(radius)} blunt at the apex, from {estimate.points} points over "
+            f"tip from the image: radius of the apex at most {_nm(radius)}, from {estimate.points} points over "
             f"{_nm(estimate.threshold)} of noise{state}"
         )
         facts["tip"] = {"radius_at_most_m": None if flat else radius, "threshold_m": estimate.threshold}
