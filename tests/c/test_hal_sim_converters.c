@@ -214,6 +214,55 @@ static void both_models_tell_the_same(void **state)
     assert_true(deepest > 50e-9 && apart <= 10);
 }
 
+/* What is left of the energy of a tip that is kicked, over its rest, while adhesion holds it under tension; after 50
+ * us. */
+static double energy_left_in_tension(double viscosity)
+{
+    nt_rig rig = ideal_rig();
+    rig.probe.quality = 1e6;
+    rig.probe.contact_viscosity = viscosity;
+    rig.stage.stiffness = 1e12;
+    rig.stage.quality = 0.5;
+    const nt_sim_setup setup = {
+        .plan = &plan, .rig = &rig, .period = 1e-6, .clearance = 5e-9, .probe_model = NT_PROBE_QUASI_STATIC};
+    static nt_sim sim;
+    assert_int_equal(nt_sim_init(&sim, &setup), NT_OK);
+    for (int i = 0; i < 40000; i++) { /* touch, and draw back until it pulls by half of what it can */
+        const nt_command command = {.stage_position = i < 20000 ? 7e-9 : 4e-9};
+        assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
+    }
+    const double rest = 0.5 * rig.probe.spring_constant * sim.cantilever.deflection * sim.cantilever.deflection;
+    const double floor = rest + sim.truth.energy, mass = nt_probe_effective_mass(&rig.probe);
+    assert_true(sim.truth.tip_force < -0.2 * plan.pull_off_force && sim.truth.contact_radius > 0.0);
+    assert_int_equal(nt_cantilever_model_init(&sim.cantilever_model, &rig.probe, 1e-6, 0.25), NT_OK);
+    sim.dynamic = 1;
+    sim.cantilever.speed = 1e-5;
+    const double kick = 0.5 * mass * 1e-10;
+    double before = kick;
+    for (int i = 0; i < 50; i++) {
+        const nt_command stay = {.stage_position = 4e-9};
+        assert_int_equal(nt_sim_write(&sim, &stay), NT_OK);
+        const nt_cantilever_state *now = &sim.cantilever;
+        const double energy = 0.5 * mass * now->speed * now->speed +
+                              0.5 * rig.probe.spring_constant * now->deflection * now->deflection + sim.truth.energy -
+                              floor;
+        assert_true(energy < before + 1e-3 * kick); /* the table's U and F agree to 1e-6 of them; kick is 1e-3 of U */
+        before = energy;
+    }
+    return before / kick;
+}
+
+/* 2 eta a takes energy under tension, too, and without it none is lost. */
+static void contact_damping_works_in_tension(void **state)
+{
+    (void)state;
+    const double free = energy_left_in_tension(0.0), thin = energy_left_in_tension(10.0);
+    const double thick = energy_left_in_tension(200.0);
+    print_message("energy left: %.4f without, %.4f and %.4f with viscosity\n", free, thin, thick);
+    assert_true(fabs(free - 1.0) < 1e-3);
+    assert_true(thin < 0.96 && fabs(log(thick) / log(thin) / 20.0 - 1.0) < 0.1); /* e^(-2 eta a t/m) */
+}
+
 /* The paper's rig in air is quasi-static; in vacuum, or with a slow lever, it is not. */
 static void the_model_is_chosen_by_its_error(void **state)
 {
@@ -240,6 +289,7 @@ int main(void)
         cmocka_unit_test(without_a_gauge_nothing_is_said),
         cmocka_unit_test(the_probe_trembles_in_air),
         cmocka_unit_test(both_models_tell_the_same),
+        cmocka_unit_test(contact_damping_works_in_tension),
         cmocka_unit_test(the_model_is_chosen_by_its_error),
     };
     return cmocka_run_group_tests(tests, make_plan, NULL);
