@@ -15,9 +15,8 @@ from nanotouch.errors import require
 from nanotouch.margins import Margins, Resolution
 from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION
 from nanotouch.record import replacing, write_csv
-from nanotouch.session import MODES
 from nanotouch.scene import read_tables
-from nanotouch.session import INDENTATION_RANGE, settings_for_path
+from nanotouch.session import INDENTATION_RANGE, MODES, settings_for_path
 
 from nanotouch_app import output, stability
 from nanotouch_app.quantity import parse_quantity
