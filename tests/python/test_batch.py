@@ -48,6 +48,7 @@ def test_one_row_for_each_curve_and_bad_files_do_not_stop_it(folder: Path, tmp_p
     one = nt.fit.fit_curve(nt.curves.read(folder / "a.ibw")[0], "jkr", **RADIUS)
     assert float(rows[0]["work_of_adhesion [J/m^2]"]) == one.values["work_of_adhesion"]
     assert float(rows[0]["work_of_adhesion sigma [J/m^2]"]) == one.sigma["work_of_adhesion"]
+    assert float(rows[0]["contact_point sigma calibration [m]"]) == one.sigma_calibration["contact_point"]
     assert bool(int(rows[0]["effective_modulus determined"])) == one.identifiable["effective_modulus"]
     assert rows[0]["notes"] == "; ".join(one.notes)
     stored = json.loads((tmp_path / "results.csv.json").read_text())
@@ -87,7 +88,7 @@ def test_a_run_that_was_killed_in_a_line_goes_on(folder: Path, tmp_path: Path) -
 
 def test_other_settings_are_refused(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "results.csv"
-    batch.fit_files([folder / "a.ibw"], out, "jkr", **RADIUS)
+    batch.fit_files([folder / "a.ibw"], out, "jkr", uncertainties=nt.fit.Uncertainties(radius=0.1), **RADIUS)
     with pytest.raises(nt.errors.InvalidValue, match="settings"):
         batch.fit_files([folder / "a.ibw"], out, "dmt", **RADIUS)
 

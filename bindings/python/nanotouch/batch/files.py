@@ -220,6 +220,8 @@ def _row(file: Path, index: int, result: FitResult, decision: Decision) -> Row:
     for name, value in result.values.items():
         unit = result.units[name]
         row |= {_headed(name, unit): value, _headed(f"{name} sigma", unit): result.sigma[name]}
+        row[_headed(f"{name} sigma statistical", unit)] = result.sigma_statistical[name]
+        row[_headed(f"{name} sigma calibration", unit)] = result.sigma_calibration[name]
         if name in result.identifiable:
             row[f"{name} determined"] = int(result.identifiable[name])
     for name, unit in _READ_OFF.items():
@@ -253,4 +255,4 @@ def _write_csv(path: Path, rows: list[Row]) -> None:
 
 def _write_json(path: Path, data: Mapping[str, Any]) -> None:
     with replacing(path) as part:
-        part.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
+        part.write_text(json.dumps(data, indent=2, default=str) + "\n", encoding="utf-8")

@@ -31,7 +31,7 @@ class Journal:
     def __init__(self, path: Path, manifest: Mapping[str, Any]) -> None:
         self.path = path
         self.entries: dict[str, dict[str, Any]] = {}
-        wanted = json.loads(json.dumps(manifest))
+        wanted = json.loads(json.dumps(manifest, default=str))
         lines = self._lines()
         if lines and lines[0] != wanted:
             different = ", ".join(
