@@ -69,7 +69,9 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
         .force_noise = hypot((1.0 + K_f) * gains->alpha_f * nt_probe_force_noise(&rig->probe),
                              K_f * filtered_gauge_noise(&rig->master, gains)),
     };
-    margins.stability_limit = rig->master.damping / margins.loop_delay; /* R1 */
+    /* R1. Above its corner the stage's integral g lifts C by 1 + g times the lag that it sees. */
+    const double lift = 1.0 + gains->stage_integral * (margins.loop_delay - hop_delay(rig, gains));
+    margins.stability_limit = rig->master.damping / (margins.loop_delay * lift);
     margins.margin = margins.stability_limit / margins.loop_stiffness;
     const double servo = gains->height_gain * k_r / (gains->alpha_f * gains->alpha_p * rig->probe.spring_constant) *
                          (margins.loop_delay - hop_delay(rig, gains)); /* integral gain times lag */

@@ -36,7 +36,7 @@ class Margins(NamedTuple):
     loop_delay: float
     """D: two hops of hold and dead time, and the stage's lag [s]"""
     stability_limit: float
-    """R1: kappa up to which the loop is passive, b_m/D [N/m]"""
+    """R1: kappa up to which the loop is passive, b_m/D less what the stage's integral costs [N/m]"""
     margin: float
     """R1: limit over stiffness"""
     pad_limit: float
@@ -87,8 +87,7 @@ def compute(rig: Rig, settings: Settings, contact_stiffness: float, mode: Mode =
     rig.check()
     settings.check()
     found: dict[str, Any] = _core.margins(rig.core, settings.core, contact_stiffness, core_mode(mode))
-    gain = 1.0 + found.pop("force_gain")
-    damping = found["stability_limit"] * found["loop_delay"]
+    gain, damping = 1.0 + found.pop("force_gain"), found.pop("damping")
     band = np.geomspace(0.1, 1.0, 30) * min(HAND_BAND, 0.5 * settings.gains.rate)
     return Margins(
         **found,

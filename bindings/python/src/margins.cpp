@@ -28,6 +28,7 @@ static py::dict margins(const Rig &rig, const Settings &settings, double stiffne
     out["least"] = verdict.margin;
     out["rule"] = verdict.rule;
     out["force_gain"] = shape.gains.force_gain;
+    out["damping"] = shape.rig.master.damping;
     return out;
 }
 

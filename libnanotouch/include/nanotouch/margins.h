@@ -15,7 +15,7 @@ extern "C" {
 typedef struct nt_margins {
     double loop_stiffness;    /* kappa = (1 + K_f) alpha_f alpha_p k_eff at the stiffest contact [N/m] */
     double loop_delay;        /* D = 2 (T/2 + dead time) + tau_stage [s] */
-    double stability_limit;   /* R1: b_m/D [N/m] */
+    double stability_limit;   /* R1: b_m/D, less what the stage's integral costs [N/m] */
     double margin;            /* stability_limit/loop_stiffness [-]; 1 is the limit */
     double pad_limit;         /* R2: K_f at which a pad b_h on the gauge oscillates, f_m unfiltered [-] */
     double mass_limit;        /* R3: K_f at which a finger m_h rigidly on the gauge does, f_m unfiltered [-] */
