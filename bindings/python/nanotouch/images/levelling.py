@@ -230,7 +230,7 @@ class _Job:
             self._take_out_background(*self.background)
 
     def _rows_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
-        lasting = f"{np.ptp(found.kept) * 1e9:.3g} nm that last along y were kept"
+        lasting = f"{found.lasting * 1e9:.3g} nm that last along y were kept"
         if found.jumps:
             lasting += f", with {found.jumps} steps across whole rows up to {found.highest_jump * 1e9:.4g} nm"
         if found.period is not None:
@@ -248,7 +248,7 @@ class _Job:
         return f"offsets of rows; {lasting}", ""
 
     def _medians_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
-        rms, lasting = float(np.nanstd(self.strips)), float(np.ptp(found.kept))
+        rms, lasting = float(np.nanstd(self.strips)), found.lasting
         note = f"the median of every row, {lasting * 1e9:.4g} nm of it lasting along y"
         if found.period is not None:
             what = f"a grating along the fast axis of {found.period:.3g} rows, {found.wave * 1e9:.4g} nm high"

@@ -35,12 +35,10 @@ class RowProfile:
 
     Attributes
     ----------
-    profile : ndarray, shape (ny,)
-        Height of each row against the first [m].
     offsets : ndarray, shape (ny,)
         The part taken for offsets [m]; 0 everywhere if `agreed` is False or `period` is not None.
-    kept : ndarray, shape (ny,)
-        The part that lasts: steps, slopes, waves [m].
+    lasting : float
+        Range of the part that lasts: steps, slopes, waves [m].
     jumps : int
         Steps across whole rows in the kept part.
     highest_jump : float
@@ -52,14 +50,13 @@ class RowProfile:
     period : float or None
         Of a fine grating along the rows [row], if the test found one.
     wave : float
-        Range of the profile, all of which an alignment of every row would erase [m].
+        Range of the means of the rows, all of which an alignment of every row would erase [m].
     agreed : bool
         Whether both halves of the image show the same offsets.
     """
 
-    profile: Floats
     offsets: Floats
-    kept: Floats
+    lasting: float
     jumps: int
     highest_jump: float
     single: tuple[int, ...]
@@ -85,22 +82,21 @@ def analyse(strips: Floats) -> RowProfile:
     power = float(np.sqrt((left @ left) * (right @ right)))
     agreed = power > len(profile) * rounding**2 and left @ right >= max(_AGREED, 4.0 / np.sqrt(len(profile))) * power
     period = _period(offsets) if agreed else None
-    wave = float(np.ptp(profile))
     if not agreed or period is not None:
-        kept, offsets = profile, np.zeros_like(profile)
+        offsets = np.zeros_like(profile)
+    means = _means(strips)  # the profile is a sum of ny medians, whose errors add up
     within = MAD * middle(np.abs(steps[np.isfinite(steps)]))
     jumps = _runs(np.diff(guide), max(_FAR * spread, _FAR * within, 1e-3 * float(np.ptp(profile))))
     far = np.flatnonzero(np.abs(offsets) > _FAR * spread)
     return RowProfile(
-        profile,
         offsets,
-        kept,
+        float(np.ptp(_local_lines(means, weights))),
         len(jumps),
         max(map(abs, jumps), default=0.0),
         tuple(int(j) for j in far),
         float(np.abs(offsets[far]).max(initial=0.0)),
         period,
-        wave,
+        float(np.ptp(means)),
         bool(agreed),
     )
 
@@ -189,6 +185,14 @@ def _runs(steps: Floats, least: float) -> list[float]:
             found.append(float(total))
         total = float(step) if counts else 0.0
     return found
+
+
+def _means(strips: Floats) -> Floats:
+    """Mean of each row [m]; where none of it is known, between its neighbours'."""
+    known = np.isfinite(strips)
+    count, row = known.sum(axis=1), np.arange(len(strips))
+    total = np.where(known, strips, 0.0).sum(axis=1)
+    return np.asarray(np.interp(row, row[count > 0], total[count > 0] / count[count > 0]))
 
 
 def medians(strips: Floats) -> Floats:
