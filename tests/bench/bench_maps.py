@@ -74,11 +74,11 @@ def alone(volume: maps.ArrayVolume, model: str) -> None:
 def measured(path: str) -> None:
     """Reading and fitting of a file."""
     curves.read(path)
-    read, _ = seconds(lambda: curves.read(path), 3)
+    _, read = seconds(lambda: curves.read(path), 3)
     volume = maps.CurveVolume.of(curves.read(path), path)
-    fitted, _ = seconds(lambda: maps.fit(volume, "dmt", radius=RADIUS), 3)
+    _, fitted = seconds(lambda: maps.fit(volume, "dmt", radius=RADIUS), 3)
     count = len(volume.places)
-    print(f"{path}: {count} curves, reading {1e3 * read / count:.2f} ms/curve, fitting {1e3 * fitted / count:.2f}")
+    print(f"{path}: {count} curves, CPU ms/curve: reading {1e3 * read / count:.2f}, fitting {1e3 * fitted / count:.2f}")
 
 
 if __name__ == "__main__":

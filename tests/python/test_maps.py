@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -200,6 +201,25 @@ def test_a_picture_shows_all_of_it(tmp_path: Path) -> None:
     assert (tmp_path / "map.png").stat().st_size > 20_000
     with pytest.raises(nt.errors.InvalidValue, match="nonsense"):
         maps.draw(data, ("nonsense",))
+
+
+def test_dask_is_needed_for_clusters_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("dask", "distributed"):
+        monkeypatch.setitem(sys.modules, module, None)
+    source = volume(2)
+    assert maps.fit(source, "hertz", radius=20e-9).attrs["curves_without_result"] == 0
+    with pytest.raises(nt.errors.MissingExtra, match=r"distributed.*nanotouch\[maps\]"):
+        maps.fit(source, "hertz", radius=20e-9, cluster="local")
+
+
+def test_laws_in_python_are_refused() -> None:
+    law = nt.fit.Model(
+        "punch_of_maps", lambda delta, radius, modulus: 2.0 * modulus * radius * delta.clip(0),
+        (nt.fit.Parameter("effective_modulus", "Pa", 1e3, 1e12),), valid="flat punch",
+    )  # fmt: skip
+    nt.fit.register(law)
+    with pytest.raises(nt.errors.InvalidValue, match="punch_of_maps"):
+        maps.fit(volume(2), "punch_of_maps", radius=20e-9)
 
 
 def test_what_cannot_be_a_map_is_refused_in_one_sentence() -> None:
