@@ -66,6 +66,7 @@ set(nanotouch_sources_scene
     scene/facts.c
     scene/interaction.c
     scene/laws.c
+  scene/local.c
     scene/options.c
     scene/plan.c
     scene/scene.c
@@ -86,6 +87,7 @@ set(nanotouch_sources_control
     control/margins.c
     control/modes.c
     control/motor.c
+    control/paper_stage.c
     control/passivity.c
     control/preflight.c
     control/requests.c

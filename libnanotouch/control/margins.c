@@ -112,7 +112,9 @@ nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, doub
     if (mode != NT_MODE_TOUCH)
         return (nt_verdict){margins->height_margin, "height servo"};
     const double coupling = nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness, margins->loop_delay);
-    return judge_touch(margins, &shape.rig, &shape.gains, coupling);
+    const nt_verdict stage = {nt_servo_stage_margin(rig, settings), "stage of Eq. 17"};
+    const nt_verdict touch = judge_touch(margins, &shape.rig, &shape.gains, coupling);
+    return stage.margin >= touch.margin ? touch : stage;
 }
 
 nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, double slave_path)

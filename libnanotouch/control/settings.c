@@ -62,7 +62,7 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
                   .force_filter = 200.0,
                   .stage_damping = 0.7,
                   .stage_integral = 60.0,
-                  .stage_proportional = 10.0,
+                  .stage_proportional = 0.5,
                   .ramp_time = 0.1,
                   .set_point = fmin(0.1e-6, 0.1 * saturation),
                   .height_gain = 300.0,

@@ -170,6 +170,31 @@ static void a_coupling_softens_every_contact(void **state)
     assert_true(fabs(1.0 / felt - (1.0 / (scale * k_c) + 1.0 / 300.0)) < 1e-9 / felt);
 }
 
+/* The stage of Eq. 17 (450 Hz, Q = 20): the largest K_p without K_v, as eigenvalues of the sampled loop give it, and
+ * that a delay of one period costs most of it. */
+static void the_papers_stage_has_its_own_limit(void **state)
+{
+    (void)state;
+    static const struct {
+        double period, delay, most, tolerance;
+    } cases[] = {{3e-3, 0.0, 0.30, 0.01}, {1e-3, 0.0, 0.07, 0.02}, {0.1e-3, 1.0, 0.1, 0.1}};
+    const nt_rig rig = nt_rig_defaults();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        nt_settings settings = nt_settings_defaults(&rig);
+        settings.control.choice = NT_CONTROL_PAPER;
+        settings.gains.rate = 1.0 / cases[i].period;
+        settings.gains.delay = cases[i].delay;
+        settings.gains.stage_proportional = 1.0;
+        const double found = nt_servo_stage_margin(&rig, &settings);
+        print_message("T %.1f ms, d %.0f: K_p < %.3f\n", 1e3 * cases[i].period, cases[i].delay, found);
+        assert_true(fabs(found - cases[i].most) < cases[i].tolerance);
+        settings.gains.stage_proportional = 10.0;
+        assert_true(fabs(nt_servo_stage_margin(&rig, &settings) - 0.1 * found) < 0.003 * found);
+    }
+    nt_settings settings = nt_settings_defaults(&rig);
+    assert_true(isinf(nt_servo_stage_margin(&rig, &settings)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -180,6 +205,7 @@ int main(void)
         cmocka_unit_test(a_thousand_gain_sets_come_to_rest_at_the_scaled_force),
         cmocka_unit_test(a_shape_is_what_the_rules_need),
         cmocka_unit_test(a_coupling_softens_every_contact),
+        cmocka_unit_test(the_papers_stage_has_its_own_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,6 +64,9 @@ NT_API nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *se
  * no observer sees it; infinite without a coupling. */
 NT_API double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
                                        double delay);
+/* By what K_p and K_v of the paper's law may be multiplied until the stage oscillates by itself; infinite for the other
+ * laws. Some milliseconds. */
+NT_API double nt_servo_stage_margin(const nt_rig *rig, const nt_settings *settings);
 
 #ifdef __cplusplus
 }
