@@ -26,6 +26,14 @@ def add_parser(subparsers: Any) -> None:
         help="force curve file (JPK, Asylum .ibw, ...); or files, folders, patterns",
     )
     add_knowledge(parser)
+    parser.add_argument(
+        "--compare",
+        action="store_true",
+        help="also fit the other laws to the same points, and say which one the curve prefers",
+    )
+    parser.add_argument(
+        "--stability", action="store_true", help="also draw the modulus over the depth to which the curve is fitted"
+    )
     parser.add_argument("--index", type=int, default=0, metavar="N", help="which curve of a map (default: %(default)s)")
     parser.add_argument(
         "--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand, for a table"
@@ -41,6 +49,11 @@ def add_knowledge(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--model", choices=fitting.models(), default="maugis", help="default: %(default)s")
     parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract for adhesive models")
     parser.add_argument("--radius", metavar="LENGTH", help="tip radius, as 20nm")
+    parser.add_argument("--half-angle", metavar="ANGLE", help="of cone (flank) and pyramid (face), as 20deg")
+    parser.add_argument(
+        "--known-to", action="append", default=[], metavar="WHAT=PERCENT", type=_uncertainty,
+        help="standard uncertainty of sensitivity (3 without this), spring_constant or radius, as spring_constant=10",
+    )  # fmt: skip
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
     parser.add_argument(
         "--sensitivity", metavar="SENSITIVITY", help="deflection sensitivity in place of the file's, as 40nm/V"
@@ -60,21 +73,44 @@ def add_knowledge(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     if fit_many.is_meant(args):
+        if args.compare or args.stability:
+            raise InvalidValue("--compare and --stability look at one curve: name one file")
         return fit_many.run(args, reading(args), knowledge(args))
     file = args.curve[0]
     found = curves.read(file, **reading(args))
     if not 0 <= args.index < len(found):
         raise InvalidValue(f"--index {args.index}: {file} holds the curves 0 .. {len(found) - 1}")
     curve = found[args.index]
-    result = fitting.fit_curve(curve, args.model, branch=args.branch, **knowledge(args))
+    known = knowledge(args)
+    result = fitting.fit_curve(curve, args.model, branch=args.branch, **known)
     out = output.folder(args.out)
+    written = ["fit.json", "fit.png"]
     output.write_json(out / "fit.json", as_json(result))
     fitting.draw(curve, result, save=out / "fit.png")
+    if args.stability:
+        fitting.stability(curve, args.model, branch=args.branch, **known).draw(save=out / "stability.png")
+        written.append("stability.png")
     if len(found) > 1:
         print(f"curve {args.index} of {len(found)}; --index N picks another")
     print(result)
-    print(f"written to {out}/: fit.json, fit.png")
+    if args.compare:
+        print(fitting.choose_model(curve, _rivals(args.model), branch=result.branch, **known))
+    print(f"written to {out}/: {', '.join(written)}")
     return 0
+
+
+def _rivals(model: str) -> tuple[str, ...]:
+    return (*fitting.PARABOLOIDS, *(() if model in fitting.PARABOLOIDS else (model,)))
+
+
+def _uncertainty(text: str) -> tuple[str, float]:
+    name, _, percent = text.partition("=")
+    if name not in ("sensitivity", "spring_constant", "radius"):
+        raise argparse.ArgumentTypeError(f"{name!r}: valid are sensitivity, spring_constant, radius")
+    try:
+        return name, float(percent) / 100.0
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: write it as {name}=10") from None
 
 
 def reading(args: argparse.Namespace) -> dict[str, Any]:
@@ -130,13 +166,16 @@ def _quantity(text: str | None, unit: str) -> float | None:
 def knowledge(args: argparse.Namespace) -> dict[str, Any]:
     """What the scene and the options say about tip and sample, as arguments of the fit."""
     radius = _quantity(args.radius, "m")
+    tools: dict[str, Any] = {"uncertainties": fitting.Uncertainties(**dict(args.known_to))}
+    if args.half_angle is not None:
+        tools["half_angle"] = parse_quantity(args.half_angle, "rad")
     if args.scene is None:
-        return {"radius": radius, "poisson_ratio": args.poisson_ratio}
+        return tools | {"radius": radius, "poisson_ratio": args.poisson_ratio}
     scene = nt.Scene.from_toml(args.scene)
     if radius is not None:
         scene.tip.radius = radius
     facts = scene.plan().explain()
-    known: dict[str, Any] = {"tip": scene.tip, "poisson_ratio": scene.sample.poisson_ratio}
+    known = tools | {"tip": scene.tip, "poisson_ratio": scene.sample.poisson_ratio}
     if args.poisson_ratio is not None:
         known["poisson_ratio"] = args.poisson_ratio
     if args.model == "maugis" and facts["cohesive_stress"] > 0.0:

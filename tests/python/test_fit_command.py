@@ -46,6 +46,22 @@ def test_scene_gives_tip_sample_and_adhesion(tmp_path: Path) -> None:
     assert not any(text.startswith("tip radius") for text in found["assumptions"])
 
 
+def test_compares_laws_and_draws_stability(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write_ibw_curve(tmp_path / "curve.ibw", known_curve())
+    out = tmp_path / "out"
+    options = ["--model", "pyramid", "--half-angle", "25deg", "--known-to", "spring_constant=10", "--compare"]
+    assert main(["fit", str(file), *options, "--stability", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    for part in ("by evidence:", "pyramid", "maugis", "spring constant to 10 %", "stability.png"):
+        assert part in said
+    assert (out / "stability.png").stat().st_size > 10_000
+    found = json.loads((out / "fit.json").read_text())
+    assert found["half_angle_rad"] == pytest.approx(0.43633, abs=1e-5)
+    assert (
+        found["sigma_calibration"]["effective_modulus"] is None or found["sigma_calibration"]["effective_modulus"] > 0
+    )
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -12,7 +12,7 @@ one that does not determine the modulus. How and why: docs/fit.md.
 """
 
 from .arrays import PointsFit, fit_points
-from .choice import Candidate, Choice, choose_model
+from .choice import PARABOLOIDS, Candidate, Choice, choose_model
 from .fitting import TipLike, fit_curve
 from .models import Model, Parameter, models, register
 from .picture import draw
@@ -21,6 +21,7 @@ from .stability import Stability, stability
 from .uncertainties import Uncertainties
 
 __all__ = [
+    "PARABOLOIDS",
     "Candidate",
     "Choice",
     "FitResult",
