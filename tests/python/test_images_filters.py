@@ -92,3 +92,26 @@ def test_mip_levels_of_the_usual_size() -> None:
     assert all(level.highest.max() == image.heights.max() for level in levels)
     with pytest.raises(InvalidValue, match="smallest"):
         images.mip_levels(image, 0)
+
+
+@pytest.mark.parametrize("masked", [True, False])
+def test_missing_heights_are_filled_and_everything_works_on_them(masked: bool) -> None:
+    """A third of a slope is missing, in one hole and scattered: filled smoothly, then levelled by what was measured."""
+    rng = np.random.default_rng(4)
+    slope = np.add.outer(2e-9 * np.arange(60), 1e-9 * np.arange(80))
+    hole = rng.random(slope.shape) < 0.2
+    hole[20:40, 30:60] = True
+    given = np.ma.array(slope, mask=hole) if masked else np.where(hole, np.nan, slope)
+    heights, mask = images.fill(given)
+    np.testing.assert_array_equal(mask, hole)
+    np.testing.assert_array_equal(heights[~hole], slope[~hole])
+    assert slope.min() <= heights.min()
+    assert heights.max() <= slope.max()
+    levelled, report = images.level(images.Topography(heights, PIXEL, mask=mask))
+    assert report.tilt == pytest.approx((1.0, 1e-9 / PIXEL[1]), rel=1e-9)
+    assert np.abs(levelled.heights[~hole]).max() < 1e-18
+    whole = slope.copy()
+    assert np.shares_memory(images.fill(whole)[0], whole)
+    for wrong in (np.full((5, 5), np.nan), np.zeros(5)):
+        with pytest.raises(InvalidValue, match="finite height"):
+            images.fill(wrong)

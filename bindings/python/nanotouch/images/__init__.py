@@ -8,6 +8,7 @@
 from .blind import TipEstimate, estimate_tip
 from .channel import Channel, Plane
 from .despeckling import DespeckleReport, despeckle
+from .filling import fill
 from .filters import gaussian, median
 from .levelling import LevelReport, LevelStep, level, prepare
 from .particles import GrainTable, grains
@@ -42,6 +43,7 @@ __all__ = [
     "draw",
     "erode",
     "estimate_tip",
+    "fill",
     "gaussian",
     "grains",
     "level",

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ReadError, require
+from ..errors import ReadError
+from .filling import fill
 from .topography import Topography
 
 SIDE_RANGE = (1e-9, 1e-3)  # scan size [m]
@@ -64,23 +65,10 @@ def check_scale(topography: Topography, file: Path) -> None:
 
 def filled(values: NDArray[np.float64], file: Path) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Fill missing (not finite) pixels by the mean of their known neighbours, from the rim of each hole inwards."""
-    missing = ~np.isfinite(values)
-    count = int(np.count_nonzero(missing))
+    count = int(np.count_nonzero(~np.isfinite(values)))
     if count > MAX_MISSING * values.size:
         raise ReadError(
             f"{file}: {100 * count / values.size:.3g} % of the pixels are missing (NaN); up to "
             f"{100 * MAX_MISSING:g} % are filled from their neighbours, crop the image instead"
         )
-    if count:
-        cv2 = require("cv2", "images")
-        todo = missing.copy()
-        values[todo] = 0.0  # OpenCV hides NaN, so none may reach it
-        while todo.any():
-            known = (~todo).astype(np.float64)
-            border = cv2.BORDER_CONSTANT
-            weight = cv2.boxFilter(known, -1, (3, 3), normalize=False, borderType=border)
-            total = cv2.boxFilter(values * known, -1, (3, 3), normalize=False, borderType=border)
-            rim = todo & (weight > 0.5)
-            values[rim] = total[rim] / weight[rim]
-            todo &= ~rim
-    return values, missing
+    return fill(values)

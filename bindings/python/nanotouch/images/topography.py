@@ -44,7 +44,7 @@ class Topography:
         if heights.ndim != 2 or min(heights.shape) < 4:
             raise InvalidValue(f"heights: shape {heights.shape}, expected two dimensions of at least 4 pixels each")
         if not np.isfinite(heights).all():
-            raise InvalidValue("heights: not finite everywhere; fill or crop missing pixels first")
+            raise InvalidValue("heights: not finite everywhere; fill missing pixels (nanotouch.images.fill) or crop")
         dy, dx = (float(d) for d in self.pixel_size)
         if not (0 < dy < np.inf and 0 < dx < np.inf):
             raise InvalidValue(f"pixel_size: ({dy:g}, {dx:g}) m, expected two positive lengths (dy, dx)")
