@@ -66,7 +66,6 @@ set(nanotouch_sources_scene
     scene/facts.c
     scene/interaction.c
     scene/laws.c
-  scene/local.c
     scene/options.c
     scene/plan.c
     scene/scene.c
