@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nanotouch.curves import ForceCurve, analyse
-from nanotouch.errors import SolverError
+from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.scene import Scene
 
 from .fitting import ASSUMED_RANGE, fit_curve
@@ -151,7 +151,11 @@ def choose_model(
     best = candidates[0]
     alike = [c for c in candidates if c.bic - best.bic < _DECISIVE]
     notes = _notes(closest, report.noise, alike)
-    by_plan, transition, errors = _planned(best.result, _range_of(options), rtol)
+    try:
+        by_plan, transition, errors = _planned(best.result, _range_of(options), rtol)
+    except InvalidValue as error:  # what was found is no scene: a modulus at its bound, for instance
+        by_plan, transition, errors = None, np.nan, {}
+        notes = (*notes, f"no choice by plan: {error}")
     return Choice(
         candidates=candidates,
         by_evidence=tuple(c.model for c in sorted(alike, key=lambda c: c.parameters)),

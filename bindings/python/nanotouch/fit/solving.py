@@ -222,5 +222,6 @@ def _refit(
         options.tear_sigma = solution.options.tear_sigma
     for i, parameter in enumerate(options.parameters[:_PLACES]):
         if parameter is not None and options.is_free(parameter[0]):
-            options.start(parameter[0], solution.found["value"][i])
+            bounds = setup.bounds.get(parameter[0], parameter[2:])
+            options.start(parameter[0], float(np.clip(solution.found["value"][i], *bounds)))  # off them by rounding
     return np.asarray(extension.run(options, -scaled.z, scaled.force)["value"])
