@@ -35,7 +35,7 @@ static const nt_field rig_fields[] = {
     FIELD(master.travel, "m", 1e-5, 1e1, "travel of the master between its end stops"),
     FIELD(master.resolution, "m", 0.0, 1e-2, "step of the master's position sensor, 0 for none"),
     FIELD(master.max_force, "N", 1e-3, 1e3, "motor limit, +- this"),
-    FIELD(master.gauge, "", 0.0, 1.0, "1: an operator force sensor is fitted, 0: none"),
+    FIELD(master.gauge, "no|yes", 0.0, 1.0, "whether an operator force sensor is fitted"),
     FIELD(master.gauge_range, "N", 1e-3, 1e3, "the strain gauge saturates at +- this"),
     FIELD(master.gauge_noise, "N", 0.0, 1e2, "standard deviation of the strain gauge"),
     FIELD(master.gauge_resolution, "N", 0.0, 1e2, "step of the strain gauge, 0 for none"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measure speed and accuracy of every contact model and tier on this machine, over lambda and load."""
+"""Measure speed and accuracy on this machine: every contact model and tier over lambda and load; and of the simulated
+rig over loop rate, probe model and sub-step."""
 
 from __future__ import annotations
 
@@ -11,15 +12,15 @@ from nanotouch.errors import InvalidValue, require
 from nanotouch.record import write_csv
 
 from nanotouch_app import output
-from nanotouch_app.tradeoff import drawing, errors, measure, page
+from nanotouch_app.tradeoff import drawing, errors, measure, page, plant
 
-FILES = ("tradeoff.csv", "tradeoff.png", "errormap.csv", "errormap.png")
+FILES = ("tradeoff.csv", "tradeoff.png", "errormap.csv", "errormap.png", "plant.csv")
 
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "tradeoff", help="measure the speed and accuracy of every contact model and tier", description=__doc__
+        "tradeoff", help="measure speed and accuracy of every contact model and tier", description=__doc__
     )
     parser.add_argument(
         "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
@@ -41,14 +42,18 @@ def run(args: argparse.Namespace) -> int:
         maps = measure.maps(args.quick, progress)
     with output.progress_bar("timing") as progress:
         rows = measure.trade(args.quick, progress)
+    with output.progress_bar("simulated rig") as progress:
+        ways = plant.trade(args.quick, progress)
     how = "nanotouch tradeoff" + (" --quick" if args.quick else "")
     comments = {"command": how, **{f"loads, {name}": words for name, words in errors.WORDS.items()}}
     write_csv(out / "tradeoff.csv", measure.trade_columns(rows), comments)
     write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
+    write_csv(out / "plant.csv", plant.columns(ways), {"command": how, "against": f"sub-step {plant.REFERENCE} rad"})
     drawing.save(drawing.trade(rows), out / "tradeoff.png")
     drawing.save(drawing.maps(maps), out / "errormap.png")
     if args.doc:
         page.write(args.doc, maps, rows)
     print(page.summary(rows))
+    print(plant.summary(ways))
     print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
     return 0

@@ -183,7 +183,7 @@ def heuristic_alpha_f(rig: Rig, span: ForceRange) -> float:
         raise InvalidValue(
             f"the force range {span.lowest:g} .. {span.highest:g} N is empty: highest must be above lowest"
         )
-    reach: float = min(rig.master.gauge_range, rig.master.max_force) if rig.master.gauge else rig.master.max_force
+    reach: float = min(rig.master.gauge_range, rig.master.max_force) if rig["master.gauge"] else rig.master.max_force
     return 2.0 * reach / (span.highest - span.lowest)
 
 

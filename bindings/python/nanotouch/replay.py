@@ -53,7 +53,7 @@ def replay(recording: Recording, control: Law | None = None) -> Recording:
 
 def _resolved(name: str, rig: Rig) -> str:
     """A rig without a gauge has another default."""
-    return "impedance" if name == "default" and rig.master.gauge == 0.0 else name
+    return "impedance" if name == "default" and rig["master.gauge"] == 0.0 else name
 
 
 def curve(recording: Recording) -> ForceCurve:
