@@ -200,6 +200,14 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for lam in measure.QUICK_LAMBDAS:  # measured about 200: a busy machine is not that busy for one of them alone
         assert at[lam, "moderate", "MD exact"][0] > 10.0 * at[lam, "moderate", "MD table"][0]
     assert "MD polished" in capsys.readouterr().out
+    headers, rows = read(tmp_path / "plant.csv")
+    assert all(header.endswith(("]", "(name)")) for header in headers)
+    cost = {(float(row[0]), row[1], float(row[2])): float(row[3]) for row in rows}
+    assert max(float(row[4]) for row in rows) < 1e-3  # pressed at rest: no sub-step and no model matters
+    for rate in (1e3, 1e4):  # measured 300 and 8: sub-steps are what the dynamic probe costs
+        at_rest = next(value for (at, probe, _), value in cost.items() if at == rate and probe == "quasi-static")
+        assert cost[rate, "dynamic", 0.25] > 10.0 * at_rest
+        assert cost[rate, "dynamic", 0.25] > 2.0 * cost[rate, "dynamic", 4.0]
 
 
 def test_map_of_the_command(tmp_path: Path) -> None:
