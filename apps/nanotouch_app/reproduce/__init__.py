@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compute the figures of the paper (5, 6, 9, 10, 11): a picture, a table, and which of its statements hold."""
+"""Compute the figures of the paper (5, 6, 9 to 11, 16 to 19): a picture, a table, and which of its statements hold."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from nanotouch_app import output
 from nanotouch_app.reproduce import drawing
 from nanotouch_app.reproduce.statement import Reproduction
 
-FIGURES = (5, 6, 9, 10, 11)
+FIGURES = (5, 6, 9, 10, 11, 16, 17, 18, 19)
 
 
 def add_parser(subparsers: Any) -> None:
@@ -24,7 +24,12 @@ def add_parser(subparsers: Any) -> None:
         "reproduce", help="compute the paper's figures and judge its statements", description=__doc__
     )
     parser.add_argument(
-        "--figure", nargs="+", type=int, default=FIGURES, metavar="N", help="which of 5, 6, 9, 10, 11 (default: all)"
+        "--figure",
+        nargs="+",
+        type=int,
+        default=FIGURES,
+        metavar="N",
+        help="which of 5, 6, 9 .. 11, 16 .. 19 (default: all)",
     )
     parser.add_argument(
         "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"

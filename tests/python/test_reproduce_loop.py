@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fig. 16 to 19 of ``nanotouch reproduce``: the numbers of their statements against closed forms and rules."""
+
+from __future__ import annotations
+
+import math
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch_app import reproduce
+from nanotouch_app.reproduce import figure16, figure17, figure18, touching
+from nanotouch_app.reproduce.statement import Statement
+
+pytest.importorskip("matplotlib")
+
+
+@pytest.fixture(scope="module")
+def statements() -> dict[int, list[Statement]]:
+    return {number: list(reproduce.reproduction(number).statements) for number in (16, 17, 18, 19)}
+
+
+def find(statements: list[Statement], start: str) -> Statement:
+    (found,) = [entry for entry in statements if entry.statement.startswith(start)]
+    return found
+
+
+def test_script_is_a_sinusoid() -> None:
+    script = touching.sinusoid(1.0, 0.5, 4.0, 1.0)
+    assert sum(step.duration for step in script) == pytest.approx(4.0)
+    forces = [step.operator_force for step in script]
+    assert (min(forces), max(forces), forces[-1]) == pytest.approx((0.5, 1.5, 0.5))
+
+
+def test_literal_scale_leaves_the_hand_alone(statements: dict[int, list[Statement]]) -> None:
+    """No force of the tip: the error is that of the hand itself, mean and amplitude over root 2."""
+    (literal, repaired) = [entry for entry in statements[16] if entry.statement.startswith("master and slave")]
+    alone = math.hypot(figure16.MEAN.value, figure16.AMPLITUDE.value / math.sqrt(2.0))
+    assert literal.number == pytest.approx(alone, rel=0.03)  # from half a period on
+    assert literal.verdict == "does not hold"
+    assert repaired.verdict == "holds"
+    assert figure16.NOISE.value < repaired.number < 1.3 * figure16.NOISE.value
+
+
+def test_literal_loops_are_refused() -> None:
+    with pytest.raises(nt.Error, match="stability margin"):
+        figure16.session(figure16.LITERAL.value, touching.PAPER_RATE.value)
+    with pytest.raises(nt.Error, match="stability margin"):
+        figure17.session(figure17.LITERAL.value, touching.PAPER_RATE.value, "paper")
+    with pytest.raises(nt.Error, match="stability margin"):
+        figure17.session(figure17.LITERAL.value, touching.PAPER_RATE.value, "default")
+
+
+def test_margin_of_the_literal_figure_17(statements: dict[int, list[Statement]]) -> None:
+    """kappa = 3 x 2e6 x 4e-3 x 8 = 192 kN/m; bare stage, Q/wn = 7.07 ms, two hops of 1.5 periods."""
+    kappa = 3.0 * 2e6 * 4e-3 * 8.0
+    limit = 100.0 / (2.0 * 1.5 * 3e-3 + 20.0 / (2.0 * math.pi * 450.0))
+    assert find(statements[17], "K_f = 2").number == pytest.approx(limit / kappa, rel=0.01)
+    assert find(statements[17], "ideal responses of tracking are realized (").verdict == "does not hold"
+    forces = find(statements[17], "ideal responses of tracking are realized: forces")
+    assert forces.verdict == "holds"
+    # the ramp to 2 N in 3 s moves the master by 2.7 mm: b_m v/(1 + K_f) = 0.03 N
+    assert forces.number == pytest.approx(0.03, rel=0.2)
+
+
+def test_grating_is_480_nm_at_the_hand(statements: dict[int, list[Statement]]) -> None:
+    assert find(statements[18], "the upward jumps").number == pytest.approx(480e-9, rel=0.01)
+    margin = find(statements[18], "K_f = 10").number
+    kappa = 11.0 * 1e6 * figure18.REPAIRED.value * 8.0
+    assert margin == pytest.approx(120.5e3 / kappa, rel=0.02)
+
+
+def test_dots_are_followed_at_constant_force(statements: dict[int, list[Statement]]) -> None:
+    assert all(entry.verdict == "holds" for entry in statements[19])
+    assert find(statements[19], "just the surface").number < 0.5e-9  # half a step of the stage
+    assert find(statements[19], "the z position").number < 2e-9
+
+
+def test_columns_have_no_gaps() -> None:
+    for number in (16, 17, 18, 19):
+        for header, values in reproduce.reproduction(number).columns.items():
+            assert np.isfinite(values).all(), header
