@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from nanotouch.faults import CHANNELS, KINDS
 
 RUN, HOLD, RETRACT, LATCHED = (record.STATES.index(name) for name in ("RUN", "HOLD", "RETRACT", "LATCHED"))
 SAFETY = Path(__file__).parents[2] / "docs" / "safety.md"
+CASES = Path(__file__).parents[1] / "c" / "fault_cases.h"
 
 
 def states(faults: Faults, duration: float = 0.1) -> Any:
@@ -103,8 +105,18 @@ def test_a_schedule_is_finite() -> None:
     assert len(faults) == 16
 
 
+def test_the_page_has_every_fault_that_is_tested() -> None:
+    """The table in the docs is what test_session_faults prints: each of its cases, each pair of those at 10 kHz."""
+    page = SAFETY.read_text(encoding="utf-8")
+    cases = re.findall(r'^    \{"([^"]+)", CASE', CASES.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(cases) > 25
+    assert all(f"| {name} |" in page for name in cases)
+    quick = len([name for name in cases if "1 kHz" not in name])
+    assert f"All {quick * (quick - 1) // 2} pairs" in page
+
+
 def test_the_page_names_every_row() -> None:
-    """The table in the docs was printed by test_session_faults; every row that has a kind is in it."""
+    """Every kind of fault is in the table, by its row."""
     rows = {line.split("|")[1].strip() for line in SAFETY.read_text().splitlines() if line.startswith("| ")}
     assert {str(kind.row) for kind in KINDS.values()} <= rows
     assert set(CHANNELS) == {channel for kind in KINDS.values() for channel in kind.channels}
