@@ -30,8 +30,8 @@ static void run_law(bench *b, int i)
 
 static void run_interaction(bench *b, int i)
 {
-    const nt_interaction_state state = {1};
-    sink = nt_interaction_eval_gap(&b->plan, &state, -indentations[i % POINTS]).F;
+    const nt_interaction_state state = {1, 0.0, 0.0};
+    sink = nt_interaction_eval_gap(&b->plan, &state, NULL, -indentations[i % POINTS]).F;
 }
 
 static void run_surface(bench *b, int i)
@@ -81,14 +81,14 @@ static nt_status prepare(bench *b)
 {
     static double heights[64 * 64];
     const nt_scene scene = nt_scene_defaults();
-    const nt_demand demand = nt_demand_defaults();
+    const nt_plan_inputs inputs = {.scene = &scene};
     const nt_session_setup setup = nt_session_defaults();
     const nt_height_map map = {.heights = heights, .nx = 64, .ny = 64, .dx = 20e-9, .dy = 20e-9};
     for (int i = 0; i < POINTS; i++)
         indentations[i] = (i + 0.5) / POINTS * 1e-9;
     for (int i = 0; i < 64 * 64; i++)
         heights[i] = 1e-9 * sin(0.1 * i);
-    nt_status status = nt_plan_make(&b->plan, &scene, &demand, NULL, NULL);
+    nt_status status = nt_plan_make(&b->plan, &inputs, NULL);
     if (status == NT_OK)
         status = nt_surface_init(&b->surface, &map, heights);
     return status == NT_OK ? nt_session_open(&b->session, &setup, NULL) : status;
@@ -97,7 +97,7 @@ static nt_status prepare(bench *b)
 int main(void)
 {
     const nt_contact contact = nt_contact_defaults();
-    bench b = {.branch = NT_BRANCH_STABLE};
+    static bench b = {.branch = NT_BRANCH_STABLE};
     double hertz = 0.0;
     nt_status status = prepare(&b);
     printf("{\n  \"version\": \"%s\"", nt_version());
