@@ -66,6 +66,7 @@ set(nanotouch_sources_scene
     scene/facts.c
     scene/interaction.c
     scene/laws.c
+    scene/local.c
     scene/options.c
     scene/plan.c
     scene/scene.c
@@ -106,6 +107,7 @@ set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
 set(nanotouch_sources_session session/arming.c session/run.c session/session.c)
 set(nanotouch_sources_fit
+    fit/baseline.cpp
     fit/batch.cpp
     fit/branch.c
     fit/contact_model.cpp

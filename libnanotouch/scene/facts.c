@@ -68,9 +68,10 @@ static double steepest_pull(const nt_plan *plan)
         const double gap = plan->capture_gap * (1.0 - i / 32.0);
         steepest = fmax(steepest, -full_eval(plan, 1, gap).k);
     }
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) /* just outside where each is held */
-        if (nt_plan_full_form(plan, term) != NT_FORM_OFF)
-            steepest = fmax(steepest, nt_plan_law_limit(plan, term, 0.0, NT_QUANTITY_STIFFNESS));
+    const double holds[] = {plan->laws.vdw.minimum_gap, plan->laws.electrostatic.minimum_gap};
+    for (int i = 0; i < 2; ++i) /* it is steepest just outside the gaps where terms are held */
+        if (holds[i] > plan->capture_gap)
+            steepest = fmax(steepest, -full_eval(plan, 0, holds[i] * (1.0 + 1e-12)).k);
     return steepest;
 }
 
@@ -86,6 +87,13 @@ nt_status nt_plan_facts(nt_plan *plan)
     return isfinite(plan->pull_off_force) ? NT_OK : NT_E_NOT_FINITE;
 }
 
+/* Of effective radius to the tip's own, where the plan follows it. */
+static double largest_ratio(const nt_plan *plan)
+{
+    const int local = plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL;
+    return local ? fmax(1.0, plan->radii->maximum / plan->contact.radius) : 1.0;
+}
+
 /* A bound of |F| at this gap and all larger ones, whatever the history. */
 static double force_limit(const nt_plan *plan, double gap)
 {
@@ -94,12 +102,13 @@ static double force_limit(const nt_plan *plan, double gap)
         if (plan->terms[term].form != NT_FORM_OFF)
             sum += fmax(nt_plan_law_limit(plan, term, gap, NT_QUANTITY_FORCE),
                         fabs(nt_plan_law_eval(plan, term, plan->terms[term].form, gap).F));
-    return sum;
+    return sum * largest_ratio(plan);
 }
 
 double nt_plan_cutoff_gap(const nt_plan *plan, double force)
 {
-    double low = fmax(fmax(plan->release_gap, plan->capture_gap), 0.0), high = fmax(2.0 * low, 1e-9);
+    const double release = nt_plan_release_gap(plan, plan->contact.radius * largest_ratio(plan));
+    double low = fmax(fmax(release, plan->capture_gap), 0.0), high = fmax(2.0 * low, 1e-9);
     if (!(force >= 0.0))
         return NAN;
     if (force_limit(plan, low) <= force)
@@ -125,6 +134,6 @@ double nt_plan_stable_step(const nt_plan *plan, double mass)
     double stiffest = plan->maximum_stiffness;
     for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
         if (plan->terms[term].form != NT_FORM_OFF)
-            stiffest += nt_plan_law_limit(plan, term, 0.0, NT_QUANTITY_STIFFNESS);
+            stiffest += largest_ratio(plan) * nt_plan_law_limit(plan, term, 0.0, NT_QUANTITY_STIFFNESS);
     return 2.0 * sqrt(mass / stiffest);
 }

@@ -33,14 +33,9 @@ static double radius_at(const nt_plan *plan, const nt_place *place)
     return place ? place->radius.radius : plan->contact.radius;
 }
 
-/* Where grips let go: the fold of the law, which follows the radius. */
 static double release_gap(const nt_plan *plan, const nt_place *place)
 {
-    if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_LOCAL)
-        return plan->release_gap;
-    nt_contact contact = plan->contact;
-    contact.radius = radius_at(plan, place);
-    return -nt_maugis_bank_grip_indentation(plan->bank, &contact);
+    return nt_plan_release_gap(plan, radius_at(plan, place));
 }
 
 /* Captured by contact or meniscus: already, or because the gap is inside the capture range. */

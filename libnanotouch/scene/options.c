@@ -9,22 +9,23 @@
 
 #include "scene/parts.h"
 
-/* Measured cost of {U, F, k, a}, in evaluations of an inlined Hertz law (tests/bench/bench_plan.cpp). */
+/* Measured cost of {U, F, k, a}, in evaluations of an inlined Hertz law (tests/bench/bench_plan.c; exact: in contact).
+ */
 #define COST_SHAPE 6.0
-#define COST_HERTZ 1.5
-#define COST_JKR 40.0
-#define COST_TABLE 6.0
-#define COST_POLISHED 30.0
-#define COST_EXACT 400.0
-#define COST_LOCAL 60.0   /* with the effective radius and its slope */
-#define COST_SURFACE 10.0 /* height and slopes of a surface */
+#define COST_SPHERE 55.0
+#define COST_HERTZ 3.0
+#define COST_JKR 11.0
+#define COST_TABLE 14.0
+#define COST_POLISHED 40.0
+#define COST_EXACT 280.0
+#define COST_LOCAL 65.0 /* with dU/dR */
 static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
-    [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 3.0, [NT_FORM_SPHERE] = 8.0, [NT_FORM_TIP] = 20.0},
-    [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 30.0},
-    [NT_PLAN_CHARGE] = {[NT_FORM_ON] = 4.0},
-    [NT_PLAN_DOUBLE_LAYER] = {[NT_FORM_ON] = 20.0},
-    [NT_PLAN_HYDRATION] = {[NT_FORM_ON] = 8.0},
-    [NT_PLAN_STERIC] = {[NT_FORM_ON] = 40.0},
+    [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 8.0, [NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 28.0},
+    [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 9.0, [NT_FORM_TIP] = 33.0},
+    [NT_PLAN_CHARGE] = {[NT_FORM_ON] = 7.0},
+    [NT_PLAN_DOUBLE_LAYER] = {[NT_FORM_ON] = 19.0},
+    [NT_PLAN_HYDRATION] = {[NT_FORM_ON] = 13.0},
+    [NT_PLAN_STERIC] = {[NT_FORM_ON] = 50.0},
 };
 
 #define SAMPLED 1.05   /* a largest value that was sampled on a smooth curve may be this much short of the true one */
@@ -36,22 +37,29 @@ static double pick(nt_law_value value, nt_quantity quantity)
     return quantity == NT_QUANTITY_STIFFNESS ? value.k : quantity == NT_QUANTITY_RADIUS ? value.a : value.F;
 }
 
-/* The largest difference between two forms of contact over max(|X|, scale), over all indentations from the release gap
- * to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. */
-static double contact_distance(const nt_plan *plan, nt_law_value (*other)(const nt_plan *, double), double lowest,
+typedef nt_law_value contact_law(const nt_plan *plan, double indentation);
+
+static nt_law_value full_at(const nt_plan *plan, double indentation)
+{
+    const nt_form form = nt_plan_contact_form(plan);
+    return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
+}
+
+/* The largest difference between two forms of contact over max(|truth|, scale), over all indentations from the release
+ * gap to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. */
+static double contact_distance(const nt_plan *plan, contact_law *truth_at, contact_law *other, double lowest,
                                nt_quantity quantity)
 {
     enum { SAMPLES = 96 };
     const double fold = -plan->release_gap;
     const double deepest = plan->largest_indentation;
-    const nt_form exact = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : nt_plan_contact_form(plan);
     const double scale = quantity == NT_QUANTITY_FORCE ? fmax(plan->pull_off_force, plan->scale) : plan->scale;
     double largest = 0.0;
     for (int i = 1; i <= SAMPLES; ++i) {
         const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
         if (d < lowest)
             continue;
-        const double truth = pick(nt_plan_contact_eval(plan, exact, d), quantity);
+        const double truth = pick(truth_at(plan, d), quantity);
         largest = fmax(largest, fabs(pick(other(plan, d), quantity) - truth) / fmax(fabs(truth), scale));
     }
     return largest;
@@ -98,9 +106,9 @@ static nt_law_value table_at(const nt_plan *plan, double indentation)
 static void rivals_of(nt_plan *plan)
 {
     const double last = 0.9 * plan->maugis.folds.pull_off_indentation * plan->maugis.indentation_scale;
-    plan->rivals.hertz = contact_distance(plan, hertz_at, 0.0, NT_QUANTITY_FORCE);
-    plan->rivals.dmt = contact_distance(plan, dmt_at, 0.0, NT_QUANTITY_FORCE);
-    plan->rivals.jkr = contact_distance(plan, jkr_at, last, NT_QUANTITY_FORCE);
+    plan->rivals.hertz = contact_distance(plan, full_at, hertz_at, 0.0, NT_QUANTITY_FORCE);
+    plan->rivals.dmt = contact_distance(plan, full_at, dmt_at, 0.0, NT_QUANTITY_FORCE);
+    plan->rivals.jkr = contact_distance(plan, full_at, jkr_at, last, NT_QUANTITY_FORCE);
 }
 
 /* The pull-off force of contact alone: that of the whole may be 0 where repulsion hides it. */
@@ -116,9 +124,13 @@ static double contact_pull_off(const nt_plan *plan)
     }
 }
 
+/* What small forces are measured by where nothing pulls. */
+#define SMALL_LOAD 1e-3 /* of the largest load */
+
 /* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
-static double scale_of(const nt_plan *plan)
+static double scale_of(const nt_plan *plan, double maximum_load)
 {
+    const double pull = fmax(plan->pull_off_force, contact_pull_off(plan));
     const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
     const nt_maugis *m = &plan->maugis;
     const double accuracy = plan->demand.relative_accuracy;
@@ -131,7 +143,7 @@ static double scale_of(const nt_plan *plan)
     case NT_QUANTITY_FOLDS:
         return fmax(fabs(plan->release_gap), plan->length);
     default:
-        return fmax(fmax(plan->pull_off_force, contact_pull_off(plan)),
+        return fmax(pull > 0.0 ? pull : SMALL_LOAD * maximum_load,
                     accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
     }
 }
@@ -165,14 +177,15 @@ static double curved_laws(const nt_plan *plan, double beside)
 }
 
 /* And in contact: force grows with the radius, so that the smallest and the largest on the map are the worst. */
-static double curved_contact(const nt_plan *plan)
+static double curved_contact(const nt_plan *plan, double beside)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     const double R = plan->contact.radius;
     if (!is_curved(plan) || (plan->radii->minimum == R && plan->radii->maximum == R))
         return 0.0;
-    return SAMPLED * fmax(contact_distance(plan, sharpest_at, -INFINITY, quantity),
-                          contact_distance(plan, bluntest_at, -INFINITY, quantity));
+    return (1.0 + share(beside, plan->scale)) * SAMPLED *
+           fmax(contact_distance(plan, sharpest_at, full_at, -INFINITY, quantity),
+                contact_distance(plan, bluntest_at, full_at, -INFINITY, quantity));
 }
 
 /* The tables' error at the largest radius; a contact without adhesion is exact. */
@@ -181,7 +194,7 @@ static void offer_local(const nt_plan *plan, nt_plan_options *options, double mo
     if (!is_curved(plan))
         return;
     const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
-    const double here = contact_distance(plan, nominal_at, -INFINITY, (nt_quantity)(int)plan->demand.quantity);
+    const double here = contact_distance(plan, full_at, nominal_at, -INFINITY, (nt_quantity)(int)plan->demand.quantity);
     const double error = plan->source == NT_ADHESION_NONE ? 0.0 : TABLED * fmax(here, plan->bank->accuracy.force_error);
     offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * ratio * error + ROUNDING, COST_LOCAL);
 }
@@ -195,18 +208,23 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double beside)
     if (quantity == NT_QUANTITY_FOLDS)
         table = share(plan->table.accuracy[NT_TIER_TABLE].fold_shift, plan->scale);
     else if (quantity != NT_QUANTITY_FORCE)
-        table = TABLED * contact_distance(plan, table_at, -INFINITY, quantity);
+        table = TABLED * contact_distance(plan, full_at, table_at, -INFINITY, quantity);
     else
         table *= fmax(1.0, share(nt_maugis_pull_off_force(&plan->maugis), plan->scale));
-    const double curved = curved_contact(plan) + curved_laws(plan, beside);
     const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
     if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
         offer(options, NT_PLAN_CONTACT, NT_FORM_SHAPE,
-              SAMPLED * more * contact_distance(plan, hertz_at, -INFINITY, quantity) + curved, COST_HERTZ);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_TABLE, more * table + ROUNDING + curved, COST_TABLE);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_POLISHED, more * 2.0 * ROUNDING + curved, COST_POLISHED);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_EXACT, more * ROUNDING + curved, COST_EXACT);
+              SAMPLED * more * contact_distance(plan, full_at, hertz_at, -INFINITY, quantity) + plan->curvature_error,
+              COST_HERTZ);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_TABLE, more * table + ROUNDING + plan->curvature_error, COST_TABLE);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_POLISHED, more * 2.0 * ROUNDING + plan->curvature_error, COST_POLISHED);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_EXACT, more * ROUNDING + plan->curvature_error, COST_EXACT);
     offer_local(plan, options, more);
+}
+
+static double cost_of_shape(nt_shape_kind kind)
+{
+    return kind == NT_SHAPE_PARABOLOID ? COST_HERTZ : kind == NT_SHAPE_SPHERE ? COST_SPHERE : COST_SHAPE;
 }
 
 static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
@@ -215,18 +233,26 @@ static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options 
     nt_plan_term *term = &plan->terms[NT_PLAN_CONTACT];
     if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
         term->force = 0.0; /* never touched */
-        offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, curved_laws(plan, beside), 0.0);
+        plan->curvature_error = curved_laws(plan, beside);
+        offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, plan->curvature_error, 0.0);
         offer_local(plan, options, 1.0);
         return;
     }
     term->force = scene->range.maximum_load;
+    plan->curvature_error = curved_contact(plan, beside) + curved_laws(plan, beside);
     if (full == NT_FORM_EXACT)
         offer_maugis(plan, options, beside);
     else if (full == NT_FORM_JKR)
         offer(options, NT_PLAN_CONTACT, full, ROUNDING, COST_JKR);
     else {
-        offer(options, NT_PLAN_CONTACT, full, ROUNDING + curved_contact(plan) + curved_laws(plan, beside),
-              plan->shape.kind == NT_SHAPE_PARABOLOID ? COST_HERTZ : COST_SHAPE);
+        const double more = 1.0 + share(beside, plan->scale);
+        if (plan->shape.kind == NT_SHAPE_SPHERE || plan->shape.kind == NT_SHAPE_BLUNTED)
+            offer(options, NT_PLAN_CONTACT, NT_FORM_PARABOLOID,
+                  ROUNDING +
+                      more * SAMPLED *
+                          contact_distance(plan, full_at, hertz_at, -INFINITY, (nt_quantity)(int)plan->demand.quantity),
+                  COST_HERTZ);
+        offer(options, NT_PLAN_CONTACT, full, more * ROUNDING + plan->curvature_error, cost_of_shape(plan->shape.kind));
         offer_local(plan, options, 1.0);
     }
 }
@@ -274,7 +300,7 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     const double nearest = fmax(scene->range.minimum_gap, 0.0);
     double beside = 0.0;
     *options = none;
-    plan->scale = scale_of(plan);
+    plan->scale = scale_of(plan, scene->range.maximum_load);
     for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) {
         plan->terms[term].force = nt_plan_law_limit(plan, term, nearest, NT_QUANTITY_FORCE);
         beside += nt_plan_law_limit(plan, term, nearest, quantity);

@@ -20,6 +20,11 @@ int nt_plan_has_local_form(const nt_plan *plan);
 /* {U, F, k, a} and dU/dR of the local form at an effective radius [m]; all NaN where it refuses. */
 nt_bank_value nt_plan_local_eval(const nt_plan *plan, double radius, double indentation);
 
+/* local.c: where the contact lets go under grips, of the form that was chosen, at an effective radius [m]. */
+double nt_plan_release_gap(const nt_plan *plan, double radius);
+/* Pull-off, stiffness, jump-in and folds of a local contact: the worst of the surface. */
+void nt_plan_local_facts(nt_plan *plan, double maximum_load);
+
 /* laws.c: everything beside contact. */
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* One of the terms beside contact, in a form, at a gap. */

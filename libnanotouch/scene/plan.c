@@ -36,9 +36,17 @@ nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem)
 
 const char *nt_form_name(nt_form form)
 {
-    static const char *const names[] = {"off", "on",    "derjaguin", "sphere", "tip",  "shape",
-                                        "jkr", "table", "polished",  "exact",  "local"};
+    static const char *const names[] = {"off",   "on",  "derjaguin", "sphere",   "tip",   "paraboloid",
+                                        "shape", "jkr", "table",     "polished", "exact", "local"};
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
+}
+
+/* A radius map and its surface have one grid. */
+static int is_of(const nt_radius_map *radii, const nt_surface *surface)
+{
+    const nt_surface *grid = &radii->ratio;
+    return surface && grid->nx == surface->nx && grid->ny == surface->ny && grid->dx == surface->dx &&
+           grid->dy == surface->dy;
 }
 
 static nt_status check(const nt_plan_inputs *inputs, const nt_demand *demand, nt_problem *problem)
@@ -51,16 +59,20 @@ static nt_status check(const nt_plan_inputs *inputs, const nt_demand *demand, nt
             *problem = (nt_problem){"probe.spring_constant", "N/m", inputs->probe->spring_constant, 0.0, INFINITY};
         status = NT_E_RANGE;
     }
+    if (status == NT_OK && inputs->radii && !is_of(inputs->radii, inputs->surface))
+        status = NT_E_ARGUMENT;
     return status;
 }
 
 /* Numbers that belong to the plan as chosen. */
-static void finish(nt_plan *plan)
+static void finish(nt_plan *plan, double maximum_load)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     plan->bound.model_error = plan->source == NT_ADHESION_NONE ? (double)NAN : nt_maugis_model_error(plan->lambda);
     if (form == NT_FORM_TABLE || form == NT_FORM_POLISHED)
         plan->bound.fold_shift = plan->table.accuracy[form == NT_FORM_TABLE ? 0 : 1].fold_shift;
+    if (form == NT_FORM_LOCAL)
+        nt_plan_local_facts(plan, maximum_load);
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
         plan->capture_gap = plan->release_gap = plan->capture_energy = plan->release_energy = 0.0;
@@ -96,7 +108,7 @@ nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *
     status = nt_plan_choose(plan, &options, problem);
     if (status != NT_OK)
         return status;
-    finish(plan);
+    finish(plan, inputs->scene->range.maximum_load);
     nt_plan_warn(plan, inputs->scene);
     return NT_OK;
 }

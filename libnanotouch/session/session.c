@@ -80,8 +80,12 @@ static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_
 {
     nt_scene scene = setup->scene;
     scene.range.maximum_load = setup->settings.limits.force;
-    const nt_plan_inputs inputs = {
-        .scene = &scene, .demand = &setup->demand, .probe = &setup->rig.probe, .surface = setup->surface};
+    const nt_plan_inputs inputs = {.scene = &scene,
+                                   .demand = &setup->demand,
+                                   .probe = &setup->rig.probe,
+                                   .surface = setup->surface,
+                                   .radii = setup->radii,
+                                   .bank = setup->bank};
     nt_status status = nt_touch_make(&session->touch, &setup->rig, &setup->settings, setup->mode, problem);
     if (status == NT_OK)
         status = nt_plan_make(&session->plan, &inputs, problem);

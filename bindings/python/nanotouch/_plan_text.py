@@ -28,6 +28,8 @@ def text_of(plan: Plan) -> str:
     contact, *others = plan._all_terms()
     lines = [_contact(contact, facts)]
     lines += [_term(term, plan.pull_off_force) for term in others if term.force > 0.0]
+    if facts["curvature_error"] > 0.0:
+        lines.append(_surface(contact, facts))
     lines.append(_total(plan))
     lines.append(_numbers(facts))
     return "\n".join(lines + [f"warning: {warning}" for warning in plan.warnings])
@@ -37,8 +39,11 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
     if not term.included:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
-        law = "Hertz" if facts["shape"] == "paraboloid" else f"{facts['shape']} without adhesion"
         felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
+        shape = facts["shape"]
+        if term.form == "paraboloid":
+            return f"contact: Hertz in place of the {shape}, within {_percent(term.bound)}, no adhesion{felt}"
+        law = "Hertz" if shape == "paraboloid" else f"law of the {shape}"
         return f"contact: {law}, no adhesion{felt}"
     text = f"contact: {_CONTACT[term.form]}"
     if math.isfinite(facts["lambda"]):
@@ -59,6 +64,14 @@ def _term(term: Term, pull_off_force: float) -> str:
     return f"{_NAMES[term.name]}: {_FORMS[term.form]}, {size}{error}"
 
 
+def _surface(contact: Term, facts: dict[str, Any]) -> str:
+    least, largest, own = (facts[name] * 1e9 for name in ("least_radius", "largest_radius", "radius"))
+    radii, error = f"{least:.4g} to {largest:.4g} nm", _percent(facts["curvature_error"])
+    if contact.form == "local":
+        return f"surface: curved, effective radius {radii}; the tip's own {own:.4g} nm everywhere would err by {error}"
+    return f"surface: curvature left out, the tip's own {own:.4g} nm in place of {radii}, which errs by {error}"
+
+
 def _total(plan: Plan) -> str:
     quantity = _QUANTITIES[("force", "stiffness", "radius", "folds").index(plan.quantity)]
     text = f"{quantity} within {_percent(plan.bound)}, folds within {plan.fold_shift_m * 1e9:.2g} nm"
@@ -71,8 +84,7 @@ def _numbers(facts: dict[str, Any]) -> str:
     spring = facts["minimum_spring"]
     jump = "the force jumps in, whatever the spring" if math.isinf(spring) else f"no jump-in above {spring:.3g} N/m"
     return (
-        f"pull-off {_nano(facts['pull_off_force'])} nN; {jump}; "
-        f"stiffest contact {facts['maximum_stiffness']:.3g} N/m"
+        f"pull-off {_nano(facts['pull_off_force'])} nN; {jump}; stiffest contact {facts['maximum_stiffness']:.3g} N/m"
     )
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from numpy.typing import ArrayLike
@@ -70,7 +71,7 @@ class Plan:
                 scene.core,
                 wanted.core,
                 None if probe is None else probe.core,
-                None if surface is None else surface.core,
+                terrain_of(scene, surface),
             )
         )
 
@@ -99,7 +100,8 @@ class Plan:
 
     @property
     def scale(self) -> float:
-        """What small values are compared with, for a force max(pull-off force, atol/rtol) [N, N/m or m]."""
+        """What small values are compared with [N, N/m or m]: for a force max(pull-off force, atol/rtol), a thousandth of the
+        largest load where nothing pulls."""
         return float(self._facts["scale"])
 
     @property
@@ -176,3 +178,33 @@ class Plan:
     def __repr__(self) -> str:
         forms = ", ".join(f"{term.name}: {term.form}" for term in self.terms)
         return f"Plan({forms}; bound {self.bound:.2g}, cost {self.cost:.3g})"
+
+
+def terrain_of(scene: Scene, surface: Surface | None) -> _core.Terrain | None:
+    """A surface with what its curvature needs: the effective radius of each place, and a bank of tables that reaches as
+    far as this scene's contact goes there. A surface that no tip has dilated has no radii."""
+    from nanotouch.contact.bank import covering
+    from nanotouch.scene import Demand
+
+    if surface is None:
+        return None
+    if surface.tip_radius is None:
+        return _core.Terrain(surface.core, None, None)
+    if surface.tip_radius != scene.tip.radius:
+        raise InvalidValue(
+            f"tip.radius = {scene.tip.radius:g} m, over a surface that was dilated by a tip of {surface.tip_radius:g} m"
+        )
+    facts = _core.Plan(scene.core, Demand(demand={"relative_accuracy": 0.0}).core, None, None).as_dict()
+    radii = surface.radius_map
+    least, largest = (radius / facts["radius"] for radius in radii.bounds)
+    if not math.isfinite(facts["lambda"]):  # no adhesion: Hertz everywhere
+        bank = covering()
+    else:
+        maugis_lambda, stiffness = facts["lambda"], 4.0 / 3.0 * facts["effective_modulus"]
+        unit = (math.pi**2 * facts["work_of_adhesion"] ** 2 * facts["radius"] / stiffness**2) ** (1 / 3)
+        bank = covering(
+            maugis_lambda * least ** (1 / 3),
+            maugis_lambda * largest ** (1 / 3),
+            facts["largest_indentation"] / unit * least ** (-2 / 3),
+        )
+    return _core.Terrain(surface.core, radii.core, bank.core)

@@ -19,7 +19,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
 from nanotouch.margins import Margins
 from nanotouch.operator import Input, script_for
-from nanotouch.plan import Plan
+from nanotouch.plan import Plan, terrain_of
 from nanotouch.record import Recording, Writer
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.supervisor import REASONS, Guarantee
@@ -138,7 +138,7 @@ class Session:
             **plant_options(probe_model, substep, faults),
         }  # fmt: skip
         self.core = _core.Session(
-            self.scene.core, self.rig.core, self.settings.core, surface.core if surface else None, options
+            self.scene.core, self.rig.core, self.settings.core, terrain_of(self.scene, surface), options
         )
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)

@@ -6,13 +6,17 @@
 #include "surface.h"
 
 static std::unique_ptr<nt_plan> plan_of(const Described<nt_scene> &scene, const Described<nt_demand> &demand,
-                                        const Described<nt_rig> *rig, const Surface *surface)
+                                        const Described<nt_rig> *rig, const Terrain *terrain)
 {
     nt_plan_inputs inputs{};
     inputs.scene = &scene.value;
     inputs.demand = &demand.value;
     inputs.probe = rig ? &rig->value.probe : nullptr;
-    inputs.surface = surface ? &surface->surface : nullptr;
+    if (terrain) {
+        inputs.surface = &terrain->surface->surface;
+        inputs.radii = terrain->radii ? &terrain->radii->map : nullptr;
+        inputs.bank = terrain->bank ? &terrain->bank->bank : nullptr;
+    }
     auto plan = std::make_unique<nt_plan>();
     nt_problem problem{};
     nt_status status;
@@ -65,6 +69,9 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["maximum_stiffness"] = plan.maximum_stiffness;
     out["largest_indentation"] = plan.largest_indentation;
     out["length"] = plan.length;
+    out["least_radius"] = plan.radii ? plan.radii->minimum : plan.contact.radius;
+    out["largest_radius"] = plan.radii ? plan.radii->maximum : plan.contact.radius;
+    out["curvature_error"] = plan.curvature_error;
     out["contact_strain"] = plan.validity.radius_ratio;
 }
 
@@ -87,7 +94,7 @@ static py::dict as_dict(const nt_plan &plan)
 void bind_plan(py::module_ &module)
 {
     py::class_<nt_plan>(module, "Plan")
-        .def(py::init(&plan_of), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("surface"),
+        .def(py::init(&plan_of), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("terrain"),
              py::keep_alive<1, 5>())
         .def("as_dict", &as_dict)
         .def("cutoff_gap", &nt_plan_cutoff_gap)

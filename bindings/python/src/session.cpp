@@ -10,7 +10,7 @@
 
 struct Session {
     nt_session *handle = nullptr;
-    std::shared_ptr<Surface> surface; // outlives the handle, as the law does
+    Terrain terrain; // outlives the handle, as the law does
     OwnLaw law;
     std::mutex one_at_a_time;
     ~Session()
@@ -43,7 +43,7 @@ static constexpr Column columns[] = {
 };
 
 static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
-                                             const Described<nt_settings> &settings, std::shared_ptr<Surface> surface,
+                                             const Described<nt_settings> &settings, const Terrain *terrain,
                                              py::dict options)
 {
     nt_session_setup setup = nt_session_defaults();
@@ -51,7 +51,13 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.rig = rig.value;
     setup.settings = settings.value;
     setup.mode = mode_of(options["mode"].cast<std::string>());
-    setup.surface = surface ? &surface->surface : nullptr;
+    auto made = std::make_unique<Session>();
+    if (terrain) {
+        made->terrain = *terrain;
+        setup.surface = &terrain->surface->surface;
+        setup.radii = terrain->radii ? &terrain->radii->map : nullptr;
+        setup.bank = terrain->bank ? &terrain->bank->bank : nullptr;
+    }
     setup.x = options["x"].cast<double>();
     setup.y = options["y"].cast<double>();
     setup.clearance = options["clearance"].cast<double>();
@@ -65,8 +71,6 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.seed = options["seed"].cast<uint64_t>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();
     setup.demand.relative_accuracy = options["relative_accuracy"].cast<double>();
-    auto made = std::make_unique<Session>();
-    made->surface = std::move(surface);
     if (!options["law"].is_none()) {
         made->law.call = options["law"];
         set_control(setup.settings, made->law);
@@ -162,7 +166,7 @@ void bind_session(py::module_ &module)
 {
     py::class_<Session> type(module, "Session");
     bind_requests(type);
-    type.def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("surface"),
+    type.def(py::init(&open_session), py::arg("scene"), py::arg("rig"), py::arg("settings"), py::arg("terrain"),
              py::arg("options"))
         .def("aim",
              [](Session &self, double force, double x, double y, double duration) {
@@ -186,12 +190,13 @@ void bind_session(py::module_ &module)
              [](Session &self, bool pressed) {
                  alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });
              })
-        .def_property_readonly("plan",
-                               [](const Session &self) {
-                                   auto copy = std::make_unique<nt_plan>();
-                                   nt_plan_copy(copy.get(), nt_session_plan(self.handle));
-                                   return copy;
-                               })
+        .def_property_readonly("plan", py::cpp_function(
+                                           [](const Session &self) {
+                                               auto copy = std::make_unique<nt_plan>();
+                                               nt_plan_copy(copy.get(), nt_session_plan(self.handle));
+                                               return copy;
+                                           },
+                                           py::keep_alive<0, 1>())) // it borrows the surface
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
         .def_property_readonly("start_height",

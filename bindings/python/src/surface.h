@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "chapters.h"
+#include <memory>
+
+#include "contact_bank.h"
 
 // A surface and the array that holds its coefficients.
 struct Surface {
@@ -12,4 +14,11 @@ struct Surface {
 struct RadiusMap {
     Array coefficients;
     nt_radius_map map;
+};
+
+// A surface with what its curvature needs; both may be missing.
+struct Terrain {
+    std::shared_ptr<Surface> surface;
+    std::shared_ptr<RadiusMap> radii;
+    std::shared_ptr<Bank> bank;
 };

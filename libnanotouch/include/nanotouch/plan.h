@@ -37,14 +37,15 @@ NT_API nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem);
 
 /* How a term is computed. */
 typedef enum nt_form {
-    NT_FORM_OFF,       /* left out */
-    NT_FORM_ON,        /* the law as it is */
-    NT_FORM_DERJAGUIN, /* van der Waals: the paper's form for gaps << R */
-    NT_FORM_SPHERE,    /* of the apex sphere */
-    NT_FORM_TIP,       /* of sphere and cone */
-    NT_FORM_SHAPE,     /* contact without adhesion; of a paraboloid, Hertz */
-    NT_FORM_JKR,       /* contact of cone and punch, adhesion of no range */
-    NT_FORM_TABLE,     /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
+    NT_FORM_OFF,        /* left out */
+    NT_FORM_ON,         /* the law as it is */
+    NT_FORM_DERJAGUIN,  /* van der Waals: the paper's form for gaps << R */
+    NT_FORM_SPHERE,     /* of the apex sphere */
+    NT_FORM_TIP,        /* of sphere and cone */
+    NT_FORM_PARABOLOID, /* contact of a sphere or cap without adhesion, as Hertz' paraboloid */
+    NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
+    NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
+    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
     NT_FORM_POLISHED,
     NT_FORM_EXACT,
     NT_FORM_LOCAL /* contact by Maugis-Dugdale with the radius of each place (a bank of tables over lambda) */
@@ -107,8 +108,9 @@ typedef struct nt_plan {
                           NaN where not known */
     double cost;       /* of one evaluation [Hertz evaluations] */
     double full_cost;  /* of everything on, exact [Hertz evaluations] */
-    double scale;      /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy) [N, N/m, m] */
-    nt_demand demand;  /* as given, the floor raised to what the probe can measure */
+    double scale; /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy), a thousandth of the
+                   * largest load where nothing pulls [N, N/m, m] */
+    nt_demand demand; /* as given, the floor raised to what the probe can measure */
     nt_plan_rivals rivals;
     nt_plan_warning warnings[NT_PLAN_WARNINGS_MAX];
     int warning_count;
@@ -137,6 +139,7 @@ typedef struct nt_plan {
     const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
     const nt_maugis_bank *bank; /* borrowed; NULL where no term is local */
+    double curvature_error;     /* of leaving the curvature of the surface out, in the norm of the demand [-] */
 } nt_plan;
 
 /* What a plan is made from. */

@@ -14,7 +14,7 @@ extern "C" {
 
 typedef struct nt_session nt_session;
 
-/* What a session is made of; everything is copied but the surface. */
+/* What a session is made of; everything is copied but surface, radii and bank. */
 typedef struct nt_session_setup {
     nt_scene scene;
     nt_rig rig;
@@ -22,7 +22,9 @@ typedef struct nt_session_setup {
     nt_settings settings;
     nt_mode mode;
     const nt_surface *surface; /* dilated by the tip; borrowed until nt_session_close; NULL: flat at z = 0 */
-    double x, y;               /* where it starts [m] */
+    const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not felt */
+    const nt_maugis_bank *bank; /* for the contact with the radius of each place, borrowed */
+    double x, y;                /* where it starts [m] */
     double clearance;          /* L, height of the tip above the surface there [m] */
     double rise;               /* how far the surface rises above the start along the path [m], >= 0 */
     double slope;              /* of the surface where it is steepest along the path [-], >= 0 */

@@ -8,6 +8,8 @@ force, stiffness and dU/dR are its exact derivatives.
 
 from __future__ import annotations
 
+import functools
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -96,6 +98,20 @@ class Bank:
         """Where the stable branch ends under grips [m]."""
         contacts, shape = _contacts(0.0, radius, effective_modulus, work_of_adhesion, cohesive_stress)
         return plain(np.broadcast_to(self.core.grip_indentation(contacts), int(np.prod(shape))).reshape(shape).copy())
+
+
+def covering(lambda_min: float = 0.01, lambda_max: float = 100.0, largest_indentation: float = 100.0) -> Bank:
+    """A bank that covers a range with half an octave to spare; one for each range in decades is kept."""
+    return _kept(
+        max(min(-2, math.floor(math.log10(lambda_min / 1.5))), -15),
+        min(max(2, math.ceil(math.log10(1.5 * lambda_max))), 15),
+        min(max(2, math.ceil(math.log10(largest_indentation))), 5),
+    )
+
+
+@functools.cache
+def _kept(first: int, last: int, deepest: int) -> Bank:
+    return Bank((10.0**first, 10.0**last), 10.0**deepest)
 
 
 def _contacts(
