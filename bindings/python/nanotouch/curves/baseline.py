@@ -38,6 +38,8 @@ _SHARE = 0.3  # of the variance of the residuals that a wave has to make
 _GRID = 1024  # points of the spectrum it is looked for in
 _CORRELATED = 5.0  # of white noise this ratio is 1 +- 0.45
 _EVIDENCE = 10.0  # difference in BIC: very strong
+_SEEN = 2.5  # periods from which on less has to be explained
+_CLEARER, _MUCH_CLEARER = 1.5, 5.0  # scatter about the line over that about the wave, with more periods and with fewer
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,7 @@ def fit_baseline(z: Floats, force: Floats, kind: Kind = "auto") -> Baseline:
     if kind == "line" or (kind == "auto" and _correlation(force[free] - line.at(z[free]), line.scatter) < _CORRELATED):
         return line
     waved = _with_wave(z[free], force[free], line)
-    if waved is None or (kind == "auto" and _evidence(line, waved, z[free], force[free]) < _EVIDENCE):
+    if waved is None or (kind == "auto" and not _is_evident(line, waved, z[free], force[free])):
         return line
     return waved
 
@@ -192,12 +194,19 @@ def _correlation(rest: Floats, scatter: float) -> float:
     return max(1.0, float(means @ means) / _BLOCKS * size / scatter**2)
 
 
-def _evidence(line: Baseline, waved: Baseline, z: Floats, force: Floats) -> float:
-    """BIC of the line over that of the wave, with as many points as the residuals of the wave are worth."""
+def _is_evident(line: Baseline, waved: Baseline, z: Floats, force: Floats) -> bool:
+    """Whether the wave is one, and not the wandering of a drifting force, which has no period.
+
+    By the BIC of the line over that of the wave, with as many points as the residuals of the wave are worth; and by how
+    much scatter it explains, of which drift leaves more, the more periods are seen.
+    """
+    if waved.scatter == 0.0 or waved.wave is None:
+        return True
+    gain = line.scatter / waved.scatter
     worth = z.size / _correlation(force - waved.at(z), waved.scatter)
-    if waved.scatter == 0.0:
-        return np.inf
-    return float(worth * 2.0 * np.log(line.scatter / waved.scatter) - 3.0 * np.log(max(worth, 1.0)))
+    many = float(np.ptp(z)) / waved.wave.period >= _SEEN
+    evidence = worth * 2.0 * float(np.log(gain)) - 3.0 * float(np.log(max(worth, 1.0)))
+    return gain >= (_CLEARER if many else _MUCH_CLEARER) and evidence >= _EVIDENCE
 
 
 def _with_wave(z: Floats, force: Floats, line: Baseline) -> Baseline | None:
