@@ -130,7 +130,7 @@ def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], no
     out = tmp_path / "out"
     assert main(["touch", str(file), "--at", "1.5um,3um", "--duration", "4s", "--out", str(out)]) == 0
     said = capsys.readouterr().out
-    assert "plane levelling removed a tilt of 2" in said
+    assert "a tilt of 2 degrees" in said
     assert "surface: grating.ibw, 6 x 6 um, 64 x 64 pixels" in said
     assert "LevelReport(" not in said
     recording = record.read(out / "recording.mcap")
