@@ -70,7 +70,7 @@ nt_fit_recipe nt_fit_recipe_defaults(nt_fit_model model)
 {
     const double all = std::numeric_limits<double>::infinity();
     const bool adhesive = model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
-    nt_fit_recipe recipe{nt_fit_defaults(model), !adhesive, 0, {}, -all, all, 0.03};
+    nt_fit_recipe recipe{nt_fit_defaults(model), !adhesive, 1, 0, {}, -all, all, 0.03};
     recipe.options.loss_scale = 0.0;
     return recipe;
 }

@@ -283,7 +283,7 @@ void Curve::judge()
         flags |= NT_FIT_STIFF;
     if (round && fit.contact_radius > wide * options.radius)
         flags |= NT_FIT_WIDE;
-    if (branch_.baseline.waves)
+    if (branch_.baseline.wave.amplitude() > 0.0)
         flags |= NT_FIT_WAVES;
     const bool tear_unused =
         fitted_.torn && !options.parameter[NT_FIT_WORK_OF_ADHESION].fixed && options.tear_sigma == 0.0;
@@ -363,7 +363,7 @@ void fit_recorded(const nt_fit_recipe &recipe, const nt_fit_curve &curve, nt_fit
         outcome->status = check_segment(*segments[i], &outcome->problem);
         if (outcome->status != NT_OK)
             return;
-        branches[i] = Branch(*segments[i]);
+        branches[i] = Branch(*segments[i], recipe.waves);
         known[i] = &branches[i];
     }
     if (known[0] || known[1])

@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a recorded branch shows before anything is fitted; private to fit/. Definitions: curves/baseline.py, events.py.
+// What a recorded branch shows before anything is fitted; private to fit/. Definitions: curves/events.py.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "nanotouch/fit.h"
+#include "baseline.hpp"
 
 namespace nanotouch
 {
-
-// Force of the free cantilever, a line through its far part.
-struct Baseline {
-    double force, slope, z_mean, scatter; // at z_mean [N], [N/m], [m], robust standard deviation about it [N]
-    double force_variance, slope_variance;
-    bool waves; // the residuals hang together: perhaps interference
-    double at(double z) const
-    {
-        return force + slope * (z - z_mean);
-    }
-    double sigma(double z) const; // of the line at z [N]
-};
 
 // A branch with its baseline taken off, from the deepest point outwards.
 class Branch
 {
   public:
     Branch() = default;
-    explicit Branch(const nt_fit_segment &segment);
+    Branch(const nt_fit_segment &segment, bool waves);
 
     double visible() const;       // smallest force that can be told from the baseline [N]
     double sigma(double z) const; // of one force at z [N]

@@ -144,6 +144,9 @@ void bind_batch(py::module_ &module)
             "loss_scale", [](const nt_fit_recipe &r) { return r.options.loss_scale; },
             [](nt_fit_recipe &r, double scale) { r.options.loss_scale = scale; })
         .def_property(
+            "waves", [](const nt_fit_recipe &r) { return r.waves != 0; },
+            [](nt_fit_recipe &r, bool waves) { r.waves = waves; })
+        .def_property(
             "fit_offset", [](const nt_fit_recipe &r) { return r.fit_offset != 0; },
             [](nt_fit_recipe &r, bool fit_offset) { r.fit_offset = fit_offset; })
         .def("hold",

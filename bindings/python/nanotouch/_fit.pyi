@@ -47,6 +47,7 @@ def tear_position(options: Options, value: Sequence[float]) -> float: ...
 
 class Recipe:
     approach: bool
+    waves: bool
     fit_offset: bool
     loss_scale: float
     lowest_force: float

@@ -159,7 +159,7 @@ NT_API nt_status nt_fit_model_n(const nt_fit_options *options, const double valu
 NT_API nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
                                       double *position);
 
-/* ---- Curves as they were recorded, many at once: a straight baseline, what is fitted of each, the fit ---- */
+/* ---- Curves as they were recorded, many at once: baseline, what is fitted of each, the fit ---- */
 
 /* One movement of the base in the order of time. */
 typedef struct nt_fit_segment {
@@ -179,6 +179,7 @@ typedef struct nt_fit_recipe {
     nt_fit_options options; /* as for nt_fit_run; spring constant, noise, tear and what is known of sensitivity, offset
                                and tilt come from each curve; loss_scale 0: three times its noise. Positions are -z. */
     int approach;           /* 1: the approach is fitted; 0: the retraction */
+    int waves;              /* 1: the baseline takes interference where it is evident; 0: a straight line */
     int fit_offset;         /* 1: the force offset is free; 0: known as well as the baseline is */
     int held[NT_FIT_PARAMETERS];        /* 1: of sensitivity, offset, tilt, stays at its value in options */
     double lowest_force, highest_force; /* only points between these are fitted [N]; -inf, inf: all */
@@ -211,7 +212,7 @@ typedef enum nt_fit_flag {
     NT_FIT_WIDE = 8,            /* contact radius above R/2: no paraboloid on a half-space */
     NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
     NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
-    NT_FIT_WAVES = 64,          /* the residuals of the baseline hang together: perhaps interference */
+    NT_FIT_WAVES = 64,          /* a wave of interference was taken off with the baseline */
     NT_FIT_TORN_ELSEWHERE = 128 /* than where this contact and cantilever let go: the tear is not used */
 } nt_fit_flag;
 

@@ -55,8 +55,8 @@ def fit(
         can be sliced by rows: numpy, ``numpy.memmap``, h5py, zarr, Dask. Row 0 is y = 0.
     model, tip, radius, **settings
         As for :func:`nanotouch.fit.fit_curve`: ``poisson_ratio``, ``branch``, ``window``, ``half_angle``,
-        ``cohesive_range``, ``uncertainties``, ``fixed``, ``bounds``, ``fit_offset``, ``loss``, ``loss_scale``. The
-        baseline is a straight line; where interference makes waves, the flag ``waves`` says so.
+        ``cohesive_range``, ``uncertainties``, ``fixed``, ``bounds``, ``fit_offset``, ``loss``, ``loss_scale``;
+        of ``baseline`` ``"auto"`` and ``"line"``.
     z : array of shape (n,) or (ny, nx, n)
         Height of the base, away from the sample [m]; with an array only.
     spring_constant : float

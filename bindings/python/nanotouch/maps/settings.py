@@ -36,6 +36,7 @@ class Settings:
     tip_poisson_ratio: float = 0.0
     poisson_ratio: float | None = None
     branch: Branch | None = None
+    baseline: Literal["auto", "line"] = "auto"
     window: tuple[float, float] | None = None
     cohesive_range: float | Literal["free"] | None = None
     uncertainties: Uncertainties = field(default_factory=Uncertainties)
@@ -48,7 +49,12 @@ class Settings:
     def __post_init__(self) -> None:
         if find(self.model).force is not None:
             raise InvalidValue(f"model {self.model!r} is a function in Python; maps take those of the library")
-        for name, value, valid in (("loss", self.loss, LOSSES), ("branch", self.branch, (None, "approach", "retract"))):
+        choices = (
+            ("loss", self.loss, LOSSES),
+            ("branch", self.branch, (None, "approach", "retract")),
+            ("baseline", self.baseline, ("auto", "line")),
+        )
+        for name, value, valid in choices:
             if value not in valid:
                 raise InvalidValue(f"{name} {value!r}: valid are {', '.join(str(v) for v in valid if v)}")
         ratio = self.poisson_ratio
@@ -106,6 +112,7 @@ class Settings:
         recipe = extension().Recipe(setup.options(extension()))
         for name in held:
             recipe.hold(places[name])
+        recipe.waves = self.baseline == "auto"
         recipe.loss_scale = self.loss_scale or 0.0
         recipe.fit_offset = self.fit_offset
         if self.branch is not None:
