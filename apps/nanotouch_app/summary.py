@@ -49,11 +49,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
 
 def guarantee(session: nt.Session) -> str:
     """What holds before anything moves: the force limit and by how much it can be exceeded, the stability margin."""
-    limit, overshoot = session.settings.limits.force, session.force_overshoot
-    return (
-        f"limits: force on the sample {limit * 1e9:.0f} nN, plus at most {overshoot * 1e9:.0f} nN before a stop shows; "
-        f"stability margin {session.stability_margin:.1f} (1 is the limit)"
-    )
+    return f"limits: {session.guarantee()}; stability margin {session.stability_margin:.1f} (1 is the limit)"
 
 
 def words(summary: dict[str, Any]) -> str:
