@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from nanotouch import Input, Rig, Session
-from nanotouch._plant import ProbeModel
-from nanotouch.session import settings_for_path
+from nanotouch.session import ProbeModel, settings_for_path
 from numpy.typing import NDArray
 
 REFERENCE = 0.1

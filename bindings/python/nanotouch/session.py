@@ -25,7 +25,9 @@ from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
-__all__ = ["CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "Session", "settings_for_path"]
+__all__ = [
+    "CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "ProbeModel", "Session", "settings_for_path",
+]  # fmt: skip
 
 CONTROLS = ("default", "paper", "impedance")
 #: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
