@@ -196,7 +196,8 @@ def test_margins(pressed: tuple[Session, Recording]) -> None:
     k_eff = k * rig.probe.spring_constant / (k + rig.probe.spring_constant)
     loop = (1 + gains.force_gain) * gains.alpha_f * gains.alpha_p * k_eff
     assert margins.loop_stiffness == pytest.approx(loop, rel=1e-6)  # the stage gives way a little, too
-    assert margins.stability_limit == pytest.approx(rig.master.damping / margins.loop_delay, rel=1e-12)
+    # b_m/D, less what the stage's integral takes: 4 % at 60 1/s
+    assert 0.95 < margins.stability_limit * margins.loop_delay / rig.master.damping <= 1.0
     assert margins.margin == pytest.approx(margins.stability_limit / margins.loop_stiffness, rel=1e-12)
     assert margins.margin == session.core.margin > 1.5
 
