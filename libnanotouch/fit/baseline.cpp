@@ -33,8 +33,9 @@ constexpr double correlated = 5.0;                           // of white noise t
 constexpr double shortest_period = 160e-9, longest = 800e-9; // m: half the wavelengths of common lasers, inclined
 constexpr double cycles = 1.5;                               // periods that have to be seen
 constexpr double share = 0.3;                                // of the variance of the residuals that a wave has to make
-constexpr std::size_t grid = 1024; // points of the spectrum it is looked for in, zero-padded to 4 grid
-constexpr double evidence = 10.0;  // difference in BIC: very strong
+constexpr std::size_t grid = 1024;       // points of the spectrum it is looked for in, zero-padded to 4 grid
+constexpr double all_but_largest = 0.99; // of the steps, where the converter's step exceeds the noise
+constexpr double evidence = 10.0;        // difference in BIC: very strong
 constexpr double seen = 2.5, clearer = 1.5, much_clearer = 5.0; // so many periods, or much less scatter: not drift
 
 using Values = std::vector<double>;
@@ -279,6 +280,20 @@ double refine(const Points &points, const Values &weight, double inverse, double
     return inverse;
 }
 
+// Whether the wave is one, and not the wandering of a drifting force, which has no period: by the BIC of the line over
+// that of the wave, with as many points as the residuals of the wave are worth; and by how much scatter it explains, of
+// which drift leaves more, the more periods are seen.
+bool is_evident(const Baseline &line, const Baseline &waved, const Points &points)
+{
+    if (waved.scatter == 0.0)
+        return true;
+    const auto [low, high] = std::minmax_element(points.x.begin(), points.x.end());
+    const double gain = line.scatter / waved.scatter, independent = double(points.x.size()) / waved.correlation;
+    const double bic = independent * 2.0 * std::log(gain) - 3.0 * std::log(std::max(independent, 1.0));
+    const bool many = (*high - *low) / waved.wave.period >= seen;
+    return gain >= (many ? clearer : much_clearer) && bic >= evidence;
+}
+
 // Line and wave together with Tukey's weights; the line if no wave stands out of its residuals.
 Baseline with_wave(const Points &points, const Baseline &line)
 {
@@ -309,12 +324,7 @@ Baseline with_wave(const Points &points, const Baseline &line)
     const double worth = waved.scatter * waved.scatter * waved.correlation;
     waved.force_variance = worth / double(count);
     waved.slope_variance = worth / std::inner_product(points.x.begin(), points.x.end(), points.x.begin(), 0.0);
-    const double independent = double(count) / waved.correlation;
-    const double gain =
-        independent * 2.0 * std::log(line.scatter / waved.scatter) - 3.0 * std::log(std::max(independent, 1.0));
-    const bool many = (*high - *low) * inverse >= seen;
-    const bool clear = line.scatter >= (many ? clearer : much_clearer) * waved.scatter;
-    return waved.scatter == 0.0 || (clear && gain >= evidence) ? waved : line;
+    return is_evident(line, waved, points) ? waved : line;
 }
 
 } // namespace
@@ -343,10 +353,17 @@ double Baseline::sigma(double z) const
 
 double point_noise(const nt_fit_segment &segment)
 {
-    Values steps(static_cast<std::size_t>(segment.count - 1)), scratch;
+    Values steps(static_cast<std::size_t>(segment.count - 1));
     for (std::size_t i = 0; i < steps.size(); i++)
-        steps[i] = segment.force[i + 1] - segment.force[i];
-    return mad_sigma * median_size(steps, scratch) / std::sqrt(2.0);
+        steps[i] = std::fabs(segment.force[i + 1] - segment.force[i]);
+    double size = mad_sigma * median(steps);
+    if (size == 0.0) {
+        std::sort(steps.begin(), steps.end());
+        steps.resize(static_cast<std::size_t>(all_but_largest * double(steps.size())));
+        const double squares = std::inner_product(steps.begin(), steps.end(), steps.begin(), 0.0);
+        size = std::sqrt(squares / double(steps.size()));
+    }
+    return size / std::sqrt(2.0);
 }
 
 Baseline fit_baseline(const nt_fit_segment &segment, double noise, bool waves)

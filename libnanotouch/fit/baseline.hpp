@@ -28,7 +28,9 @@ struct Baseline {
     double sigma(double z) const; // of the baseline at z [N]
 };
 
-// Standard deviation from point to point in the order of time, so that no shape of the curve enters [N].
+// Standard deviation from point to point in the order of time, so that no shape of the curve enters [N]. Where more
+// than half of the differences are 0, because the converter's step exceeds the noise, from all but the largest
+// hundredth.
 double point_noise(const nt_fit_segment &segment);
 Baseline fit_baseline(const nt_fit_segment &segment, double noise, bool waves);
 
