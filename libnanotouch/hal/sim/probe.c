@@ -7,7 +7,6 @@
 #include "parts.h"
 
 #define PERCEIVED 1e-3 /* touch feels nothing quicker [s] */
-#define LAG_SHARE 0.01 /* of the pull-off force */
 #define SAME_LAW 1e-6  /* a law is known by its derivatives this close to where it was asked, over plan->length */
 
 /* What the cantilever asks: the force at a gap, here. The last answer is kept: contact laws are by far the dearest part
@@ -80,6 +79,7 @@ nt_status nt_sim_move_probe(nt_sim *sim)
 int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period)
 {
     const nt_cantilever_lag lag = nt_cantilever_lag_of(&rig->probe, &rig->stage);
-    const double allowed = fmax(LAG_SHARE * plan->pull_off_force, nt_probe_force_noise(&rig->probe));
+    const double demanded = fmax(plan->demand.relative_accuracy * plan->pull_off_force, plan->demand.force_floor);
+    const double allowed = fmax(demanded, nt_probe_force_noise(&rig->probe));
     return !(lag.force <= allowed && lag.settling <= fmax(PERCEIVED, period));
 }

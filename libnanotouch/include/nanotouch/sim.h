@@ -112,9 +112,9 @@ NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command
 NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target);
 /* Adds a fault, from now on if its start has passed. As nt_faults_add. */
 NT_API nt_status nt_sim_inject(nt_sim *sim, const nt_fault *fault);
-/* Is the quasi-static cantilever not good enough? Its lag may be a hundredth of the pull-off force or the standard
- * deviation of the force read-out, whichever is more, and it rings out within a millisecond, the quickest that touch
- * perceives, or within a period. */
+/* Is the quasi-static cantilever not good enough? Its lag may be what the plan's demand allows of the pull-off force,
+ * the demand's floor or the standard deviation of the force read-out, whichever is most; and it has to ring out with a
+ * time constant of a millisecond, the quickest that touch perceives, or of a period. */
 NT_API int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period);
 
 #ifdef __cplusplus
