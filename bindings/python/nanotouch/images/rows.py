@@ -26,7 +26,8 @@ _REACH = 10  # [row]; standard deviation of the weights by distance
 _LIKE = 3.0  # standard deviations of the offsets by which neighbours may differ and still be of one level
 _FAR = 6.0  # standard deviations beyond which one row is a structure or a disturbance rather than an offset
 _AGREED = 0.4  # correlation of the halves; above 1/3 taking the offsets out removes more than it brings in
-_CHANCE = 1e-6  # that a white profile passes for a periodic one
+_FINE = 4  # frequencies tried between two of the transform, so that none falls between them
+_CHANCE = 1e-4  # that a white profile passes for a periodic one
 
 
 @dataclass(frozen=True)
@@ -163,13 +164,14 @@ def _straightened(kept: Floats, profile: Floats, guide: Floats, usual: NDArray[n
 
 def _period(offsets: Floats) -> float | None:
     """Of the one frequency that stands out, if white noise would give it less than once in a million [row]."""
-    power = np.abs(np.fft.rfft(offsets))[1:] ** 2
+    n = len(offsets)
+    power = np.abs(np.fft.rfft(offsets, _FINE * n))[_FINE:] ** 2
     if not power.any():
         return None
-    share, m = float(power.max() / power.sum()), len(power)
+    share, m = float(power.max() / (power.sum() / _FINE)), n // 2
     # Fisher (1929): the chance that the largest of m shares exceeds g is below m (1 - g)^(m - 1)
-    chance = m * (1.0 - share) ** (m - 1)
-    return len(offsets) / (1.0 + int(power.argmax())) if chance < _CHANCE else None
+    chance = _FINE * m * max(1.0 - share, 0.0) ** (m - 1)
+    return _FINE * n / (_FINE + int(power.argmax())) if chance < _CHANCE else None
 
 
 def _runs(steps: Floats, least: float) -> list[float]:
