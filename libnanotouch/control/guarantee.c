@@ -12,12 +12,16 @@
 
 #define SIGMAS 6.0
 
-/* Largest amplitude at which the stage rings if its command goes to and fro at its limit of speed: the square wave's
- * fundamental, times the gain of the resonance that the notch leaves [m]. */
+/* Largest amplitude at which the stage rings if its command goes to and fro at its limit of speed [m]: the square
+ * wave's fundamental times the gain of the resonance that the notch leaves, or, where that is more, all that a speed
+ * can make of the step response, v int |1 - s| dt = 2 v/(w_n (1 - exp(-pi zeta/sqrt(1 - zeta^2)))), less the lag 2 zeta
+ * v/w_n that the reaction time holds already. */
 static double ringing_amplitude(const nt_stage *stage, double zeta, double speed)
 {
-    const double gain = 2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * sqrt(1.0 - zeta * zeta)) : 1.0;
-    return 4.0 / NT_PI * gain * speed / (2.0 * NT_PI * stage->resonance);
+    const double split = zeta < 1.0 ? sqrt(1.0 - zeta * zeta) : 0.0;
+    const double gain = 2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * split) : 1.0;
+    const double all = split > 0.0 ? -2.0 / expm1(-NT_PI * zeta / split) - 2.0 * zeta : 0.0;
+    return fmax(4.0 / NT_PI * gain, all) * speed / (2.0 * NT_PI * stage->resonance);
 }
 
 nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
