@@ -240,7 +240,7 @@ def test_limit_on_the_simulated_rig_is_the_exact_one() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rate", [2e3, 5e3, 10e3, 50e3])
+@pytest.mark.parametrize("rate", [2e3, 5e3, 10e3])
 @pytest.mark.parametrize("hand", [{}, {"damping": 3.0}, {"mass": 0.05}])
 def test_limit_on_the_simulated_rig_with_hands(rate: float, hand: dict[str, float]) -> None:
     """Against the eigenvalues at the contact; the exact limit is for air as well, where a pad may give way earlier."""

@@ -72,7 +72,14 @@ def reproduce() -> Reproduction:
         "force at the hand [N]": np.interp(distance, recording.x, recording.operator_force),
         "scaled slave force [N]": np.interp(distance, recording.x, recording.scaled_slave_force),
     }
-    statements = (_literal(), _armed(found), _jumps(recording), _forces(recording), _edges(recording))
+    statements = (
+        _literal(),
+        _armed(found),
+        _jumps(recording),
+        _forces(recording),
+        _positions(recording),
+        _edges(recording),
+    )
     return Reproduction(
         18, "a grating of 480 nm felt with force, K_f = 10", PARAMETERS, columns, statements,
         lambda figure: _draw(figure, columns),
@@ -114,6 +121,14 @@ def _forces(recording: nt.Recording) -> Statement:
         "the operator can feel the contact forces while the tip moves in x-y", "VI-C, Fig. 18",
         holds(error < 0.2 * HAND.value), "RMS of f_m - alpha_f f_s along the line", error, "N",
         "Largest at the walls, where the hand moves fastest: b_m v/(1 + K_f).",
+    )  # fmt: skip
+
+
+def _positions(recording: nt.Recording) -> Statement:
+    error = touching.rms(touching.position_error(recording))
+    return Statement(
+        "x_s follows alpha_p x_m (Eq. 16)", "IV-B", holds(error < 10e-9), "RMS of alpha_p x_m - x_s along the line",
+        error, "m", "One step of the master is 4 nm of the stage.",
     )  # fmt: skip
 
 
