@@ -39,7 +39,7 @@ def assemble(volume: Volume, settings: Settings, blocks: list[Columns], made_of:
             values = values.astype(object)
         variables[key] = (("y", "x"), values, _attributes(key, units, settings.model))
     data = xarray.Dataset(variables, _coordinates(volume))
-    status, flags = data["status"].values, data["flags"].values
+    status = data["status"].values
     data.attrs = {
         "title": f"{settings.model} fit of {volume.name}",
         "model": settings.model,
@@ -53,7 +53,7 @@ def assemble(volume: Volume, settings: Settings, blocks: list[Columns], made_of:
         ),
         "curves": int(status.size),
         "curves_without_result": int(np.count_nonzero(status)),
-        "curves_flagged": int(np.count_nonzero(flags)),
+        "curves_flagged": int(np.count_nonzero(doubtful(data))),
     }
     return data
 
@@ -88,6 +88,11 @@ def flag_counts(data: Any) -> dict[str, int]:
     flags = data["flags"].values
     counts = {name: int(np.count_nonzero(flags & bit)) for name, bit in _bits(data).items()}
     return {name: count for name, count in counts.items() if count}
+
+
+def doubtful(data: Any) -> NDArray[np.bool_]:
+    """Where a curve has a flag that speaks against its result, shape (y, x); a wave that was taken off does not."""
+    return np.asarray((data["flags"].values & ~np.uint32(_bits(data)["waves"])) != 0)
 
 
 def _bits(data: Any) -> dict[str, int]:

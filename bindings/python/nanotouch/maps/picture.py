@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidValue, require
 from ..plots import engineering
 from ..record import replacing
-from .dataset import determined, flag_counts
+from .dataset import determined, doubtful, flag_counts
 
 Floats = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]
 def _state(figure: Any, panel: Any, data: Any, extent: list[float]) -> None:
     """No result, flagged, or neither."""
     colors = require("matplotlib.colors", "app")
-    state = np.where(data["status"].values != 0, 2, np.where(data["flags"].values != 0, 1, 0))
+    state = np.where(data["status"].values != 0, 2, np.where(doubtful(data), 1, 0))
     palette = colors.ListedColormap(["#009e73", "#e69f00", "#000000"])
     image = panel.imshow(state, origin="lower", extent=extent, cmap=palette, vmin=-0.5, vmax=2.5, interpolation="none")
     bar = figure.colorbar(image, ax=panel, ticks=[0, 1, 2])
