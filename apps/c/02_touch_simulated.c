@@ -65,7 +65,8 @@ int main(void)
     for (size_t i = 0; i < sizeof script / sizeof script[0] && status == NT_OK; ++i)
         status = run(session, &script[i], &s);
     const nt_plan *plan = nt_session_plan(session);
-    printf("contact law            %s, lambda %.3g\n", plan->terms[NT_PLAN_CONTACT].name, plan->lambda);
+    printf("form of the contact    %s, Maugis' lambda %.3g\n", nt_form_name(plan->terms[NT_PLAN_CONTACT].form),
+           plan->lambda);
     printf("stability margin       %.1f\n", nt_session_margins(session).margin);
     printf("largest force          %.1f nN\n", s.largest_force * 1e9);
     printf("largest attraction     %.2f nN (the plan's pull-off: %.2f nN)\n", -s.smallest_force * 1e9,

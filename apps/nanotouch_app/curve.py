@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compute and plot the force over the gap for Hertz, DMT, JKR and Maugis-Dugdale, on retraction from contact."""
+"""Compute and plot the force over the gap for Hertz, DMT, JKR and Maugis-Dugdale, on retraction from contact.
+
+Each has all of the scene's adhesion, the part included that a plan gives to the van der Waals tail (docs/interaction.md).
+"""
 
 from __future__ import annotations
 
@@ -32,9 +35,10 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     scene = nt.Scene.from_toml(args.scene) if args.scene else nt.Scene()
-    plan = scene.plan()
-    print(plan)
-    facts = plan.explain()
+    print(scene.plan())
+    alone = scene.copy()
+    alone.adhesion.hamaker_constant = 0.0  # without a tail, contact has all of w
+    facts = alone.plan().explain()
     contact = Contact(
         facts["radius"], facts["effective_modulus"], facts["work_of_adhesion"], facts["cohesive_stress"] or None
     )

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Say what has to be computed for a scene, at which cost and with which error bound.
 
-The scene is a TOML file or a preset of the paper; the demand may stand in the file ([demand]) or be given here.
+The scene is a TOML file or a preset of the paper. The demand may stand in the file ([demand]); what is given here
+replaces it.
 """
 
 from __future__ import annotations
 
 import argparse
+import difflib
 import json
+import math
+import os
 from typing import Any
 
 import nanotouch as nt
@@ -24,15 +28,24 @@ PRESETS = (
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "plan", help="say what has to be computed for a scene, and why", description=__doc__
+        "plan",
+        help="say what has to be computed for a scene, and why",
+        description=__doc__,
+        epilog="Exit status 2: the description is wrong, or the demand cannot be kept; the sentence says what can.",
     )
     parser.add_argument("scene", metavar="SCENE", help=f"TOML file, or a preset: {', '.join(PRESETS)}")
-    parser.add_argument("--rtol", metavar="SHARE", help="largest relative error, such as 1%% (default: of the file, 1%%)")
+    parser.add_argument(
+        "--rtol", metavar="SHARE", help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6; 0: exact"
+    )
     parser.add_argument("--atol", metavar="FORCE", help="forces below this cannot be felt, such as 10pN")
-    parser.add_argument("--quantity", choices=("force", "stiffness", "radius", "folds"), help="of what (default: force)")
+    parser.add_argument(
+        "--quantity", choices=("force", "stiffness", "radius", "folds"), help="of what (default: force)"
+    )
     parser.add_argument("--budget", type=float, metavar="N", help="what an evaluation may cost, in Hertz evaluations")
     parser.add_argument("--probe", action="store_true", help="leave out what the rig's probe cannot measure")
-    parser.add_argument("--json", action="store_true", help="print the plan as data, SI")
+    parser.add_argument(
+        "--json", action="store_true", help='print the plan as data, SI; what is not finite as null or "inf"'
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,14 +60,34 @@ def run(args: argparse.Namespace) -> int:
     if args.budget is not None:
         demand["demand.budget"] = args.budget
     plan = nt.Plan.make(scene, demand, rig if args.probe else None)
-    print(json.dumps(plan.explain(), indent=2) if args.json else plan)
+    print(json.dumps(as_json(plan.explain()), indent=2, allow_nan=False) if args.json else plan)
     return 0
+
+
+def as_json(value: Any) -> Any:
+    """What JSON has a spelling for: NaN (not known) is null, infinities are the strings ``"inf"`` and ``"-inf"``; terms
+    and warnings are objects."""
+    if isinstance(value, dict):
+        return {key: as_json(_named(key, entry)) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else str(value)
+    return value
+
+
+def _named(key: str, value: Any) -> Any:
+    """The rows of terms and warnings with their names."""
+    kind = {"terms": nt.plan.Term, "warnings": nt.plan.Warning}.get(key)
+    return value if kind is None else [kind(*row)._asdict() for row in value]
 
 
 def _descriptions(name: str) -> tuple[Scene, Rig, Demand]:
     if name in PRESETS:
         return *getattr(presets, name)(), Demand()
-    if not name.endswith(".toml"):
-        raise InvalidValue(f"{name!r} is neither a TOML file nor a preset; presets are {', '.join(PRESETS)}")
+    if not name.endswith(".toml") and not os.path.isfile(name):
+        close = difflib.get_close_matches(name, PRESETS, n=1)
+        hint = f"; did you mean {close[0]}" if close else ""
+        raise InvalidValue(f"{name!r} is neither a TOML file nor a preset{hint}; presets are {', '.join(PRESETS)}")
     tables = read_tables(name)
     return Scene.from_tables(tables), Rig.from_tables(tables), Demand.from_tables(tables)

@@ -13,8 +13,7 @@ recording = session.run(operator=[*approach, *press, *retract])
 felt = recording.scaled_slave_force
 rest = (recording.time > 5.0) & (recording.time < 6.0)
 error = (recording.operator_force - felt)[rest]
-law = session.plan.terms[0].name
-print(f"contact law            {law}, lambda {session.plan.explain()['lambda']:.3g}")
+print(f"contact law            {session.plan.contact_law}, lambda {session.plan.maugis_lambda:.3g}")
 print(f"stability margin       {session.margins().margin:.1f}")
 print(f"largest force          {recording.tip_force.max() * 1e9:.1f} nN")
 print(

@@ -41,6 +41,7 @@ def test_force_curve() -> None:
 
 def test_touch_simulated() -> None:
     said = run("02_touch_simulated.py")
+    assert re.search(r"contact law +Maugis-Dugdale table, lambda 0\.0401\n", said)
     attraction = number(r"attraction +([\d.]+) nN", said)
     assert attraction == pytest.approx(number(r"pull-off: ([\d.]+) nN", said), rel=0.03)
     assert number(r"RMS +([\d.]+) N at rest", said) < 0.05

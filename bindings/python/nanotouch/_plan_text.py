@@ -35,17 +35,29 @@ def text_of(plan: Plan) -> str:
     return "\n".join(lines + [f"warning: {warning}" for warning in plan.warnings])
 
 
+def contact_law_of(term: Term, facts: dict[str, Any]) -> str:
+    """The law of contact in words."""
+    if not term.included:
+        return "none"
+    if facts["adhesion_source"] != "none":
+        return _CONTACT[term.form]
+    if term.form == "local":
+        return "Hertz with the radius of each place"
+    shape = facts["shape"]
+    if term.form == "paraboloid":
+        return f"Hertz in place of the {shape}"
+    return "Hertz" if shape == "paraboloid" else f"law of the {shape}"
+
+
 def _contact(term: Term, facts: dict[str, Any]) -> str:
+    law = contact_law_of(term, facts)
     if not term.included:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
         felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
-        shape = facts["shape"]
-        if term.form == "paraboloid":
-            return f"contact: Hertz in place of the {shape}, within {_percent(term.bound)}, no adhesion{felt}"
-        law = "Hertz" if shape == "paraboloid" else f"law of the {shape}"
-        return f"contact: {law}, no adhesion{felt}"
-    text = f"contact: {_CONTACT[term.form]}"
+        within = f", within {_percent(term.bound)}" if term.form == "paraboloid" else ""
+        return f"contact: {law}{within}, no adhesion{felt}"
+    text = f"contact: {law}"
     if math.isfinite(facts["lambda"]):
         text += f", lambda {facts['lambda']:.3g}"
     text += f"; adhesion {_SOURCES[facts['adhesion_source']]}, w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2"

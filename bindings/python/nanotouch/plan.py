@@ -120,6 +120,13 @@ class Plan:
         return float(self._facts["cost"])
 
     @property
+    def contact_law(self) -> str:
+        """The law of contact in words, such as ``"Maugis-Dugdale table"``; ``"none"`` where there is no contact."""
+        from nanotouch._plan_text import contact_law_of
+
+        return contact_law_of(self._all_terms()[0], self._facts)
+
+    @property
     def maugis_lambda(self) -> float:
         """Maugis' parameter of the contact; infinite without adhesion or without its range."""
         return float(self._facts["lambda"])
