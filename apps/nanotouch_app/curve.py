@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compute and plot the force over the gap for Hertz, DMT, JKR and Maugis-Dugdale, on retraction from contact.
 
-Each has all of the scene's adhesion, the part included that a plan gives to the van der Waals tail (docs/interaction.md).
+Each has all of the scene's adhesion, with the part that a plan gives to the van der Waals tail (docs/interaction.md).
 """
 
 from __future__ import annotations

@@ -11,7 +11,9 @@ from collections.abc import Sequence
 
 import nanotouch as nt
 
-COMMANDS = ("touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff", "bench", "doctor")
+COMMANDS = (
+    "touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff", "bench", "doctor",
+)  # fmt: skip
 
 
 def build_parser() -> argparse.ArgumentParser:
