@@ -56,7 +56,8 @@ static double reflected_stiffness(const nt_rig *rig, const nt_gains *gains, doub
     return gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
 }
 
-nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
+                          const nt_sampled_loop *loop)
 {
     const double k_r = reflected_stiffness(rig, gains, contact_stiffness), K_f = gains->force_gain;
     const double step = fmax(rig->stage.command_resolution, gains->alpha_p * rig->master.resolution);
@@ -76,12 +77,17 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     const double servo = gains->height_gain * k_r / (gains->alpha_f * gains->alpha_p * rig->probe.spring_constant) *
                          (margins.loop_delay - hop_delay(rig, gains)); /* integral gain times lag */
     margins.height_margin = fmin(1.0 / servo, rig->master.damping / (hop_delay(rig, gains) * gains->height_stiffness));
-    const nt_sampled_loop loop = nt_sampled_loop_make(rig, gains);
-    const nt_sampled_limits limits = nt_sampled_limits_of(&loop, K_f, k_r);
+    const nt_sampled_limits limits = nt_sampled_limits_of(loop, K_f, k_r);
     margins.exact_limit = limits.loop_stiffness;
     margins.exact_frequency = limits.angle / (2.0 * NT_PI) * gains->rate;
     margins.force_gain_limit = limits.force_gain;
     return margins;
+}
+
+nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
+{
+    const nt_sampled_loop loop = nt_sampled_loop_make(rig, gains);
+    return compute(rig, gains, contact_stiffness, &loop);
 }
 
 /* In touch; rig and gains are those that the law amounts to. */
@@ -106,7 +112,15 @@ nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, doub
                             nt_margins *margins)
 {
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
-    *margins = nt_margins_compute(&shape.rig, &shape.gains, shape.contact_stiffness);
+    nt_sampled_loop loop = nt_sampled_loop_make(&shape.rig, &shape.gains);
+    if (settings->control.choice == NT_CONTROL_PAPER) {
+        loop.printed = 1;
+        loop.notched = 0;
+        loop.proportional = settings->gains.stage_proportional;
+        loop.derivative = settings->gains.stage_derivative;
+        loop.force_filter = 1.0; /* the raw f_m */
+    }
+    *margins = compute(&shape.rig, &shape.gains, shape.contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
         return (nt_verdict){INFINITY, "none"};
     if (mode != NT_MODE_TOUCH)

@@ -115,11 +115,17 @@ nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
     const double complex reaction =
         -(hand->mass * master.acceleration + hand->damping * master.speed + hand->stiffness * master.position);
     const double complex low_pass = loop->force_filter * z / (less + loop->force_filter);
-    const nt_sampled_terms terms = {.stage = less * below,
-                                    .tracking = z * above,
-                                    .master = master.determinant,
-                                    .finger = low_pass * reaction,
-                                    .contact = (less + loop->stage_loop.integral * z) * above * master.position};
+    const double complex drive =
+        loop->proportional + loop->derivative / loop->stage.period * less * back_by(theta); /* of Eq. 17 */
+    nt_sampled_terms terms = {.stage = less * below,
+                              .tracking = z * above,
+                              .master = master.determinant,
+                              .finger = low_pass * reaction,
+                              .contact = (less + loop->stage_loop.integral * z) * above * master.position};
+    if (loop->printed) {
+        terms.tracking = less * drive * above;
+        terms.contact = less * drive * above * master.position;
+    }
     return terms;
 }
 
@@ -128,5 +134,9 @@ double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta)
     const double complex less = from_one(theta), integral = loop->stage_loop.integral * (1.0 + less);
     double complex below;
     const double complex above = stage_numerator(loop, theta, &below);
+    if (loop->printed) {
+        const double complex drive = loop->proportional + loop->derivative / loop->stage.period * less * back_by(theta);
+        return drive * above / (below + drive * above);
+    }
     return (less + integral) * above / (less * below + integral * above);
 }

@@ -40,13 +40,16 @@ typedef struct nt_sampled_loop {
     int notched;
     nt_hand hand;
     double force_filter; /* c of the low-pass of f_m, per period [-] */
+    int printed;         /* the stage is driven by Eq. 17 as printed, K_p and K_v, without notch and integral */
+    double proportional; /* K_p [-] */
+    double derivative;   /* K_v [s] */
 } nt_sampled_loop;
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains);
 /* Dead time of one hop: computing, conversion [s]. */
 double nt_sampled_dead_time(const nt_rig *rig, const nt_gains *gains);
 
-/* The characteristic function is (P + g Q) (M - K_f F) + kappa E, g the stage loop's integral gain per period, with
- * common factors taken out so that nothing has a pole. */
+/* The characteristic function is (P + g Q) (M - K_f F) + kappa E, g the stage loop's integral gain per period (1 where
+ * it is driven as printed), with common factors taken out so that nothing has a pole. */
 typedef struct nt_sampled_terms {
     double complex stage;    /* P: (z - 1), as there is an integral */
     double complex tracking; /* Q: from the stage's integral over the stage back to it */

@@ -10,7 +10,7 @@
 #include "nanotouch/material.h"
 
 /* Gains, each with the others as they are given. */
-typedef enum gain { STAGE_INTEGRAL, FORCE_GAIN_IN_AIR, FORCE_GAIN_IN_CONTACT, KAPPA_WITHOUT_GAIN, KAPPA, GAINS } gain;
+typedef enum gain { STAGE_GAIN, FORCE_GAIN_IN_AIR, FORCE_GAIN_IN_CONTACT, KAPPA_WITHOUT_GAIN, KAPPA, GAINS } gain;
 
 typedef struct asked {
     const nt_sampled_loop *loop;
@@ -23,14 +23,20 @@ typedef struct crossing {
     double angle; /* where */
 } crossing;
 
+/* g of the stage's own loop. */
+static double stage_gain(const nt_sampled_loop *loop)
+{
+    return loop->printed ? 1.0 : loop->stage_loop.integral;
+}
+
 /* -A conj(B), of the phase of g, and |g|. */
 static double complex phasor(const asked *question, gain which, const nt_sampled_terms *terms, double *size)
 {
-    const double g = question->loop->stage_loop.integral, k = question->reflected_stiffness;
+    const double g = stage_gain(question->loop), k = question->reflected_stiffness;
     const double complex servo = terms->stage + g * terms->tracking;
     double complex A, B;
     switch (which) {
-    case STAGE_INTEGRAL:
+    case STAGE_GAIN:
         A = terms->stage;
         B = terms->tracking;
         break;
@@ -125,7 +131,7 @@ nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force
     for (int which = 0; which < GAINS; which++)
         found[which] = (crossing){INFINITY, NAN};
     march(&question, found);
-    if (loop->stage_loop.integral >= found[STAGE_INTEGRAL].limit)
+    if (stage_gain(loop) >= found[STAGE_GAIN].limit)
         return limits;
     if (force_gain < found[FORCE_GAIN_IN_AIR].limit) {
         limits.loop_stiffness = found[KAPPA].limit;

@@ -12,7 +12,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch import margins
+from nanotouch import _core, margins
 from nanotouch_app import stability
 from nanotouch_app.main import main
 
@@ -145,6 +145,40 @@ def test_r3_of_a_rigid_finger_at_any_rate(mass: float) -> None:
         assert found.force_gain_limit == pytest.approx(found.mass_limit, rel=0.15)  # b_m T/m helps at low rates
         settings["gains.force_filter"] = 50.0
         assert margins.compute(rig, settings, 1e-6).force_gain_limit > 1.5 * found.mass_limit
+
+
+def printed_radius(rig: nt.Rig, settings: nt.Settings) -> float:
+    """Spectral radius of the stage under Eq. 17 as printed, the master held."""
+    gains = settings.gains
+    period, delay, wn = 1.0 / gains.rate, int(gains.delay), 2.0 * math.pi * rig.stage.resonance
+    stage, drive = held(1.0 / wn**2, 1.0 / (wn * rig.stage.quality), 1.0, period)
+
+    def step(state: Floats) -> Floats:
+        x, v, last, *queue = state
+        queue.append(-gains.stage_proportional * x - gains.stage_derivative * (x - last) / period)
+        return np.array([*(stage @ [x, v] + drive * queue.pop(0)), x, *queue])
+
+    matrix = np.array([step(row) for row in np.eye(3 + delay)]).T
+    return float(np.max(np.abs(np.linalg.eigvals(matrix))))
+
+
+@pytest.mark.parametrize("rate", [1.0 / 3e-3, 1e3, 4e3, 10e3])
+@pytest.mark.parametrize(("delay", "derivative"), [(0.0, 0.0), (1.0, 0.0), (0.0, 1e-4)])
+def test_stage_as_printed_is_judged(rate: float, delay: float, derivative: float) -> None:
+    """Eq. 17's K_p: what the eigenvalues call unstable has no limit above 0, and is refused."""
+    rig = nt.Rig()
+    settings = nt.Settings.for_rig(rig)
+    _core.set_control(settings.core, "paper")
+    settings["gains.rate"], settings["gains.delay"], settings["gains.stage_derivative"] = rate, delay, derivative
+    seen = set()
+    for proportional in np.geomspace(1e-3, 1e3, 60):
+        settings["gains.stage_proportional"] = float(proportional)
+        stable = printed_radius(rig, settings) < 1.0
+        found = margins.compute(rig, settings, math.inf)
+        assert (found.exact_limit > 0.0) == stable
+        assert stable or found.refusal is not None
+        seen.add(stable)
+    assert False in seen
 
 
 def test_what_is_refused_says_why() -> None:
