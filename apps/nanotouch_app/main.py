@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import nanotouch as nt
 
 COMMANDS = (
-    "touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff", "bench", "doctor",
+    "touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff",
+    "bench", "doctor",
 )  # fmt: skip
 
 

@@ -152,5 +152,5 @@ def _draw(figure: Any, columns: dict[str, Floats]) -> None:
     for panel, names, scale in ((upper, upper_names, 1e9), (lower, lower_names, 1.0)):
         for name, (colour, style) in zip(names, drawing.LOOKS, strict=False):
             panel.plot(x, columns[name] * scale, color=colour, ls=style, lw=1.0, label=name.split(" [")[0])
-    drawing.dress(upper, "Felt along the line", "", "height (nm)", "upper right")
+    drawing.dress(upper, "Felt along the line", "", "height (nm)", "center")
     drawing.dress(lower, "", "distance (µm)", "force (N)", "upper right")
