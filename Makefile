@@ -5,7 +5,7 @@ OUT ?= nanotouch-out
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test fuzz damage bench lint format clean
+.PHONY: help demo test fuzz damage heavy bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -29,6 +29,11 @@ fuzz:  ## random input to the C library, with sanitizers; about a minute
 damage:  ## 2000 damaged files through the readers of images and curves; some minutes
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/mutations.py
+
+heavy:  ## plans of 10 000 random scenes against the reference, energy of 1.5 million closed paths; half an hour
+	@tools/setup.sh test
+	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
+	@$(VENV)/python tests/heavy/energy.py
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test

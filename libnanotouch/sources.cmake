@@ -108,7 +108,6 @@ set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
 set(nanotouch_sources_session session/arming.c session/run.c session/session.c)
 set(nanotouch_sources_fit
     fit/baseline.cpp
-    fit/baseline.cpp
     fit/batch.cpp
     fit/branch.c
     fit/contact_model.cpp

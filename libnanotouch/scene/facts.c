@@ -82,7 +82,7 @@ nt_status nt_plan_facts(nt_plan *plan)
     if (plan->source != NT_ADHESION_NONE) {
         const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;
         plan->capture_energy = fmax(0.0, -nt_plan_contact_eval(plan, form, -plan->capture_gap).U);
-        plan->release_energy = fmax(0.0, nt_plan_contact_eval(plan, form, -plan->release_gap).U);
+        plan->release_energy = fmax(0.0, nt_plan_contact_eval(plan, form, -nt_plan_last_hold(plan->release_gap)).U);
     }
     return isfinite(plan->pull_off_force) ? NT_OK : NT_E_NOT_FINITE;
 }

@@ -107,7 +107,8 @@ void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state
         return;
     const int attached = is_attached(plan, state, place, gap);
     if (attached != state->attached && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF) {
-        const double U = contact_at(plan, place, attached ? plan->capture_gap : release_gap(plan, place)).law.U;
+        const double where = attached ? plan->capture_gap : nt_plan_last_hold(release_gap(plan, place));
+        const double U = contact_at(plan, place, where).law.U;
         state->dissipated += fmax(0.0, attached ? -U : U);
     }
     state->attached = attached;

@@ -4,13 +4,38 @@
 
 #include "scene/parts.h"
 
-double nt_plan_release_gap(const nt_plan *plan, double radius)
+static double local_release_gap(const nt_plan *plan, double radius)
 {
-    if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_LOCAL)
-        return plan->release_gap;
     nt_contact contact = plan->contact;
     contact.radius = radius;
     return -nt_maugis_bank_grip_indentation(plan->bank, &contact);
+}
+
+double nt_plan_release_gap(const nt_plan *plan, double radius)
+{
+    const int local = plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL;
+    return local ? local_release_gap(plan, radius) : plan->release_gap;
+}
+
+double nt_plan_curvature_shift(const nt_plan *plan)
+{
+    if (!plan->radii || !plan->bank || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+        return 0.0;
+    return fmax(fabs(local_release_gap(plan, plan->radii->minimum) - plan->release_gap),
+                fabs(local_release_gap(plan, plan->radii->maximum) - plan->release_gap));
+}
+
+double nt_plan_bank_shift(const nt_plan *plan)
+{
+    if (nt_plan_contact_form(plan) != NT_FORM_EXACT)
+        return 0.0;
+    const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
+    return plan->bank->accuracy.fold_shift * plan->maugis.indentation_scale * cbrt(ratio);
+}
+
+double nt_plan_last_hold(double release_gap)
+{
+    return release_gap - 1e-12 * fabs(release_gap);
 }
 
 /* Stiffness where the contact carries `load` at a radius: bracketed upwards from first touch, then bisected. */
@@ -38,11 +63,5 @@ void nt_plan_local_facts(nt_plan *plan, double maximum_load)
     plan->pull_off_force *= ratio;
     plan->minimum_spring *= ratio;
     plan->maximum_stiffness = fmax(plan->maximum_stiffness, stiffness_at(plan, bluntest, maximum_load));
-    if (plan->source == NT_ADHESION_NONE)
-        return;
-    nt_contact contact = plan->contact;
-    contact.radius = bluntest;
-    nt_maugis maugis;
-    if (nt_maugis_init(&maugis, &contact) == NT_OK)
-        plan->bound.fold_shift = plan->bank->accuracy.fold_shift * maugis.indentation_scale;
+    plan->bound.fold_shift = nt_plan_bank_shift(plan);
 }

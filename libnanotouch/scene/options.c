@@ -183,6 +183,8 @@ static double curved_contact(const nt_plan *plan, double beside)
     const double R = plan->contact.radius;
     if (!is_curved(plan) || (plan->radii->minimum == R && plan->radii->maximum == R))
         return 0.0;
+    if (quantity == NT_QUANTITY_FOLDS)
+        return share(nt_plan_curvature_shift(plan), plan->scale);
     return (1.0 + share(beside, plan->scale)) * SAMPLED *
            fmax(contact_distance(plan, sharpest_at, full_at, -INFINITY, quantity),
                 contact_distance(plan, bluntest_at, full_at, -INFINITY, quantity));
@@ -191,12 +193,18 @@ static double curved_contact(const nt_plan *plan, double beside)
 /* The tables' error at the largest radius; a contact without adhesion is exact. */
 static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
 {
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     if (!is_curved(plan))
         return;
-    const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
-    const double here = contact_distance(plan, full_at, nominal_at, -INFINITY, (nt_quantity)(int)plan->demand.quantity);
-    const double error = plan->source == NT_ADHESION_NONE ? 0.0 : TABLED * fmax(here, plan->bank->accuracy.force_error);
-    offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * ratio * error + ROUNDING, COST_LOCAL);
+    double error = 0.0;
+    if (quantity == NT_QUANTITY_FOLDS)
+        error = share(nt_plan_bank_shift(plan), plan->scale);
+    else if (plan->source != NT_ADHESION_NONE) {
+        const double here = contact_distance(plan, full_at, nominal_at, -INFINITY, quantity);
+        const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
+        error = ratio * TABLED * fmax(here, plan->bank->accuracy.force_error);
+    }
+    offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * (error + ROUNDING), COST_LOCAL);
 }
 
 /* Contact of tips that adhesion makes Maugis-Dugdale's. */

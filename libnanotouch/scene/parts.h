@@ -22,6 +22,12 @@ nt_bank_value nt_plan_local_eval(const nt_plan *plan, double radius, double inde
 
 /* local.c: where the contact lets go under grips, of the form that was chosen, at an effective radius [m]. */
 double nt_plan_release_gap(const nt_plan *plan, double radius);
+/* How far the radii of the surface move the release gap from that of the tip's own, and how far off the bank's tables
+ * are where they let go [m]. */
+double nt_plan_curvature_shift(const nt_plan *plan);
+double nt_plan_bank_shift(const nt_plan *plan);
+/* Just inside a release gap, where the contact still holds: on the fold itself rounding decides. */
+double nt_plan_last_hold(double release_gap);
 /* Pull-off, stiffness, jump-in and folds of a local contact: the worst of the surface. */
 void nt_plan_local_facts(nt_plan *plan, double maximum_load);
 

@@ -73,6 +73,8 @@ static void finish(nt_plan *plan, double maximum_load)
         plan->bound.fold_shift = plan->table.accuracy[form == NT_FORM_TABLE ? 0 : 1].fold_shift;
     if (form == NT_FORM_LOCAL)
         nt_plan_local_facts(plan, maximum_load);
+    else
+        plan->bound.fold_shift += nt_plan_curvature_shift(plan);
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
         plan->capture_gap = plan->release_gap = plan->capture_energy = plan->release_energy = 0.0;

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from typing import Any, Literal, NamedTuple, get_args
 
@@ -32,12 +33,16 @@ class SceneForces(NamedTuple):
     steric: Floats
 
 
-def force(scene: Scene, gap: ArrayLike, *, history: History = "approach") -> Any:
-    """Force on the tip [N] at gaps [m], each reached from far away (``"approach"``) or from contact (``"retract"``)."""
-    return plain(np.sum(forces(scene, gap, history=history), axis=0))
+def force(scene: Scene, gap: ArrayLike, *, history: History = "approach", radius: float | None = None) -> Any:
+    """Force on the tip [N] at gaps [m], each reached from far away (``"approach"``) or from contact (``"retract"``).
+
+    With a ``radius`` [m]: over a place of that effective radius, where contact has it in place of the tip's own and all
+    beside contact is proportional to it.
+    """
+    return plain(np.sum(forces(scene, gap, history=history, radius=radius), axis=0))
 
 
-def forces(scene: Scene, gap: ArrayLike, *, history: History = "approach") -> SceneForces:
+def forces(scene: Scene, gap: ArrayLike, *, history: History = "approach", radius: float | None = None) -> SceneForces:
     """The same, term by term."""
     if history not in get_args(History):
         raise InvalidValue(f"history {history!r}: valid are {', '.join(get_args(History))}")
@@ -47,15 +52,12 @@ def forces(scene: Scene, gap: ArrayLike, *, history: History = "approach") -> Sc
     capture = _capture_gap(scene, whole)
     tail = functools.partial(_vdw, scene, hold=max(capture, 1e-12))
     pulled = -float(tail(0.0)) / (2.0 * np.pi * whole.radius) if whole.work_of_adhesion > 0.0 else 0.0
-    return SceneForces(
-        _touch(scene, gaps, _less(whole, pulled), capture, history),
-        np.asarray(tail(gaps)),
-        np.asarray(_electrostatic(scene, gaps)),
-        np.asarray(_charge(scene, gaps)),
-        np.asarray(_double_layer(scene, gaps)),
-        np.asarray(_hydration(scene, gaps)),
-        np.asarray(_steric(scene, gaps)),
-    )
+    left = _less(whole, pulled)
+    if radius is not None:
+        left = _on_curved(scene, left, radius)
+    beside = (tail, *(functools.partial(law, scene) for law in _BESIDE))
+    ratio = left.radius / whole.radius
+    return SceneForces(_touch(scene, gaps, left, capture, history), *(ratio * np.asarray(law(gaps)) for law in beside))
 
 
 # ---- contact ----
@@ -137,6 +139,13 @@ def _less(contact: contacts.Contact, pulled: float) -> contacts.Contact:
     return contacts.Contact(contact.radius, contact.effective_modulus, left, left * contact.cohesive_stress / w)
 
 
+def _on_curved(scene: Scene, contact: contacts.Contact, radius: float) -> contacts.Contact:
+    """The same surfaces and stress over a place of another effective radius."""
+    if _is_jkr(scene) or (contact.work_of_adhesion == 0.0 and scene.tip.shape != "paraboloid"):
+        raise InvalidValue(f"tip.shape = {scene.tip.shape}: its contact law has no effective radius")
+    return dataclasses.replace(contact, radius=radius)
+
+
 def _capture_gap(scene: Scene, contact: contacts.Contact) -> float:
     """Where adhesion takes hold on approach."""
     if contact.work_of_adhesion == 0.0 or _is_jkr(scene):
@@ -149,7 +158,10 @@ def _capture_gap(scene: Scene, contact: contacts.Contact) -> float:
 def _touch(scene: Scene, gaps: Floats, contact: contacts.Contact, capture: float, history: History) -> Floats:
     """The contact law where it has been captured and holds."""
     if contact.work_of_adhesion == 0.0:
-        return np.asarray(geometry.evaluate(_shape(scene), -gaps, contact.effective_modulus).F)
+        shape = (
+            _shape(scene) if scene.tip.shape != "paraboloid" else geometry.Shape("paraboloid", radius=contact.radius)
+        )
+        return np.asarray(geometry.evaluate(shape, -gaps, contact.effective_modulus).F)
     if _is_jkr(scene):
         branch = geometry.jkr(_shape(scene), -gaps, contact.effective_modulus, contact.work_of_adhesion)
     else:
@@ -252,3 +264,6 @@ def _steric(scene: Scene, gaps: Floats) -> Any:
         temperature=medium.temperature,
         minimum_gap=hold,
     ).F
+
+
+_BESIDE = (_electrostatic, _charge, _double_layer, _hydration, _steric)

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One contact: energy of closed paths, force as a gradient, the bound over topography, many contacts, slow changes."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import cycles
+import numpy as np
+import pytest
+import random_scenes
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from nanotouch import Interaction, Plan, Scene, Surface, presets, reference, surface
+from nanotouch.errors import Error, InvalidValue
+from nanotouch.interaction import STATE_SIZE, State, step
+
+PRESETS = random_scenes.PRESETS
+# Of quadrature: 8 Gauss points on pieces that end wherever the force has a kink; what is left are the joins of the
+# tables' cells and panels inside pieces, where a higher derivative of the energy jumps: up to some 1e-9 of force x way.
+QUADRATURE = 1e-8
+
+
+def scene_of(name: str) -> Scene:
+    return getattr(presets, name)()[0]  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_walks_of_the_gap(name: str) -> None:
+    """No energy comes out, and the hysteresis area is what has been booked. 100 000 each: tests/heavy/energy.py"""
+    scene = scene_of(name)
+    balance = cycles.random_walks(scene.plan(), scene, np.random.default_rng(1), 1000)
+    assert balance.net_out < QUADRATURE
+    assert balance.imbalance < QUADRATURE
+    if name not in ("silicon_on_gold", "cell_in_liquid"):  # which have no hysteresis that would show
+        assert balance.dissipated.max() > 1e-6 * balance.scale
+
+
+@pytest.mark.parametrize("curved", [True, False])
+@pytest.mark.parametrize("name", PRESETS)
+def test_laps_over_bumpy_surfaces(name: str, curved: bool) -> None:
+    """The same for laps in x, y, z that jump in at one place and let go at another."""
+    scene = scene_of(name)
+    body = cycles.bumpy(scene, 1)
+    body = body if curved else cycles.without_radii(body)
+    plan = scene.plan(surface=body)
+    if curved and name != "cell_in_liquid":  # without adhesion a sphere has no law with a radius for each place
+        assert plan.terms[0].form == "local"
+    balance = cycles.random_laps(plan, scene, body, np.random.default_rng(2), 150)
+    assert balance.net_out < QUADRATURE
+    assert balance.imbalance < QUADRATURE
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_no_step_away_from_folds(name: str) -> None:
+    """A move of 1 pm changes the force by at most the stiffness times 1 pm."""
+    _, ratio = cycles.largest_step(scene_of(name).plan(), np.random.default_rng(3), 20000)
+    assert ratio <= 1.0 + 1e-6  # a stiffness that has its maximum inside the move
+
+
+@pytest.mark.parametrize("history", ["approach", "retract"])
+@pytest.mark.parametrize("name", ["silicon_in_air", "polyester", "mica_in_air"])
+def test_force_is_minus_the_gradient(name: str, history: Any) -> None:
+    """Central differences over h = 1e-6 of the tip's radius: truncation (h/length)^2, rounding 1e-16 U/h."""
+    scene, rng = scene_of(name), np.random.default_rng(4)
+    body = cycles.bumpy(scene, 2)
+    plan = scene.plan(surface=body)
+    facts, contact = plan.explain(), Interaction(plan, history)
+    width, depth, h = body.size[0], facts["largest_indentation"], 1e-5 * facts["largest_indentation"]
+    x, y = rng.uniform(0.1 * width, 0.8 * width, (2, 400))
+    gap = rng.uniform(-depth, -0.1 * depth, 400)
+    poses = np.column_stack([x, y, body.height(x, y) + gap])
+    value = contact.eval(poses)
+    for axis, force in enumerate((value.Fx, value.Fy, value.Fz)):
+        move = np.eye(3)[axis] * h
+        slope = (contact.eval(poses + move).U - contact.eval(poses - move).U) / (2.0 * h)
+        np.testing.assert_allclose(-slope, force, atol=1e-6 * (np.abs(value.Fz).max() + plan.pull_off_force))
+
+
+def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Generator) -> tuple[Plan, float] | None:
+    """A plan over a surface, and its largest error against the reference with the radius of each place."""
+    try:
+        plan = scene.plan(rtol, surface=body)
+    except Error:
+        return None
+    gaps = random_scenes.gaps_of(plan, scene, 12)
+    width, worst = body.size[0], 0.0
+    for _ in range(5):
+        x, y = rng.uniform(0.1 * width, 0.8 * width, 2)
+        radius = body.radius_map.radius(x, y).radius
+        poses = np.column_stack([np.full_like(gaps, x), np.full_like(gaps, y), body.height(x, y) + gaps])
+        release = cycles.release_gaps(plan, poses[:1] - [0.0, 0.0, gaps[0]])[0]
+        folds = np.array([plan.explain()["capture_gap"], release])
+        away = np.abs(gaps[:, None] - folds).min(axis=1) > 1e-6 * np.abs(folds).max() + plan.fold_shift_m
+        # heights of a surface beside small gaps: the gap that is felt is rounded
+        away &= np.abs(gaps) > 1e-5 * np.abs(folds).max()
+        for history in ("approach", "retract"):
+            value = Interaction(plan, history).eval(poses)  # type: ignore[arg-type]
+            truth = np.asarray(reference.force(scene, value.gap, history=history, radius=radius))  # type: ignore[arg-type]
+            error = np.abs(value.Fz - truth) / np.maximum(np.maximum(np.abs(truth), plan.scale), 1e-300)
+            worst = max(worst, float(error[away].max(initial=0.0)))
+    return plan, worst
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_planned_forces_keep_the_bound_over_topography(seed: int) -> None:
+    """Random scenes near the presets over random bumps, against the exact law with the radius of each place."""
+    rng = np.random.default_rng(seed)
+    forms = []
+    for index in range(8):
+        scene = random_scenes.near_preset(rng)
+        scene.tip.shape = "paraboloid"
+        scene.range.minimum_gap = min(scene.range.minimum_gap, 0.0)
+        rtol = 10.0 ** rng.uniform(-3.5, math.log10(0.3))
+        compared = compare_over(scene, cycles.bumpy(scene, seed * 100 + index), rtol, rng)
+        if compared is None:
+            continue
+        plan, error = compared
+        forms.append(plan.terms[0].form)
+        assert error <= plan.bound <= rtol, (index, repr(plan))
+    assert "local" in forms
+
+
+def test_what_leaving_the_curvature_out_costs_is_said() -> None:
+    """A gentle surface is taken as flat, within the bound; a rough one is not."""
+    scene = Scene()
+    y, x = np.mgrid[0:40, 0:40] * 5e-9
+    bodies = []
+    for height in (1e-13, 1e-10):
+        topography = surface.Topography(height * np.sin(x / 20e-9) * np.cos(y / 17e-9), (5e-9, 5e-9))
+        bodies.append(Surface(topography, scene.tip.radius))
+    gentle, rough = (scene.plan(surface=body) for body in bodies)
+    assert gentle.terms[0].form == "table"
+    assert "surface: curvature left out" in str(gentle)
+    assert 0.0 < gentle.explain()["curvature_error"] < gentle.bound
+    assert rough.terms[0].form == "local"
+    assert "surface: curved, effective radius" in str(rough)
+    assert rough.explain()["curvature_error"] > 0.01
+    compared = compare_over(scene, bodies[0], 0.01, np.random.default_rng(5))
+    assert compared is not None
+    assert gentle.explain()["curvature_error"] * 0.01 < compared[1] <= compared[0].bound
+
+
+def test_surface_of_another_tip_is_refused() -> None:
+    with pytest.raises(
+        InvalidValue, match=r"tip\.radius = 3e-08 m, over a surface that was dilated by a tip of 2e-08 m"
+    ):
+        Scene(tip={"radius": 30e-9}).plan(surface=Surface(surface.dots(pixels=32), 20e-9))
+
+
+def many(count: int) -> tuple[Plan, np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """A plan over bumps, states of contacts that have lived, and poses for them."""
+    scene, rng = Scene(), np.random.default_rng(6)
+    body = cycles.bumpy(scene, 3)
+    plan = scene.plan(surface=body)
+    states = np.column_stack([rng.random(count) < 0.5, rng.uniform(0, 1e-18, count), np.zeros(count)])
+    x, y = rng.uniform(0.0, body.size[0], (2, count))
+    return plan, states, np.column_stack([x, y, body.height(x, y) + rng.uniform(-0.5e-9, 4e-9, count)])
+
+
+def test_many_contacts_in_parts_and_threads() -> None:
+    """However the arrays are cut, and in whatever thread, every contact comes out the same to the last bit."""
+    plan, states, poses = many(4000)
+    after, value = step(plan, states, poses)
+    cuts = [slice(i, i + 613) for i in range(0, 4000, 613)]
+    with ThreadPoolExecutor(4) as pool:
+        parts = list(pool.map(lambda cut: step(plan, states[cut], poses[cut]), cuts))
+    np.testing.assert_array_equal(np.concatenate([part[0] for part in parts]), after)
+    for name in value._fields:
+        np.testing.assert_array_equal(np.concatenate([getattr(part[1], name) for part in parts]), getattr(value, name))
+    for index in range(0, 4000, 397):  # and one by one
+        one = Interaction(plan)
+        one.state = State(bool(states[index, 0]), *states[index, 1:])
+        alone = one.advance(poses[index])
+        assert alone == tuple(np.asarray(value)[:, index])
+        assert one.state == (bool(after[index, 0]), *after[index, 1:])
+    assert set(after[:, 0]) == {0.0, 1.0}
+
+
+def test_a_copied_state_replays_to_the_last_bit() -> None:
+    plan, _, poses = many(300)
+    first = Interaction(plan)
+    first.advance(poses[:100])
+    copy = first.copy()
+    went = first.advance(poses[100:])
+    again = copy.advance(poses[100:])
+    np.testing.assert_array_equal(np.asarray(went), np.asarray(again))
+    assert first.state == copy.state
+    assert STATE_SIZE == 24
+
+
+@given(st.lists(st.floats(-1e-9, 6e-9), min_size=1, max_size=30))
+@settings(max_examples=50, deadline=None)
+def test_dissipation_only_grows(gaps: list[float]) -> None:
+    contact = Interaction(Scene().plan())
+    before = 0.0
+    for gap in gaps:
+        energy = contact.eval([0.0, 0.0, gap])
+        value = contact.advance([0.0, 0.0, gap])
+        assert contact.state.dissipated >= before
+        assert pytest.approx(value.U, abs=1e-30) == energy.U or contact.state.dissipated >= before
+        before = contact.state.dissipated
+
+
+CHANGES: dict[str, dict[str, Any]] = {
+    "wear": {"tip": {"radius": 26e-9}},
+    "ageing": {"adhesion": {"work_of_adhesion": 0.09}},
+    "charging": {"adhesion": {"contact_potential": 2.0}},
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_slow_changes_are_booked_at_the_port(change: str) -> None:
+    """A cycle with a change on the way and back: work out of the tip's driver + port = dissipated, to quadrature."""
+    start: dict[str, Any] = {"medium": {"relative_humidity": 0.0}, "adhesion": {"work_of_adhesion": 0.06}}
+    plans = [Scene(**start).plan(1e-6)]
+    scene = Scene(**start)
+    for section, fields in CHANGES[change].items():
+        for name, value in fields.items():
+            scene[f"{section}.{name}"] = value
+    plans.append(scene.plan(1e-6))
+    far, deep = 5e-9, -0.4e-9
+
+    def walk(contact: Interaction, first: float, last: float) -> float:
+        """Work of the force on the tip; the jumps lie between two steps of 0.1 pm, where it is not counted."""
+        gaps = np.linspace(first, last, 54001)
+        law = contact.run_law(gaps)
+        force, energy = np.asarray(law.F), np.asarray(law.U)
+        smooth = np.abs(np.diff(force)) < 0.2 * np.abs(force).max()
+        work = np.where(smooth, 0.5 * (force[1:] + force[:-1]) * np.diff(gaps), force[:-1] * np.diff(gaps))
+        assert np.isfinite(energy).all()
+        return float(work.sum())
+
+    contact = Interaction(plans[0])
+    work = walk(contact, far, deep)
+    changed = contact.change(plans[1], (0.0, 0.0, deep))
+    energies = [Interaction(plan, "retract").eval((0.0, 0.0, deep)).U for plan in plans]
+    assert changed.state.port == pytest.approx(energies[1] - energies[0], rel=1e-12)
+    work += walk(changed, deep, far)
+    back = changed.change(plans[0], (0.0, 0.0, far))
+    assert not back.state.attached
+    scale = plans[1].pull_off_force * (far - deep)
+    assert back.state.port - work == pytest.approx(back.state.dissipated, abs=1e-4 * scale)
+    assert abs(changed.state.port) > 1e-3 * scale
