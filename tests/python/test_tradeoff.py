@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from nanotouch import reference
 from nanotouch_app.main import main
-from nanotouch_app.tradeoff import FILES, errors, measure, page, rules
+from nanotouch_app.plan import PRESETS
+from nanotouch_app.tradeoff import FILES, errors, measure, page, plans, rules
 from nanotouch_app.tradeoff.measure import Row
 from nanotouch_app.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_TABLE, POLISHED, SOLVERS, TABLE, Solver
 
@@ -181,6 +182,32 @@ def test_page_says_what_is_measured(maps: measure.Maps) -> None:
     assert "32.6 %" in written
 
 
+@pytest.fixture(scope="module")
+def planned() -> list[plans.Row]:
+    return plans.trade(quick=False)
+
+
+def test_plans_keep_what_they_are_asked_for(planned: list[plans.Row]) -> None:
+    """Bound below demand, error below bound, never dearer than everything exact, and never dearer for less."""
+    assert len(planned) == 20 * 7
+    kept = [row for row in planned if row.forms != plans.REFUSED]
+    assert all(row.error <= row.bound <= row.rtol for row in kept)
+    assert all(row.cost <= row.full_cost for row in kept)
+    for name in {row.preset for row in planned}:
+        own = [row for row in kept if row.preset == name]
+        assert [row.cost for row in own] == sorted(row.cost for row in own)
+    refused = [row for row in planned if row.forms == plans.REFUSED]
+    assert all(row.bound > row.rtol for row in refused)
+    # bounds above rounding are no more than 10 times too cautious, in the median of all steps hardly at all
+    tight = [step[0].error / step[0].bound for step in plans.steps(kept) if step[0].error > plans.ROUNDING]
+    assert min(tight) > 0.1
+    assert np.median(tight) > 0.5
+
+
+def test_page_says_what_plans_cost(planned: list[plans.Row]) -> None:
+    assert plans.section(planned) in DOCS.read_text(encoding="utf-8")
+
+
 def read(path: Path) -> tuple[list[str], list[list[str]]]:
     with path.open(encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
@@ -200,6 +227,9 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for lam in measure.QUICK_LAMBDAS:  # measured about 200: a busy machine is not that busy for one of them alone
         assert at[lam, "moderate", "MD exact"][0] > 10.0 * at[lam, "moderate", "MD table"][0]
     assert "MD polished" in capsys.readouterr().out
+    headers, rows = read(tmp_path / "plans.csv")
+    assert all(header.endswith(("]", "(name)")) for header in headers)
+    assert {row[0] for row in rows} == set(PRESETS)
     headers, rows = read(tmp_path / "plant.csv")
     assert all(header.endswith(("]", "(name)")) for header in headers)
     cost = {(float(row[0]), row[1], float(row[2])): float(row[3]) for row in rows}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measure speed and accuracy on this machine: every contact model and tier over lambda and load; and of the simulated
-rig over loop rate, probe model and sub-step."""
+"""Measure speed and accuracy on this machine: every contact model and tier over lambda and load; the plans of every
+preset over the accuracy demanded; and of the simulated rig over loop rate, probe model and sub-step."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from nanotouch.errors import InvalidValue, require
 from nanotouch.record import write_csv
 
 from nanotouch_app import output
-from nanotouch_app.tradeoff import drawing, errors, measure, page, plant
+from nanotouch_app.tradeoff import drawing, errors, measure, page, plans, plant
 
-FILES = ("tradeoff.csv", "tradeoff.png", "errormap.csv", "errormap.png", "plant.csv")
+FILES = ("tradeoff.csv", "tradeoff.png", "errormap.csv", "errormap.png", "plans.csv", "plans.png", "plant.csv")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -42,18 +42,23 @@ def run(args: argparse.Namespace) -> int:
         maps = measure.maps(args.quick, progress)
     with output.progress_bar("timing") as progress:
         rows = measure.trade(args.quick, progress)
+    with output.progress_bar("plans") as progress:
+        planned = plans.trade(args.quick, progress)
     with output.progress_bar("simulated rig") as progress:
         ways = plant.trade(args.quick, progress)
     how = "nanotouch tradeoff" + (" --quick" if args.quick else "")
     comments = {"command": how, **{f"loads, {name}": words for name, words in errors.WORDS.items()}}
     write_csv(out / "tradeoff.csv", measure.trade_columns(rows), comments)
     write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
+    write_csv(out / "plans.csv", plans.columns(planned), {"command": how, "against": "nanotouch.reference"})
     write_csv(out / "plant.csv", plant.columns(ways), {"command": how, "against": f"sub-step {plant.REFERENCE} rad"})
     drawing.save(drawing.trade(rows), out / "tradeoff.png")
     drawing.save(drawing.maps(maps), out / "errormap.png")
+    drawing.save(plans.draw(planned), out / "plans.png")
     if args.doc:
-        page.write(args.doc, maps, rows)
+        page.write(args.doc, maps, rows, planned)
     print(page.summary(rows))
+    print(plans.summary(planned))
     print(plant.summary(ways))
     print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
     return 0

@@ -13,7 +13,7 @@ from nanotouch import reference
 from nanotouch.errors import Error
 from nanotouch.record import replacing
 
-from nanotouch_app.tradeoff import errors
+from nanotouch_app.tradeoff import errors, plans
 from nanotouch_app.tradeoff.errors import CONTROLS, RANGES, WORDS, Control, Range
 from nanotouch_app.tradeoff.measure import Maps, Row
 from nanotouch_app.tradeoff.rules import (
@@ -35,10 +35,11 @@ SHORT = {within: f"P = {WORDS[within].removesuffix(' pull-off forces')} P_c" for
 QUANTITY = {"grips": "F(δ), grips", "load": "a(P), dead weight"}
 
 
-def write(path: Path, maps: Maps, rows: list[Row]) -> None:
+def write(path: Path, maps: Maps, rows: list[Row], planned: list[plans.Row]) -> None:
     """Write the page, whole or not at all."""
+    parts = [INTRODUCTION, *sections(maps), speed(rows), plans.section(planned), ENDING]
     with replacing(path) as part:
-        part.write_text("\n\n".join([INTRODUCTION, *sections(maps), speed(rows), ENDING]) + "\n", encoding="utf-8")
+        part.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 def sections(maps: Maps) -> list[str]:
@@ -235,8 +236,8 @@ nanotouch tradeoff --doc docs/accuracy.md
 ```
 
 measures every table below and writes this page, `tradeoff.png` and `.csv` (error against cost, with the Pareto
-fronts) and `errormap.png` and `.csv` (errors of {", ".join(s.name for s in MAPPED)} over λ and load, with the
-paper's rules drawn in).
+fronts), `errormap.png` and `.csv` (errors of {", ".join(s.name for s in MAPPED)} over λ and load, with the
+paper's rules drawn in) and `plans.png` and `.csv` (plans of the presets over the accuracy demanded).
 
 An error means nothing without what is held and what is asked. Grips (a stiff cantilever, a stage) hold the indentation
 δ, and the error is that of the force: |ΔF|/max(|F|, P_c), P_c the pull-off force of Maugis-Dugdale (MD). A dead weight

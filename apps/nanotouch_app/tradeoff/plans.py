@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Accuracy demanded against cost reached: the plans of every preset, each beside the reference of its scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import numpy as np
+from nanotouch import Plan, Scene, presets, reference
+from nanotouch.errors import InvalidValue, require
+from numpy.typing import NDArray
+
+from nanotouch_app.plan import PRESETS
+
+RTOLS = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
+"""0.3 .. 1e-10"""
+ROUNDING = 1e-12
+"""smaller errors are those of arithmetic, on this machine"""
+POINTS = 150
+REFUSED = "refused: the best bound is as given"
+
+
+class Row(NamedTuple):
+    """The plan of a preset for a demand of its force."""
+
+    preset: str
+    rtol: float
+    cost: float
+    """of one evaluation [Hertz evaluations]"""
+    full_cost: float
+    """of everything on, exact"""
+    bound: float
+    error: float
+    """largest |dF|/max(|F|, scale) against the reference, away from folds"""
+    forms: str
+
+
+def trade(quick: bool, progress: Callable[[float], None] = lambda done: None) -> list[Row]:
+    """The plans of all presets at all demands; some seconds."""
+    rtols = RTOLS[::4] if quick else RTOLS
+    rows: list[Row] = []
+    for number, name in enumerate(PRESETS):
+        rows += _rows(name, getattr(presets, name)()[0], rtols)
+        progress((number + 1) / len(PRESETS))
+    return rows
+
+
+def _rows(name: str, scene: Scene, rtols: tuple[float, ...]) -> Iterator[Row]:
+    exact = scene.plan(rtol=0.0)
+    gaps = _gaps(exact, scene)
+    paths = {"approach": gaps[::-1], "retract": gaps}
+    truth = {history: np.asarray(reference.force(scene, path, history=history)) for history, path in paths.items()}  # type: ignore[arg-type]
+    for rtol in rtols:
+        try:
+            plan = scene.plan(rtol=rtol)
+        except InvalidValue:  # not even everything exact has a bound that small
+            yield Row(name, rtol, math.nan, exact.cost, exact.bound, math.nan, REFUSED)
+            continue
+        error = max(_error(plan, path, truth[history], history) for history, path in paths.items())
+        forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in plan.terms)
+        yield Row(name, rtol, plan.cost, exact.cost, plan.bound, error, forms)
+
+
+def _gaps(plan: Plan, scene: Scene) -> NDArray[np.float64]:
+    """From the largest load to 1 cm, rising; denser where the force changes."""
+    facts = plan.explain()
+    near = max(abs(facts["release_gap"]), abs(facts["capture_gap"]), 1e-10)
+    deepest = facts["largest_indentation"]
+    gaps = np.concatenate([
+        -np.geomspace(deepest, 1e-3 * deepest, POINTS),
+        np.linspace(-1.2 * near, 1.2 * near, POINTS),
+        np.geomspace(1e-3 * near, 1e-2, POINTS),
+    ])  # fmt: skip
+    return np.unique(gaps[(gaps >= scene.range.minimum_gap) & (gaps >= -deepest)])
+
+
+def _error(plan: Plan, gaps: NDArray[np.float64], truth: NDArray[np.float64], history: Any) -> float:
+    facts = plan.explain()
+    folds = np.array([facts["capture_gap"], facts["release_gap"]])
+    away = np.abs(gaps[:, None] - folds).min(axis=1) > 1e-9 * np.abs(folds).max() + plan.fold_shift_m
+    planned = np.asarray(plan.force(gaps, history))
+    return float((np.abs(planned - truth) / np.maximum(np.abs(truth), plan.scale))[away].max())
+
+
+def steps(rows: list[Row]) -> list[list[Row]]:
+    """Rows of one preset with one plan together: a step of its curve."""
+    return [list(group) for _, group in groupby(rows, key=lambda row: (row.preset, row.forms))]
+
+
+def columns(rows: list[Row]) -> dict[str, list[object]]:
+    """The trade as a table."""
+    headers = (
+        "preset (name)", "demanded [-]", "cost [Hertz]", "cost of everything exact [Hertz]", "bound [-]",
+        "error against the reference [-]", "plan (name)",
+    )  # fmt: skip
+    return {header: list(values) for header, values in zip(headers, zip(*rows, strict=True), strict=True)}
+
+
+def number(error: float) -> str:
+    """Two digits; what is rounding is called so."""
+    if math.isnan(error):
+        return ""
+    return f"{error:.1e}" if error > ROUNDING else "rounding"
+
+
+def section(rows: list[Row]) -> str:
+    """Of the page on accuracy; it does not depend on the machine."""
+    lines = ["| preset | demanded | cost | of exact | bound | error | computed |", "|" + " --- |" * 7]
+    for step in steps(rows):
+        first, last = step[0], step[-1]
+        demanded = f"{first.rtol:g}" if len(step) == 1 else f"{first.rtol:g} .. {last.rtol:g}"
+        costs = ["", ""] if first.forms == REFUSED else [f"{first.cost:g}", f"{first.cost / first.full_cost:.0%}"]
+        errors = [number(first.bound), number(first.error)]
+        lines.append("| " + " | ".join([first.preset, demanded, *costs, *errors, first.forms]) + " |")
+    table = "\n".join(lines)
+    return f"""## Plans: accuracy demanded against cost reached
+
+Every preset with no topography, its force asked for with {RTOLS[0]:g} to {RTOLS[-1]:g} of max(|F|, pull-off force)
+(docs/plan.md): what the plan computes, what an evaluation costs in Hertz evaluations (`make bench`), the bound it
+states, and its largest error against `nanotouch.reference`, away from folds, from 1 cm to the largest load on approach
+and retraction. A plan serves all demands of its row. `plans.png` shows the same, `plans.csv` all demands.
+
+{table}"""
+
+
+def summary(rows: list[Row]) -> str:
+    """A table for the terminal."""
+    lines = [f"{'preset':16} {'demanded':>9} {'Hertz':>6} {'bound':>9} {'error':>9}  computed"]
+    for step in steps(rows):
+        row = step[0]
+        if row.forms == REFUSED:
+            lines.append(f"{row.preset:16} {row.rtol:9.0e} {'':6} {number(row.bound):>9} {'':9}  {row.forms}")
+            continue
+        lines.append(
+            f"{row.preset:16} {row.rtol:9.0e} {row.cost:6g} {number(row.bound):>9} {number(row.error):>9}  {row.forms}"
+        )
+    return "\n".join(lines)
+
+
+def draw(rows: list[Row]) -> Any:
+    """A panel for each preset: the step of the cost, and at each step the bound and the error."""
+    figure = require("matplotlib.figure", "app").Figure(figsize=(14.0, 7.0), layout="constrained")
+    panels = figure.subplots(2, math.ceil(len(PRESETS) / 2), sharex=True, sharey=True).ravel()
+    for panel, name in zip(panels, PRESETS, strict=False):
+        _panel(panel, [row for row in rows if row.preset == name])
+        panel.set_title(name.replace("_", " "), loc="left", fontsize="medium")
+    for panel in panels[len(PRESETS) :]:
+        panel.axis("off")
+    handles, labels = panels[0].get_legend_handles_labels()
+    panels[-1].legend(handles, labels, loc="center", frameon=False)
+    figure.supxlabel("|ΔF| / max(|F|, pull-off force) [-]", fontsize="medium")
+    figure.supylabel("cost of one evaluation [Hertz evaluations]", fontsize="medium")
+    return figure
+
+
+def _panel(panel: Any, rows: list[Row]) -> None:
+    kinds = [step[0] for step in steps(rows) if step[0].forms != REFUSED]
+    costs, bounds = [row.cost for row in kinds], [row.bound for row in kinds]
+    # a plan serves demands down to its bound
+    panel.step([RTOLS[0], *bounds], [costs[0], *costs], where="pre", color="tab:blue", label="what a demand costs")
+    panel.plot(bounds, costs, "o", color="tab:blue", label="bound of the plan")
+    panel.plot(
+        [max(row.error, ROUNDING) for row in kinds], costs, "x", color="tab:red", ms=8, mew=2,
+        label=f"largest error against the reference\n(below {ROUNDING:g} drawn there)",
+    )  # fmt: skip
+    panel.axhline(rows[0].full_cost, color="0.5", ls="--", lw=1.0, label="everything on, exact")
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_xlim(1.0, 0.4 * ROUNDING)
+    ticks = (10, 20, 50, 100, 200, 500)
+    panel.set_yticks(ticks, [f"{tick}" for tick in ticks])
+    panel.yaxis.set_minor_formatter(require("matplotlib.ticker", "app").NullFormatter())
+    panel.set_ylim(8.0, 500.0)
+    panel.grid(alpha=0.3)
