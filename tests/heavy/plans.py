@@ -12,6 +12,7 @@ import math
 import re
 import sys
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
@@ -20,6 +21,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 
+import cycles
 import random_scenes
 from nanotouch.errors import Error
 
@@ -41,12 +43,24 @@ class Row(NamedTuple):
         return not self.refusal and not (self.error <= self.bound <= self.demand and self.folds_hold)
 
 
-def scene_of(seed: int) -> Row:
+def on_a_flat(seed: int) -> Row:
     """Plan, compare, and what came of it."""
     rng = np.random.default_rng(seed)
     scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
     demand = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
-    outcome = random_scenes.compare(scene, demand)
+    return row_of(seed, demand, random_scenes.compare(scene, demand))
+
+
+def on_bumps(seed: int) -> Row:
+    """The same over a random surface, for tips whose contact follows the radius of each place."""
+    rng = np.random.default_rng(seed)
+    scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
+    scene.tip.shape = "paraboloid"
+    demand = 10.0 ** rng.uniform(-4.0, math.log10(0.3))
+    return row_of(seed, demand, random_scenes.compare_over(scene, cycles.bumpy(scene, seed), demand, rng))
+
+
+def row_of(seed: int, demand: float, outcome: random_scenes.Outcome | Error) -> Row:
     if isinstance(outcome, Error):
         return Row(seed, refusal=re.split(r"[ =:]", str(outcome).removeprefix("plan: "), maxsplit=1)[0])
     plan = outcome.plan
@@ -72,17 +86,25 @@ def report(rows: list[Row]) -> int:
     return len(violations)
 
 
+def run(measure: Callable[[int], Row], seeds: range, jobs: int) -> int:
+    if jobs == 1:
+        return report([measure(seed) for seed in seeds])
+    with ProcessPoolExecutor(jobs) as pool:
+        return report(list(pool.map(measure, seeds, chunksize=20)))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=10_000)
+    parser.add_argument("--surfaces", type=int, default=1000, help="of them again over a surface")
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()
-    seeds = range(options.first, options.first + options.scenes)
-    if options.jobs == 1:
-        return report([scene_of(seed) for seed in seeds]) > 0
-    with ProcessPoolExecutor(options.jobs) as pool:
-        return report(list(pool.map(scene_of, seeds, chunksize=20))) > 0
+    first = options.first
+    failed = run(on_a_flat, range(first, first + options.scenes), options.jobs)
+    print("over bumpy surfaces:")
+    failed += run(on_bumps, range(first, first + options.surfaces), options.jobs)
+    return failed > 0
 
 
 if __name__ == "__main__":

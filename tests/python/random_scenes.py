@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import cycles
 import numpy as np
-
-from nanotouch import Scene, presets, reference
+from nanotouch import Interaction, Scene, Surface, presets, reference
 from nanotouch.errors import Error
 from nanotouch.plan import Plan
 
@@ -111,6 +111,31 @@ def compare(scene: Scene, rtol: float, count: int = 40) -> Outcome | Error:
             return Outcome(plan, np.inf, False)
         worst = max(worst, float(np.max(np.divide(error, scale, out=np.zeros_like(error), where=error > 0), initial=0)))
     return Outcome(plan, worst, _folds_hold(plan, scene))
+
+
+def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Generator) -> Outcome | Error:
+    """A plan over a surface, and its largest error against the reference with the radius of each place."""
+    try:
+        plan = scene.plan(rtol, surface=body)
+    except Error as refusal:
+        return refusal
+    gaps = gaps_of(plan, scene, 12)
+    width, worst = body.size[0], 0.0
+    for _ in range(5):
+        x, y = rng.uniform(0.1 * width, 0.8 * width, 2)
+        radius = body.radius_map.radius(x, y).radius
+        poses = np.column_stack([np.full_like(gaps, x), np.full_like(gaps, y), body.height(x, y) + gaps])
+        release = cycles.release_gaps(plan, poses[:1] - [0.0, 0.0, gaps[0]])[0]
+        folds = np.array([plan.explain()["capture_gap"], release])
+        away = np.abs(gaps[:, None] - folds).min(axis=1) > 1e-6 * np.abs(folds).max() + plan.fold_shift_m
+        # heights of a surface beside small gaps: the gap that is felt is rounded
+        away &= np.abs(gaps) > 1e-5 * np.abs(folds).max()
+        for history in ("approach", "retract"):
+            value = Interaction(plan, history).eval(poses)  # type: ignore[arg-type]
+            truth = np.asarray(reference.force(scene, value.gap, history=history, radius=radius))  # type: ignore[arg-type]
+            error = np.abs(value.Fz - truth) / np.maximum(np.maximum(np.abs(truth), plan.scale), 1e-300)
+            worst = max(worst, float(error[away].max(initial=0.0)))
+    return Outcome(plan, worst, True)
 
 
 def _folds_hold(plan: Plan, scene: Scene) -> bool:

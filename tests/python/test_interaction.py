@@ -13,7 +13,7 @@ import pytest
 import random_scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from nanotouch import Interaction, Plan, Scene, Surface, presets, reference, surface
+from nanotouch import Interaction, Plan, Scene, Surface, presets, surface
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.interaction import STATE_SIZE, State, step
 
@@ -79,31 +79,6 @@ def test_force_is_minus_the_gradient(name: str, history: Any) -> None:
         np.testing.assert_allclose(-slope, force, atol=1e-6 * (np.abs(value.Fz).max() + plan.pull_off_force))
 
 
-def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Generator) -> tuple[Plan, float] | None:
-    """A plan over a surface, and its largest error against the reference with the radius of each place."""
-    try:
-        plan = scene.plan(rtol, surface=body)
-    except Error:
-        return None
-    gaps = random_scenes.gaps_of(plan, scene, 12)
-    width, worst = body.size[0], 0.0
-    for _ in range(5):
-        x, y = rng.uniform(0.1 * width, 0.8 * width, 2)
-        radius = body.radius_map.radius(x, y).radius
-        poses = np.column_stack([np.full_like(gaps, x), np.full_like(gaps, y), body.height(x, y) + gaps])
-        release = cycles.release_gaps(plan, poses[:1] - [0.0, 0.0, gaps[0]])[0]
-        folds = np.array([plan.explain()["capture_gap"], release])
-        away = np.abs(gaps[:, None] - folds).min(axis=1) > 1e-6 * np.abs(folds).max() + plan.fold_shift_m
-        # heights of a surface beside small gaps: the gap that is felt is rounded
-        away &= np.abs(gaps) > 1e-5 * np.abs(folds).max()
-        for history in ("approach", "retract"):
-            value = Interaction(plan, history).eval(poses)  # type: ignore[arg-type]
-            truth = np.asarray(reference.force(scene, value.gap, history=history, radius=radius))  # type: ignore[arg-type]
-            error = np.abs(value.Fz - truth) / np.maximum(np.maximum(np.abs(truth), plan.scale), 1e-300)
-            worst = max(worst, float(error[away].max(initial=0.0)))
-    return plan, worst
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_planned_forces_keep_the_bound_over_topography(seed: int) -> None:
     """Random scenes near the presets over random bumps, against the exact law with the radius of each place."""
@@ -114,12 +89,11 @@ def test_planned_forces_keep_the_bound_over_topography(seed: int) -> None:
         scene.tip.shape = "paraboloid"
         scene.range.minimum_gap = min(scene.range.minimum_gap, 0.0)
         rtol = 10.0 ** rng.uniform(-3.5, math.log10(0.3))
-        compared = compare_over(scene, cycles.bumpy(scene, seed * 100 + index), rtol, rng)
-        if compared is None:
+        outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed * 100 + index), rtol, rng)
+        if isinstance(outcome, Error):
             continue
-        plan, error = compared
-        forms.append(plan.terms[0].form)
-        assert error <= plan.bound <= rtol, (index, repr(plan))
+        forms.append(outcome.plan.terms[0].form)
+        assert outcome.error <= outcome.plan.bound <= rtol, (index, repr(outcome.plan))
     assert "local" in forms
 
 
@@ -138,9 +112,9 @@ def test_what_leaving_the_curvature_out_costs_is_said() -> None:
     assert rough.terms[0].form == "local"
     assert "surface: curved, effective radius" in str(rough)
     assert rough.explain()["curvature_error"] > 0.01
-    compared = compare_over(scene, bodies[0], 0.01, np.random.default_rng(5))
-    assert compared is not None
-    assert gentle.explain()["curvature_error"] * 0.01 < compared[1] <= compared[0].bound
+    outcome = random_scenes.compare_over(scene, bodies[0], 0.01, np.random.default_rng(5))
+    assert not isinstance(outcome, Error)
+    assert gentle.explain()["curvature_error"] * 0.01 < outcome.error <= outcome.plan.bound
 
 
 def test_surface_of_another_tip_is_refused() -> None:
