@@ -16,7 +16,7 @@ static double complex path_at(const nt_sampled_loop *loop, double dead_time, dou
     const double T = loop->master.period, theta = angular_frequency * T;
     const double half = 0.5 * theta;
     const double lag = half + angular_frequency * dead_time;
-    return nt_sampled_stage(loop, theta) * (sin(half) / half * CMPLX(cos(lag), -sin(lag)));
+    return nt_sampled_stage(loop, theta) * (sin(half) / half * nt_complex(cos(lag), -sin(lag)));
 }
 
 nt_loop_response nt_margins_response(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
@@ -29,8 +29,8 @@ nt_loop_response nt_margins_response(const nt_rig *rig, const nt_gains *gains, d
     const double w = 2.0 * NT_PI * frequency, k_c = rig->probe.spring_constant;
     const double k_r = gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
     const double complex path = path_at(&loop, nt_sampled_dead_time(rig, gains), w);
-    const double complex own = CMPLX(rig->master.damping, w * rig->master.mass) / (1.0 + gains->force_gain);
-    const double complex impedance = own + k_r * path * CMPLX(0.0, -1.0 / w);
+    const double complex own = nt_complex(rig->master.damping, w * rig->master.mass) / (1.0 + gains->force_gain);
+    const double complex impedance = own + k_r * path * nt_complex(0.0, -1.0 / w);
     response.path[0] = creal(path);
     response.path[1] = cimag(path);
     response.impedance[0] = creal(impedance);

@@ -38,13 +38,13 @@ nt_sampled nt_sampled_make(double mass, double damping, double stiffness, double
 static double complex from_one(double theta)
 {
     const double half = sin(0.5 * theta);
-    return CMPLX(-2.0 * half * half, sin(theta));
+    return nt_complex(-2.0 * half * half, sin(theta));
 }
 
 /* exp(-j theta) */
 static double complex back_by(double theta)
 {
-    return CMPLX(cos(theta), -sin(theta));
+    return nt_complex(cos(theta), -sin(theta));
 }
 
 nt_sampled_value nt_sampled_at(const nt_sampled *part, double theta)

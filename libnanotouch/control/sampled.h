@@ -10,6 +10,12 @@
 #include "nanotouch/settings.h"
 #include "nanotouch/stage_loop.h"
 
+/* CMPLX of C11, which not every C library has; for finite parts. */
+static inline double complex nt_complex(double re, double im)
+{
+    return re + im * I;
+}
+
 /* M x'' + B x' + K x = u behind a hold and a dead time. States (x, v T), so that the entries are of like size. */
 typedef struct nt_sampled {
     double mass, damping, stiffness; /* [kg], [N s/m], [N/m] */
