@@ -13,7 +13,7 @@
 /* CMPLX of C11, which not every C library has; for finite parts. */
 static inline double complex nt_complex(double re, double im)
 {
-    return re + im * I;
+    return re + im * (double complex)I;
 }
 
 /* M x'' + B x' + K x = u behind a hold and a dead time. States (x, v T), so that the entries are of like size. */
