@@ -77,7 +77,7 @@ static double steepest_pull(const nt_plan *plan)
 
 nt_status nt_plan_facts(nt_plan *plan)
 {
-    plan->pull_off_force = strongest_pull(plan);
+    plan->pull_off_force = plan->largest_pull_off_force = strongest_pull(plan);
     plan->minimum_spring = steepest_pull(plan);
     if (plan->source != NT_ADHESION_NONE) {
         const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;

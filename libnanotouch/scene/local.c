@@ -60,7 +60,7 @@ static double stiffness_at(const nt_plan *plan, double radius, double load)
 void nt_plan_local_facts(nt_plan *plan, double maximum_load)
 {
     const double bluntest = plan->radii->maximum, ratio = fmax(1.0, bluntest / plan->contact.radius);
-    plan->pull_off_force *= ratio;
+    plan->largest_pull_off_force *= ratio;
     plan->minimum_spring *= ratio;
     plan->maximum_stiffness = fmax(plan->maximum_stiffness, stiffness_at(plan, bluntest, maximum_load));
     plan->bound.fold_shift = nt_plan_bank_shift(plan);

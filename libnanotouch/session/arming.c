@@ -48,7 +48,7 @@ nt_status nt_session_promise(nt_session *session, const nt_session_setup *setup,
     session->minimum_margin = setup->minimum_margin;
     const nt_plan *plan = &session->plan;
     const nt_hazard hazard = {.slope = setup->slope,
-                              .snap_in_force = plan->pull_off_force,
+                              .snap_in_force = plan->largest_pull_off_force,
                               .stiffness = plan->maximum_stiffness,
                               .unseen = unseen_indentation(plan, session->touch.supervisor.free_force)};
     session->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);

@@ -138,7 +138,7 @@ static void others_are_told_the_worst_of_the_surface(void **state)
         if (gap < 0.0 && v.F < scene.range.maximum_load)
             assert_true(v.k <= plan.maximum_stiffness * (1.0 + 1e-9));
         if (v.k > 0.0)
-            assert_true(-v.F <= plan.pull_off_force * (1.0 + 1e-9));
+            assert_true(-v.F <= plan.largest_pull_off_force * (1.0 + 1e-9));
     }
 }
 

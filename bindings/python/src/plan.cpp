@@ -65,6 +65,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["capture_energy"] = plan.capture_energy;
     out["release_energy"] = plan.release_energy;
     out["pull_off_force"] = plan.pull_off_force;
+    out["largest_pull_off_force"] = plan.largest_pull_off_force;
     out["minimum_spring"] = plan.minimum_spring;
     out["maximum_stiffness"] = plan.maximum_stiffness;
     out["largest_indentation"] = plan.largest_indentation;

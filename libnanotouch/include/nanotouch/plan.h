@@ -125,16 +125,17 @@ typedef struct nt_plan {
     nt_maugis_cell cells[NT_PLAN_CELLS];
     nt_plan_laws laws;
 
-    double capture_gap;           /* on approach adhesion takes hold here [m] */
-    double release_gap;           /* on retraction under grips it lets go here [m] */
-    double capture_energy;        /* that is lost when it takes hold, >= 0 [J] */
-    double release_energy;        /* that is lost when it lets go, >= 0 [J] */
-    double pull_off_force;        /* of everything on, under load control, positive [N] */
-    double minimum_spring;        /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
-    double maximum_stiffness;     /* k of the contact at the largest load [N/m] */
-    double largest_indentation;   /* at that load [m] */
-    double length;                /* the shortest distance over which the force changes its shape [m] */
-    nt_contact_validity validity; /* of the contact law at the largest load */
+    double capture_gap;            /* on approach adhesion takes hold here [m] */
+    double release_gap;            /* on retraction under grips it lets go here [m] */
+    double capture_energy;         /* that is lost when it takes hold, >= 0 [J] */
+    double release_energy;         /* that is lost when it lets go, >= 0 [J] */
+    double pull_off_force;         /* of everything on, under load control, positive [N] */
+    double largest_pull_off_force; /* the same over the bluntest place of the surface [N] */
+    double minimum_spring;         /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
+    double maximum_stiffness;      /* k of the contact at the largest load [N/m] */
+    double largest_indentation;    /* at that load [m] */
+    double length;                 /* the shortest distance over which the force changes its shape [m] */
+    nt_contact_validity validity;  /* of the contact law at the largest load */
 
     const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
