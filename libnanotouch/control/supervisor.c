@@ -6,6 +6,9 @@
 #include <math.h>
 
 #include "control/clamp.h"
+#include "control/sampled.h"
+#include "nanotouch/material.h"
+#include "nanotouch/servo.h"
 
 #define STALE_HOLD_PERIODS 2.0
 #define STALE_RETRACT_PERIODS 5.0
@@ -15,6 +18,11 @@
 #define STUCK_STEPS 5.0         /* of the stage's read-out */
 #define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */
 #define FREE_SIGMA 6.0          /* of the force noise: below it is free air */
+#define FOLLOW_TICKS 3u         /* in a row: HOLD; while lifting: LATCHED, and no farther */
+#define FOLLOW_SHARE 0.5        /* of the way it was to go the stage must show */
+#define FOLLOW_STEPS 20.0       /* of read-out or converter, which it may be off besides */
+#define LEAST_SLACK 20e-9       /* [m] */
+#define DRIFT 1e-9              /* that deflections may show during a lift, beside their noise [m] */
 
 const char *nt_reason_name(uint32_t reason)
 {
@@ -48,14 +56,34 @@ static double deflection_step(const nt_rig *rig)
     return rig->probe.sensitivity * greater(rig->probe.resolution, step);
 }
 
+/* Time constant of the stage behind its reference: what the notch leaves of the resonance, and dead time [s]. */
+static double stage_lag(const nt_rig *rig, const nt_gains *gains)
+{
+    return 2.0 * gains->stage_damping / (2.0 * NT_PI * rig->stage.resonance) + nt_sampled_dead_time(rig, gains);
+}
+
+/* How far off a stage at rest may be: steps, and half of what full speed makes of its lag. A law without an integral
+ * leaves hysteresis and creep: only follow_error is a fault there [m]. */
+static double stage_slack(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
+{
+    if (gains->stage_integral == 0.0)
+        return settings->limits.follow_error;
+    const double bits = rig->converters.dac_bits;
+    const double step = greater(rig->stage.resolution, bits > 0.0 ? rig->stage.travel / exp2(bits) : 0.0);
+    const double way = FOLLOW_SHARE * settings->limits.stage_speed * stage_lag(rig, gains);
+    return greater(greater(LEAST_SLACK, way), FOLLOW_STEPS * step);
+}
+
 nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
 {
     const nt_probe *probe = &rig->probe;
+    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
+    const double period = 1.0 / settings->gains.rate;
     const double sigma = probe->sensitivity * probe->noise / 6.0; /* of the deflection [m] */
     const double step = deflection_step(rig);
     const int shows_noise = sigma > step; /* identical codes are normal where the noise is below one step */
     const double travelled = STUCK_STEPS * greater(rig->stage.resolution, LEAST_STAGE_STEP);
-    return (nt_supervisor){.period = 1.0 / settings->gains.rate,
+    return (nt_supervisor){.period = period,
                            .spring_constant = probe->spring_constant,
                            .deflection_range = nt_probe_deflection_range(probe),
                            .free_force = probe->spring_constant * (FREE_SIGMA * sigma + step),
@@ -63,12 +91,16 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .gauge_range = rig->master.gauge != 0.0 ? rig->master.gauge_range : 0.0,
                            .stage_range = rig->stage.travel,
                            .stuck_distance = shows_noise ? travelled : 0.0,
+                           .stage_share = period / (period + stage_lag(rig, &shape.gains)),
+                           .stage_slack = stage_slack(rig, settings, &shape.gains),
+                           .path_kept = exp(-period / settings->limits.follow_time),
                            .limits = settings->limits};
 }
 
 nt_supervisor_state nt_supervisor_start(void)
 {
-    return (nt_supervisor_state){.state = NT_RUN, .stuck_deflection = NAN, .surface = NAN}; /* nothing seen yet */
+    return (nt_supervisor_state){
+        .state = NT_RUN, .stuck_deflection = NAN, .surface = NAN, .expected = NAN}; /* nothing seen yet */
 }
 
 static nt_state worse(nt_state a, nt_state b)
@@ -184,19 +216,64 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
     return blame(state, NT_REASON_STUCK, state->stuck_run < 2u * STUCK_SAMPLES ? NT_HOLD : NT_LATCHED);
 }
 
-/* Off its command for half the allowed time: hold; for all of it: latched. */
-static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
-                             double reference)
+/* Where the stage should be by now, whatever it shows. */
+static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, double reference)
+{
+    const double step = supervisor->stage_share * (reference - state->expected);
+    if (isnan(state->expected))
+        state->expected = reference;
+    else
+        state->expected += step;
+    state->path = supervisor->path_kept * state->path + (isnan(step) ? 0.0 : fabs(step));
+}
+
+/* Not where it should be: hold; for follow_time: latched. A lift that does not show is given up at once: it may go the
+ * other way. */
+static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const nt_limits *limits = &supervisor->limits;
-    if (fabs(sample->stage_position - reference) <= limits->follow_error) {
-        state->follow_time = 0.0;
+    const double slack = lesser(limits->follow_error, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
+    if (fabs(sample->stage_position - state->expected) <= slack) {
+        state->off_run = 0;
         return NT_RUN;
     }
-    state->follow_time += supervisor->period;
-    if (state->follow_time <= 0.5 * limits->follow_time)
+    if (++state->off_run < FOLLOW_TICKS)
         return NT_RUN;
-    return blame(state, NT_REASON_FOLLOW, state->follow_time > limits->follow_time ? NT_LATCHED : NT_HOLD);
+    const int persists = state->state >= NT_RETRACT || state->off_run * supervisor->period > limits->follow_time;
+    return blame(state, NT_REASON_FOLLOW, persists ? NT_LATCHED : NT_HOLD);
+}
+
+/* Once the stage should have turned, a lift makes no force grow; where one does, it is no lift. */
+static nt_state judge_growth(const nt_supervisor *supervisor, nt_supervisor_state *state, double force)
+{
+    if (state->state < NT_RETRACT) {
+        state->turn = state->expected;
+        state->lift_force = greater(0.0, force); /* a tip that is let go springs back to 0 */
+        state->growth_run = 0;
+        return NT_RUN;
+    }
+    const int has_turned = state->expected < state->turn - supervisor->stage_slack;
+    if (!has_turned)
+        state->lift_force = greater(state->lift_force, force);
+    const double more = supervisor->free_force + DRIFT * supervisor->spring_constant;
+    const int grows = has_turned && force > state->lift_force + more;
+    state->growth_run = grows ? state->growth_run + 1u : 0u;
+    return state->growth_run < FOLLOW_TICKS ? NT_RUN : blame(state, NT_REASON_FOLLOW, NT_LATCHED);
+}
+
+/* Does it move as it is told, and does lifting help? Of a fresh sample any reading that is a number may say no,
+ * whatever is wrong with the others. */
+static nt_state judge_motion(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    const int is_fresh = sample->age >= 0.0 && sample->age <= STALE_HOLD_PERIODS * supervisor->period;
+    if (!is_fresh || sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST))
+        return NT_RUN;
+    nt_state verdict = NT_RUN;
+    if (is_within(sample->stage_position, supervisor->stage_range))
+        verdict = judge_follow(supervisor, state, sample);
+    if (isfinite(sample->deflection))
+        verdict = worse(verdict, judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection));
+    return verdict;
 }
 
 static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample)
@@ -218,8 +295,7 @@ static nt_state judge_measured(const nt_supervisor *supervisor, nt_supervisor_st
     nt_state verdict = judge_force(supervisor, state, sample);
     verdict = worse(verdict, judge_indentation(supervisor, state, sample, situation->moves_sideways));
     verdict = worse(verdict, judge_age(supervisor, state, sample));
-    verdict = worse(verdict, judge_stuck(supervisor, state, sample));
-    return worse(verdict, judge_follow(supervisor, state, sample, situation->reference));
+    return worse(verdict, judge_stuck(supervisor, state, sample));
 }
 
 /* RETRACT and LATCHED are not left by themselves. */
@@ -234,7 +310,8 @@ nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state
 {
     if (state->state < NT_RETRACT) /* else the reason that led there stays */
         state->reasons = 0;
-    nt_state verdict = judge_stops(state, sample);
+    expect(supervisor, state, situation->reference);
+    nt_state verdict = worse(judge_stops(state, sample), judge_motion(supervisor, state, sample));
     const nt_state validity = judge_validity(supervisor, state, sample);
     verdict = worse(verdict, validity);
     if (validity == NT_RUN)
@@ -259,6 +336,7 @@ nt_status nt_supervisor_arm(nt_supervisor_state *state, int confirmed)
     fresh.surface = state->surface;
     fresh.indentation = state->indentation;
     fresh.late_ticks = state->late_ticks;
+    fresh.expected = state->expected;
     *state = fresh;
     return NT_OK;
 }

@@ -191,9 +191,11 @@ static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt
     return nt_supervisor_step(&touch->supervisor, &state->supervisor, sample, &situation);
 }
 
-/* How far a stop lifts in all [m]. */
+/* How far a stop lifts in all [m]: no farther where that does not show, or shows the wrong way. */
 static double lift_of(const nt_touch *touch, const nt_touch_state *state)
 {
+    if (state->supervisor.state == NT_LATCHED && state->supervisor.reasons & NT_REASON_FOLLOW)
+        return 0.0;
     if (state->supervisor.state >= NT_RETRACT)
         return touch->settings.limits.retract_distance;
     return state->supervisor.reasons & NT_REASON_STUCK ? PROBE_STEPS * touch->rig.stage.resolution : 0.0;

@@ -31,7 +31,7 @@ static const fault_case fault_cases[] = {
     {"infinite hand force", CASE(INFINITE, OPERATOR_FORCE, FOREVER, -1.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
     {"deflection saturated", CASE(SATURATED, DEFLECTION, FOREVER, 1.0), NT_RETRACT, 1, NT_RETRACT, NT_REASON_SATURATED},
     {"deflection stuck", CASE(STUCK, DEFLECTION, FOREVER, 0.0), NT_HOLD, 2000, NT_LATCHED, NT_REASON_STUCK},
-    {"stale link", CASE(STALE, RIG, FOREVER, 0.0), NT_HOLD, 3, NT_LATCHED, NT_REASON_STALE},
+    {"stale link", CASE(STALE, RIG, FOREVER, 0.0), NT_HOLD, 3, NT_RETRACT, NT_REASON_STALE},
     {"one bad frame", CASE(DROPOUT, RIG, ONE_TICK, 0.0), NT_HOLD, 1, NT_RUN, 0},
     {"bad frames", CASE(DROPOUT, RIG, FOREVER, 0.0), NT_HOLD, 1, NT_RETRACT, NT_REASON_INVALID},
     {"noise of the deflection x 100", CASE(NOISE, DEFLECTION, 0.01, 100.0), NT_RUN, 0, NT_RUN, 0},
@@ -43,9 +43,9 @@ static const fault_case fault_cases[] = {
     {"clock an hour on", CASE(CLOCK, RIG, FOREVER, 3600.0), NT_RETRACT, 1, NT_RETRACT, NT_REASON_STALE},
     {"stage blocked at a limit", CASE(LIMIT, STAGE, FOREVER, 0.0), NT_HOLD, 10000, NT_LATCHED, NT_REASON_FOLLOW},
     {"limit switch", CASE(LIMIT_SWITCH, RIG, FOREVER, 0.0), NT_RETRACT, 1, NT_RETRACT, NT_REASON_LIMIT_SWITCH},
-    {"stage with the wrong sign", CASE(GAIN, STAGE, FOREVER, -1.0), NT_HOLD, 600, NT_HOLD, NT_REASON_UNSTABLE},
-    {"stage stands still", CASE(GAIN, STAGE, FOREVER, 0.0), NT_HOLD, 4000, NT_HOLD, NT_REASON_UNSTABLE},
-    {"stage goes a tenth", CASE(GAIN, STAGE, FOREVER, 0.1), NT_HOLD, 10000, NT_HOLD, NT_REASON_UNSTABLE},
+    {"stage with the wrong sign", CASE(GAIN, STAGE, FOREVER, -1.0), NT_HOLD, 400, NT_LATCHED, NT_REASON_FOLLOW},
+    {"stage stands still", CASE(GAIN, STAGE, FOREVER, 0.0), NT_HOLD, 1000, NT_LATCHED, NT_REASON_FOLLOW},
+    {"stage goes a tenth", CASE(GAIN, STAGE, FOREVER, 0.1), NT_HOLD, 1200, NT_LATCHED, NT_REASON_FOLLOW},
     {"frame drifts by 10 nm/s", CASE(DRIFT, STAGE, FOREVER, 10e-9), NT_RUN, 0, NT_RUN, 0},
     {"read-out drifts by 10 um/s", CASE(DRIFT, STAGE_POSITION, FOREVER, 10e-6), NT_HOLD, 400, NT_LATCHED,
      NT_REASON_FOLLOW},
@@ -67,7 +67,8 @@ static inline int is_slow(const fault_case *f)
 /* What was seen. */
 typedef struct outcome {
     nt_state first, last;
-    int ticks; /* until first */
+    int ticks;   /* until first */
+    int latched; /* ticks until LATCHED, 0 for never */
     uint32_t reasons;
     double worst_force, worst_indentation; /* [N], [m] */
     double fastest_motor, late_motor;      /* [N per tick]; [N] after 53 ms out of RUN */
@@ -81,6 +82,8 @@ static inline void note(const loop *l, outcome *o, int tick)
         o->first = (nt_state)l->command.state;
         o->ticks = tick + 1;
     }
+    if (o->latched == 0 && l->command.state == NT_LATCHED)
+        o->latched = tick + 1;
     o->reasons |= l->command.reasons;
     o->worst_force = fmax(o->worst_force, fabs(l->sim.truth.tip_force));
     o->worst_indentation = fmax(o->worst_indentation, -l->sim.truth.gap);

@@ -41,6 +41,9 @@ typedef struct nt_supervisor {
     double gauge_range;      /* [N], 0 without a gauge */
     double stage_range;      /* [m] */
     double stuck_distance;   /* identical deflections over this travel are a dead sensor, 0: cannot be told [m] */
+    double stage_share;      /* of the way to its reference that the stage should go in a period [-] */
+    double stage_slack;      /* by which it may be off at rest, half of the way that it was to go besides [m] */
+    double path_kept;        /* of that way, per period: it fades over follow_time [-] */
     nt_limits limits;
 } nt_supervisor;
 typedef struct nt_supervisor_state {
@@ -53,7 +56,12 @@ typedef struct nt_supervisor_state {
     uint32_t stuck_run;      /* identical deflections in a row */
     double stuck_deflection; /* [m] */
     double stuck_position;   /* x_s where they began [m] */
-    double follow_time;      /* the stage has been off for this long [s] */
+    double expected;         /* where the stage should be by now [m] */
+    double path;             /* that this has gone lately, to and fro [m] */
+    uint32_t off_run;        /* ticks in a row in which the stage was not there */
+    double turn;             /* where it should have been when the lift began [m] */
+    double lift_force;       /* largest force until it should have turned [N] */
+    uint32_t growth_run;     /* ticks in a row in which the force has grown since */
     double surface;          /* travel of the tip at first touch [m] */
     double indentation;      /* [m] */
 } nt_supervisor_state;
