@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import glob
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ from nanotouch_app import output
 
 def is_meant(args: argparse.Namespace) -> bool:
     """Whether the names stand for more than one file, or a table is asked for."""
-    return len(args.curve) > 1 or Path(args.out).suffix == ".csv" or not Path(args.curve[0]).is_file()
+    name = args.curve[0]
+    pattern = glob.has_magic(name) and not Path(name).exists()
+    return len(args.curve) > 1 or Path(args.out).suffix == ".csv" or Path(name).is_dir() or pattern
 
 
 def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, Any]) -> int:

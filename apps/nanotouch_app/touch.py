@@ -98,8 +98,8 @@ def describe(topography: nt.Topography) -> str:
 
 def _topography(args: argparse.Namespace) -> nt.Topography:
     if args.image is None:
-        for option in ("channel", "pixel_size", "z_unit"):
-            if getattr(args, option) is not None:
+        for option in ("channel", "pixel_size", "z_unit", "untrusted"):
+            if getattr(args, option) not in (None, False):
                 raise InvalidValue(f"--{option.replace('_', '-')} goes with an IMAGE")
         return SURFACES[args.surface or "grating"]()
     if args.surface is not None:

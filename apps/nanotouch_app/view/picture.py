@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
+from nanotouch.images import Topography, mip_levels
 from nanotouch.plots import engineering, phases
 from nanotouch.record import Recording
 from numpy.typing import NDArray
@@ -38,9 +39,9 @@ class Picture:
     caption: str
 
     @classmethod
-    def of(cls, topography: Any, recording: Recording | None, tip_radius: float | None = None) -> Picture:
+    def of(cls, topography: Topography, recording: Recording | None, tip_radius: float | None = None) -> Picture:
         """Prepare the view of a surface and of what was recorded on it."""
-        heights, pixel_size = _coarser(np.asarray(topography.heights, float), np.asarray(topography.pixel_size, float))
+        heights, pixel_size = _coarser(topography)
         unit = float(np.max(np.asarray(heights.shape) * pixel_size))
         relief = float(np.ptp(heights)) / unit
         exaggeration = _round(RELIEF / relief) if 0 < relief < RELIEF else 1.0
@@ -68,14 +69,10 @@ class Picture:
         return cls(**{name: value.item() if value.ndim == 0 else value for name, value in values.items()})
 
 
-def _coarser(heights: Floats, pixel_size: Floats) -> tuple[Floats, Floats]:
-    """Means over blocks of pixels, at most MAX_PIXELS to a side; a last, incomplete block is left out."""
-    step = -(-max(heights.shape) // MAX_PIXELS)
-    if step == 1:
-        return heights, pixel_size
-    rows, columns = (size // step for size in heights.shape)
-    blocks = heights[: rows * step, : columns * step].reshape(rows, step, columns, step)
-    return blocks.mean(axis=(1, 3)), pixel_size * step
+def _coarser(topography: Topography) -> tuple[Floats, Floats]:
+    """Mean heights and pixel size at the first halving that has at most MAX_PIXELS to a side."""
+    shown = next(level for level in mip_levels(topography, smallest=1) if max(level.mean.shape) <= MAX_PIXELS)
+    return shown.mean, np.asarray(shown.pixel_size)
 
 
 def _round(value: float) -> float:

@@ -48,7 +48,7 @@ def mip_levels(topography: Topography, smallest: int = 4) -> tuple[MipLevel, ...
     found = [MipLevel(0, z, z, topography.mask, (dy, dx))]
     weight: Floats | None = None if topography.masked_pixels == 0 else (~topography.mask).astype(np.float64)
     mean, highest = z, z
-    while all((n + 1) // 2 >= smallest for n in mean.shape):
+    while max(mean.shape) > 1 and all((n + 1) // 2 >= smallest for n in mean.shape):
         if weight is None and any(n % 2 for n in mean.shape):
             weight = np.full(mean.shape, 4.0 ** (len(found) - 1))
         if weight is None:
