@@ -24,6 +24,8 @@ PRESETS = (
     "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots", "cell_in_liquid",
 )  # fmt: skip
 
+OPTIONS = {"demand.relative_accuracy": "--rtol", "demand.budget": "--budget"}
+
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
@@ -59,7 +61,13 @@ def run(args: argparse.Namespace) -> int:
         demand["demand.quantity"] = args.quantity
     if args.budget is not None:
         demand["demand.budget"] = args.budget
-    plan = nt.Plan.make(scene, demand, rig if args.probe else None)
+    try:
+        plan = nt.Plan.make(scene, demand, rig if args.probe else None)
+    except InvalidValue as refusal:
+        sentence = str(refusal).removeprefix("plan: ")
+        for field, option in OPTIONS.items():
+            sentence = sentence.replace(f"{field} =", f"{field} ({option}) =")
+        raise InvalidValue(sentence) from refusal
     print(json.dumps(as_json(plan.explain()), indent=2, allow_nan=False) if args.json else plan)
     return 0
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The cheapest combination of forms whose errors add up to no more than the demand: all of them are tried, a few
  * hundred at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
-#include <math.h>
+#include <string.h>
 
 #include "scene/parts.h"
 
@@ -30,10 +30,14 @@ static int next(const nt_plan_options *options, combination *tried)
     return 0;
 }
 
-static nt_status refuse(nt_problem *problem, const char *field, double value, double minimum)
+/* What the field of the demand would have to be, up to its own maximum. */
+static nt_status refuse(nt_problem *problem, const char *name, double value, double minimum)
 {
-    if (problem)
-        *problem = (nt_problem){field, "", value, minimum, INFINITY};
+    int count = 0;
+    const nt_field *fields = nt_demand_fields(&count);
+    for (int i = 0; i < count; ++i)
+        if (problem && strcmp(fields[i].name, name) == 0)
+            *problem = (nt_problem){fields[i].name, fields[i].unit, value, minimum, fields[i].maximum};
     return NT_E_RANGE;
 }
 

@@ -120,13 +120,13 @@ def test_budget(capsys: pytest.CaptureFixture[str]) -> None:
     cost = ask(capsys, "silicon_in_air")["cost"]
     assert ask(capsys, "silicon_in_air", "--budget", f"{cost}")["cost"] == cost
     assert main(["plan", "silicon_in_air", "--budget", f"{0.9 * cost}"]) == 2
-    assert f"demand.budget = {0.9 * cost:g}: valid is {cost:g} .." in capsys.readouterr().err
+    assert f"plan: demand.budget (--budget) = {0.9 * cost:g}: valid is {cost:g} .." in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--rtol", "1e-15"], "demand.relative_accuracy = 1e-15: valid is 1."),
+        (["--rtol", "1e-15"], "plan: demand.relative_accuracy (--rtol) = 1e-15: valid is 1."),
         (["--rtol", "60%"], "demand.relative_accuracy = 0.6"),
         (["--rtol", "1nm"], "the unit 'nm'"),
         (["--rtol=-1%"], "demand.relative_accuracy = -0.01"),

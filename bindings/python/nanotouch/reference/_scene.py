@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The force of a scene with every term on and exact, composed in Python from the laws of :mod:`nanotouch.contact`,
-:mod:`nanotouch.geometry` and :mod:`nanotouch.forces` by the rules of docs/scene.md; it shares no code with plans."""
+:mod:`nanotouch.geometry` and :mod:`nanotouch.forces` by the rules of docs/interaction.md; it
+shares no code with plans."""
 
 from __future__ import annotations
 
