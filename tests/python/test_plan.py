@@ -8,10 +8,9 @@ import math
 
 import numpy as np
 import pytest
+import random_scenes
 from hypothesis import given
 from hypothesis import strategies as st
-
-import random_scenes
 from nanotouch import Demand, Plan, Rig, Scene, presets, reference
 from nanotouch.errors import Error, InvalidValue
 
@@ -243,5 +242,5 @@ def test_demand_of_a_file(tmp_path: object) -> None:
     demand = Demand.from_tables({"demand": {"relative_accuracy_percent": 2, "force_floor_pN": 5, "quantity": "radius"}})
     plan = Plan.make(Scene(), demand, Rig())
     assert plan.quantity == "radius"
-    with pytest.raises(InvalidValue, match=r"\[demand\] quantity = 'colour'.*valid are force, stiffness, radius, folds"):
+    with pytest.raises(InvalidValue, match=r"\[demand\] quantity = 'colour'.*valid are force, stiffness, radius"):
         Demand.from_tables({"demand": {"quantity": "colour"}})
