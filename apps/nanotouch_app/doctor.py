@@ -20,12 +20,24 @@ from nanotouch_app import view
 
 # extra -> {distribution: module}; a test compares it with pyproject.toml
 EXTRAS = {
-    "images": {"opencv-python-headless": "cv2", "scipy": "scipy", "SurfaceTopography": "SurfaceTopography"},
+    "images": {
+        "opencv-python-headless": "cv2",
+        "scipy": "scipy",
+        "SurfaceTopography": "SurfaceTopography",
+        "h5py": "h5py",
+        "gwyfile": "gwyfile",
+    },
     "curves": {"afmformats": "afmformats"},
     "record": {"mcap": "mcap", "h5py": "h5py"},
     "view": {"vtk": "vtkmodules", "trame": "trame"},
     "app": {"tqdm": "tqdm", "matplotlib": "matplotlib"},
-    "maps": {"dask": "dask", "distributed": "distributed", "xarray": "xarray", "h5py": "h5py"},
+    "maps": {
+        "dask": "dask",
+        "distributed": "distributed",
+        "xarray": "xarray",
+        "h5py": "h5py",
+        "h5netcdf": "h5netcdf",
+    },
 }
 OK, MISSING = "ok", "--"
 

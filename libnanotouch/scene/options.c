@@ -18,7 +18,9 @@
 #define COST_TABLE 14.0
 #define COST_POLISHED 40.0
 #define COST_EXACT 280.0
-#define COST_LOCAL 65.0 /* with dU/dR */
+#define COST_LOCAL 55.0  /* with dU/dR */
+#define COST_HEIGHT 15.0 /* height and slopes of a surface */
+#define COST_PLACE 28.0  /* and its effective radius */
 static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
     [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 8.0, [NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 28.0},
     [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 9.0, [NT_FORM_TIP] = 33.0},
@@ -317,4 +319,7 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         rivals_of(plan);
     offer_contact(plan, scene, options, beside);
+    for (int i = 0; plan->surface && i < options->count[NT_PLAN_CONTACT]; ++i)
+        options->option[NT_PLAN_CONTACT][i].cost +=
+            options->option[NT_PLAN_CONTACT][i].form == NT_FORM_LOCAL ? COST_PLACE : COST_HEIGHT;
 }

@@ -21,13 +21,13 @@ typedef struct nt_session_setup {
     nt_demand demand;
     nt_settings settings;
     nt_mode mode;
-    const nt_surface *surface; /* dilated by the tip; borrowed until nt_session_close; NULL: flat at z = 0 */
+    const nt_surface *surface;  /* dilated by the tip; borrowed until nt_session_close; NULL: flat at z = 0 */
     const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not felt */
     const nt_maugis_bank *bank; /* for the contact with the radius of each place, borrowed */
     double x, y;                /* where it starts [m] */
-    double clearance;          /* L, height of the tip above the surface there [m] */
-    double rise;               /* how far the surface rises above the start along the path [m], >= 0 */
-    double slope;              /* of the surface where it is steepest along the path [-], >= 0 */
+    double clearance;           /* L, height of the tip above the surface there [m] */
+    double rise;                /* how far the surface rises above the start along the path [m], >= 0 */
+    double slope;               /* of the surface where it is steepest along the path [-], >= 0 */
     uint64_t seed;
     long ring_capacity;    /* records held between two reads; rounded up to a power of two */
     double minimum_margin; /* refuse to open below this stability margin (R1) [-] */
