@@ -13,10 +13,8 @@
 /* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel; 1 if it is there. */
 static int move_reference(const nt_touch *touch, nt_touch_state *state, double wanted)
 {
-    const double step = touch->settings.limits.stage_speed * touch->period;
-    const double end = 0.5 * touch->rig.stage.travel;
-    const double slewed = clamp(wanted, state->reference - step, state->reference + step);
-    state->reference = clamp(slewed, -end, end);
+    const double slewed = clamp(wanted, state->reference - touch->stage_step, state->reference + touch->stage_step);
+    state->reference = clamp(slewed, -touch->stage_end, touch->stage_end);
     if (state->reference == wanted)
         return 1;
     state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
@@ -156,7 +154,7 @@ double nt_mode_stop(const nt_touch *touch, nt_touch_state *state, double distanc
     if (state->retracted < distance) {
         const double step = lesser(step_of(touch, touch->settings.limits.retract_speed), distance - state->retracted);
         state->retracted += step;
-        state->reference = greater(state->reference - step, -0.5 * touch->rig.stage.travel);
+        state->reference = greater(state->reference - step, -touch->stage_end);
     }
     return nt_mode_release(touch, state);
 }

@@ -144,10 +144,11 @@ static nt_state judge_validity(const nt_supervisor *supervisor, nt_supervisor_st
 
 static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
+    const double force = supervisor->spring_constant * sample->deflection;
     nt_state verdict = NT_RUN;
     if (sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection) >= supervisor->deflection_range)
         verdict = blame(state, NT_REASON_SATURATED, NT_RETRACT);
-    if (fabs(supervisor->spring_constant * sample->deflection) > supervisor->limits.force)
+    if (fabs(force) > supervisor->limits.force)
         verdict = blame(state, NT_REASON_FORCE_LIMIT, NT_RETRACT);
     if (supervisor->gauge_range > 0.0 && fabs(sample->operator_force) >= supervisor->gauge_range)
         state->reasons |= NT_REASON_OPERATOR_CLIPPED;
@@ -172,10 +173,10 @@ static nt_state judge_indentation(const nt_supervisor *supervisor, nt_supervisor
 
 static nt_state judge_age(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const double periods = sample->age / supervisor->period;
-    if (periods <= STALE_HOLD_PERIODS)
+    if (sample->age <= STALE_HOLD_PERIODS * supervisor->period)
         return NT_RUN;
-    return blame(state, NT_REASON_STALE, periods > STALE_RETRACT_PERIODS ? NT_RETRACT : NT_HOLD);
+    const int retracts = sample->age > STALE_RETRACT_PERIODS * supervisor->period;
+    return blame(state, NT_REASON_STALE, retracts ? NT_RETRACT : NT_HOLD);
 }
 
 /* NaN is late. */
@@ -219,12 +220,11 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
 /* Where the stage should be by now, whatever it shows. */
 static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, double reference)
 {
-    const double step = supervisor->stage_share * (reference - state->expected);
     if (isnan(state->expected))
         state->expected = reference;
-    else
-        state->expected += step;
-    state->path = supervisor->path_kept * state->path + (isnan(step) ? 0.0 : fabs(step));
+    const double step = supervisor->stage_share * (reference - state->expected);
+    state->expected += step;
+    state->path = supervisor->path_kept * state->path + fabs(step);
 }
 
 /* Not where it should be: hold; for follow_time: latched. A lift that does not show is given up at once: it may go the
@@ -261,9 +261,18 @@ static nt_state judge_growth(const nt_supervisor *supervisor, nt_supervisor_stat
     return state->growth_run < FOLLOW_TICKS ? NT_RUN : blame(state, NT_REASON_FOLLOW, NT_LATCHED);
 }
 
-/* Does it move as it is told, and does lifting help? Of a fresh sample any reading that is a number may say no,
- * whatever is wrong with the others. */
+/* Does it move as it is told, and does lifting help? */
 static nt_state judge_motion(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    if (sample->age > STALE_HOLD_PERIODS * supervisor->period)
+        return NT_RUN;
+    const nt_state growth = judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection);
+    return worse(growth, judge_follow(supervisor, state, sample));
+}
+
+/* Of a sample that is not valid only this is used, and only to stop: a reading that is a number may say that it does
+ * not move as it is told. */
+static nt_state judge_remains(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const int is_fresh = sample->age >= 0.0 && sample->age <= STALE_HOLD_PERIODS * supervisor->period;
     if (!is_fresh || sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST))
@@ -295,6 +304,7 @@ static nt_state judge_measured(const nt_supervisor *supervisor, nt_supervisor_st
     nt_state verdict = judge_force(supervisor, state, sample);
     verdict = worse(verdict, judge_indentation(supervisor, state, sample, situation->moves_sideways));
     verdict = worse(verdict, judge_age(supervisor, state, sample));
+    verdict = worse(verdict, judge_motion(supervisor, state, sample));
     return worse(verdict, judge_stuck(supervisor, state, sample));
 }
 
@@ -311,11 +321,11 @@ nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state
     if (state->state < NT_RETRACT) /* else the reason that led there stays */
         state->reasons = 0;
     expect(supervisor, state, situation->reference);
-    nt_state verdict = worse(judge_stops(state, sample), judge_motion(supervisor, state, sample));
+    nt_state verdict = judge_stops(state, sample);
     const nt_state validity = judge_validity(supervisor, state, sample);
     verdict = worse(verdict, validity);
-    if (validity == NT_RUN)
-        verdict = worse(verdict, judge_measured(supervisor, state, sample, situation));
+    verdict = worse(verdict, validity == NT_RUN ? judge_measured(supervisor, state, sample, situation)
+                                                : judge_remains(supervisor, state, sample));
     verdict = worse(verdict, judge_lateness(supervisor, state, sample));
     if (situation->unstable)
         verdict = worse(verdict, blame(state, NT_REASON_UNSTABLE, NT_HOLD));

@@ -74,6 +74,9 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
                      .speed_filter = low_pass_factor(SPEED_BANDWIDTH, period),
+                     .stage_step = settings->limits.stage_speed * period,
+                     .stage_end = 0.5 * rig->stage.travel,
+                     .motor_step = settings->limits.motor_rate * period,
                      .spike = spike_of(rig, settings),
                      .passivity = nt_passivity_make(&shape.rig, &shape.gains),
                      .rescale = nt_rescale_make(rig, settings),
@@ -228,8 +231,7 @@ static double act(const nt_touch *touch, nt_touch_state *state)
 
 static void drive_motor(const nt_touch *touch, nt_touch_state *state, double wanted)
 {
-    const nt_limits *limits = &touch->settings.limits;
-    state->motor_force = nt_motor_limit(limits, limits->motor_rate * touch->period, state->motor_force, wanted,
+    state->motor_force = nt_motor_limit(&touch->settings.limits, touch->motor_step, state->motor_force, wanted,
                                         state->signals.smooth_speed);
     const int coupled = state->supervisor.state == NT_RUN && state->mode == state->wanted_mode && !state->clutch_open;
     if (coupled && state->mode <= NT_MODE_TOPOGRAPHY)
@@ -244,8 +246,7 @@ static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt
     const int trusted = state->supervisor.state == NT_RUN && fabs(error) <= touch->settings.limits.follow_error;
     const double measured = trusted ? sample->stage_position : state->reference;
     const double wanted = nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
-    const double end = 0.5 * touch->rig.stage.travel;
-    const double command = clamp(wanted, -end, end);
+    const double command = clamp(wanted, -touch->stage_end, touch->stage_end);
     if (command != wanted)
         state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
     return command;

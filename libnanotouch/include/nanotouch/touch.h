@@ -26,6 +26,9 @@ typedef struct nt_touch {
     double force_filter; /* of the low-pass of f_m, per period [-] */
     uint32_t delay;      /* after which a motor force acts, as far as it is remembered [periods] */
     double speed_filter; /* of the master's speed estimate, per period [-] */
+    double stage_step;   /* largest, in a period [m] */
+    double stage_end;    /* of its travel, either way [m] */
+    double motor_step;   /* largest, in a period [N] */
     double spike;        /* a deflection that jumps by more than this may be a wrong reading [m] */
     nt_passivity passivity;
     nt_rescale rescale;
