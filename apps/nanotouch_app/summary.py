@@ -8,16 +8,19 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
+from nanotouch import margins
 from nanotouch.plots import adhesion
 from nanotouch.record import STATES, Recording
-from nanotouch.session import REASONS
+from nanotouch.session import INDENTATION_RANGE, REASONS
+
+SERVOED = ("approach", "curve")
+"""modes in which the stage does not follow the hand"""
 
 
 def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
     """The numbers, SI; null where there is none (no snap-in above the noise, no retraction)."""
     seen = adhesion(recording)
     alpha_f = session.settings.gains.alpha_f
-    margins = session.margins()
     pull_off = _number(seen.pull_off_force)
     return {
         "surface": session.surface.topography.name if session.surface else "flat",
@@ -29,17 +32,17 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "hand_pull_off_force_N": None if pull_off is None else alpha_f * pull_off,
         "planned_pull_off_force_N": session.plan.pull_off_force,
         "largest_force_N": float(np.max(recording.tip_force)),
-        "position_tracking_rms_m": _rms(_position_error(session, recording)),
+        "position_tracking_rms_m": None if session.mode in SERVOED else _rms(_position_error(session, recording)),
         "force_tracking_rms_N": _rms(_force_error(session, recording)),
         "alpha_p": session.settings.gains.alpha_p,
         "alpha_f": alpha_f,
         "loop_rate_Hz": session.rate,
         "steps": len(recording),
         "duration_s": len(recording) / session.rate,
-        "stability_margin": session.stability_margin,
+        "stability_margin": _finite(session.stability_margin),
         "force_limit_N": session.settings.limits.force,
         "force_overshoot_N": session.force_overshoot,
-        "stability": {name: _finite(value) for name, value in margins._asdict().items()},
+        "stability": {name: _finite(value) for name, value in session.margins()._asdict().items()},
         "states": {name: int(np.count_nonzero(recording.state == code)) for code, name in enumerate(STATES)},
         "reasons": _reasons(recording),
         "seed": session.seed,
@@ -47,9 +50,21 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
     }
 
 
-def guarantee(session: nt.Session) -> str:
-    """What holds before anything moves: the force limit and by how much it can be exceeded, the stability margin."""
-    return f"limits: {session.guarantee()}; stability margin {session.stability_margin:.1f} (1 is the limit)"
+def before(session: nt.Session) -> str:
+    """What is known before anything moves: how near the loop is to its limit, what holds whatever the operator does,
+    and with how many steps the hand feels it."""
+    found = session.margins()
+    margin = f"{found.least:.3g} ({found.rule}; 1 is the limit)" if math.isfinite(found.least) else "none needed"
+    travel = session.clearance + INDENTATION_RANGE + session.relief
+    budget = margins.resolution(session.rig, session.settings, travel)
+    verdict = "" if found.refusal is None else f"; ARMED AGAINST THE VERDICT, {found.refusal}"
+    lines = [
+        f"loop:    {session.control} control at {session.rate / 1e3:g} kHz, {session.probe_model} probe; "
+        f"stability margin {margin}{verdict}",
+        f"limits:  {session.guarantee()}",
+        *(f"steps:   {line}" for line in str(budget).splitlines()),
+    ]
+    return "\n".join(lines)
 
 
 def words(summary: dict[str, Any]) -> str:
@@ -62,9 +77,9 @@ def words(summary: dict[str, Any]) -> str:
         f"  snap-in           {_force(summary, 'snap_in')}",
         f"  pull-off          {_force(summary, 'pull_off')}",
         f"  largest force     {summary['largest_force_N'] * 1e9:.1f} nN",
-        f"  position tracking {summary['position_tracking_rms_m'] * 1e9:.2f} nm RMS at the stage",
-        f"  force tracking    {_tracking(summary['force_tracking_rms_N'])}",
-        f"  stability margin  {summary['stability_margin']:.1f} (1 is the limit)",
+        f"  position tracking {_position(summary['position_tracking_rms_m'])}",
+        f"  force tracking    {_tracking(summary)}",
+        f"  stability margin  {_margin(summary['stability_margin'])}",
     ]
     seconds = {name: count / summary["loop_rate_Hz"] for name, count in summary["states"].items()}
     stopped = [f"{seconds[name]:.4g} s {name}" for name in seconds if name != "RUN" and seconds[name]]
@@ -75,11 +90,22 @@ def words(summary: dict[str, Any]) -> str:
 
 def _force(summary: dict[str, Any], name: str) -> str:
     tip, hand = summary[f"{name}_force_N"], summary[f"hand_{name}_force_N"]
-    return "none" if tip is None else f"{tip * 1e9:.1f} nN at the tip, {hand:.3f} N at the hand"
+    return "none: never in contact" if tip is None else f"{tip * 1e9:.1f} nN at the tip, {hand:.3f} N at the hand"
 
 
-def _tracking(force: float | None) -> str:
-    return "none: never in contact" if force is None else f"{force:.3f} N RMS at the hand"
+def _position(error: float | None) -> str:
+    return "none: the stage goes by itself" if error is None else f"{error * 1e9:.2f} nm RMS at the stage"
+
+
+def _margin(margin: float | None) -> str:
+    return "none: no loop through the hand" if margin is None else f"{margin:.1f} (1 is the limit)"
+
+
+def _tracking(summary: dict[str, Any]) -> str:
+    force = summary["force_tracking_rms_N"]
+    if force is None:
+        return "none: " + ("the hand follows no force" if summary["mode"] == "curve" else "never in contact")
+    return f"{force:.3f} N RMS at the hand"
 
 
 def _position_error(session: nt.Session, recording: Recording) -> Any:
@@ -89,10 +115,12 @@ def _position_error(session: nt.Session, recording: Recording) -> Any:
 
 
 def _force_error(session: nt.Session, recording: Recording) -> Any:
-    """f_m - alpha_f f_s in contact; in topography mode the height servo's alpha_f (set-point - f_s) [N]."""
+    """f_m - alpha_f f_s in contact; for the height servo alpha_f (set-point - f_s); a curve follows no force [N]."""
     gains = session.settings.gains
     touching = recording.contact_radius > 0.0
-    if session.mode == "topography":
+    if session.mode == "curve":
+        return ()
+    if session.mode in ("topography", "approach"):
         return gains.alpha_f * (gains.set_point - recording.slave_force[touching])
     return (recording.operator_force - gains.alpha_f * recording.slave_force)[touching]
 

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
-from nanotouch import plots, record
+from nanotouch import margins, plots, record
+from nanotouch._plant import PROBE_MODELS
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import read_tables
 from nanotouch.session import MODES
 
-from nanotouch_app import output, summary, view
+from nanotouch_app import loop, output, summary, view
 from nanotouch_app.quantity import parse_points, parse_quantity
 
 SURFACES: dict[str, Callable[[], nt.Topography]] = {
@@ -25,10 +26,12 @@ SURFACES: dict[str, Callable[[], nt.Topography]] = {
     "flat": nt.surface.flat,
 }
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
+MOVING = ("scan", "topography")
 LONGEST = 600.0  # [s]: 6 million steps, 1 GB of memory
 EPILOG = """examples:
   nanotouch touch                                            press on a grating of 480 nm
   nanotouch touch --surface dots --mode topography           feel quantum dots at constant force
+  nanotouch touch --force-range plan --control impedance     all of the hand's range, no force sensor
   nanotouch touch image.ibw --mode scan --line 0um,2um,6um,2um --scene scene.toml --out result"""
 
 
@@ -45,7 +48,8 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument("image", nargs="?", metavar="IMAGE", help="AFM image; without it a built-in surface")
     where.add_argument("--surface", choices=SURFACES, help="built-in surface (default: grating)")
     where.add_argument("--mode", choices=MODES, default="point", help="press at a point, feel the forces along a line, "
-                       "or follow it at constant force and feel the height (default: %(default)s)")  # fmt: skip
+                       "follow it at constant force and feel the height, find the surface and stay on it, or record a "
+                       "force-distance curve (default: %(default)s)")  # fmt: skip
     where.add_argument("--at", metavar="X,Y", help="point to touch, as 2.5um,3um (default: the middle)")
     where.add_argument(
         "--line", metavar="X,Y,X,Y", help="line to follow, as 0um,2um,6um,2um (default: across the middle)"
@@ -60,6 +64,11 @@ def add_parser(subparsers: Any) -> None:
     how.add_argument(
         "--scene", metavar="FILE", help="TOML file with scene, rig and gains (default: silicon in humid air)"
     )
+    loop.add_options(how)
+    how.add_argument("--probe-model", choices=PROBE_MODELS, default="auto", help="how the cantilever is simulated "
+                     "(default: %(default)s)")  # fmt: skip
+    how.add_argument("--minimum-margin", type=float, default=margins.MINIMUM, metavar="NUMBER", help="refuse to touch "
+                     "closer to the stability limit, 1, than this; 0: never (default: %(default)s)")  # fmt: skip
     how.add_argument("--duration", metavar="TIME", help="stretch the operator's script to this, as 20s")
     how.add_argument("--seed", type=int, default=1, help="of the sensors' noise (default: %(default)s)")
     results = parser.add_argument_group("results")
@@ -75,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
     out = output.folder(args.out)
     output.clear(out, FILES)
     print(describe(topography))
-    print(summary.guarantee(session))
+    print(summary.before(session))
     recording = _record(session, duration, out)
     facts = summary.summarise(session, recording)
     output.write_json(out / "summary.json", facts)
@@ -120,10 +129,22 @@ def _session(args: argparse.Namespace, topography: nt.Topography) -> nt.Session:
     tables = read_tables(args.scene) if args.scene else {}
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
     surface = nt.Surface(topography, scene.tip.radius, scene.tip.half_angle)
-    what: dict[str, Any] = {"surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed}
-    settings = nt.Session(scene, rig, minimum_margin=0.0, **what).settings.copy()  # scaled for the relief on the path
+    what: dict[str, Any] = {
+        "surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed, "control": args.control,
+        "probe_model": args.probe_model,
+    }  # fmt: skip
+    scaled = nt.Session(scene, rig, minimum_margin=0.0, **what)  # for the relief on the path
+    settings = scaled.settings.copy()
+    loop.scale_force(args.force_range, scaled.plan, rig, settings)
     settings.update_from_tables(tables)
-    return nt.Session(scene, rig, settings=settings, **what)
+    session = nt.Session(scene, rig, settings=settings, minimum_margin=0.0, delay=loop.delay_of(args.delay), **what)
+    found = session.margins()
+    if not found.least >= args.minimum_margin:
+        raise InvalidValue(
+            f"not armed: stability margin {found.least:.3g} ({found.rule}), at least {args.minimum_margin:g} is needed"
+            "; nanotouch margins shows all of them, --minimum-margin overrides"
+        )
+    return session
 
 
 def _path(args: argparse.Namespace) -> list[tuple[float, float]] | None:
@@ -154,6 +175,6 @@ def _record(session: nt.Session, duration: float | None, out: Path) -> nt.Record
 def _draw(session: nt.Session, topography: nt.Topography, recording: nt.Recording, out: Path) -> None:
     plots.time(recording, save=out / "time.png")
     plots.force_gap(recording, save=out / "force_gap.png")
-    if session.mode != "point":
+    if session.mode in MOVING:
         plots.line(recording, topography, save=out / "line.png")
     view.render_png(topography, recording, out / "view.png", tip_radius=session.scene.tip.radius)

@@ -227,3 +227,36 @@ def test_progress_bar_on_a_terminal_only(stream: io.StringIO, shown: bool, monke
 
 def test_promised_files_are_listed_once() -> None:
     assert set(touch.FILES) == ALWAYS | {"line.png"}
+
+
+def test_approach_and_curve(no_view: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["touch", "--surface", "flat", "--mode", "approach", "--out", str(tmp_path / "a")]) == 0
+    found = json.loads((tmp_path / "a" / "summary.json").read_text())
+    assert names(tmp_path / "a") == ALWAYS | {"summary.json"}
+    assert found["position_tracking_rms_m"] is None
+    assert main(["touch", "--surface", "flat", "--mode", "curve", "--out", str(tmp_path / "c")]) == 0
+    found = json.loads((tmp_path / "c" / "summary.json").read_text())
+    assert found["stability_margin"] is None
+    assert found["force_tracking_rms_N"] is None
+    assert found["pull_off_force_N"] == pytest.approx(found["planned_pull_off_force_N"], rel=0.3)  # noise of 13 nN
+    said = capsys.readouterr().out
+    assert "none: no loop through the hand" in said
+    assert "N_p = 400" in said
+
+
+def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["touch", "--surface", "flat", "--out", str(tmp_path), "--duration", "2s"]
+    assert main([*command, "--control", "paper"]) == 2  # its own stage loop is unstable
+    assert "not armed: stability margin 0 (exact contact), at least 1.5" in capsys.readouterr().err
+    assert main([*command, "--control", "paper", "--minimum-margin", "0"]) == 0
+    assert "ARMED AGAINST THE VERDICT" in capsys.readouterr().out
+    options = ["--control", "impedance", "--delay", "1ms", "--probe-model", "dynamic", "--force-range=-20nN,480nN"]
+    assert main([*command, *options]) == 0
+    read = record.read(tmp_path / "recording.mcap")
+    assert read.metadata["control"] == "impedance"
+    assert read.metadata["probe_model"] == "dynamic"
+    assert read.metadata["settings"]["gains"]["delay"] == 11.0  # periods of 0.1 ms, with the rig's own
+    assert read.metadata["alpha_f"] == pytest.approx(10.0 / 500e-9)  # Eq. 19, a gauge or motor of 5 N
+    assert main([*command, "--force-range", str(tmp_path / "recording.mcap")]) == 0
+    assert main([*command, "--force-range", "plan"]) == 0
+    assert main([*command, "--force-range", "5"]) == 2

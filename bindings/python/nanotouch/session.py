@@ -281,7 +281,7 @@ class Session:
             "probe_model": self.probe_model,
             "faults": list(self._faults),
             "loop_rate": self.rate,
-            "stability_margin": self.stability_margin,
+            "stability_margin": self.stability_margin if math.isfinite(self.stability_margin) else None,
             "scene": self.scene.to_dict(),
             "rig": self.rig.to_dict(),
             "settings": self.settings.to_dict(),

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Options that say how the loop is closed, common to ``touch`` and ``margins``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+from nanotouch import margins, record
+from nanotouch.margins import ForceRange
+from nanotouch.session import CONTROLS
+
+from nanotouch_app.quantity import parse_quantity
+
+
+def add_options(group: Any) -> None:
+    """The law, the delay and what the forces are scaled for."""
+    group.add_argument(
+        "--control", choices=CONTROLS, default="default", help="control law; paper: Eq. 16-17 as printed; impedance: "
+        "for a master without force sensor (default: %(default)s)"
+    )  # fmt: skip
+    group.add_argument("--delay", metavar="TIME", help="of the link between hand and probe, as 1ms (default: none)")
+    group.add_argument(
+        "--force-range", metavar="RANGE", help="forces on the tip that fill the hand's range (alpha_f by the paper's "
+        "Eq. 19): 'plan' for pull-off to force limit, the recording.mcap of a test touch, or LOW,HIGH with an equals "
+        "sign, --force-range=-20nN,500nN (default: the paper's attraction of 0.6 uN to the probe's range)"
+    )  # fmt: skip
+
+
+def delay_of(text: str | None) -> float:
+    """[s]"""
+    return 0.0 if text is None else parse_quantity(text, "s")
+
+
+def scale_force(text: str | None, plan: nt.Plan, rig: nt.Rig, settings: nt.Settings) -> None:
+    """Let alpha_f follow ``--force-range``."""
+    if text is not None:
+        settings.gains.alpha_f = margins.heuristic_alpha_f(rig, _force_range(text, plan, settings))
+
+
+def _force_range(text: str, plan: nt.Plan, settings: nt.Settings) -> ForceRange:
+    if text == "plan":
+        return margins.force_range(plan, settings.limits.force)
+    if Path(text).suffix == ".mcap":
+        return margins.force_range(record.read(text))
+    low, comma, high = text.partition(",")
+    if not comma:
+        raise nt.errors.InvalidValue(f"--force-range {text}: write plan, a recording.mcap, or LOW,HIGH as -20nN,500nN")
+    return ForceRange(parse_quantity(low, "N"), parse_quantity(high, "N"))
