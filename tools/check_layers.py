@@ -43,7 +43,9 @@ HEADERS = {
 
 # What the portable layers may take from the C library: nothing that allocates, prints or knows an operating system.
 PORTABLE = USES.keys() - {"hal", "hal/linux", "session", "fit"}
-SYSTEM_HEADERS = {"complex", "float", "inttypes", "limits", "math", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "string"}
+SYSTEM_HEADERS = {
+    "complex", "float", "inttypes", "limits", "math", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "string",
+}  # fmt: skip
 HOSTED_FILES = {"hal/loop.c"}  # of hal, what is outside the portable core
 PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 

@@ -286,7 +286,8 @@ PRESETS = [
 
 def test_the_papers_scenes_are_there() -> None:
     assert set(PRESETS) == {
-        "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots", "cell_in_liquid",
+        "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots",
+        "cell_in_liquid",
     }  # fmt: skip
 
 

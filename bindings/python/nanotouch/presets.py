@@ -78,7 +78,7 @@ def inas_dots() -> tuple[Scene, Rig]:
 
 
 def cell_in_liquid() -> tuple[Scene, Rig]:
-    """A living cell in physiological saline under a colloidal probe: soft, thin, with a brush of sugars, no adhesion."""
+    """A living cell in saline under a colloidal probe: soft, thin, with a brush of sugars, no adhesion."""
     scene = Scene(
         tip={"shape": "sphere", "radius": 2.5e-6, "material": "silica", "surface_potential": -0.02},
         # E, T and the brush: Sokolov et al., Nat. Nanotechnol. 4 (2009) 605; potential: some -15 mV of zeta
