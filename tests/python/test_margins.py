@@ -300,3 +300,39 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scene.write_text("[gains]\nforce_gain = 500\n")
     assert main(["margins", str(scene), "--rate", "1kHz", "--no-map", "--out", str(tmp_path)]) == 1
     assert "REFUSED" in capsys.readouterr().out
+
+
+def test_recording_with_a_dead_sensor() -> None:
+    faults = nt.Faults().add("nan", "deflection", at=0.5, duration=1e-3)
+    recording = nt.Session(faults=faults).run(2.0)
+    assert not np.isfinite(recording.slave_force).all()
+    felt = margins.of_recording(recording)
+    assert felt.is_passive
+    assert np.isfinite(felt.dissipated).all()
+    assert math.isfinite(margins.force_range(recording).lowest)
+
+
+def test_z_width_of_a_recording(tmp_path: Path) -> None:
+    recording = nt.Session().run()
+    width = margins.z_width(recording)
+    low = width.frequency < 1.0  # below the mass's and the contact's own bandwidth
+    assert width.free[low] == pytest.approx(width.drag, rel=0.1)
+    felt = margins.of_recording(recording)
+    spring = felt.felt_stiffness / (2.0 * math.pi * width.frequency)
+    assert width.contact[low] == pytest.approx(spring[low], rel=0.15)
+    assert (width.stable > width.passive).all()
+    assert (width.passive[low] > width.contact[low]).all()
+    nt.plots.z_width(recording, save=tmp_path / "z.png")
+    assert (tmp_path / "z.png").stat().st_size > 10_000
+    own = nt.Session(control=lambda _signals: (0.0, 0.0)).run(1.0)  # judged as the default law
+    assert margins.of_recording(own).margins.margin > 0.0
+
+
+def test_force_range_sets_the_scale() -> None:
+    rig, plan = nt.Rig(), nt.Scene().plan()
+    span = margins.force_range(plan, 500e-9)
+    alpha_f = margins.heuristic_alpha_f(rig, span)
+    assert alpha_f * (span.highest - span.lowest) == pytest.approx(2.0 * rig.master.gauge_range)
+    assert nt.Session(force_range=span).settings.gains.alpha_f == alpha_f
+    with pytest.raises(nt.Error, match="force_range"):
+        nt.Session(force_range=span, settings=nt.Settings.for_rig(rig))

@@ -171,9 +171,9 @@ def force_range(source: Plan | Recording, highest: float | None = None) -> Force
         if highest is None:
             raise InvalidValue("force_range of a plan needs the highest load that is wanted: highest=... N")
         return ForceRange(-source.pull_off_force, highest)
-    force = source.slave_force
+    force = source.slave_force[np.isfinite(source.slave_force)]
     if not len(force):
-        raise InvalidValue("force_range needs a recording with rows")
+        raise InvalidValue("force_range needs a recording with forces")
     return ForceRange(float(np.min(force)), float(np.max(force)) if highest is None else highest)
 
 
@@ -209,21 +209,59 @@ class Felt(NamedTuple):
         return float(self.dissipated.min(initial=0.0)) >= -0.02 * float(np.ptp(self.energy))
 
 
-def of_recording(recording: Recording) -> Felt:
-    """Margins, energies and Z-width of a recording made by a session, from measured columns only."""
+class Width(NamedTuple):
+    """Z-width of a recorded loop: impedances at the hand [N s/m] over frequency [Hz], each shape (n,)."""
+
+    frequency: Floats
+    free: Floats
+    """in air"""
+    contact: Floats
+    """pressed on the stiffest contact that was met"""
+    passive: Floats
+    """a spring of the stiffest that is passive (R1)"""
+    stable: Floats
+    """and of the stiffest that is stable"""
+    drag: float
+    """measured in air, NaN if the master did not move there [N s/m]"""
+
+
+def z_width(recording: Recording) -> Width:
+    """Between what the hand feels in air and in the stiffest contact met; from 0.1 Hz to three times HAND_BAND."""
+    felt, (rig, settings) = of_recording(recording), _described(recording)
+    frequency = np.geomspace(0.1, min(3.0 * HAND_BAND, 0.5 * settings.gains.rate), 200)
+    angular = 2.0 * np.pi * frequency
+    air, pressed = (response(rig, settings, k, frequency) for k in (0.0, felt.contact_stiffness))
+    return Width(
+        frequency,
+        np.abs(air.impedance),
+        np.abs(pressed.impedance),
+        felt.margins.passive_stiffness / angular,
+        felt.margins.stable_stiffness / angular,
+        felt.free_damping,
+    )
+
+
+def _described(recording: Recording) -> tuple[Rig, Settings]:
+    """What it was recorded with."""
     try:
-        rig = Rig(**recording.metadata["rig"])
-        settings = Settings(**recording.metadata["settings"])
-        _core.set_control(settings.core, recording.metadata["control"])
+        rig, settings = Rig(**recording.metadata["rig"]), Settings(**recording.metadata["settings"])
+        if recording.metadata["control"] != "own":
+            _core.set_control(settings.core, recording.metadata["control"])
     except KeyError as error:
         raise InvalidValue(f"the recording's metadata lacks {error}: it was not made by a session") from error
+    return rig, settings
+
+
+def of_recording(recording: Recording) -> Felt:
+    """Margins, energies and Z-width of a recording made by a session, from measured columns only."""
+    rig, settings = _described(recording)
     k_eff = _steepest(recording, rig)
     k_c = rig.probe.spring_constant
     k = math.inf if k_eff >= 0.999 * k_c else k_eff / (1.0 - k_eff / k_c)
     gains = settings.gains
     moved = np.diff(recording.master_position, prepend=recording.master_position[:1])
     middle = 0.5 * (recording.operator_force + np.concatenate([[0.0], recording.operator_force[:-1]]))
-    scaled = recording.scaled_slave_force
+    scaled = np.nan_to_num(recording.scaled_slave_force)  # a failed sensor gives nothing
     given = 0.5 * (scaled + np.concatenate([[0.0], scaled[:-1]]))
     return Felt(
         margins=compute(rig, settings, k, recording.metadata.get("mode", "point")),
@@ -249,6 +287,7 @@ def _steepest(recording: Recording, rig: Rig) -> float:
     """The largest slope of slave force over travel while pressed [N/m], 0 if it never was: chords over five times the
     noise, or a fifth of the largest force."""
     _, _, travel, force = _bins(recording)
+    force = np.nan_to_num(force)
     peak = float(np.max(force, initial=0.0))
     noise = rig.probe.spring_constant * rig.probe.sensitivity * rig.probe.noise / 6.0
     chord = max(5.0 * noise, 0.2 * peak)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nanotouch import margins
 from nanotouch.errors import InvalidValue, require
 from nanotouch.record import STATES, Recording, replacing
 
@@ -186,6 +187,22 @@ def line(
     upper.margins(x=0.01)
     _dress(upper, "Felt line")
     _dress(lower, "Force on the tip, + repulsive")
+    return _saved(figure, save)
+
+
+def z_width(recording: Recording, save: StrPath | None = None) -> Any:
+    """What the hand feels between air and the stiffest contact that was met, over frequency (docs/margins.md)."""
+    width = margins.z_width(recording)
+    figure = _figure(7.5, 5.0)
+    panel = figure.subplots()
+    panel.fill_between(width.frequency, width.free, width.contact, color="0.92")
+    looks = {"free": (BLUE, "-"), "contact": (VERMILION, "-"), "passive": (GREEN, ":"), "stable": (PURPLE, "--")}
+    for name, (colour, style) in looks.items():
+        panel.loglog(width.frequency, getattr(width, name), color=colour, ls=style, label=name)
+    panel.axhline(width.drag, color=SKY, lw=0.8, label="measured drag in air")
+    panel.set_xlabel("frequency (Hz)")
+    panel.set_ylabel("impedance at the hand $|f_m/x_m'|$ (N s/m)")
+    _dress(panel, "Z-width")
     return _saved(figure, save)
 
 

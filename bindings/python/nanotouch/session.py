@@ -17,7 +17,7 @@ from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
-from nanotouch.margins import Margins
+from nanotouch.margins import ForceRange, Margins
 from nanotouch.operator import Input, script_for
 from nanotouch.plan import Plan, terrain_of
 from nanotouch.record import Recording, Writer
@@ -39,13 +39,18 @@ ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
 Columns = dict[str, NDArray[Any]]
 
 
-def settings_for_path(rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6) -> Settings:
-    """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m]."""
+def settings_for_path(
+    rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6, force_range: tuple[float, float] | None = None
+) -> Settings:
+    """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m] and forces
+    on the tip [N] from a plan or a test touch (:func:`nanotouch.margins.force_range`)."""
     check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
     check_between("relief", relief, "m", above=-1e-15, up_to=1e-3)
     settings = Settings.for_rig(rig)
     slave_path = clearance + INDENTATION_RANGE + relief
     settings.gains.alpha_p, settings.gains.alpha_f = _core.scaling_heuristic(rig.core, slave_path, ATTRACTION_RANGE)
+    if force_range is not None:
+        settings.gains.alpha_f = margins.heuristic_alpha_f(rig, ForceRange(*force_range))
     return settings
 
 
@@ -76,6 +81,8 @@ class Session:
         Of the sensors' noise.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path.
+    force_range : (lowest, highest), optional
+        Forces on the tip [N] that alpha_f is to fill the hand's range with (Eq. 19), where no settings are given.
     surface : Surface, optional
         The (dilated) surface; without it a flat at z = 0.
     clearance : float
@@ -108,6 +115,7 @@ class Session:
         delay: float = 0.0,
         seed: int = 0,
         settings: Settings | None = None,
+        force_range: tuple[float, float] | None = None,
         surface: Surface | None = None,
         clearance: float = 0.1e-6,
         rtol: float = 0.01,
@@ -128,7 +136,10 @@ class Session:
         self.path = checked_path(mode, path, surface)
         distance, heights = self.path_heights()
         self.relief = float(np.ptp(heights))
-        self.settings = settings_for_path(self.rig, self.relief, clearance) if settings is None else settings.copy()
+        if settings is not None and force_range is not None:
+            raise InvalidValue("force_range sets alpha_f, which the settings hold already: give one of them")
+        scaled = settings_for_path(self.rig, self.relief, clearance, force_range) if settings is None else settings
+        self.settings = scaled.copy()
         _choose(self.settings, rate, gains, delay)
         self.control = _chosen_control(self.settings, control)
         self._events: list[tuple[int, str, list[Any]]] = []
