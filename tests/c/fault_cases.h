@@ -64,6 +64,25 @@ static inline int is_slow(const fault_case *f)
     return f->fault.channel == NT_CHANNEL_MOTOR && f->fault.value > 1.0;
 }
 
+static inline int turns_the_stage(const nt_fault *fault)
+{
+    return fault->kind == NT_FAULT_GAIN && fault->channel == NT_CHANNEL_STAGE && fault->value < 0.0;
+}
+
+/* Nothing fresh comes from the rig any more. */
+static inline int blinds(const nt_fault *fault)
+{
+    return fault->kind == NT_FAULT_STALE || fault->kind == NT_FAULT_CLOCK || fault->kind == NT_FAULT_DEVICE_LOST ||
+           (fault->kind == NT_FAULT_DROPOUT && fault->duration > ONE_TICK);
+}
+
+/* A lift into the sample that nobody can see: by retract_distance, no farther. */
+static inline int is_blind_lift(const fault_case *one, const fault_case *other)
+{
+    return other != NULL && ((turns_the_stage(&one->fault) && blinds(&other->fault)) ||
+                             (turns_the_stage(&other->fault) && blinds(&one->fault)));
+}
+
 /* What was seen. */
 typedef struct outcome {
     nt_state first, last;

@@ -74,25 +74,6 @@ static double promised(const loop *l, double slope)
     return promise(l, slope).force;
 }
 
-static int turns_the_stage(const nt_fault *fault)
-{
-    return fault->kind == NT_FAULT_GAIN && fault->channel == NT_CHANNEL_STAGE && fault->value < 0.0;
-}
-
-/* Nothing fresh comes from the rig any more. */
-static int blinds(const nt_fault *fault)
-{
-    return fault->kind == NT_FAULT_STALE || fault->kind == NT_FAULT_CLOCK || fault->kind == NT_FAULT_DEVICE_LOST ||
-           (fault->kind == NT_FAULT_DROPOUT && fault->duration > ONE_TICK);
-}
-
-/* A lift into the sample that nobody can see: by retract_distance, no farther. */
-static int is_blind_lift(const fault_case *one, const fault_case *other)
-{
-    return other != NULL && ((turns_the_stage(&one->fault) && blinds(&other->fault)) ||
-                             (turns_the_stage(&other->fault) && blinds(&one->fault)));
-}
-
 /* The guarantee, and what is written beside it for a blind lift (docs/safety.md) [N]. */
 static double bound_of(const loop *l, const fault_case *one, const fault_case *other)
 {
@@ -242,6 +223,81 @@ static void a_lift_the_wrong_way_is_given_up(void **state)
     assert_true(most < bound);
 }
 
+/* At half of alpha_f, for the force of a hand to reach the limit; pressed with this for as long. */
+static void press_softly(loop *begun, double force, int ticks)
+{
+    nt_session_setup setup = nt_session_defaults();
+    setup.clearance = 20e-9;
+    setup.settings.gains.alpha_f *= 0.5;
+    assert_int_equal(loop_open(begun, &setup), NT_OK);
+    loop_push(begun, force * setup.settings.gains.alpha_f, 0.5);
+    for (int i = 0; i < ticks; i++)
+        assert_int_equal(loop_tick(begun, NULL, NULL), NT_OK);
+}
+
+/* Pressed at 0.98 of the limit, the stage turns, and the hand draws back: which presses. */
+static void a_turned_stage_keeps_the_guarantee(void **state)
+{
+    (void)state;
+    static loop l, begun;
+    const double limit = pressed.touch.settings.limits.force;
+    press_softly(&begun, 0.98 * limit, 30000);
+    double worst = 0.0;
+    for (int hand = 0; hand < 20; hand++) {
+        l = begun;
+        l.sim.plan = &begun.plan;
+        const nt_fault turned = {NT_FAULT_GAIN, NT_CHANNEL_STAGE, 0.0, FOREVER, -1.0};
+        assert_int_equal(nt_sim_inject(&l.sim, &turned), NT_OK);
+        loop_push(&l, hand % 5, 0.005 * pow(4.0, hand / 5));
+        for (int i = 0; i < 3000; i++) {
+            assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+            worst = fmax(worst, l.sim.truth.tip_force);
+        }
+        assert_true(hand % 5 == 4 || l.command.state == NT_LATCHED);
+    }
+    print_message("turned at 0.98 of the limit: worst force %.0f nN, bound %.0f nN\n", 1e9 * worst,
+                  1e9 * promised(&l, 0.0));
+    assert_true(worst > limit && worst < promised(&l, 0.0));
+}
+
+/* A motor that gives far more than it is told, over 20 s: either the observer holds, or the master swings by less than
+ * three of its steps, which no observer tells from standing. The sample feels neither. */
+static void too_much_motor_does_not_reach_the_sample(void **state)
+{
+    (void)state;
+    static const double gains[] = {10.0, 30.0, 60.0, 100.0, 150.0, 300.0, 1000.0};
+    static loop l;
+    const loop *const begun[] = {&pressed_slow, &pressed};
+    print_message(
+        "| rate [kHz] | motor x | held after [s] | swing of the master [mm] | of the tip [nN] | worst force [nN] |\n"
+        "|---|---|---|---|---|---|\n");
+    for (int i = 0; i < 14; i++) {
+        const loop *from = begun[i / 7];
+        l = *from;
+        l.sim.plan = &from->plan;
+        const nt_fault fault = {NT_FAULT_GAIN, NT_CHANNEL_MOTOR, 0.0, FOREVER, gains[i % 7]};
+        assert_int_equal(nt_sim_inject(&l.sim, &fault), NT_OK);
+        const int second = (int)round(1.0 / l.touch.period);
+        double worst = 0.0, low = INFINITY, high = -INFINITY, least = INFINITY, most = -INFINITY;
+        int held = 0;
+        for (int tick = 0; tick < 20 * second; tick++) {
+            move_hand(&l, tick * 10000 / second);
+            assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+            held = held == 0 && l.command.state != NT_RUN ? tick : held;
+            worst = fmax(worst, fabs(l.sim.truth.tip_force));
+            if (tick < 18 * second)
+                continue;
+            low = fmin(low, l.sim.master.position), high = fmax(high, l.sim.master.position);
+            least = fmin(least, l.sim.truth.tip_force), most = fmax(most, l.sim.truth.tip_force);
+        }
+        print_message("| %.0f | %.0f | ", 1e-3 / l.touch.period, gains[i % 7]);
+        print_message(held ? "%.2f" : "", held * l.touch.period);
+        print_message(" | %.3f | %.1f | %.0f |\n", 1e3 * (high - low), 1e9 * (most - least), 1e9 * worst);
+        assert_true(held || high - low < 3.0 * l.touch.rig.master.resolution);
+        assert_true(l.command.state <= NT_HOLD && worst < 0.5 * l.touch.settings.limits.force);
+    }
+}
+
 /* 60 adversarial hands, any force within +-5 N at any time, 2 s each, which is 3 uN at this alpha_f: the force on the
  * sample stays below the limit and what the stage can go until a reaction shows: the loop's delay; and the noise of the
  * reading. */
@@ -249,13 +305,7 @@ static void no_hand_can_break_the_force_limit(void **state)
 {
     (void)state;
     static loop l, begun;
-    nt_session_setup setup = nt_session_defaults();
-    setup.clearance = 20e-9;
-    setup.settings.gains.alpha_f *= 0.5;
-    assert_int_equal(loop_open(&begun, &setup), NT_OK);
-    loop_push(&begun, 1.0, 0.5);
-    for (int i = 0; i < 10000; i++)
-        assert_int_equal(loop_tick(&begun, NULL, NULL), NT_OK);
+    press_softly(&begun, 1.0 / (0.5 * pressed.touch.settings.gains.alpha_f), 10000);
     nt_random random = nt_random_seed(33);
     double worst = 0.0;
     int stopped = 0;
@@ -327,6 +377,8 @@ int main(void)
         cmocka_unit_test(every_fault_has_its_reaction),
         cmocka_unit_test(every_pair_of_faults_keeps_the_bounds),
         cmocka_unit_test(a_lift_the_wrong_way_is_given_up),
+        cmocka_unit_test(a_turned_stage_keeps_the_guarantee),
+        cmocka_unit_test(too_much_motor_does_not_reach_the_sample),
         cmocka_unit_test(no_hand_can_break_the_force_limit),
         cmocka_unit_test(a_wall_does_not_break_the_force_limit),
     };
