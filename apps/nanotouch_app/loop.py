@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
-from nanotouch import margins, record
+from nanotouch import _core, margins, record
 from nanotouch.margins import ForceRange
 from nanotouch.session import CONTROLS
 
@@ -48,3 +48,12 @@ def _force_range(text: str, plan: nt.Plan, settings: nt.Settings) -> ForceRange:
     if not comma:
         raise nt.errors.InvalidValue(f"--force-range {text}: write plan, a recording.mcap, or LOW,HIGH as -20nN,500nN")
     return ForceRange(parse_quantity(low, "N"), parse_quantity(high, "N"))
+
+
+def close(settings: nt.Settings, args: Any) -> None:
+    """Law, rate and delay into the settings."""
+    if args.rate is not None:
+        settings["gains.rate"] = parse_quantity(args.rate, "Hz")
+    settings["gains.delay"] = settings.gains.delay + delay_of(args.delay) * settings.gains.rate
+    if args.control != "default":
+        _core.set_control(settings.core, args.control)

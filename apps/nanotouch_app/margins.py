@@ -1,28 +1,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far a loop is from its stability limit, before anything moves: rules R1 to R5, the exact limit, Llewellyn's
-number, Z-width, the resolution budget, the verdict, and a stability map with theory and simulation together."""
+number, Z-width, the resolution budget, the verdict, and a stability map with theory and simulation together. Of a
+recording: the same at the stiffness that it met, its energy and its Z-width."""
 
 from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch import margins
-from nanotouch.errors import require
+from nanotouch import margins, plots, record
+from nanotouch.errors import InvalidValue, require
 from nanotouch.margins import Margins, Resolution
 from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION
 from nanotouch.record import replacing, write_csv
 from nanotouch.scene import read_tables
 from nanotouch.session import INDENTATION_RANGE, MODES, settings_for_path
 
-from nanotouch_app import output, stability
+from nanotouch_app import loop, output, stability
 from nanotouch_app.quantity import parse_quantity
 from nanotouch_app.stability import Floats, Limit
 
-FILES = ("margins.json", "stability.csv", "stability.png")
+FILES = ("margins.json", "stability.csv", "stability.png", "z_width.png")
 RATES = (300.0, 1e3, 3e3, 10e3, 30e3)
 """at which the limit is sought in simulation [Hz]"""
 MODULI = {1e13: "rigid", 3e8: "soft"}
@@ -37,8 +39,10 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "margins", help="how far a loop is from its stability limit", description=__doc__
     )
-    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="scene, rig and gains (default: the paper's)")
+    parser.add_argument("scene", nargs="?", metavar="FILE", help="TOML file with scene, rig and gains (default: "
+                        "the paper's), or the recording.mcap of a session")  # fmt: skip
     parser.add_argument("--rate", metavar="FREQUENCY", help="of the force loop, as 10kHz")
+    loop.add_options(parser)
     parser.add_argument("--mode", choices=MODES, default="point", help="(default: %(default)s)")
     parser.add_argument("--path", metavar="LENGTH", help="of the stage, as 0.4um, for the resolution budget")
     parser.add_argument(
@@ -49,20 +53,23 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command: 0 if a session would be armed, 1 if it would be refused."""
+    if args.scene and Path(args.scene).suffix == ".mcap":
+        return _recorded(args)
     tables = read_tables(args.scene) if args.scene else {}
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
     settings = settings_for_path(rig, clearance=CLEARANCE)
+    plan = scene.plan()
+    loop.scale_force(args.force_range, plan, rig, settings)
     settings.update_from_tables(tables)
-    if args.rate:
-        settings["gains.rate"] = parse_quantity(args.rate, "Hz")
+    loop.close(settings, args)
     path = CLEARANCE + INDENTATION_RANGE if args.path is None else parse_quantity(args.path, "m")
-    stiffness = scene.plan().maximum_stiffness
+    stiffness = plan.maximum_stiffness
     found, budget = margins.compute(rig, settings, stiffness, args.mode), margins.resolution(rig, settings, path)
     if not args.no_map:
         require("matplotlib", "app")
     out = output.folder(args.out)
     output.clear(out, FILES)
-    print(words(found, budget, settings))
+    print(words(found, budget, settings, rig))
     facts = {"contact_stiffness": stiffness, **found._asdict(), "refusal": found.refusal, **budget._asdict()}
     output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
     if not args.no_map:
@@ -71,19 +78,50 @@ def run(args: argparse.Namespace) -> int:
     return 0 if found.refusal is None else 1
 
 
-def words(found: Margins, budget: Resolution, settings: nt.Settings) -> str:
+def _recorded(args: argparse.Namespace) -> int:
+    """Margins, energy and Z-width of a recording: 0 if it was passive, 1 if not."""
+    given = [name for name in ("rate", "delay", "force_range", "path") if getattr(args, name) is not None]
+    if given or args.control != "default" or args.mode != "point":
+        raise InvalidValue(f"{args.scene}: a recording holds its own rate, law, mode, delay and scales")
+    recording = record.read(args.scene)
+    felt = margins.of_recording(recording)
+    out = output.folder(args.out)
+    output.clear(out, FILES)
+    end = float(felt.energy[-1]), float(felt.dissipated[-1])
+    print(
+        f"met            contact of {felt.contact_stiffness:.3g} N/m (inf: stiffer than can be told), "
+        f"{felt.felt_stiffness:.3g} N/m at the hand\n"
+        f"drag in air    {felt.free_damping:.3g} N s/m measured, {felt.margins.free_damping:.3g} by the law\n"
+        f"R1 contact     margin {felt.margins.margin:.3g}, exact limit {felt.margins.exact_limit:.4g} N/m over kappa "
+        f"{felt.margins.loop_stiffness:.3g} N/m\n"
+        f"energy         {end[0] * 1e3:.3g} mJ from the hand, {end[1] * 1e3:.3g} mJ kept by the loop; the "
+        "rest went into the surface\n"
+        f"verdict: {'passive' if felt.is_passive else 'NOT PASSIVE'}; least margin {felt.margins.least:.3g} "
+        f"({felt.margins.rule}), 1 is the limit"
+    )
+    facts = {"contact_stiffness": felt.contact_stiffness, "felt_stiffness": felt.felt_stiffness,
+             "drag": felt.free_damping, "energy": end[0], "dissipated": end[1], "is_passive": felt.is_passive,
+             **felt.margins._asdict()}  # fmt: skip
+    output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
+    if not args.no_map:
+        plots.z_width(recording, save=out / "z_width.png")
+    print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+    return 0 if felt.is_passive else 1
+
+
+def words(found: Margins, budget: Resolution, settings: nt.Settings, rig: nt.Rig) -> str:
     """All numbers for a reader, one rule a line."""
     gains = settings.gains
     rows = [
         ("R1 contact", f"kappa {found.loop_stiffness:.3g} N/m, passive up to {found.stability_limit:.3g} N/m "
          f"(b_m over a delay of {found.loop_delay * 1e3:.3g} ms): margin {found.margin:.3g}"),
-        ("exact limit", f"kappa {found.exact_limit:.4g} N/m, oscillating at {found.exact_frequency:.3g} Hz: "
-         f"margin {found.exact_limit / found.loop_stiffness:.3g}"),
+        ("exact limit", _exact(found)),
         ("R2 finger pad", f"K_f {gains.force_gain:g} of {_limit(found.pad_limit)}"),
         ("R3 finger mass", f"K_f {gains.force_gain:g} of {_limit(found.mass_limit)}"),
         ("exact K_f", f"{gains.force_gain:g} of {_limit(found.force_gain_limit)}, filters and hand included"),
-        ("R4 steps", f"one step of the stage is {found.quantisation_step:.3g} N at the motor"),
-        ("R5 noise", f"{found.force_noise:.3g} N RMS at the motor"),
+        ("R4 steps", f"one step of stage or master is {found.quantisation_step:.3g} N at the motor, which has "
+         f"{rig.master.max_force:.3g} N"),
+        ("R5 noise", f"{found.force_noise:.3g} N RMS at the motor: margin {_over(rig, 3.0 * found.force_noise)}"),
         ("topography", f"height servo: margin {found.height_margin:.3g}"),
         ("Llewellyn", f"{found.llewellyn:.3g} at the least below {margins.HAND_BAND:g} Hz; 1 would be stable against "
          "any surface, a sampled loop never is"),
@@ -95,6 +133,17 @@ def words(found: Margins, budget: Resolution, settings: nt.Settings) -> str:
     lines += ["resolution:", *(f"  {line}" for line in str(budget).splitlines())]
     verdict = "armed" if found.refusal is None else f"REFUSED, {found.refusal}"
     return "\n".join([*lines, f"verdict: {verdict}; least margin {found.least:.3g} ({found.rule}), 1 is the limit"])
+
+
+def _exact(found: Margins) -> str:
+    if not found.exact_limit > 0.0:
+        return "unstable without any contact: the stage's own loop"
+    ratio = found.exact_limit / found.loop_stiffness if found.loop_stiffness > 0.0 else math.inf
+    return f"kappa {found.exact_limit:.4g} N/m, oscillating at {found.exact_frequency:.3g} Hz: margin {ratio:.3g}"
+
+
+def _over(rig: nt.Rig, force: float) -> str:
+    return f"{rig.master.max_force / force:.3g}" if force > 0.0 else "inf"
 
 
 def _limit(value: float) -> str:

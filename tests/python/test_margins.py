@@ -336,3 +336,22 @@ def test_force_range_sets_the_scale() -> None:
     assert nt.Session(force_range=span).settings.gains.alpha_f == alpha_f
     with pytest.raises(nt.Error, match="force_range"):
         nt.Session(force_range=span, settings=nt.Settings.for_rig(rig))
+
+
+def test_command_options_and_recordings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = ["--out", str(tmp_path)]
+    assert main(["margins", "--no-map", "--control", "paper", *out]) == 1
+    assert "unstable without any contact" in capsys.readouterr().out
+    assert main(["margins", "--no-map", "--control", "impedance", "--delay", "2ms", "--force-range", "plan", *out]) == 0
+    facts = json.loads((tmp_path / "margins.json").read_text())
+    assert facts["loop_delay"] == pytest.approx(0.8e-3 + 2 * 2e-3, abs=0.01e-3)
+    session = nt.Session()
+    recording = session.run()
+    with nt.record.Writer(tmp_path / "made.mcap", session.metadata()) as writer:
+        writer.append(recording.columns)
+        writer.update(recording.metadata)
+    assert main(["margins", str(tmp_path / "made.mcap"), *out]) == 0
+    said = capsys.readouterr().out
+    assert "verdict: passive" in said
+    assert "z_width.png" in said
+    assert main(["margins", str(tmp_path / "made.mcap"), "--rate", "1kHz", *out]) == 2

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nanotouch import margins
 from nanotouch.errors import InvalidValue, require
 from nanotouch.record import STATES, Recording, replacing
 
@@ -192,9 +191,10 @@ def line(
 
 def z_width(recording: Recording, save: StrPath | None = None) -> Any:
     """What the hand feels between air and the stiffest contact that was met, over frequency (docs/margins.md)."""
+    from nanotouch import margins  # which needs the images, whose pictures need this module
+
     width = margins.z_width(recording)
-    figure = _figure(7.5, 5.0)
-    panel = figure.subplots()
+    panel = (figure := _figure(7.5, 5.0)).subplots()
     panel.fill_between(width.frequency, width.free, width.contact, color="0.92")
     looks = {"free": (BLUE, "-"), "contact": (VERMILION, "-"), "passive": (GREEN, ":"), "stable": (PURPLE, "--")}
     for name, (colour, style) in looks.items():
