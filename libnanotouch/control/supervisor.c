@@ -19,7 +19,7 @@
 #define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */
 #define FREE_SIGMA 6.0          /* of the force noise: below it is free air */
 #define FOLLOW_TICKS 3u         /* in a row: HOLD; while lifting: LATCHED, and no farther */
-#define FOLLOW_SHARE 0.5        /* of the way it was to go the stage must show */
+#define FOLLOW_SHARE 0.75       /* of the way it was to go lately: room for hysteresis */
 #define FOLLOW_STEPS 20.0       /* of read-out or converter, which it may be off besides */
 #define LEAST_SLACK 20e-9       /* [m] */
 #define DRIFT 1e-9              /* that deflections may show during a lift, beside their noise [m] */
@@ -62,15 +62,15 @@ static double stage_lag(const nt_rig *rig, const nt_gains *gains)
     return 2.0 * gains->stage_damping / (2.0 * NT_PI * rig->stage.resonance) + nt_sampled_dead_time(rig, gains);
 }
 
-/* How far off a stage at rest may be: steps, and half of what full speed makes of its lag. A law without an integral
- * leaves hysteresis and creep: only follow_error is a fault there [m]. */
+/* How far off a stage at rest may be: steps, and what full speed makes of its lag and a period. A law without an
+ * integral leaves hysteresis and creep: only follow_error is a fault there [m]. */
 static double stage_slack(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
 {
     if (gains->stage_integral == 0.0)
         return settings->limits.follow_error;
     const double bits = rig->converters.dac_bits;
     const double step = greater(rig->stage.resolution, bits > 0.0 ? rig->stage.travel / exp2(bits) : 0.0);
-    const double way = FOLLOW_SHARE * settings->limits.stage_speed * stage_lag(rig, gains);
+    const double way = settings->limits.stage_speed * (stage_lag(rig, gains) + 1.0 / gains->rate);
     return greater(greater(LEAST_SLACK, way), FOLLOW_STEPS * step);
 }
 
