@@ -166,11 +166,11 @@ class ForceRange(NamedTuple):
 
 
 def force_range(source: Plan | Recording, highest: float | None = None) -> ForceRange:
-    """What Eq. 19 divides by: from a plan (pull-off and the load that is wanted), or from a test touch."""
+    """What Eq. 19 divides by: from a plan (the surface's largest pull-off and the load that is wanted), or from a test touch."""
     if isinstance(source, Plan):
         if highest is None:
             raise InvalidValue("force_range of a plan needs the highest load that is wanted: highest=... N")
-        return ForceRange(-source.pull_off_force, highest)
+        return ForceRange(-float(source.explain()["largest_pull_off_force"]), highest)
     force = source.slave_force[np.isfinite(source.slave_force)]
     if not len(force):
         raise InvalidValue("force_range needs a recording with forces")
