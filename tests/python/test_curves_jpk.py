@@ -92,6 +92,26 @@ def test_a_map_equals_afmformats(tmp_path: Path) -> None:
         np.testing.assert_array_equal(archive[5].segments[1].force, found[5].segments[1].force)  # type: ignore[arg-type]
 
 
+def test_a_map_is_fitted_from_its_archive_without_reading_it_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same blocks as from all curves in memory, with the same correction of the spring constant."""
+    pytest.importorskip("xarray")
+    volume = pytest.importorskip("nanotouch.maps.volume")
+    path = as_map(tmp_path / "map.jpk-force-map", 8)
+    given = {"spring_constant": 0.4, "sensitivity": None, "calibration": None}
+    whole = volume.CurveVolume.of(curves.read(path, **given), path.name, path)
+    monkeypatch.setattr(jpk, "read", None)
+    streamed = volume.volume_of(path, None, False, given | {"untrusted": False})
+    assert streamed.shape == whole.shape == (2, 4)
+    assert streamed.coordinates.keys() == whole.coordinates.keys() == {"y", "x"}
+    for start, stop in ((0, 3), (3, 8)):
+        one, other = streamed.block(start, stop), whole.block(start, stop)
+        for key in ("z", "force", "edges", "spring_constant"):
+            np.testing.assert_array_equal(getattr(one, key), getattr(other, key))
+    assert (one.spring_constant == 0.4).all()
+
+
 @pytest.mark.parametrize("path", REAL, ids=lambda path: path.name)
 def test_real_files_equal_afmformats(path: Path) -> None:
     compared(path)

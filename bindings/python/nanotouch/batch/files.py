@@ -70,10 +70,8 @@ def files_of(names: Iterable[str | os.PathLike[str]]) -> list[Path]:
     found: dict[Path, None] = {}
     for name in (os.fspath(name) for name in names):
         path = Path(name)
-        here = (
-            sorted(path.iterdir()) if path.is_dir() else [path] if path.exists() else sorted(map(Path, glob.glob(name)))
-        )
-        here = [file for file in here if file.is_file() and not file.name.startswith(".")]
+        matches = path.iterdir() if path.is_dir() else [path] if path.exists() else glob.glob(name, recursive=True)
+        here = [file for file in sorted(map(Path, matches)) if file.is_file() and not file.name.startswith(".")]
         if not here:
             raise InvalidValue(f"{name}: no file, no folder with files, no pattern of files")
         found |= dict.fromkeys(here)
@@ -146,7 +144,7 @@ def fit_files(
 
 def _own(out: Path) -> tuple[Path, ...]:
     """What a run leaves itself, which is no force curve."""
-    return (out, _beside(out, "json"), _beside(out, "journal"))
+    return (out, _beside(out, "json"), _beside(out, "journal"), *out.parent.glob(f"{out.stem}-[0-9][0-9].png"))
 
 
 def _beside(out: Path, ending: str) -> Path:

@@ -10,7 +10,7 @@ from .analysis import analyse, force_gap, sensitivity
 from .baseline import Baseline, Wave
 from .calibration import Calibration, CalibrationTable
 from .curve import ForceCurve, Segment
-from .reading import read
+from .reading import Stream, read, stream
 from .report import CurveReport
 from .sader import hydrodynamic_function, sader
 from .synthesis import synthesise
@@ -23,6 +23,7 @@ __all__ = [
     "CurveReport",
     "ForceCurve",
     "Segment",
+    "Stream",
     "ThermalTune",
     "Wave",
     "analyse",
@@ -31,6 +32,7 @@ __all__ = [
     "read",
     "sader",
     "sensitivity",
+    "stream",
     "synthesise",
     "thermal_tune",
 ]

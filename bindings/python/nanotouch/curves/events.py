@@ -64,7 +64,9 @@ class Branch:
         """Whether it lies visibly below the baseline: alone, or together with its neighbours."""
         if -self.force[self.lowest] > self.visible:
             return True
-        mean = np.convolve(self.force[: self.lowest + _NEIGHBOURS], np.full(_NEIGHBOURS, 1.0 / _NEIGHBOURS), mode="valid")
+        mean = np.convolve(
+            self.force[: self.lowest + _NEIGHBOURS], np.full(_NEIGHBOURS, 1.0 / _NEIGHBOURS), mode="valid"
+        )
         return bool(-mean.min() > max(EVENT / _NEIGHBOURS**0.5 * self.noise, WAVE * self.baseline.scatter))
 
     def dip(self) -> tuple[float, float, float]:

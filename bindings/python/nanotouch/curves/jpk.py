@@ -59,7 +59,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
             curves.append(archive[number])
             points += sum(len(segment) for segment in curves[-1].segments)
             if points > MAX_POINTS:
-                raise ReadError(f"{file}: more than {MAX_POINTS} points in all; read it curve by curve (jpk.Archive)")
+                raise ReadError(f"{file}: more than {MAX_POINTS} points in all; read it curve by curve (curves.stream)")
         return curves
 
 
@@ -121,6 +121,14 @@ class Archive:
             raise ReadError(f"{self.file}: curve {enum} has no segments")
         meta |= {"duration": start, "segment count": len(segments), "point count": sum(len(s) for s in segments)}
         return ForceCurve(tuple(segments), meta, self.file.name)
+
+    def place(self, number: int) -> dict[str, Any]:
+        """What a curve's ``meta`` says of grid and position, from its header alone."""
+        told = self._properties(f"{self._folders[number][1]}header.properties") | self._general
+        meta: dict[str, Any] = {}
+        for kind in _KINDS:
+            _note_place(meta, told, kind)
+        return meta
 
     def _find_folders(self) -> list[tuple[int, str]]:
         """Number and folder of each curve; numbers may be missing."""

@@ -59,9 +59,7 @@ def read(
     """
     given = Calibration(spring_constant, sensitivity)
     file = checked_path(path)
-    if calibration is not None:
-        table = calibration if isinstance(calibration, CalibrationTable) else CalibrationTable.from_csv(calibration)
-        given = given.over(table.of(file))
+    given = _over_table(given, calibration, file)
     if untrusted:
         options = {"spring_constant": given.spring_constant, "sensitivity": given.sensitivity}
         return [_rechecked(curve, file) for curve in _worker.ask("curves.read", file, options, list[ForceCurve])]
@@ -73,6 +71,59 @@ def read(
         for curve in curves:
             check_curve(curve, file)
     return curves
+
+
+class Stream:
+    """The curves of a JPK archive, each read, calibrated and checked as by :func:`read` when it is asked for."""
+
+    def __init__(self, file: Path, given: Calibration) -> None:
+        self.file, self._given = file, given
+        with guarded(file, jpk.NAME):
+            self._archive = jpk.Archive(file, given)
+
+    def __len__(self) -> int:
+        return len(self._archive)
+
+    def __getitem__(self, number: int) -> ForceCurve:
+        with guarded(self.file, jpk.NAME):
+            curve = calibrated(self._archive[number], self._given, self.file)
+            check_curve(curve, self.file)
+        return curve
+
+    def place(self, number: int) -> dict[str, Any]:
+        """Where a curve was taken: what ``meta`` says of grid and position, without reading the curve."""
+        with guarded(self.file, jpk.NAME):
+            return self._archive.place(number)
+
+
+def stream(
+    path: str | PathLike[str],
+    *,
+    spring_constant: float | None = None,
+    sensitivity: float | None = None,
+    calibration: CalibrationTable | str | PathLike[str] | None = None,
+) -> Stream | None:
+    """The curves of a file one at a time, for maps larger than the memory; None where it can only be read whole.
+
+    The arguments are those of :func:`read`.
+    """
+    file = checked_path(path)
+    if file.suffix not in jpk.ENDINGS or registered_for(file, head_of(file), "curves") is not None:
+        return None
+    found = Stream(file, _over_table(Calibration(spring_constant, sensitivity), calibration, file))
+    if not len(found):
+        raise ReadError(f"{file}: holds no force curve")
+    return found
+
+
+def _over_table(
+    given: Calibration, calibration: CalibrationTable | str | PathLike[str] | None, file: Path
+) -> Calibration:
+    """What is given for the file, by value or by table."""
+    if calibration is None:
+        return given
+    table = calibration if isinstance(calibration, CalibrationTable) else CalibrationTable.from_csv(calibration)
+    return given.over(table.of(file))
 
 
 def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:

@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from .result import FitResult
 
-_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 MEANING = {
     "effective_modulus": "E*, of tip and sample together",
@@ -30,7 +30,7 @@ def with_sigma(value: float, sigma: float, unit: str) -> str:
     power = 0
     larger = max(abs(value), sigma) if np.isfinite(sigma) else abs(value)
     if unit and larger != 0.0 and np.isfinite(larger):
-        power = min(max(3 * int(np.floor(np.log10(larger) / 3)), -12), 12)
+        power = min(max(3 * int(np.floor(np.log10(larger) / 3)), min(_PREFIXES)), max(_PREFIXES))
     shown, spread = value / 10.0**power, sigma / 10.0**power
     unit = f" {_PREFIXES[power]}{unit}" if unit else ""
     if sigma == 0.0:
@@ -88,14 +88,14 @@ def _parts(result: FitResult, key: str) -> str:
 def _readings(result: FitResult) -> list[tuple[str, str]]:
     rows = []
     if np.isfinite(result.pull_off_force):
-        rows.append(("pull-off force", f"fitted {_nn(result.pull_off_force)}, "
-                                       f"measured {_nn(result.measured_pull_off_force)}"))  # fmt: skip
+        rows.append(("pull-off force", f"fitted {_newton(result.pull_off_force)}, "
+                                       f"measured {_newton(result.measured_pull_off_force)}"))  # fmt: skip
     rows += [
-        ("snap-in force", f"measured {_nn(result.measured_snap_in_force)}"),
-        ("residual", f"{result.residual_rms * 1e12:.3g} pN RMS, {result.misfit:.2g} times the noise"),
+        ("snap-in force", f"measured {_newton(result.measured_snap_in_force)}"),
+        ("residual", f"{_newton(result.residual_rms)} RMS, {result.misfit:.2g} times the noise"),
     ]
     return rows
 
 
-def _nn(force: float) -> str:
-    return f"{force * 1e9:.4g} nN"
+def _newton(force: float) -> str:
+    return with_sigma(force, 0.0, "N")

@@ -74,7 +74,9 @@ def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]
     unit, scale = engineering(data[name].attrs["units"], np.nan_to_num(values, posinf=0.0, neginf=0.0))
     good = determined(data, name)
     spanned = values[good if good.any() else np.isfinite(values)] * scale
-    low, high = np.percentile(spanned, _INNER) if spanned.size and np.ptp(spanned) > 0.0 else (0.0, 1.0)
+    low, high = np.percentile(spanned, _INNER) if spanned.size else (0.0, 1.0)
+    if low == high:
+        low, high = low - 0.5 * (abs(low) or 1.0), high + 0.5 * (abs(high) or 1.0)
     logarithmic = name.endswith("modulus") and low > 0.0 and high > _DECADE * low
     norm = colors.LogNorm(low, high) if logarithmic else colors.Normalize(low, high)
     panel.set_facecolor("0.7")

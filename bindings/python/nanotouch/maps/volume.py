@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._digest import file_digest
-from ..curves import ForceCurve, Segment, read
+from ..curves import ForceCurve, Segment, Stream, read, stream
 from ..errors import InvalidValue
 
 Floats = NDArray[np.float64]
@@ -126,12 +126,29 @@ def _turn(z: Floats) -> int:
     return 0 if lowest == 0 else lowest + 1
 
 
+class _Lazy(Mapping[int, ForceCurve]):
+    """Curves that are read when a block needs them."""
+
+    def __init__(self, curves: Any, order: Mapping[int, int]) -> None:
+        self._curves, self._order = curves, order
+
+    def __getitem__(self, place: int) -> ForceCurve:
+        curve: ForceCurve = self._curves[self._order[place]]
+        return curve
+
+    def __len__(self) -> int:
+        return len(self._order)
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._order)
+
+
 _NOWHERE = np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
 class CurveVolume:
-    """Curves that were read from a file, at the places that it gives them; without such, in one row.
+    """Curves of a file, at the places that it gives them; without such, in one row.
 
     Attributes
     ----------
@@ -150,22 +167,20 @@ class CurveVolume:
     coordinates: dict[str, Floats] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, curves: Sequence[ForceCurve], name: str, file: Path | None = None) -> CurveVolume:
+    def of(cls, curves: Sequence[ForceCurve] | Stream, name: str, file: Path | None = None) -> CurveVolume:
         """Find the grid."""
-        if not curves:
+        if not len(curves):
             raise InvalidValue(f"{name}: a map without curves")
-        meta = curves[0].meta
-        gridded = all("grid index x" in curve.meta and "grid index y" in curve.meta for curve in curves)
-        if not gridded or "grid shape x" not in meta:
-            return cls(dict(enumerate(curves)), (1, len(curves)), name, file)
-        ny, nx = int(meta["grid shape y"]), int(meta["grid shape x"])
-        places = {}
-        for curve in curves:
-            y, x = int(curve.meta["grid index y"]), int(curve.meta["grid index x"])
-            if not (0 <= y < ny and 0 <= x < nx):
-                raise InvalidValue(f"{name}: a curve at row {y}, column {x} of a grid of {ny} x {nx}")
-            places[y * nx + x] = curve
-        return cls(places, (ny, nx), name, file, _coordinates(meta, ny, nx))
+        streamed = isinstance(curves, Stream)
+        metas = [curves.place(k) if isinstance(curves, Stream) else curves[k].meta for k in range(len(curves))]
+        meta, shape = metas[0], (1, len(curves))
+        order = {k: k for k in range(len(curves))}
+        gridded = "grid shape x" in meta and all("grid index x" in m and "grid index y" in m for m in metas)
+        if gridded:
+            shape = int(meta["grid shape y"]), int(meta["grid shape x"])
+            order = _order(metas, shape, name)
+        places = _Lazy(curves, order) if streamed else {place: curves[k] for place, k in order.items()}
+        return cls(places, shape, name, file, _coordinates(meta, *shape) if gridded else {})
 
     def block(self, start: int, stop: int) -> Block:
         """The curves start .. stop - 1, counted along the rows."""
@@ -194,6 +209,17 @@ class CurveVolume:
         return found.hexdigest()
 
 
+def _order(metas: Sequence[Mapping[str, Any]], shape: tuple[int, int], name: str) -> dict[int, int]:
+    """Which curve is at each place, counted along the rows."""
+    (ny, nx), order = shape, {}
+    for number, meta in enumerate(metas):
+        y, x = int(meta["grid index y"]), int(meta["grid index x"])
+        if not (0 <= y < ny and 0 <= x < nx):
+            raise InvalidValue(f"{name}: a curve at row {y}, column {x} of a grid of {ny} x {nx}")
+        order[y * nx + x] = number
+    return order
+
+
 def _values(segment: Segment | None) -> tuple[Floats, Floats]:
     if segment is None or segment.force is None:
         return _NOWHERE, _NOWHERE
@@ -218,7 +244,9 @@ def volume_of(source: Any, z: Any, deflection: bool, reading: Mapping[str, Any])
         return source
     if isinstance(source, str | os.PathLike):
         path = Path(source)
-        return CurveVolume.of(read(path, **reading), path.name, path)
+        known = {key: value for key, value in reading.items() if key != "untrusted"}
+        found = None if reading["untrusted"] else stream(path, **known)
+        return CurveVolume.of(read(path, **reading) if found is None else found, path.name, path)
     if isinstance(source, Sequence) and source and isinstance(source[0], ForceCurve):
         return CurveVolume.of(source, source[0].name)
     if not hasattr(source, "shape"):
