@@ -17,9 +17,10 @@ ALPHA_F = Parameter("alpha_f", 2e6, "N/N", "Sec. VI-B")
 GAIN = Parameter("K_f", 2.0, "", "Sec. VI-B")
 HEIGHT = Parameter("initial tip height L", 0.6e-6, "m", "Sec. VI-B")
 FORCE = Parameter("largest hand force", 2.0, "N", "read off the scale of the figure's axis, -2 .. 3 N")
+PROPORTIONAL = Parameter("K_p", 10.0, "", "not in the text; x_s = K_p/(1 + K_p) of its target, 0.91")
 STEP = Parameter("step of the gauge", 0.02, "N", "Sec. IV-C")
 PARAMETERS = (
-    LITERAL, REPAIRED, ALPHA_F, GAIN, HEIGHT, FORCE, STEP, paper.TIP, paper.CANTILEVER, paper.HUMIDITY,
+    LITERAL, REPAIRED, ALPHA_F, GAIN, PROPORTIONAL, HEIGHT, FORCE, STEP, paper.TIP, paper.CANTILEVER, paper.HUMIDITY,
     paper.RESOLUTION, touching.RATE, touching.PAPER_RATE,
 )  # fmt: skip
 APPROACH, PULL = 0.05, -0.5
@@ -35,7 +36,9 @@ TRACKED = 0.05
 def session(alpha_p: float, rate: float, control: str, minimum_margin: float = 1.5) -> nt.Session:
     """The paper's silicon under the given scale, rate and law."""
     scene, rig = presets.silicon_in_air()
-    chosen = touching.settings(rig, rate, alpha_p=alpha_p, alpha_f=ALPHA_F.value, force_gain=GAIN.value)
+    chosen = touching.settings(
+        rig, rate, alpha_p=alpha_p, alpha_f=ALPHA_F.value, force_gain=GAIN.value, stage_proportional=PROPORTIONAL.value
+    )
     return nt.Session(
         scene, rig, settings=chosen, control=control, clearance=HEIGHT.value, minimum_margin=minimum_margin, seed=1,
         preflight=False, probe_model="quasi-static",

@@ -166,7 +166,7 @@ class ForceRange(NamedTuple):
 
 
 def force_range(source: Plan | Recording, highest: float | None = None) -> ForceRange:
-    """What Eq. 19 divides by: from a plan (the surface's largest pull-off and the load that is wanted), or from a test touch."""
+    """What Eq. 19 divides by: from a plan (the largest pull-off on the surface, the load wanted), or a test touch."""
     if isinstance(source, Plan):
         if highest is None:
             raise InvalidValue("force_range of a plan needs the highest load that is wanted: highest=... N")
