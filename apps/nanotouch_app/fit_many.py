@@ -41,9 +41,8 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     sheets = sheet.draw(summary.pictures, folder, out.stem)
     print(summary)
     for row in _worst(summary.rows):
-        print(
-            f"  {row['status']}: {row['file']}{'' if row['curve'] == '' else '#' + str(row['curve'])}: {row['reason']}"
-        )
+        number = "" if row["curve"] == "" else f"#{row['curve']}"
+        print(f"  {row['status']}: {row['file']}{number}: {row['reason'].removeprefix(row['file'] + ': ')}")
     for name in summary.unused:
         print(f"  note: the sidecar's {name!r} is none of these files")
     print(f"written to {folder}/: {', '.join([out.name, f'{out.name}.json', *(path.name for path in sheets)])}")

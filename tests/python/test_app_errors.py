@@ -132,7 +132,7 @@ def run(*arguments: str, blocked: tuple[str, ...] = (), cwd: Path) -> subprocess
 
 
 EXTRAS = ("cv2", "scipy", "SurfaceTopography", "afmformats", "mcap", "h5py", "vtk", "vtkmodules", "trame", "tqdm")
-EXTRAS = (*EXTRAS, "matplotlib", "nanotouch._fit")
+EXTRAS = (*EXTRAS, "matplotlib", "xarray", "nanotouch._fit")
 
 
 @pytest.mark.parametrize(
@@ -142,6 +142,9 @@ EXTRAS = (*EXTRAS, "matplotlib", "nanotouch._fit")
         (["touch"], "record"),
         (["curve"], "app"),
         (["info", "no_unit.txt"], "curves"),
+        (["image", "no_unit.txt"], "images"),
+        (["fit", "prose.txt"], "curves"),
+        (["map", "prose.txt"], "maps"),
         (["export", "prose.txt", "--out", "x.csv"], "app"),
     ],
 )
