@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
-from nanotouch import _core, margins, record
+from nanotouch import margins, record
 from nanotouch.margins import ForceRange
-from nanotouch.session import CONTROLS
+from nanotouch.session import CONTROLS, choose_control
 
 from nanotouch_app.quantity import parse_quantity
 
@@ -30,7 +30,10 @@ def add_options(group: Any) -> None:
 
 def delay_of(text: str | None) -> float:
     """[s]"""
-    return 0.0 if text is None else parse_quantity(text, "s")
+    delay = 0.0 if text is None else parse_quantity(text, "s")
+    if delay < 0.0:
+        raise nt.errors.InvalidValue(f"--delay {text}: it must be a time of 0 s or more")
+    return delay
 
 
 def scale_force(text: str | None, plan: nt.Plan, rig: nt.Rig, settings: nt.Settings) -> None:
@@ -55,5 +58,4 @@ def close(settings: nt.Settings, args: Any) -> None:
     if args.rate is not None:
         settings["gains.rate"] = parse_quantity(args.rate, "Hz")
     settings["gains.delay"] = settings.gains.delay + delay_of(args.delay) * settings.gains.rate
-    if args.control != "default":
-        _core.set_control(settings.core, args.control)
+    choose_control(settings, args.control)

@@ -8,14 +8,13 @@ import argparse
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import nanotouch as nt
 from nanotouch import margins, plots, record
-from nanotouch._plant import PROBE_MODELS
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import read_tables
-from nanotouch.session import MODES
+from nanotouch.session import MODES, ProbeModel
 
 from nanotouch_app import loop, output, summary, view
 from nanotouch_app.quantity import parse_points, parse_quantity
@@ -65,8 +64,8 @@ def add_parser(subparsers: Any) -> None:
         "--scene", metavar="FILE", help="TOML file with scene, rig and gains (default: silicon in humid air)"
     )
     loop.add_options(how)
-    how.add_argument("--probe-model", choices=PROBE_MODELS, default="auto", help="how the cantilever is simulated "
-                     "(default: %(default)s)")  # fmt: skip
+    how.add_argument("--probe-model", choices=get_args(ProbeModel), default="auto", help="how the cantilever is "
+                     "simulated (default: %(default)s)")  # fmt: skip
     how.add_argument("--minimum-margin", type=float, default=margins.MINIMUM, metavar="NUMBER", help="refuse to touch "
                      "closer to the stability limit, 1, than this; 0: never (default: %(default)s)")  # fmt: skip
     how.add_argument("--duration", metavar="TIME", help="stretch the operator's script to this, as 20s")

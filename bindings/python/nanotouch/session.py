@@ -26,7 +26,8 @@ from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
 __all__ = [
-    "CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "ProbeModel", "Session", "settings_for_path",
+    "CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "ProbeModel", "Session", "choose_control",
+    "settings_for_path",
 ]  # fmt: skip
 
 CONTROLS = ("default", "paper", "impedance")
@@ -141,7 +142,7 @@ class Session:
         scaled = settings_for_path(self.rig, self.relief, clearance, force_range) if settings is None else settings
         self.settings = scaled.copy()
         _choose(self.settings, rate, gains, delay)
-        self.control = _chosen_control(self.settings, control)
+        self.control = choose_control(self.settings, control)
         self._events: list[tuple[int, str, list[Any]]] = []
         options = {
             "mode": core_mode(mode), "x": self.path[0][0], "y": self.path[0][1], "seed": self.seed,
@@ -381,7 +382,7 @@ def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] |
         settings["gains.delay"] = settings.gains.delay + delay * settings.gains.rate
 
 
-def _chosen_control(settings: Settings, control: str | Law) -> str:
+def choose_control(settings: Settings, control: str | Law) -> str:
     """The name of the law, which the settings then have too; ``"own"`` for a callable."""
     if callable(control):
         return "own"
