@@ -50,7 +50,7 @@ const char *nt_channel_name(nt_channel channel)
 {
     static const char *const names[] = {
         "deflection", "stage_position", "master_position", "operator_force", "stage", "motor", "rig"};
-    return channel >= NT_CHANNEL_DEFLECTION && channel <= NT_CHANNEL_RIG ? names[channel] : "";
+    return (unsigned)channel < sizeof names / sizeof names[0] ? names[channel] : "";
 }
 
 nt_status nt_faults_add(nt_faults *faults, const nt_fault *fault)
