@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from nanotouch.plan import Plan, Term
+from nanotouch._plan_terms import Term, Warning
 
 _NAMES = {
     "vdw": "van der Waals", "electrostatic": "electrostatic", "charge": "trapped charge",
@@ -22,17 +21,16 @@ _SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
 _QUANTITIES = ("force", "stiffness", "contact radius", "folds")
 
 
-def text_of(plan: Plan) -> str:
+def text_of(facts: dict[str, Any]) -> str:
     """All of it."""
-    facts = plan.explain()
-    contact, *others = plan._all_terms()
+    contact, *others = (Term(*term) for term in facts["terms"])
     lines = [_contact(contact, facts)]
-    lines += [_term(term, plan.pull_off_force) for term in others if term.force > 0.0]
+    lines += [_term(term, facts["pull_off_force"]) for term in others if term.force > 0.0]
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
-    lines.append(_total(plan))
+    lines.append(_total(facts))
     lines.append(_numbers(facts))
-    return "\n".join(lines + [f"warning: {warning}" for warning in plan.warnings])
+    return "\n".join(lines + [f"warning: {Warning(*warning)}" for warning in facts["warnings"]])
 
 
 def contact_law_of(term: Term, facts: dict[str, Any]) -> str:
@@ -84,12 +82,12 @@ def _surface(contact: Term, facts: dict[str, Any]) -> str:
     return f"surface: curvature left out, the tip's own {own:.4g} nm in place of {radii}, which errs by {error}"
 
 
-def _total(plan: Plan) -> str:
-    quantity = _QUANTITIES[("force", "stiffness", "radius", "folds").index(plan.quantity)]
-    text = f"{quantity} within {_percent(plan.bound)}, folds within {plan.fold_shift_m * 1e9:.2g} nm"
-    if not math.isnan(plan.model_error):
-        text += f" (beside Lennard-Jones the model itself errs by {_percent(plan.model_error)})"
-    return f"{text}; cost {plan.cost:.3g} Hertz evaluations, everything exact {plan.explain()['full_cost']:.3g}"
+def _total(facts: dict[str, Any]) -> str:
+    quantity = _QUANTITIES[("force", "stiffness", "radius", "folds").index(facts["quantity"])]
+    text = f"{quantity} within {_percent(facts['bound'])}, folds within {facts['fold_shift'] * 1e9:.2g} nm"
+    if not math.isnan(facts["model_error"]):
+        text += f" (beside Lennard-Jones the model itself errs by {_percent(facts['model_error'])})"
+    return f"{text}; cost {facts['cost']:.3g} Hertz evaluations, everything exact {facts['full_cost']:.3g}"
 
 
 def _numbers(facts: dict[str, Any]) -> str:

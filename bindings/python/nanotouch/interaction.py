@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,10 +11,8 @@ from numpy.typing import ArrayLike
 from nanotouch import _core
 from nanotouch._arrays import Floats, Law, as_floats, as_law
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import History
-
-if TYPE_CHECKING:
-    from nanotouch.plan import Plan
+from nanotouch.plan import History as History
+from nanotouch.plan import Plan, begins_attached
 
 #: size of the history of one contact in the C library [byte]
 STATE_SIZE: int = _core.interaction_state_size
@@ -55,11 +53,9 @@ class Interaction:
     """
 
     def __init__(self, plan: Plan, history: History = "approach") -> None:
-        if history not in get_args(History):
-            raise InvalidValue(f"history {history!r}: valid are {', '.join(get_args(History))}")
         self.plan = plan
         self._core = _core.Interaction(plan.core)
-        self.state = State(attached=history == "retract")
+        self.state = State(attached=begins_attached(history))
 
     @property
     def state(self) -> State:

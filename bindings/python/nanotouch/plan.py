@@ -4,51 +4,23 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Law, as_floats
+from nanotouch._arrays import Law, as_floats, as_law
+from nanotouch._plan_terms import Term as Term
+from nanotouch._plan_terms import Warning as Warning
+from nanotouch._plan_text import contact_law_of, text_of
+from nanotouch.contact.bank import covering
 from nanotouch.errors import InvalidValue
+from nanotouch.scene import Demand, Rig, Scene
 
-if TYPE_CHECKING:
-    from nanotouch.scene import Demand, Rig, Scene
+if TYPE_CHECKING:  # a plan over a flat loads no images
     from nanotouch.surface import Surface
 
 History = Literal["approach", "retract"]
-
-
-class Term(NamedTuple):
-    """One law of a plan."""
-
-    name: str
-    form: str
-    """how it is computed: ``"table"``, ``"sphere"``, ...; ``"off"``"""
-    force: float
-    """the largest it is in the range of the scene, for contact the largest load [N]"""
-    bound: float
-    """of what this form errs by, over max(\\|quantity\\|, scale)"""
-    cost: float
-    """of one evaluation, in Hertz evaluations"""
-
-    @property
-    def included(self) -> bool:
-        """Whether it is computed."""
-        return self.form != "off"
-
-
-class Warning(NamedTuple):
-    """Something that the bound does not cover."""
-
-    text: str
-    unit: str
-    value: float
-    limit: float
-
-    def __str__(self) -> str:
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{self.text}: {self.value:.3g}{unit}, limit {self.limit:.3g}{unit}"
 
 
 class Plan:
@@ -63,8 +35,6 @@ class Plan:
         cls, scene: Scene, demand: Demand | None = None, probe: Rig | None = None, surface: Surface | None = None
     ) -> Plan:
         """The cheapest plan that keeps a demand; see :meth:`nanotouch.Scene.plan`."""
-        from nanotouch.scene import Demand
-
         wanted = Demand() if demand is None else demand
         return cls(
             _core.Plan(
@@ -122,8 +92,6 @@ class Plan:
     @property
     def contact_law(self) -> str:
         """The law of contact in words, such as ``"Maugis-Dugdale table"``; ``"none"`` where there is no contact."""
-        from nanotouch._plan_text import contact_law_of
-
         return contact_law_of(self._all_terms()[0], self._facts)
 
     @property
@@ -173,26 +141,28 @@ class Plan:
 
     def run(self, gap: ArrayLike, history: History = "approach") -> Law:
         """Energy, force, stiffness and contact radius along a path of gaps [m]."""
-        from nanotouch.interaction import Interaction
-
-        return Interaction(self, history).run_law(as_floats(gap, "gap"))
+        contact = _core.Interaction(self.core)
+        contact.state = (begins_attached(history), 0.0, 0.0)
+        return as_law(contact.run_gaps(as_floats(gap, "gap")))
 
     def __str__(self) -> str:
-        from nanotouch._plan_text import text_of
-
-        return text_of(self)
+        return text_of(self._facts)
 
     def __repr__(self) -> str:
         forms = ", ".join(f"{term.name}: {term.form}" for term in self.terms)
         return f"Plan({forms}; bound {self.bound:.2g}, cost {self.cost:.3g})"
 
 
+def begins_attached(history: History) -> bool:
+    """Whether a path with this history starts in contact."""
+    if history not in get_args(History):
+        raise InvalidValue(f"history {history!r}: valid are {', '.join(get_args(History))}")
+    return history == "retract"
+
+
 def terrain_of(scene: Scene, surface: Surface | None) -> _core.Terrain | None:
     """A surface with what its curvature needs: the effective radius of each place, and a bank of tables that reaches as
     far as this scene's contact goes there. A surface that no tip has dilated has no radii."""
-    from nanotouch.contact.bank import covering
-    from nanotouch.scene import Demand
-
     if surface is None:
         return None
     if surface.tip_radius is None:

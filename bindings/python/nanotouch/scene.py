@@ -73,7 +73,7 @@ class Scene(Description, core_type=_core.Scene):
         InvalidValue
             For a scene that no law covers, naming the field; for a demand that cannot be kept, with the best that can.
         """
-        from nanotouch.plan import Plan
+        from nanotouch.plan import Plan  # the next layer, which needs this one: a method for convenience
 
         demand = Demand(
             demand={"relative_accuracy": rtol, "force_floor": atol, "quantity": quantity, "budget": budget or 0.0}
