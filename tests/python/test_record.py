@@ -201,7 +201,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
 def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     part = tmp_path / "full.part"
     part.symlink_to("/dev/full")
-    monkeypatch.setattr(record, "_part", lambda path: part)
+    monkeypatch.setattr(record, "part_of", lambda path: part)
     with pytest.raises(Error, match=r"cannot write .*r\.mcap: No space left"), Writer(tmp_path / "r.mcap") as writer:
         writer.append(columns(10))
     assert list(tmp_path.iterdir()) == []

@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 from nanotouch.errors import InvalidValue
-from nanotouch.surface import Surface
+
+if TYPE_CHECKING:
+    from nanotouch.surface import Surface
 
 Mode = Literal["point", "scan", "topography", "approach", "curve"]
 MODES: tuple[Mode, ...] = get_args(Mode)

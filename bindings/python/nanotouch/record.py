@@ -12,7 +12,7 @@ import os
 import struct
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, TYPE_CHECKING, Any
@@ -21,9 +21,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nanotouch._files import checked_path
+from nanotouch._writing import BLOCK_ROWS, naming, part_of
+from nanotouch._writing import replacing as replacing
+from nanotouch._writing import write_csv as write_csv
 from nanotouch.columns import COLUMNS as COLUMNS
 from nanotouch.columns import Column as Column
-from nanotouch.errors import Error, InvalidValue, ReadError, require
+from nanotouch.errors import InvalidValue, ReadError, require
 
 if TYPE_CHECKING:
     from nanotouch.curves import ForceCurve
@@ -34,7 +37,6 @@ TOPIC = "nanotouch/touch"
 ENCODING = "nanotouch.columns"
 LAYOUT = "one message is one block of rows: the columns in the order listed, each contiguous and little-endian"
 CHUNK_SIZE = 1 << 18  # what a killed process may lose [bytes]
-BLOCK_ROWS = 10_000
 HDF5_STORAGE = {"chunks": True, "compression": "gzip", "shuffle": True, "fletcher32": True}
 STATES = ("RUN", "HOLD", "RETRACT", "LATCHED")
 
@@ -154,8 +156,8 @@ class Writer:
     def __init__(self, path: str | os.PathLike[str], metadata: Mapping[str, Any] | None = None) -> None:
         mcap = require("mcap.writer", "record")
         texts = _texts(metadata or {})
-        self._path, self._part = Path(path), _part(path)
-        with _naming(self._path):
+        self._path, self._part = Path(path), part_of(path)
+        with naming(self._path):
             self._file = open(self._part, "wb")  # noqa: SIM115 (close and discard close it)
             self._mcap = mcap.Writer(self._file, chunk_size=CHUNK_SIZE, compression=mcap.CompressionType.ZSTD)
             self._mcap.start(profile="nanotouch", library="nanotouch")
@@ -177,14 +179,14 @@ class Writer:
             raise InvalidValue("a block has a time that is not finite; time [s] must be a number in every row")
         stamp = max(0, round(float(times[0]) * 1e9)) if times.size else 0
         data = b"".join(values.tobytes() for values in block.values())
-        with _naming(self._path):
+        with naming(self._path):
             self._mcap.add_message(self._channel, log_time=stamp, data=data, publish_time=stamp, sequence=self._blocks)
         self._blocks += 1
         self.rows += times.size
 
     def update(self, metadata: Mapping[str, Any]) -> None:
         """Write the metadata anew: what is known only at the end, such as the requests of a session."""
-        with _naming(self._path):
+        with naming(self._path):
             self._mcap.add_metadata("nanotouch", _texts(metadata))
 
     def close(self) -> None:
@@ -194,7 +196,7 @@ class Writer:
         try:
             if not self._names:
                 self.append({name: np.empty(0) for name in COLUMNS})
-            with _naming(self._path):
+            with naming(self._path):
                 self._mcap.finish()
                 self._file.flush()
                 os.fsync(self._file.fileno())
@@ -269,51 +271,6 @@ def read(path: str | os.PathLike[str]) -> Recording:
     if damage:
         warnings.warn(f"{path} is damaged ({damage}); {len(recording)} rows before the damage were read", stacklevel=2)
     return recording
-
-
-def write_csv(
-    path: str | os.PathLike[str],
-    columns: Mapping[str, Sequence[Any] | NDArray[Any]],
-    comments: Mapping[str, str],
-    progress: Callable[[float], None] | None = None,
-) -> None:
-    """Write ``# key: value`` lines, the headers and the rows; floats in the fewest digits that read back equal."""
-    rows = min((len(values) for values in columns.values()), default=0)
-    with replacing(path) as part, open(part, "w", encoding="utf-8", newline="\n") as file:
-        file.writelines(f"# {key}: {value}\n" for key, value in comments.items())
-        file.write(",".join(columns) + "\n")
-        for start in range(0, rows, BLOCK_ROWS):
-            block = [np.asarray(values[start : start + BLOCK_ROWS]).tolist() for values in columns.values()]
-            file.writelines(",".join(map(str, row)) + "\n" for row in zip(*block, strict=True))
-            if progress:
-                progress(min(1.0, (start + BLOCK_ROWS) / rows))
-
-
-@contextmanager
-def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary name in the same folder, renamed to ``path`` at the end, removed on an exception."""
-    part = _part(path)
-    try:
-        with _naming(Path(path)):
-            yield part
-            os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def _part(path: str | os.PathLike[str]) -> Path:
-    return Path(path).with_name(f"{Path(path).name}.{os.getpid()}.part")
-
-
-@contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Turn the system's errors into one sentence that names the file."""
-    try:
-        yield
-    except Error:
-        raise
-    except OSError as error:
-        raise Error(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def _heading(name: str) -> str:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Units at the edge: quantities on a command line (``2.5um``), keys of a TOML file (``radius_nm``). Inside: SI only."""
+"""Units at the edge: quantities on a command line (``2.5um``), keys of a TOML file (``radius_nm``), axes of
+pictures. Inside: SI only."""
 
 from __future__ import annotations
 
@@ -7,18 +8,23 @@ import math
 import re
 from decimal import Decimal
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from nanotouch.errors import InvalidValue
 
-_PREFIXES = {
+_FACTORS = {
     "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9,
     "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15, "a": 1e-18, "z": 1e-21,
 }  # fmt: skip
 
 
 def _scaled(symbol: str, prefixes: str, rest: str = "") -> dict[str, float]:
-    return {f"{p}{symbol}{rest}": _PREFIXES[p] for p in ["", *prefixes]}
+    return {f"{p}{symbol}{rest}": _FACTORS[p] for p in ["", *prefixes]}
 
 
+#: the prefixes that pictures use, by their power of ten
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 #: spellings accepted for each SI unit of the field tables, with their factor
 UNITS: dict[str, dict[str, float]] = {
     "": {"": 1.0, "%": 0.01, "percent": 0.01},
@@ -79,6 +85,15 @@ def parse_quantity(text: str, unit: str) -> float:
     if not math.isfinite(value):
         raise InvalidValue(f"{text!r} is not a finite number")
     return value
+
+
+def engineering(unit: str, values: ArrayLike) -> tuple[str, float]:
+    """The SI prefix that suits the largest magnitude: ``engineering("m", [2e-7])`` is ``("nm", 1e9)``."""
+    magnitudes = np.abs(np.asarray(values, dtype=float))
+    largest = float(np.max(magnitudes, where=np.isfinite(magnitudes), initial=0.0))
+    power = 3 * math.floor(math.log10(largest) / 3 + 1e-12) if largest > 0 else 0
+    power = min(max(power, min(PREFIXES)), max(PREFIXES))
+    return PREFIXES[power] + unit, 10.0**-power
 
 
 def _example(unit: str) -> str:

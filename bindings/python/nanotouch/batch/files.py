@@ -17,11 +17,11 @@ import numpy as np
 import nanotouch
 
 from .._digest import file_digest
+from .._writing import replacing
 from ..contact import Model
 from ..curves import CalibrationTable, read
 from ..errors import Error, InvalidValue
 from ..fit import FitResult, TipLike, fit_curve
-from ..record import replacing
 from .journal import Journal
 from .sidecar import Decision, Sidecar
 

@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import require
-from ..plots import VERMILION, engineering
-from ..record import replacing
+from .._drawing import VERMILION, new_figure, saved
+from ..units import engineering
 
 ACROSS, DOWN = 5, 6
 _NAME = 36  # characters that fit over a picture
@@ -41,14 +40,13 @@ def draw(
 
 def _sheet(pictures: Sequence[Mapping[str, Any]], path: Path) -> None:
     down = -(-len(pictures) // ACROSS)
-    figure = require("matplotlib.figure", "app").Figure(figsize=(3.0 * ACROSS, 2.4 * down + 0.3), layout="constrained")
+    figure = new_figure(3.0 * ACROSS, 2.4 * down + 0.3)
     panels = figure.subplots(down, ACROSS, squeeze=False).ravel()
     for panel, picture in zip(panels, pictures, strict=False):
         _curve(panel, picture)
     for panel in panels[len(pictures) :]:
         panel.set_axis_off()
-    with replacing(path) as part:
-        figure.savefig(part, dpi=100, format="png")
+    saved(figure, path, dpi=100)
 
 
 def _curve(panel: Any, picture: Mapping[str, Any]) -> None:

@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from nanotouch._drawing import BLUE, GREEN, VERMILION, new_figure, saved
 from nanotouch.curves import ForceCurve, Segment
-from nanotouch.errors import require
-from nanotouch.plots import BLUE, GREEN, VERMILION, engineering
-from nanotouch.record import replacing
+from nanotouch.units import engineering
 
 from .models import Floats
 from .result import FitResult
@@ -26,19 +24,14 @@ def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | No
     matplotlib.figure.Figure
         Also written to `save`, whole or not at all.
     """
-    figure_type = require("matplotlib.figure", "app").Figure
-    figure = figure_type(figsize=(12.0, 5.5), layout="constrained")
+    figure = new_figure(12.0, 5.5)
     grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.0))
     _whole(figure.add_subplot(grid[:, 0]), curve, result)
     fitted = figure.add_subplot(grid[:2, 1])
     _fitted(fitted, result)
     _residuals(figure.add_subplot(grid[2, 1], sharex=fitted), result)
     figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {result.title}")
-    if save is not None:
-        path = Path(save)
-        with replacing(path) as part:
-            figure.savefig(part, dpi=130, format=path.suffix.lstrip(".") or "png")
-    return figure
+    return saved(figure, save, dpi=130)
 
 
 def _whole(panel: Any, curve: ForceCurve, result: FitResult) -> None:

@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from nanotouch._drawing import BLUE, new_figure, saved
 from nanotouch.curves import ForceCurve, analyse
-from nanotouch.errors import InvalidValue, SolverError, require
-from nanotouch.plots import BLUE, engineering
-from nanotouch.record import replacing
+from nanotouch.errors import InvalidValue, SolverError
+from nanotouch.units import engineering
 
 from .fitting import fit_curve
 from .models import Floats, Model
@@ -51,7 +50,7 @@ class Stability:
 
     def draw(self, save: str | os.PathLike[str] | None = None) -> Any:
         """The plot; also written to `save`, whole or not at all."""
-        figure = require("matplotlib.figure", "app").Figure(figsize=(6.4, 4.2), layout="constrained")
+        figure = new_figure(6.4, 4.2)
         panel = figure.add_subplot()
         wide, scale_d = engineering("m", self.indentation)
         stiff, scale_e = engineering("Pa", np.append(self.modulus[np.isfinite(self.modulus)],
@@ -65,11 +64,7 @@ class Stability:
         panel.set_ylabel(f"effective modulus $E^*$ ({stiff})")
         panel.set_title(f"{self.whole.name}: {self.whole.title}", fontsize=10)
         panel.legend(fontsize=8)
-        if save is not None:
-            path = Path(save)
-            with replacing(path) as part:
-                figure.savefig(part, dpi=130, format=path.suffix.lstrip(".") or "png")
-        return figure
+        return saved(figure, save, dpi=130)
 
 
 def stability(curve: ForceCurve, model: str | Model = "hertz", *, windows: int = 12, **options: Any) -> Stability:

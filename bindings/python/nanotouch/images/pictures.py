@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InvalidValue, require
-from ..plots import engineering
-from ..record import replacing
+from .._drawing import new_figure, saved
+from ..errors import InvalidValue
+from ..units import engineering
 from .particles import GrainTable
 from .topography import Topography
 
@@ -43,17 +43,14 @@ def draw(
     shown = {pictures.name: pictures} if isinstance(pictures, Topography) else dict(pictures)
     if not shown:
         raise InvalidValue("pictures: none given, expected at least one")
-    figure = require("matplotlib.figure", "app").Figure(figsize=(_WIDTH * len(shown), 3.6), layout="constrained")
+    figure = new_figure(_WIDTH * len(shown), 3.6)
     axes = figure.subplots(1, len(shown), squeeze=False)[0]
     for axis, (title, topography) in zip(axes, shown.items(), strict=True):
         _picture(figure, axis, topography)
         axis.set_title(title, fontsize="medium")
     if grains is not None and len(grains):
         _outlines(axes[-1], list(shown.values())[-1], grains)
-    if save is not None:
-        with replacing(save) as part:
-            figure.savefig(part, format="png", dpi=90)
-    return figure
+    return saved(figure, save, dpi=90)
 
 
 def _extent(topography: Topography) -> tuple[str, tuple[float, float, float, float]]:

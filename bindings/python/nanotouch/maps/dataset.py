@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._writing import replacing
 from ..errors import ReadError, require
-from ..record import replacing
 from .block import MEASURED, PLAIN, flag_names, status_names
 from .settings import Settings
 from .store import Columns

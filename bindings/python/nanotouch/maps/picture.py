@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .._drawing import new_figure, saved
 from ..errors import InvalidValue, require
-from ..plots import engineering
-from ..record import replacing
+from ..units import engineering
 from .dataset import determined, doubtful, flag_counts
 
 Floats = NDArray[np.float64]
@@ -45,9 +44,7 @@ def draw(data: Any, names: tuple[str, ...] = PANELS, save: str | os.PathLike[str
         raise InvalidValue(f"{unknown[0]!r} is not in this map; it has {', '.join(data.data_vars)}")
     count = len(names) + 1
     across = min(count, 2)
-    figure = require("matplotlib.figure", "app").Figure(
-        figsize=(5.2 * across, 4.4 * -(-count // across)), layout="constrained"
-    )
+    figure = new_figure(5.2 * across, 4.4 * -(-count // across))
     panels = figure.subplots(-(-count // across), across, squeeze=False).ravel()
     extent, labels = _extent(data)
     for panel, name in zip(panels, names, strict=False):
@@ -59,11 +56,7 @@ def draw(data: Any, names: tuple[str, ...] = PANELS, save: str | os.PathLike[str
     for panel in panels[count:]:
         panel.set_axis_off()
     figure.suptitle(f"{data.attrs.get('title', '')}, {data.sizes['y']} x {data.sizes['x']} curves", fontsize=10)
-    if save is not None:
-        path = Path(save)
-        with replacing(path) as part:
-            figure.savefig(part, dpi=130, format=path.suffix.lstrip(".") or "png")
-    return figure
+    return saved(figure, save, dpi=130)
 
 
 def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]) -> None:

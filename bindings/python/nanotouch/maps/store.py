@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._writing import replacing
 from ..errors import Error, InvalidValue
-from ..record import replacing
 
 Columns = dict[str, NDArray[Any]]
 MANIFEST = "manifest.json"

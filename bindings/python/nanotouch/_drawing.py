@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all pictures share: colours, and figures of matplotlib's object interface (no global state, no display)."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from nanotouch._writing import replacing
+from nanotouch.errors import require
+
+StrPath = str | os.PathLike[str]
+
+# Okabe and Ito's palette: told apart with any colour vision, and by lightness in print.
+BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9"
+
+
+def new_figure(width: float, height: float) -> Any:
+    """An empty ``matplotlib.figure.Figure`` of this size [inch]."""
+    return require("matplotlib.figure", "app").Figure(figsize=(width, height), layout="constrained")
+
+
+def saved(figure: Any, save: StrPath | None, dpi: int = 150) -> Any:
+    """The figure, also written where a path is given, whole or not at all; its ending names the format."""
+    if save is not None:
+        with replacing(save) as part:
+            figure.savefig(part, format=Path(save).suffix.lstrip(".") or "png", dpi=dpi)
+    return figure
