@@ -15,6 +15,9 @@ class Column:
     doc: str
 
 
+STATES = ("RUN", "HOLD", "RETRACT", "LATCHED")
+"""of the column ``state``, by number"""
+
 COLUMNS: dict[str, Column] = {
     "time": Column("<f8", "s", "time since the start"),
     "x": Column("<f8", "m", "lateral position of the tip, to the right"),

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from nanotouch.session import Session
+from nanotouch._arrays import Floats
+from nanotouch._path import Mode
+from nanotouch.plan import Plan
+from nanotouch.scene import Rig, Settings
 
 APPROACH_FORCE = 0.2  # [N]
 PRESS_FORCE = 2.0  # [N]
@@ -41,7 +44,28 @@ class Input(NamedTuple):
     duration: float
 
 
-def script_for(session: Session) -> list[Input]:
+class Touch(Protocol):
+    """What a script needs to know of a session."""
+
+    mode: Mode
+    rig: Rig
+    settings: Settings
+    clearance: float
+    """of the tip above the surface at the start [m]"""
+
+    @property
+    def path(self) -> Sequence[tuple[float, float]]:
+        """Where the tip goes [m]."""
+
+    @property
+    def plan(self) -> Plan:
+        """What is computed."""
+
+    def path_heights(self) -> tuple[Floats, Floats]:
+        """Distance along the path and height of the surface there [m]."""
+
+
+def script_for(session: Touch) -> list[Input]:
     """Approach, press and retract at a point; or approach, follow the path, retract; or follow it at constant force."""
     if session.mode == "topography":
         return _follow(session)
@@ -52,24 +76,24 @@ def script_for(session: Session) -> list[Input]:
     return _press(session)
 
 
-def _slave_speed(session: Session, force: float) -> float:
+def _slave_speed(session: Touch, force: float) -> float:
     """Speed of the stage [m/s] when the hand pushes with a force [N] in free air: alpha_p (1 + K_f) f_m/b_m."""
     gains = session.settings.gains
     return float(gains.alpha_p * (1.0 + gains.force_gain) * force / session.rig.master.damping)
 
 
-def _contact_force(session: Session, wanted: float) -> float:
+def _contact_force(session: Touch, wanted: float) -> float:
     """No more than a share of what the force limit lets through to the hand."""
     return min(wanted, float(LIMIT_SHARE * session.settings.gains.alpha_f * session.settings.limits.force))
 
 
-def _approach(session: Session) -> list[Input]:
+def _approach(session: Touch) -> list[Input]:
     x, y = session.path[0]
     travel_time = 1.3 * session.clearance / _slave_speed(session, APPROACH_FORCE)
     return [Input(APPROACH_FORCE, x, y, 0.5), Input(APPROACH_FORCE, x, y, travel_time + 0.5)]
 
 
-def _depth(session: Session, force: float) -> float:
+def _depth(session: Touch, force: float) -> float:
     """Travel of the stage past first touch to press with a hand force [N]: indentation and deflection [m]."""
     load = force / float(session.settings.gains.alpha_f)
     indentation = np.geomspace(1e-11, 1e-5, 1000)
@@ -77,7 +101,7 @@ def _depth(session: Session, force: float) -> float:
     return float(reached + load / session.rig.probe.spring_constant)
 
 
-def _retract(session: Session, pressed: float) -> list[Input]:
+def _retract(session: Touch, pressed: float) -> list[Input]:
     """Back from where a hand force [N] has pressed, by pulling with more than the adhesion at the operator's scale, but
     not with more than the gauge can read."""
     x, y = session.path[-1]
@@ -88,13 +112,13 @@ def _retract(session: Session, pressed: float) -> list[Input]:
     return [Input(force, x, y, 3.0), Input(force, x, y, travel_time), Input(0.0, x, y, 0.2), Input(0.0, x, y, 0.3)]
 
 
-def _press(session: Session) -> list[Input]:
+def _press(session: Touch) -> list[Input]:
     x, y = session.path[0]
     force = _contact_force(session, PRESS_FORCE)
     return [*_approach(session), Input(force, x, y, 1.5), Input(force, x, y, 1.5), *_retract(session, force)]
 
 
-def _along_path(session: Session, force: float, slave_speed: float) -> list[Input]:
+def _along_path(session: Touch, force: float, slave_speed: float) -> list[Input]:
     """The path's legs, slow enough for the stage to climb 95 % of its slopes at ``slave_speed`` [m/s]."""
     distance, height = session.path_heights()
     slope = np.quantile(np.abs(np.gradient(height, distance)), 0.95) if distance[-1] > 0.0 else 0.0
@@ -106,7 +130,7 @@ def _along_path(session: Session, force: float, slave_speed: float) -> list[Inpu
     return [Input(force, x, y, time * share) for (x, y), share in zip(session.path[1:], shares, strict=True)]
 
 
-def _scan(session: Session) -> list[Input]:
+def _scan(session: Touch) -> list[Input]:
     """Half the contact force may be spent on moving the master."""
     x, y = session.path[0]
     force = _contact_force(session, SCAN_FORCE)
@@ -119,7 +143,7 @@ def _scan(session: Session) -> list[Input]:
     ]
 
 
-def _follow(session: Session) -> list[Input]:
+def _follow(session: Touch) -> list[Input]:
     """No hand force; the height servo climbs at its gain times a third of the set-point's deflection."""
     gains = session.settings.gains
     x, y = session.path[0]
@@ -128,7 +152,7 @@ def _follow(session: Session) -> list[Input]:
     return [Input(0.0, x, y, settle), *_along_path(session, 0.0, speed / 3.0), Input(0.0, *session.path[-1], 0.3)]
 
 
-def _descend(session: Session) -> list[Input]:
+def _descend(session: Touch) -> list[Input]:
     """No hand force: long enough for the stage to find the surface, and to draw a curve."""
     gains, x, y = session.settings.gains, *session.path[0]
     stretch = gains.set_point / session.rig.probe.spring_constant

@@ -20,17 +20,18 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nanotouch._control import Law
 from nanotouch._files import checked_path
 from nanotouch._writing import BLOCK_ROWS, naming, part_of
 from nanotouch._writing import replacing as replacing
 from nanotouch._writing import write_csv as write_csv
 from nanotouch.columns import COLUMNS as COLUMNS
+from nanotouch.columns import STATES as STATES
 from nanotouch.columns import Column as Column
 from nanotouch.errors import InvalidValue, ReadError, require
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # a recording is read without a reader of curves
     from nanotouch.curves import ForceCurve
-    from nanotouch.session import Law
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 TOPIC = "nanotouch/touch"
@@ -38,7 +39,6 @@ ENCODING = "nanotouch.columns"
 LAYOUT = "one message is one block of rows: the columns in the order listed, each contiguous and little-endian"
 CHUNK_SIZE = 1 << 18  # what a killed process may lose [bytes]
 HDF5_STORAGE = {"chunks": True, "compression": "gzip", "shuffle": True, "fletcher32": True}
-STATES = ("RUN", "HOLD", "RETRACT", "LATCHED")
 
 
 class Recording:
@@ -119,13 +119,13 @@ class Recording:
         control : callable, optional
             The law, where the recording was made with one's own.
         """
-        from nanotouch.replay import replay
+        from nanotouch.replay import replay  # the next layer, which needs this one: a method for convenience
 
         return replay(self, control)
 
     def curve(self) -> ForceCurve:
         """The force-distance curve of a recording in mode ``"curve"``, for :mod:`nanotouch.curves`."""
-        from nanotouch.replay import curve
+        from nanotouch.replay import curve  # as above
 
         return curve(self)
 

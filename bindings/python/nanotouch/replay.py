@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from nanotouch import _core
+from nanotouch._control import Law
 from nanotouch._path import core_mode
 from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
 from nanotouch.errors import InvalidValue
 from nanotouch.record import Recording
 from nanotouch.scene import Rig, Settings
-from nanotouch.session import Law
 
 MEASURED = (
     "age", "lateness", "master_position", "operator_force", "stage_position", "deflection", "x", "y", "flags",

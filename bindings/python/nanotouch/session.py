@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from nanotouch import _core, margins
 from nanotouch._arrays import check_between
+from nanotouch._control import CONTROLS, Law, choose_control
 from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.errors import InvalidValue
@@ -30,9 +31,6 @@ __all__ = [
     "settings_for_path",
 ]  # fmt: skip
 
-CONTROLS = ("default", "paper", "impedance")
-#: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
-Law = Callable[["_core.Signals"], tuple[float, float]]
 BLOCK_TICKS = 5000
 INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
 ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
@@ -380,14 +378,3 @@ def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] |
         raise InvalidValue(f"delay = {delay} s: it must be a time of 0 s or more")
     if delay > 0.0:
         settings["gains.delay"] = settings.gains.delay + delay * settings.gains.rate
-
-
-def choose_control(settings: Settings, control: str | Law) -> str:
-    """The name of the law, which the settings then have too; ``"own"`` for a callable."""
-    if callable(control):
-        return "own"
-    if control not in CONTROLS:
-        raise InvalidValue(f"control {control!r}: valid are {', '.join(CONTROLS)} or a callable")
-    if control != "default":  # else what the rig asks for
-        _core.set_control(settings.core, control)
-    return control

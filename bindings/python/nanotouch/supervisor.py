@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from nanotouch import _core
-from nanotouch.record import STATES
+from nanotouch.columns import STATES
 from nanotouch.scene import Rig, Settings
 
 #: names of the bits of ``reasons``
