@@ -6,12 +6,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from nanotouch.curves import CurveReport
 
-from . import show
 from .models import Floats
 from .points import Branch
+from .show import Page, Row, as_html, as_text, newton
 from .show import with_sigma as with_sigma
+
+_PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +114,37 @@ class FitResult:
         return f"{text} (held)" if self.sigma[key] == 0.0 else text
 
     def __str__(self) -> str:
-        return show.as_text(self)
+        return as_text(self._page())
 
     def _repr_html_(self) -> str:
-        return show.as_html(self)
+        return as_html(self._page())
+
+    def _page(self) -> Page:
+        outcome = "converged" if self.converged else "NOT CONVERGED"
+        remarks = [("valid for", self.valid)] + [("assumed", text) for text in self.assumptions]
+        return Page(
+            title=f"{self.name}: {self.title} fit of the {self.branch}, {self.z.size} points, "
+            f"{outcome} after {self.iterations} iterations",
+            rows=[Row(key, self.show(key), self._parts(key), self.determined(key)) for key in self.values],
+            readings=self._readings(),
+            remarks=remarks + [("note", text) for text in self.notes],
+        )
+
+    def _parts(self, key: str) -> str:
+        """Statistical and calibration sigma of a property of the sample that both enter."""
+        total, calibration, value = self.sigma[key], self.sigma_calibration[key], self.values[key]
+        if key in _PLACES or not np.isfinite(total) or calibration == 0.0 or value == 0.0 or total > 10.0 * abs(value):
+            return ""
+        scale = 100.0 / abs(value)
+        return f"statistical {scale * self.sigma_statistical[key]:.2g} %, calibration {scale * calibration:.2g} %"
+
+    def _readings(self) -> list[tuple[str, str]]:
+        rows = []
+        if np.isfinite(self.pull_off_force):
+            rows.append(("pull-off force", f"fitted {newton(self.pull_off_force)}, "
+                                           f"measured {newton(self.measured_pull_off_force)}"))  # fmt: skip
+        rows += [
+            ("snap-in force", f"measured {newton(self.measured_snap_in_force)}"),
+            ("residual", f"{newton(self.residual_rms)} RMS, {self.misfit:.2g} times the noise"),
+        ]
+        return rows

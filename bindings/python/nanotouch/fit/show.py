@@ -4,15 +4,11 @@
 from __future__ import annotations
 
 from html import escape
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .result import FitResult
-
 _PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-_PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 MEANING = {
     "effective_modulus": "E*, of tip and sample together",
     "youngs_modulus": "E of the sample",
@@ -23,6 +19,30 @@ MEANING = {
     "force_tilt": "correction of its tilt",
     "sensitivity": "true over assumed",
 }
+_COLOURS = {True: "#1a7f37", False: "#c0392b", None: "#666666"}
+
+
+class Row(NamedTuple):
+    """One parameter."""
+
+    key: str
+    text: str
+    """with its uncertainty"""
+    parts: str
+    """of the uncertainty, or empty"""
+    determined: bool | None
+    """by the curve; None if it was held or known beforehand"""
+
+
+class Page(NamedTuple):
+    """All that is said of a fit."""
+
+    title: str
+    rows: list[Row]
+    readings: list[tuple[str, str]]
+    """what was read off: its name, and the text"""
+    remarks: list[tuple[str, str]]
+    """kind and text"""
 
 
 def with_sigma(value: float, sigma: float, unit: str) -> str:
@@ -41,61 +61,27 @@ def with_sigma(value: float, sigma: float, unit: str) -> str:
     return f"({shown:.{digits}f} +- {spread:.{digits}f}){unit}"
 
 
-def as_text(result: FitResult) -> str:
+def newton(force: float) -> str:
+    """A force without its uncertainty."""
+    return with_sigma(force, 0.0, "N")
+
+
+def as_text(page: Page) -> str:
     """Parameters with their uncertainties, what was read off, what was assumed."""
-    lines = [f"{result.name}: {result.title} fit of the {result.branch}, {_outcome(result)}"]
-    for key in result.values:
-        lines.append(f"  {key:18} {result.show(key)}{_parts(result, key)}")
-    lines += [f"  {name:18} {text}" for name, text in _readings(result)]
-    lines += [f"  valid for: {result.valid}"]
-    lines += [f"  assumed: {text}" for text in result.assumptions]
-    lines += [f"  note: {text}" for text in result.notes]
+    lines = [page.title]
+    lines += [f"  {row.key:18} {row.text}{f'  ({row.parts})' if row.parts else ''}" for row in page.rows]
+    lines += [f"  {name:18} {text}" for name, text in page.readings]
+    lines += [f"  {kind}: {text}" for kind, text in page.remarks]
     return "\n".join(lines)
 
 
-def as_html(result: FitResult) -> str:
+def as_html(page: Page) -> str:
     """The same as a table; what the curve does not determine is red."""
     rows = []
-    for key in result.values:
-        determined = result.determined(key)
-        colour = {True: "#1a7f37", False: "#c0392b", None: "#666666"}[determined]
-        cells = (key, MEANING.get(key, ""), result.show(key), _parts(result, key).strip(" ()"))
-        rows.append(f'<tr style="color:{colour}">' + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
-    rows += [
-        f'<tr><td>{name}</td><td></td><td colspan="2">{escape(text)}</td></tr>' for name, text in _readings(result)
-    ]
-    remarks = [("valid for", result.valid)] + [("assumed", text) for text in result.assumptions]
-    remarks += [("note", text) for text in result.notes]
-    listed = "".join(f"<li>{kind}: {escape(text)}</li>" for kind, text in remarks)
-    title = f"{result.name}: {result.title} fit of the {result.branch}, {_outcome(result)}"
-    return f"<p><b>{escape(title)}</b></p><table>{''.join(rows)}</table><ul>{listed}</ul>"
-
-
-def _outcome(result: FitResult) -> str:
-    outcome = "converged" if result.converged else "NOT CONVERGED"
-    return f"{result.z.size} points, {outcome} after {result.iterations} iterations"
-
-
-def _parts(result: FitResult, key: str) -> str:
-    """Statistical and calibration sigma of a property of the sample that both enter."""
-    total, calibration, value = result.sigma[key], result.sigma_calibration[key], result.values[key]
-    if key in _PLACES or not np.isfinite(total) or calibration == 0.0 or value == 0.0 or total > 10.0 * abs(value):
-        return ""
-    scale = 100.0 / abs(value)
-    return f"  (statistical {scale * result.sigma_statistical[key]:.2g} %, calibration {scale * calibration:.2g} %)"
-
-
-def _readings(result: FitResult) -> list[tuple[str, str]]:
-    rows = []
-    if np.isfinite(result.pull_off_force):
-        rows.append(("pull-off force", f"fitted {_newton(result.pull_off_force)}, "
-                                       f"measured {_newton(result.measured_pull_off_force)}"))  # fmt: skip
-    rows += [
-        ("snap-in force", f"measured {_newton(result.measured_snap_in_force)}"),
-        ("residual", f"{_newton(result.residual_rms)} RMS, {result.misfit:.2g} times the noise"),
-    ]
-    return rows
-
-
-def _newton(force: float) -> str:
-    return with_sigma(force, 0.0, "N")
+    for row in page.rows:
+        cells = (row.key, MEANING.get(row.key, ""), row.text, row.parts)
+        filled = "".join(f"<td>{escape(cell)}</td>" for cell in cells)
+        rows.append(f'<tr style="color:{_COLOURS[row.determined]}">{filled}</tr>')
+    rows += [f'<tr><td>{name}</td><td></td><td colspan="2">{escape(text)}</td></tr>' for name, text in page.readings]
+    listed = "".join(f"<li>{kind}: {escape(text)}</li>" for kind, text in page.remarks)
+    return f"<p><b>{escape(page.title)}</b></p><table>{''.join(rows)}</table><ul>{listed}</ul>"
