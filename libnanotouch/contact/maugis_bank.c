@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Makes a bank of tables of Maugis-Dugdale and measures its error: see maugis_bank.h. */
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -68,8 +69,18 @@ nt_status nt_maugis_bank_size(const nt_maugis_bank_options *options, nt_maugis_b
     return status;
 }
 
-/* The force of the bank against the exact one, at a place of a cell of a table of its rate. */
-static nt_status measure_at(nt_maugis_bank *bank, const nt_maugis *maugis, double Z)
+static nt_bank_error worse_of(nt_bank_error a, nt_bank_error b)
+{
+    return (nt_bank_error){
+        .force = fmax(a.force, b.force),
+        .stiffness = fmax(a.stiffness, b.stiffness),
+        .radius = fmax(a.radius, b.radius),
+        .fold_shift = fmax(a.fold_shift, b.fold_shift),
+    };
+}
+
+/* The bank against the exact law, at a place of a cell of a table of its rate. */
+static nt_status measure_at(const nt_maugis_bank *bank, const nt_maugis *maugis, double Z, nt_bank_error *worst)
 {
     const nt_maugis_folds *folds = &maugis->folds;
     const double start = folds->grip_in_contact ? folds->grip_indentation : folds->touch_indentation;
@@ -80,17 +91,23 @@ static nt_status measure_at(nt_maugis_bank *bank, const nt_maugis *maugis, doubl
         status = nt_maugis_bank_eval(bank, maugis->lambda, d, NT_BRANCH_STABLE, &banked);
     if (status != NT_OK || Z * Z < AWAY_FROM_FOLD)
         return status;
-    const double error = fabs(banked.F - exact.F) / fmax(fabs(exact.F), -folds->pull_off_load);
-    bank->accuracy.force_error = fmax(bank->accuracy.force_error, BETWEEN_CHECKS * error);
+    const nt_bank_error here = {
+        .force = BETWEEN_CHECKS * fabs(banked.F - exact.F) / fmax(fabs(exact.F), -folds->pull_off_load),
+        .stiffness = BETWEEN_CHECKS * fabs(banked.k - exact.k) / fmax(fabs(exact.k), 1.0),
+        .radius = BETWEEN_CHECKS * fabs(banked.a - exact.a) / fmax(exact.a, 1.0),
+    };
+    *worst = worse_of(*worst, here);
     return NT_OK;
 }
 
-/* In a panel, between the lambdas it was made from: every cell at two indentations. */
-static nt_status measure(nt_maugis_bank *bank, const nt_maugis_panel *panel, int above)
+/* In a panel, where a cubic that takes value and slope at both ends is worst: in its middle, its slope at 0.2 and 0.8;
+ * and next to a border, where the other variable is alone. */
+static nt_status measure(const nt_maugis_bank *bank, nt_maugis_panel *panel, int above)
 {
-    static const double between[] = {0.2, 0.5, 0.8};
+    static const double between[] = {0.02, 0.2, 0.5, 0.8}, within[] = {0.03, 0.2, 0.5};
     const int shift = nt_bank_shift(bank->options.cells_per_octave);
-    for (int n = 0; n < 3; n++) {
+    panel->error = (nt_bank_error){0};
+    for (int n = 0; n < 4; n++) {
         nt_maugis maugis;
         const double distance = panel->low + between[n] * (panel->high - panel->low);
         nt_status status = nt_bank_prepare(nt_bank_lambda(distance, above), &maugis);
@@ -98,11 +115,14 @@ static nt_status measure(nt_maugis_bank *bank, const nt_maugis_panel *panel, int
         if (status == NT_OK)
             status = nt_bank_grip_find(bank, maugis.lambda, &grip);
         if (status == NT_OK)
-            bank->accuracy.fold_shift = fmax(bank->accuracy.fold_shift, fabs(grip - maugis.folds.grip_indentation));
-        for (int i = 0; i < 2 * panel->count && status == NT_OK; i++) {
-            const uint64_t name = (nt_bits_of(1.0) >> shift) + (uint64_t)(i / 2);
+            panel->error.fold_shift =
+                fmax(panel->error.fold_shift,
+                     BETWEEN_CHECKS * fabs(grip - maugis.folds.grip_indentation) + DBL_EPSILON * fabs(grip));
+        for (int i = 0; i < 3 * panel->count && status == NT_OK; i++) {
+            const uint64_t name = (nt_bits_of(1.0) >> shift) + (uint64_t)(i / 3);
             const double low = nt_double_of(name << shift), high = nt_double_of((name + 1) << shift);
-            status = measure_at(bank, &maugis, (low - 1.0 + (i % 2 ? 0.7 : 0.4) * (high - low)) / panel->rate);
+            const double Z = (low - 1.0 + within[i % 3] * (high - low)) / panel->rate;
+            status = measure_at(bank, &maugis, Z, &panel->error);
         }
         if (status != NT_OK)
             return status;
@@ -122,13 +142,29 @@ nt_status nt_maugis_bank_init(nt_maugis_bank *bank, const nt_maugis_bank_options
         return status;
     if (needed.panel_capacity > memory->panel_capacity || needed.cell_capacity > memory->cell_capacity)
         return NT_E_CAPACITY;
-    made.accuracy.model_error = MODEL_ERROR;
     for (int above = 0; above < 2 && status == NT_OK; above++)
         status = nt_bank_panels_fill(options, above, memory->panels + (above ? made.panel_count[0] : 0),
                                      made.panel_count[above], memory->cells);
-    for (int i = 0; i < needed.panel_capacity && status == NT_OK; i++)
-        status = measure(&made, &made.panels[i], i >= made.panel_count[0]);
+    nt_bank_error worst = {0};
+    for (int i = 0; i < needed.panel_capacity && status == NT_OK; i++) {
+        status = measure(&made, &memory->panels[i], i >= made.panel_count[0]);
+        worst = worse_of(worst, memory->panels[i].error);
+    }
+    made.accuracy = (nt_accuracy){worst.force, worst.fold_shift, MODEL_ERROR};
     if (status == NT_OK)
         *bank = made;
     return status;
+}
+
+nt_bank_error nt_maugis_bank_error(const nt_maugis_bank *bank, double lambda_min, double lambda_max)
+{
+    nt_bank_error worst = {0};
+    for (int i = 0; i < bank->panel_count[0] + bank->panel_count[1]; i++) {
+        const int above = i >= bank->panel_count[0];
+        const double one = nt_bank_lambda(bank->panels[i].low, above);
+        const double other = nt_bank_lambda(bank->panels[i].high, above);
+        if (fmax(one, other) >= lambda_min && fmin(one, other) <= lambda_max)
+            worst = worse_of(worst, bank->panels[i].error);
+    }
+    return worst;
 }

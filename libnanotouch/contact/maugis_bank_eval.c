@@ -21,10 +21,11 @@ typedef struct {
 /* The panel of a lambda; NULL in the gap and outside the range. */
 static const nt_maugis_panel *panel_of(const nt_maugis_bank *bank, double distance, int above)
 {
-    const int shift = nt_bank_shift(bank->options.panels_per_octave);
+    const int shift = nt_bank_shift(bank->options.panels_per_octave), count = bank->panel_count[above];
+    if (count == 0)
+        return NULL;
     const nt_maugis_panel *panels = bank->panels + (above ? bank->panel_count[0] : 0);
-    const int count = bank->panel_count[above];
-    if (count == 0 || !(distance >= panels[0].low && distance < panels[count - 1].high))
+    if (!(distance >= panels[0].low && distance < panels[count - 1].high))
         return NULL;
     return panels + ((nt_bits_of(distance) >> shift) - (nt_bits_of(panels[0].low) >> shift));
 }

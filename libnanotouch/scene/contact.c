@@ -64,13 +64,37 @@ int nt_plan_has_local_form(const nt_plan *plan)
     return form == NT_FORM_EXACT || (form == NT_FORM_SHAPE && plan->shape.kind == NT_SHAPE_PARABOLOID);
 }
 
-nt_bank_value nt_plan_local_eval(const nt_plan *plan, double radius, double indentation)
+int nt_form_is_local(nt_form form)
+{
+    return form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
+}
+
+static const nt_maugis_bank no_tables = {.panels = NULL}; /* what it does not hold, the exact solver answers */
+
+static const nt_maugis_bank *bank_of(const nt_plan *plan, nt_form form)
+{
+    return form == NT_FORM_LOCAL_EXACT ? &no_tables : plan->bank;
+}
+
+nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, double radius, double indentation)
 {
     nt_bank_value value = {{NAN, NAN, NAN, NAN}, NAN};
     nt_contact contact = plan->contact;
     contact.radius = radius;
-    (void)nt_maugis_bank_eval_radius(plan->bank, &contact, indentation, NT_BRANCH_STABLE, &value);
+    if (plan->source != NT_ADHESION_NONE)
+        (void)nt_maugis_bank_eval_radius(bank_of(plan, form), &contact, indentation, NT_BRANCH_STABLE, &value);
+    else {
+        value.law = nt_hertz_eval(&contact, indentation);
+        value.dU_dR = 0.5 * value.law.U / radius;
+    }
     return value;
+}
+
+double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, double radius)
+{
+    nt_contact contact = plan->contact;
+    contact.radius = radius;
+    return plan->source == NT_ADHESION_NONE ? 0.0 : -nt_maugis_bank_grip_indentation(bank_of(plan, form), &contact);
 }
 
 /* Where the contact carries `load` [m]: bracket upwards from first touch, where it cannot push, then bisect. NaN if it

@@ -90,8 +90,7 @@ nt_status nt_plan_facts(nt_plan *plan)
 /* Of effective radius to the tip's own, where the plan follows it. */
 static double largest_ratio(const nt_plan *plan)
 {
-    const int local = plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL;
-    return local ? fmax(1.0, plan->radii->maximum / plan->contact.radius) : 1.0;
+    return nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form) ? nt_plan_largest_ratio(plan) : 1.0;
 }
 
 /* A bound of |F| at this gap and all larger ones, whatever the history. */

@@ -20,11 +20,13 @@ static void add(nt_law_value *sum, nt_law_value term)
 
 nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
 {
-    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL)
+    if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
         return nt_surface_place(plan->surface, plan->radii, x, y);
     nt_place place = {.radius = {.radius = plan->contact.radius}};
     if (plan->surface)
         place.surface = nt_surface_height(plan->surface, x, y);
+    else if (isnan(x) || isnan(y)) /* of a flat, too: what is not a number is no place */
+        place.surface.z = NAN;
     return place;
 }
 
@@ -49,8 +51,8 @@ static int is_attached(const nt_plan *plan, const nt_interaction_state *state, c
 static nt_bank_value contact_at(const nt_plan *plan, const nt_place *place, double gap)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    if (form == NT_FORM_LOCAL)
-        return nt_plan_local_eval(plan, radius_at(plan, place), -gap);
+    if (nt_form_is_local(form))
+        return nt_plan_local_eval(plan, form, radius_at(plan, place), -gap);
     return (nt_bank_value){nt_plan_contact_eval(plan, form, -gap), 0.0};
 }
 
@@ -62,7 +64,7 @@ static nt_bank_value eval_at(const nt_plan *plan, const nt_interaction_state *st
         if (plan->terms[term].form != NT_FORM_OFF)
             add(&sum.law, nt_plan_law_eval(plan, term, plan->terms[term].form, gap));
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    if (form == NT_FORM_LOCAL) { /* beside contact all is proportional to the effective radius */
+    if (nt_form_is_local(form)) { /* beside contact all is proportional to the effective radius */
         const double ratio = radius_at(plan, place) / plan->contact.radius;
         sum.dU_dR = sum.law.U / plan->contact.radius;
         sum.law.U *= ratio;

@@ -4,33 +4,58 @@
 
 #include "scene/parts.h"
 
-static double local_release_gap(const nt_plan *plan, double radius)
-{
-    nt_contact contact = plan->contact;
-    contact.radius = radius;
-    return -nt_maugis_bank_grip_indentation(plan->bank, &contact);
-}
-
 double nt_plan_release_gap(const nt_plan *plan, double radius)
 {
-    const int local = plan->terms[NT_PLAN_CONTACT].form == NT_FORM_LOCAL;
-    return local ? local_release_gap(plan, radius) : plan->release_gap;
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    return nt_form_is_local(form) ? nt_plan_local_release_gap(plan, form, radius) : plan->release_gap;
+}
+
+double nt_plan_largest_ratio(const nt_plan *plan)
+{
+    return plan->radii ? fmax(1.0, plan->radii->maximum / plan->contact.radius) : 1.0;
 }
 
 double nt_plan_curvature_shift(const nt_plan *plan)
 {
-    if (!plan->radii || !plan->bank || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+    if (!plan->radii || nt_plan_contact_form(plan) != NT_FORM_EXACT)
         return 0.0;
-    return fmax(fabs(local_release_gap(plan, plan->radii->minimum) - plan->release_gap),
-                fabs(local_release_gap(plan, plan->radii->maximum) - plan->release_gap));
+    const double sharpest = nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->minimum);
+    const double bluntest = nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum);
+    return fmax(fabs(sharpest - plan->release_gap), fabs(bluntest - plan->release_gap));
+}
+
+/* Over the lambdas of the surface, lambda ~ R^(1/3). */
+static nt_bank_error bank_error(const nt_plan *plan)
+{
+    const double R = plan->contact.radius;
+    return nt_maugis_bank_error(plan->bank, plan->lambda * cbrt(plan->radii->minimum / R),
+                                plan->lambda * cbrt(plan->radii->maximum / R));
+}
+
+/* The bank's errors are over what its own place has for a scale. From the tip's own radius to the bluntest the pull-off
+ * force grows no faster than R; the units of stiffness and radius as R^(2/3), and S is at least these of R. */
+double nt_plan_bank_error(const nt_plan *plan, nt_quantity quantity)
+{
+    const nt_bank_error error = bank_error(plan);
+    const double pull = nt_plan_largest_ratio(plan) * nt_maugis_pull_off_force(&plan->maugis);
+    switch (quantity) {
+    case NT_QUANTITY_STIFFNESS:
+        return error.stiffness * cbrt(nt_plan_largest_ratio(plan) * nt_plan_largest_ratio(plan));
+    case NT_QUANTITY_RADIUS:
+        return error.radius * cbrt(nt_plan_largest_ratio(plan) * nt_plan_largest_ratio(plan));
+    case NT_QUANTITY_FOLDS:
+        return nt_plan_bank_shift(plan) / plan->scale;
+    default:
+        return error.force * fmax(1.0, pull / plan->scale);
+    }
 }
 
 double nt_plan_bank_shift(const nt_plan *plan)
 {
-    if (nt_plan_contact_form(plan) != NT_FORM_EXACT)
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    if (form == NT_FORM_LOCAL_EXACT || plan->source == NT_ADHESION_NONE)
         return 0.0;
-    const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
-    return plan->bank->accuracy.fold_shift * plan->maugis.indentation_scale * cbrt(ratio);
+    return bank_error(plan).fold_shift * plan->maugis.indentation_scale * cbrt(nt_plan_largest_ratio(plan));
 }
 
 double nt_plan_last_hold(double release_gap)
@@ -41,25 +66,26 @@ double nt_plan_last_hold(double release_gap)
 /* Stiffness where the contact carries `load` at a radius: bracketed upwards from first touch, then bisected. */
 static double stiffness_at(const nt_plan *plan, double radius, double load)
 {
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     double low = 0.0, high = plan->largest_indentation;
-    for (int i = 0; i < 64 && nt_plan_local_eval(plan, radius, high).law.F < load; ++i) {
+    for (int i = 0; i < 64 && nt_plan_local_eval(plan, form, radius, high).law.F < load; ++i) {
         low = high;
         high *= 2.0;
     }
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        if (nt_plan_local_eval(plan, radius, middle).law.F < load)
+        if (nt_plan_local_eval(plan, form, radius, middle).law.F < load)
             low = middle;
         else
             high = middle;
     }
-    return nt_plan_local_eval(plan, radius, high).law.k;
+    return nt_plan_local_eval(plan, form, radius, high).law.k;
 }
 
 /* Pull-off and attraction grow with the radius, no faster than it; stiffness at a load, too. */
 void nt_plan_local_facts(nt_plan *plan, double maximum_load)
 {
-    const double bluntest = plan->radii->maximum, ratio = fmax(1.0, bluntest / plan->contact.radius);
+    const double bluntest = plan->radii->maximum, ratio = nt_plan_largest_ratio(plan);
     plan->largest_pull_off_force *= ratio;
     plan->minimum_spring *= ratio;
     plan->maximum_stiffness = fmax(plan->maximum_stiffness, stiffness_at(plan, bluntest, maximum_load));

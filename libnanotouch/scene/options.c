@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The forms in which every term of a plan could be computed, each with a bound of its error and its cost.
  *
- * An error is a share of the demand: over max(|X|, S), X the demanded quantity of the whole and S its scale. Let T be
- * the largest that the terms beside contact come to. Contact is off by at most e max(|X_c|, S), and |X_c| <= |X| + T,
- * so that its share is e (1 + T/S). A term left out is off by its largest value in the range; one in a simpler form by
- * the largest difference of the two forms. */
+ * An error is a share of the demand: over max(|X|, S), X the demanded quantity of the whole and S its scale. Contact is
+ * off by at most e max(|X_c|, S). With T the largest that the terms beside contact come to, |X_c| <= |X| + T, so that
+ * its share is e (1 + T/S); of a force T need only be their largest attraction, since X_c <= |X| + T then, and X_c >=
+ * -S. A term left out is off by its largest value in the range; one in a simpler form by the largest difference of the
+ * two forms. */
 #include <math.h>
 
 #include "scene/parts.h"
@@ -18,7 +19,9 @@
 #define COST_TABLE 14.0
 #define COST_POLISHED 40.0
 #define COST_EXACT 280.0
-#define COST_LOCAL 55.0  /* with dU/dR */
+#define COST_LOCAL 55.0 /* with dU/dR */
+#define COST_LOCAL_HERTZ 6.0
+#define COST_LOCAL_EXACT 1000.0
 #define COST_HEIGHT 15.0 /* height and slopes of a surface */
 #define COST_PLACE 28.0  /* and its effective radius */
 static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
@@ -47,15 +50,27 @@ static nt_law_value full_at(const nt_plan *plan, double indentation)
     return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
 }
 
+/* What pulls on small forces: everything on, or contact alone, which repulsion may hide; 0 where nothing does. */
+static double pull_of(const nt_plan *plan)
+{
+    double alone = 0.0;
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
+        alone = nt_maugis_pull_off_force(&plan->maugis);
+    else if (nt_plan_contact_form(plan) == NT_FORM_JKR)
+        alone = nt_jkr_shape_pull_off_force(&plan->jkr);
+    return fmax(plan->pull_off_force, alone);
+}
+
 /* The largest difference between two forms of contact over max(|truth|, scale), over all indentations from the release
- * gap to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. */
+ * gap to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. S is
+ * that of the demanded quantity; of a force that is not the one demanded, the pull-off force. */
 static double contact_distance(const nt_plan *plan, contact_law *truth_at, contact_law *other, double lowest,
                                nt_quantity quantity)
 {
     enum { SAMPLES = 96 };
     const double fold = -plan->release_gap;
     const double deepest = plan->largest_indentation;
-    const double scale = quantity == NT_QUANTITY_FORCE ? fmax(plan->pull_off_force, plan->scale) : plan->scale;
+    const double scale = quantity == (nt_quantity)(int)plan->demand.quantity ? plan->scale : pull_of(plan);
     double largest = 0.0;
     for (int i = 1; i <= SAMPLES; ++i) {
         const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
@@ -84,19 +99,14 @@ static nt_law_value jkr_at(const nt_plan *plan, double indentation)
     return value;
 }
 
-static nt_law_value nominal_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_local_eval(plan, plan->contact.radius, indentation).law;
-}
-
 static nt_law_value sharpest_at(const nt_plan *plan, double indentation)
 {
-    return nt_plan_local_eval(plan, plan->radii->minimum, indentation).law;
+    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->minimum, indentation).law;
 }
 
 static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
 {
-    return nt_plan_local_eval(plan, plan->radii->maximum, indentation).law;
+    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum, indentation).law;
 }
 
 static nt_law_value table_at(const nt_plan *plan, double indentation)
@@ -113,26 +123,13 @@ static void rivals_of(nt_plan *plan)
     plan->rivals.jkr = contact_distance(plan, full_at, jkr_at, last, NT_QUANTITY_FORCE);
 }
 
-/* The pull-off force of contact alone: that of the whole may be 0 where repulsion hides it. */
-static double contact_pull_off(const nt_plan *plan)
-{
-    switch (nt_plan_contact_form(plan)) {
-    case NT_FORM_EXACT:
-        return nt_maugis_pull_off_force(&plan->maugis);
-    case NT_FORM_JKR:
-        return nt_jkr_shape_pull_off_force(&plan->jkr);
-    default:
-        return 0.0;
-    }
-}
-
 /* What small forces are measured by where nothing pulls. */
 #define SMALL_LOAD 1e-3 /* of the largest load */
 
 /* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
 static double scale_of(const nt_plan *plan, double maximum_load)
 {
-    const double pull = fmax(plan->pull_off_force, contact_pull_off(plan));
+    const double pull = pull_of(plan);
     const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
     const nt_maugis *m = &plan->maugis;
     const double accuracy = plan->demand.relative_accuracy;
@@ -163,9 +160,11 @@ static double share(double error, double scale)
     return error == 0.0 ? 0.0 : error / scale;
 }
 
+/* Over a surface whose curvature the contact can follow. */
 static int is_curved(const nt_plan *plan)
 {
-    return plan->radii && plan->bank && nt_plan_has_local_form(plan);
+    const double R = plan->contact.radius;
+    return plan->radii && nt_plan_has_local_form(plan) && (plan->radii->minimum != R || plan->radii->maximum != R);
 }
 
 /* What leaving out the curvature of the surface costs beside contact. */
@@ -179,41 +178,37 @@ static double curved_laws(const nt_plan *plan, double beside)
 }
 
 /* And in contact: force grows with the radius, so that the smallest and the largest on the map are the worst. */
-static double curved_contact(const nt_plan *plan, double beside)
+static double curved_contact(const nt_plan *plan, double more)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    const double R = plan->contact.radius;
-    if (!is_curved(plan) || (plan->radii->minimum == R && plan->radii->maximum == R))
+    if (!is_curved(plan))
         return 0.0;
     if (quantity == NT_QUANTITY_FOLDS)
         return share(nt_plan_curvature_shift(plan), plan->scale);
-    return (1.0 + share(beside, plan->scale)) * SAMPLED *
+    return more * SAMPLED *
            fmax(contact_distance(plan, sharpest_at, full_at, -INFINITY, quantity),
                 contact_distance(plan, bluntest_at, full_at, -INFINITY, quantity));
 }
 
-/* The tables' error at the largest radius; a contact without adhesion is exact. */
 static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     if (!is_curved(plan))
         return;
-    double error = 0.0;
-    if (quantity == NT_QUANTITY_FOLDS)
-        error = share(nt_plan_bank_shift(plan), plan->scale);
-    else if (plan->source != NT_ADHESION_NONE) {
-        const double here = contact_distance(plan, full_at, nominal_at, -INFINITY, quantity);
-        const double ratio = fmax(1.0, plan->radii->maximum / plan->contact.radius);
-        error = ratio * TABLED * fmax(here, plan->bank->accuracy.force_error);
+    if (plan->source == NT_ADHESION_NONE) {
+        offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * ROUNDING, COST_LOCAL_HERTZ);
+        return;
     }
-    offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * (error + ROUNDING), COST_LOCAL);
+    if (plan->bank) {
+        const double error = nt_plan_bank_error(plan, (nt_quantity)(int)plan->demand.quantity);
+        offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * (error + ROUNDING), COST_LOCAL);
+    }
+    offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL_EXACT, more * ROUNDING, COST_LOCAL_EXACT);
 }
 
 /* Contact of tips that adhesion makes Maugis-Dugdale's. */
-static void offer_maugis(nt_plan *plan, nt_plan_options *options, double beside)
+static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    const double more = 1.0 + share(beside, plan->scale);
     double table = TABLED * plan->table.accuracy[NT_TIER_TABLE].force_error;
     if (quantity == NT_QUANTITY_FOLDS)
         table = share(plan->table.accuracy[NT_TIER_TABLE].fold_shift, plan->scale);
@@ -232,6 +227,15 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double beside)
     offer_local(plan, options, more);
 }
 
+/* T: of what the terms beside contact come to, what can hide contact; `beside` all of it. */
+static double opposing(const nt_plan *plan, const nt_scene *scene, double beside)
+{
+    double pull = 0.0;
+    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
+        pull += nt_plan_law_pull(plan, term, fmax(scene->range.minimum_gap, 0.0));
+    return nt_plan_largest_ratio(plan) * (plan->demand.quantity == NT_QUANTITY_FORCE ? pull : beside);
+}
+
 static double cost_of_shape(nt_shape_kind kind)
 {
     return kind == NT_SHAPE_PARABOLOID ? COST_HERTZ : kind == NT_SHAPE_SPHERE ? COST_SPHERE : COST_SHAPE;
@@ -239,31 +243,32 @@ static double cost_of_shape(nt_shape_kind kind)
 
 static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
 {
+    const double more = 1.0 + share(opposing(plan, scene, beside), plan->scale);
     const nt_form full = nt_plan_contact_form(plan);
     nt_plan_term *term = &plan->terms[NT_PLAN_CONTACT];
     if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
         term->force = 0.0; /* never touched */
         plan->curvature_error = curved_laws(plan, beside);
         offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, plan->curvature_error, 0.0);
-        offer_local(plan, options, 1.0);
+        if (is_curved(plan)) /* for the radii that the other terms follow */
+            offer(options, NT_PLAN_CONTACT, plan->bank ? NT_FORM_LOCAL : NT_FORM_LOCAL_EXACT, ROUNDING, 0.0);
         return;
     }
     term->force = scene->range.maximum_load;
-    plan->curvature_error = curved_contact(plan, beside) + curved_laws(plan, beside);
+    plan->curvature_error = curved_contact(plan, more) + curved_laws(plan, beside);
     if (full == NT_FORM_EXACT)
-        offer_maugis(plan, options, beside);
+        offer_maugis(plan, options, more);
     else if (full == NT_FORM_JKR)
         offer(options, NT_PLAN_CONTACT, full, ROUNDING, COST_JKR);
     else {
-        const double more = 1.0 + share(beside, plan->scale);
+        const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+        const double error = quantity == NT_QUANTITY_FOLDS /* without adhesion there are none */
+                                 ? 0.0
+                                 : more * SAMPLED * contact_distance(plan, full_at, hertz_at, -INFINITY, quantity);
         if (plan->shape.kind == NT_SHAPE_SPHERE || plan->shape.kind == NT_SHAPE_BLUNTED)
-            offer(options, NT_PLAN_CONTACT, NT_FORM_PARABOLOID,
-                  ROUNDING +
-                      more * SAMPLED *
-                          contact_distance(plan, full_at, hertz_at, -INFINITY, (nt_quantity)(int)plan->demand.quantity),
-                  COST_HERTZ);
+            offer(options, NT_PLAN_CONTACT, NT_FORM_PARABOLOID, ROUNDING + error, COST_HERTZ);
         offer(options, NT_PLAN_CONTACT, full, more * ROUNDING + plan->curvature_error, cost_of_shape(plan->shape.kind));
-        offer_local(plan, options, 1.0);
+        offer_local(plan, options, more);
     }
 }
 
@@ -286,7 +291,7 @@ static double form_distance(const nt_plan *plan, int term, nt_form form, double 
 /* Beside contact every term grows with the effective radius, as for gaps that are small against it. */
 static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_options *options)
 {
-    const double blunter = plan->radii ? fmax(1.0, plan->radii->maximum / plan->contact.radius) : 1.0;
+    const double blunter = nt_plan_largest_ratio(plan);
     static const nt_form simpler[] = {NT_FORM_DERJAGUIN, NT_FORM_SPHERE};
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     const nt_form full = nt_plan_full_form(plan, term);
@@ -321,5 +326,5 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     offer_contact(plan, scene, options, beside);
     for (int i = 0; plan->surface && i < options->count[NT_PLAN_CONTACT]; ++i)
         options->option[NT_PLAN_CONTACT][i].cost +=
-            options->option[NT_PLAN_CONTACT][i].form == NT_FORM_LOCAL ? COST_PLACE : COST_HEIGHT;
+            nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_PLACE : COST_HEIGHT;
 }

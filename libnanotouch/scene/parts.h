@@ -15,16 +15,22 @@ nt_form nt_plan_contact_form(const nt_plan *plan);
 /* {U, F, k, a} of the contact in a form; all NaN where it refuses the indentation. */
 nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation);
 
-/* Whether the contact follows the effective radius of each place, where one is given. */
+/* Whether the contact of the scene can follow the effective radius of each place, and whether a form does. */
 int nt_plan_has_local_form(const nt_plan *plan);
-/* {U, F, k, a} and dU/dR of the local form at an effective radius [m]; all NaN where it refuses. */
-nt_bank_value nt_plan_local_eval(const nt_plan *plan, double radius, double indentation);
+int nt_form_is_local(nt_form form);
+/* {U, F, k, a} and dU/dR of a local form at an effective radius [m]; all NaN where it refuses. */
+nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, double radius, double indentation);
+/* Where that contact lets go under grips [m]. */
+double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, double radius);
 
 /* local.c: where the contact lets go under grips, of the form that was chosen, at an effective radius [m]. */
 double nt_plan_release_gap(const nt_plan *plan, double radius);
-/* How far the radii of the surface move the release gap from that of the tip's own, and how far off the bank's tables
- * are where they let go [m]. */
+/* The largest effective radius of the surface over the tip's own, at least 1. */
+double nt_plan_largest_ratio(const nt_plan *plan);
+/* How far the radii of the surface move the release gap from that of the tip's own [m]. */
 double nt_plan_curvature_shift(const nt_plan *plan);
+/* How far off the bank is over the radii of the surface, in the norm of a demand; its fold [m]. */
+double nt_plan_bank_error(const nt_plan *plan, nt_quantity quantity);
 double nt_plan_bank_shift(const nt_plan *plan);
 /* Just inside a release gap, where the contact still holds: on the fold itself rounding decides. */
 double nt_plan_last_hold(double release_gap);
@@ -39,6 +45,8 @@ nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, doubl
 double nt_plan_tail_share(const nt_plan *plan);
 /* The largest |F| or |k| of a term at all gaps from `gap` on; signs that could cancel are not trusted. */
 double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity quantity);
+/* The largest attraction of a term at all gaps from `gap` on, the same way [N]. */
+double nt_plan_law_pull(const nt_plan *plan, int term, double gap);
 /* The fullest form of a term that the scene has, NT_FORM_OFF if it has none. */
 nt_form nt_plan_full_form(const nt_plan *plan, int term);
 
@@ -46,7 +54,7 @@ nt_form nt_plan_full_form(const nt_plan *plan, int term);
 nt_status nt_plan_facts(nt_plan *plan);
 
 /* options.c: the forms of every term with error and cost. */
-enum { NT_OPTIONS_MAX = 5 };
+enum { NT_OPTIONS_MAX = 6 };
 typedef struct nt_plan_options {
     struct {
         nt_form form;

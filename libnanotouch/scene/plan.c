@@ -36,8 +36,8 @@ nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem)
 
 const char *nt_form_name(nt_form form)
 {
-    static const char *const names[] = {"off",   "on",  "derjaguin", "sphere",   "tip",   "paraboloid",
-                                        "shape", "jkr", "table",     "polished", "exact", "local"};
+    static const char *const names[] = {"off", "on",    "derjaguin", "sphere", "tip",   "paraboloid", "shape",
+                                        "jkr", "table", "polished",  "exact",  "local", "local exact"};
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
 }
 
@@ -71,7 +71,7 @@ static void finish(nt_plan *plan, double maximum_load)
     plan->bound.model_error = plan->source == NT_ADHESION_NONE ? (double)NAN : nt_maugis_model_error(plan->lambda);
     if (form == NT_FORM_TABLE || form == NT_FORM_POLISHED)
         plan->bound.fold_shift = plan->table.accuracy[form == NT_FORM_TABLE ? 0 : 1].fold_shift;
-    if (form == NT_FORM_LOCAL)
+    if (nt_form_is_local(form))
         nt_plan_local_facts(plan, maximum_load);
     else
         plan->bound.fold_shift += nt_plan_curvature_shift(plan);

@@ -138,7 +138,13 @@ static nt_status report_local(const nt_scene *scene)
     status = nt_plan_make(&plan, &inputs, NULL);
     if (status != NT_OK)
         return status;
-    report("local", MEASURE(nt_plan_local_eval(&plan, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
+    report("local", MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
+    report("local exact", MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL_EXACT, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
+    const nt_adhesion_source source = plan.source;
+    plan.source = NT_ADHESION_NONE;
+    report("local, without adhesion",
+           MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
+    plan.source = source;
     report("whole evaluation on a surface", MEASURE(({
                const nt_pose pose = {1e3 * gap + 3e-7, 5e-7, gap};
                const nt_interaction_value v = nt_interaction_eval(&plan, &held, &pose);

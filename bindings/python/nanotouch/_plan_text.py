@@ -15,6 +15,7 @@ _NAMES = {
 _CONTACT = {
     "table": "Maugis-Dugdale table", "polished": "Maugis-Dugdale, polished table", "exact": "Maugis-Dugdale, exact",
     "local": "Maugis-Dugdale with the radius of each place", "jkr": "JKR",
+    "local exact": "Maugis-Dugdale, exact, with the radius of each place",
 }  # fmt: skip
 _FORMS = {"derjaguin": "in Derjaguin's form", "sphere": "of the sphere", "tip": "of the whole tip", "on": "computed"}
 _SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
@@ -77,7 +78,7 @@ def _term(term: Term, pull_off_force: float) -> str:
 def _surface(contact: Term, facts: dict[str, Any]) -> str:
     least, largest, own = (facts[name] * 1e9 for name in ("least_radius", "largest_radius", "radius"))
     radii, error = f"{least:.4g} to {largest:.4g} nm", _percent(facts["curvature_error"])
-    if contact.form == "local":
+    if contact.form.startswith("local"):
         return f"surface: curved, effective radius {radii}; the tip's own {own:.4g} nm everywhere would err by {error}"
     return f"surface: curvature left out, the tip's own {own:.4g} nm in place of {radii}, which errs by {error}"
 

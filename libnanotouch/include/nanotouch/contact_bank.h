@@ -22,11 +22,21 @@ typedef struct nt_maugis_bank_cell {
     double F[4][4], a[4][4], U[4]; /* U and F above what they are at a = 0, below 0.9379 */
 } nt_maugis_bank_cell;
 
+/* How far a bank is from the exact law over some lambda, away from folds; measured when it was made, between the
+ * lambdas and indentations that it was made from. */
+typedef struct nt_bank_error {
+    double force;      /* over max(|F|, the pull-off force) [-] */
+    double stiffness;  /* over max(|k|, 1), reduced */
+    double radius;     /* over max(a, 1), reduced */
+    double fold_shift; /* of the grip indentation, reduced */
+} nt_bank_error;
+
 typedef struct nt_maugis_panel {
     double low, high; /* of the distance max(lambda/0.9379, 0.9379/lambda) - 1; t = 0 .. 1 */
     double start[8];  /* the fold above 0.9379: divided differences */
     double rate, u_end;
     int first, count; /* its cells */
+    nt_bank_error error;
 } nt_maugis_panel;
 
 typedef struct nt_maugis_bank_options {
@@ -51,7 +61,7 @@ typedef struct nt_maugis_bank {
     const nt_maugis_panel *panels;
     const nt_maugis_bank_cell *cells;
     int panel_count[2];   /* below 0.9379 and above it */
-    nt_accuracy accuracy; /* measured when it was made, between the lambdas it was made from; fold_shift reduced */
+    nt_accuracy accuracy; /* the worst of all lambda; fold_shift reduced */
 } nt_maugis_bank;
 
 /* Sets the capacities that a bank needs. NT_E_RANGE for invalid options. Some milliseconds. */
@@ -59,6 +69,9 @@ NT_API nt_status nt_maugis_bank_size(const nt_maugis_bank_options *options, nt_m
 /* Some ten milliseconds. NT_E_CAPACITY. */
 NT_API nt_status nt_maugis_bank_init(nt_maugis_bank *bank, const nt_maugis_bank_options *options,
                                      const nt_maugis_bank_memory *memory);
+
+/* The worst between two lambdas; 0 where the exact solver answers. A bank of zeros (no panels) is exact everywhere. */
+NT_API nt_bank_error nt_maugis_bank_error(const nt_maugis_bank *bank, double lambda_min, double lambda_max);
 
 /* Reduced {U, F, k, a} at a lambda and reduced indentation. */
 NT_API nt_status nt_maugis_bank_eval(const nt_maugis_bank *bank, double lambda, double d, nt_branch branch,

@@ -48,7 +48,8 @@ typedef enum nt_form {
     NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
     NT_FORM_POLISHED,
     NT_FORM_EXACT,
-    NT_FORM_LOCAL /* contact by Maugis-Dugdale with the radius of each place (a bank of tables over lambda) */
+    NT_FORM_LOCAL,      /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */
+    NT_FORM_LOCAL_EXACT /* the same by the exact solver */
 } nt_form;
 /* "off", "on", "derjaguin", ... */
 NT_API const char *nt_form_name(nt_form form);
@@ -75,11 +76,11 @@ typedef struct nt_plan_term {
 
 /* Something that the bound does not cover. */
 typedef struct nt_plan_warning {
-    const char *text; /* what; static storage */
-    const char *unit; /* of the two numbers */
-    double value, limit;
+    const char *text;    /* what; static storage */
+    const char *unit;    /* of the two numbers */
+    double value, limit; /* limit: NaN where it is not a matter of size */
 } nt_plan_warning;
-enum { NT_PLAN_WARNINGS_MAX = 10 };
+enum { NT_PLAN_WARNINGS_MAX = 24 };
 
 /* Models that the plan did not take: largest |dF|/max(|F|, S) at equal indentation, from 0.9 of that
  * of the pull-off (Hertz and DMT: from first touch) to the largest load. */
@@ -139,7 +140,7 @@ typedef struct nt_plan {
 
     const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
-    const nt_maugis_bank *bank; /* borrowed; NULL where no term is local */
+    const nt_maugis_bank *bank; /* borrowed; NULL: none */
     double curvature_error;     /* of leaving the curvature of the surface out, in the norm of the demand [-] */
 } nt_plan;
 
@@ -150,7 +151,7 @@ typedef struct nt_plan_inputs {
     const nt_probe *probe;      /* raises the floor to its force noise; NULL: none */
     const nt_surface *surface;  /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
     const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not asked for */
-    const nt_maugis_bank *bank; /* for the contact with the radius of each place, borrowed; NULL: not on offer */
+    const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */
 } nt_plan_inputs;
 
 /* Decides. Some 100 us. On failure *plan is not to be used and *problem (NULL allowed) names the field of scene, demand
