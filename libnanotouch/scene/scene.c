@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #define FIELD(path, unit, minimum, maximum, doc)                                                                       \
     {#path, unit, minimum, maximum, (unsigned)offsetof(nt_scene, path), doc}
@@ -109,7 +110,7 @@ static nt_status refuse(nt_problem *problem, const char *field, double value, do
     const nt_field *fields = nt_scene_fields(&count);
     const char *unit = "";
     for (int i = 0; i < count; ++i)
-        if (fields[i].name == field)
+        if (strcmp(fields[i].name, field) == 0)
             unit = fields[i].unit;
     if (problem)
         *problem = (nt_problem){field, unit, value, minimum, maximum};
@@ -124,6 +125,19 @@ nt_shape nt_scene_shape(const nt_scene *scene)
                       .radius = tip->radius,
                       .half_angle = tip->half_angle};
     return shape;
+}
+
+/* Names what the adhesion of the scene follows from. */
+static nt_status refuse_adhesion(const nt_scene *scene, nt_problem *problem)
+{
+    const nt_adhesion *adhesion = &scene->adhesion;
+    if (nt_scene_adhesion_source(scene) == NT_ADHESION_MENISCUS)
+        return refuse(problem, "medium.relative_humidity", scene->medium.relative_humidity, 0.0, 0.0);
+    if (adhesion->given == NT_ADHESION_GIVEN_ENERGIES)
+        return refuse(problem, "adhesion.tip_surface_energy", adhesion->tip_surface_energy, 0.0, 0.0);
+    if (adhesion->given == NT_ADHESION_GIVEN_PULL_OFF)
+        return refuse(problem, "adhesion.pull_off_force", adhesion->pull_off_force, 0.0, 0.0);
+    return refuse(problem, "adhesion.work_of_adhesion", adhesion->work_of_adhesion, 0.0, 0.0);
 }
 
 /* A shape that the contact laws know. Adhesion of cones and punches is JKR's, of round ones only. */
@@ -141,7 +155,7 @@ static nt_status check_shape(const nt_scene *scene, nt_problem *problem)
     if (adhesive && shape.kind == NT_SHAPE_CONE && shape.sides != 0)
         return refuse(problem, "tip.sides", tip->sides, 0.0, 0.0);
     if (adhesive && shape.kind == NT_SHAPE_TRUNCATED)
-        return refuse(problem, "adhesion.work_of_adhesion", scene->adhesion.work_of_adhesion, 0.0, 0.0);
+        return refuse_adhesion(scene, problem);
     /* a full sphere fits into the cone above it: the forces of sphere and tip then have one order at every gap */
     if (tip->height > 0.0 && !(tip->height >= 2.0 * tip->radius && tip->half_angle >= 0.01))
         return refuse(problem, "tip.height", tip->height, 2.0 * tip->radius, 1e-3);

@@ -2,6 +2,7 @@
  * What a plan's bound does not cover: where a law is used outside its validity, and what is no part of the potential.
  */
 #include <math.h>
+#include <stddef.h>
 
 #include "scene/parts.h"
 
@@ -14,6 +15,8 @@ static void warn(nt_plan *plan, nt_plan_warning warning)
 static void check_contact(nt_plan *plan)
 {
     const nt_contact_validity *v = &plan->validity;
+    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF)
+        return;
     if (v->outside & NT_OUTSIDE_RADIUS_RATIO)
         warn(plan, (nt_plan_warning){"contact radius over tip radius at the largest load", "", v->radius_ratio,
                                      NT_VALID_RADIUS_RATIO});
@@ -36,9 +39,10 @@ static void check_meniscus(nt_plan *plan, const nt_scene *scene)
     const double r1 = nt_scene_meniscus_radius(scene);
     const double kelvin =
         nt_kelvin_radius(medium->surface_tension, medium->molar_volume, medium->temperature, medium->relative_humidity);
-    if (fabs(r1 - kelvin) > 0.25 * kelvin)
-        warn(plan, (nt_plan_warning){"meniscus radius, which the Kelvin equation gives otherwise for this humidity",
-                                     "m", r1, kelvin});
+    const double ratio = r1 / kelvin;
+    if (fabs(ratio - 1.0) > 0.25)
+        warn(plan, (nt_plan_warning){"meniscus radius over that of the Kelvin equation for this humidity", "", ratio,
+                                     ratio > 1.0 ? 1.25 : 0.75});
     if (medium->film_thickness > r1)
         warn(plan, (nt_plan_warning){"film thicker than the meniscus radius, which no one humidity makes", "m",
                                      medium->film_thickness, r1});
@@ -62,12 +66,51 @@ static void check_liquid(nt_plan *plan)
                                      0.2 * layer->radius});
 }
 
+/* What the scene gives and nothing takes up, because of what else it says; values that defaults have are not told. */
+static void check_unused(nt_plan *plan, const nt_scene *scene)
+{
+    const nt_tip *tip = &scene->tip;
+    const nt_specimen *sample = &scene->sample;
+    const nt_medium *medium = &scene->medium;
+    const nt_adhesion *adhesion = &scene->adhesion;
+    const int liquid = medium->kind == NT_MEDIUM_LIQUID, ions = liquid && medium->ionic_strength > 0.0;
+    const int connected = !liquid && tip->conducting && sample->conducting && sample->grounded;
+    const int both_known = tip->work_function > 0.0 && sample->work_function > 0.0;
+    const double potential = fmax(fabs(tip->surface_potential), fabs(sample->surface_potential));
+    const int meniscus = nt_scene_adhesion_source(scene) == NT_ADHESION_MENISCUS;
+    const int by_energies = adhesion->given == NT_ADHESION_GIVEN_ENERGIES;
+    const struct {
+        int used;
+        const char *text, *unit;
+        double value;
+    } facts[] = {
+        {connected, "contact potential, which does not act between these bodies", "V", adhesion->contact_potential},
+        {both_known, "work function of one body alone, not used", "V", fmax(tip->work_function, sample->work_function)},
+        {!liquid && tip->conducting, "trapped charge, which does not act on this tip here", "C", sample->charge},
+        {adhesion->given == NT_ADHESION_GIVEN_PULL_OFF,
+         "measured pull-off force, not used: the adhesion is given otherwise", "N", adhesion->pull_off_force},
+        {!(meniscus && by_energies), "surface energy of the tip, not used: water holds", "J/m^2",
+         adhesion->tip_surface_energy},
+        {meniscus, "meniscus radius, not used: there is no meniscus", "m", medium->meniscus_radius},
+        {liquid, "ionic strength, not used: there is no liquid", "mol/m^3", medium->ionic_strength},
+        {liquid, "hydration energy, not used: there is no liquid", "J/m^2", medium->hydration_energy},
+        {liquid, "thickness of the brush, not used: there is no liquid", "m", medium->brush_thickness},
+        {ions, "pH, not used: there are no ions", "", medium->ph},
+        {ions && !(medium->ph > 0.0), "surface potential, not used: there are no ions, or there is a pH", "V",
+         potential},
+    };
+    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; ++i)
+        if (!facts[i].used && facts[i].value != 0.0)
+            warn(plan, (nt_plan_warning){facts[i].text, facts[i].unit, facts[i].value, NAN});
+}
+
 /* Squeeze drag of a sphere, 6 pi eta R^2 v/h, at the closest that is not contact: a loss, no part of the potential. */
 static void check_drag(nt_plan *plan, const nt_scene *scene)
 {
     const double R = plan->contact.radius, h = fmax(scene->range.minimum_gap, scene->adhesion.equilibrium_distance);
     const double drag = 6.0 * NT_PI * scene->range.viscosity * R * R * scene->range.speed / h;
-    const double felt = fmax(plan->demand.force_floor, plan->demand.relative_accuracy * plan->pull_off_force);
+    const double scale = plan->demand.quantity == NT_QUANTITY_FORCE ? plan->scale : plan->pull_off_force;
+    const double felt = fmax(plan->demand.force_floor, plan->demand.relative_accuracy * scale);
     if (drag > felt)
         warn(plan, (nt_plan_warning){"viscous drag at the fastest approach, left out", "N", drag, felt});
 }
@@ -90,4 +133,5 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_liquid(plan);
     check_drag(plan, scene);
     check_surface(plan);
+    check_unused(plan, scene);
 }

@@ -221,17 +221,21 @@ static void what_is_not_a_number_stays_so(void **state)
 {
     (void)state;
     const nt_surface surface = bumpy_surface();
-    for (int wet = 0; wet < 2; wet++) {
+    for (int kind = 0; kind < 4; kind++) {
+        const int wet = kind & 1;
         const nt_scene scene = scene_of(wet);
-        make_plan(&scene, &surface);
+        make_plan(&scene, kind & 2 ? NULL : &surface);
         for (int attached = 0; attached < 2; attached++) {
-            const nt_interaction_state history = {attached, 0.0, 0.0};
+            nt_interaction_state history = {attached, 0.0, 0.0};
             const nt_law_value law = nt_interaction_eval_gap(&plan, &history, NULL, (double)NAN);
             assert_true(isnan(law.U) && isnan(law.F) && isnan(law.k));
             assert_true(isnan(nt_interaction_eval_gap(&plan, &history, NULL, -HUGE_VAL).F)); /* the law refuses it */
             const nt_pose poses[] = {{NAN, 50e-9, 0.0}, {50e-9, NAN, 0.0}, {50e-9, 50e-9, NAN}};
             for (int i = 0; i < 3; i++)
                 assert_true(isnan(nt_interaction_eval(&plan, &history, &poses[i]).Fz));
+            for (int i = 0; i < 3; i++)
+                nt_interaction_advance(&plan, &history, &poses[i]);
+            assert_true(history.attached == attached && history.dissipated == 0.0);
         }
         assert_true(nt_interaction_eval_gap(&plan, &(nt_interaction_state){0, 0.0, 0.0}, NULL, HUGE_VAL).F == 0.0);
     }

@@ -81,6 +81,27 @@ static void meniscus_radius_is_kelvins_unless_given(void **state)
     assert_true(nt_scene_meniscus_radius(&scene) == 1.06e-9);
 }
 
+/* A truncated tip knows no adhesion: the refusal names what the adhesion follows from. */
+static void adhesion_is_refused_by_its_source(void **state)
+{
+    (void)state;
+    nt_scene scene = nt_scene_defaults();
+    nt_problem problem = {0};
+    scene.tip.shape = NT_SHAPE_TRUNCATED;
+    assert_int_equal(nt_scene_check(&scene, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "medium.relative_humidity");
+    scene.medium.relative_humidity = 0.0;
+    assert_int_equal(nt_scene_check(&scene, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "adhesion.work_of_adhesion");
+    scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
+    scene.adhesion.pull_off_force = 1e-9;
+    assert_int_equal(nt_scene_check(&scene, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "adhesion.pull_off_force");
+    assert_string_equal(problem.unit, "N");
+    scene.adhesion.pull_off_force = 0.0;
+    assert_int_equal(nt_scene_check(&scene, &problem), NT_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -89,6 +110,7 @@ int main(void)
         cmocka_unit_test(mistakes_of_units_are_refused),
         cmocka_unit_test(adhesion_has_one_source),
         cmocka_unit_test(meniscus_radius_is_kelvins_unless_given),
+        cmocka_unit_test(adhesion_is_refused_by_its_source),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
+
+from nanotouch.units import in_words
 
 
 class Term(NamedTuple):
@@ -32,7 +35,8 @@ class Warning(NamedTuple):
     unit: str
     value: float
     limit: float
+    """NaN where it is not a matter of size"""
 
     def __str__(self) -> str:
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{self.text}: {self.value:.3g}{unit}, limit {self.limit:.3g}{unit}"
+        value, limit = (in_words(number, self.unit, 3) for number in (self.value, self.limit))
+        return f"{self.text}: {value}" + ("" if math.isnan(self.limit) else f", limit {limit}")

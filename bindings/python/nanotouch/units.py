@@ -96,6 +96,13 @@ def engineering(unit: str, values: ArrayLike) -> tuple[str, float]:
     return PREFIXES[power] + unit, 10.0**-power
 
 
+def in_words(value: float, unit: str, digits: int = 4) -> str:
+    """A number with its unit under a prefix that suits: ``in_words(3.936e-10, "N")`` is ``"393.6 pN"``."""
+    rounded = float(f"{value:.{digits}g}")  # before the prefix is chosen: 999.96 pN are 1 nN
+    prefixed, factor = engineering(unit, [rounded]) if unit else ("", 1.0)
+    return f"{rounded * factor:.{digits}g} {prefixed}".rstrip()
+
+
 def _example(unit: str) -> str:
     return _EXAMPLES.get(unit) or "20" + next(spelling for spelling in UNITS[unit] if spelling)
 
