@@ -20,8 +20,7 @@
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"
 
-#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
-    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_jkr_shape, path), doc}
+#define FIELD(path, ...) NT_FIELD(nt_jkr_shape, path, __VA_ARGS__)
 
 static const nt_field jkr_fields[] = {
     FIELD(effective_modulus, "Pa", 0.1, 1e15, "effective modulus E*"),

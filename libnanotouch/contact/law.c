@@ -4,36 +4,7 @@
 #include <stddef.h>
 
 #include "contact/reduced.h"
-#include "nanotouch/field.h"
-#include "nanotouch/material.h"
-
-#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
-    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_contact, path), doc}
-
-static const nt_field contact_fields[] = {
-    FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),
-    FIELD(effective_modulus, "Pa", 0.1, 1e15, "effective modulus E*"),
-    FIELD(work_of_adhesion, "J/m^2", 0.0, 1e3, "work of adhesion w"),
-    FIELD(cohesive_stress, "Pa", 0.0, 1e18, "cohesive stress sigma0 of the Dugdale zone"),
-};
-
-enum { CONTACT_FIELDS = (int)(sizeof contact_fields / sizeof contact_fields[0]) };
-
-nt_contact nt_contact_defaults(void)
-{
-    const double work_of_adhesion = 0.144; /* 2 gamma_L of water */
-    return (nt_contact){
-        .radius = 20e-9,
-        .effective_modulus = 76.9e9,
-        .work_of_adhesion = work_of_adhesion,
-        .cohesive_stress = nt_cohesive_stress_atomic(work_of_adhesion, 0.2e-9),
-    };
-}
-
-nt_status nt_contact_check(const nt_contact *contact, nt_problem *problem)
-{
-    return nt_field_check(contact_fields, CONTACT_FIELDS, contact, problem);
-}
+#include "core/strided.h"
 
 const char *nt_model_name(nt_model model)
 {
@@ -121,12 +92,6 @@ double nt_contact_law_grip_indentation(const nt_contact_law *law)
     return NAN;
 }
 
-static void store(double *out, long index, double value)
-{
-    if (out != NULL)
-        out[index] = value;
-}
-
 nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, const nt_strided *arrays)
 {
     nt_status first = NT_OK;
@@ -135,11 +100,7 @@ nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, con
         const nt_status status = nt_contact_law_eval(law, arrays->in[i * arrays->in_stride], branch, &value);
         if (first == NT_OK)
             first = status;
-        const long j = i * arrays->out_stride;
-        store(arrays->U, j, value.U);
-        store(arrays->F, j, value.F);
-        store(arrays->k, j, value.k);
-        store(arrays->a, j, value.a);
+        nt_strided_store(arrays, i, value);
     }
     return first;
 }

@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "contact/maugis_place.h"
+#include "core/strided.h"
 
 /* glibc resolves the variants at load time; sanitizers come too late for that. */
 #if !defined(NANOTOUCH_ONE_VARIANT) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 &&                   \
@@ -164,12 +165,6 @@ nt_status nt_maugis_table_polish_n(const nt_maugis_table *table, nt_branch branc
     return force_n(table, &query, indentation, force, count);
 }
 
-static void store(double *out, long index, double value)
-{
-    if (out != NULL)
-        out[index] = value;
-}
-
 nt_status nt_maugis_table_eval_n(const nt_maugis_table *table, nt_tier tier, nt_branch branch, const nt_strided *arrays)
 {
     nt_status first = NT_OK;
@@ -178,11 +173,7 @@ nt_status nt_maugis_table_eval_n(const nt_maugis_table *table, nt_tier tier, nt_
         const double indentation = arrays->in[i * arrays->in_stride];
         const nt_status status = nt_maugis_table_eval(table, tier, indentation, branch, &value);
         first = first == NT_OK ? status : first;
-        const long j = i * arrays->out_stride;
-        store(arrays->U, j, value.U);
-        store(arrays->F, j, value.F);
-        store(arrays->k, j, value.k);
-        store(arrays->a, j, value.a);
+        nt_strided_store(arrays, i, value);
     }
     return first;
 }

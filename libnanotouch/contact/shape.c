@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "contact/profile.h"
+#include "core/strided.h"
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"
 
@@ -15,8 +16,8 @@
 #define PYRAMID_3 0.87960
 
 /* Lengths as those of contact.h; a tip as blunt as 89.4 degrees or as sharp as 0.6. */
-#define RADIUS {"radius", "m", 1e-10, 1.0, (unsigned)offsetof(nt_shape, radius), "radius R"}
-#define ANGLE {"half_angle", "rad", 0.01, 1.56, (unsigned)offsetof(nt_shape, half_angle), "half angle psi"}
+#define RADIUS NT_FIELD(nt_shape, radius, "m", 1e-10, 1.0, "radius R")
+#define ANGLE NT_FIELD(nt_shape, half_angle, "rad", 0.01, 1.56, "half angle psi")
 static const nt_field shape_fields[] = {RADIUS, ANGLE};
 
 const char *nt_shape_name(nt_shape_kind kind)
@@ -72,7 +73,7 @@ nt_status nt_shape_check(const nt_shape *shape, nt_problem *problem)
     if (status != NT_OK || shape->kind != NT_SHAPE_BLUNTED)
         return status;
     const double tangent = shape->radius * flank_slope(shape);
-    const nt_field transition = {"transition", "m", 0.0, tangent, (unsigned)offsetof(nt_shape, transition), "b"};
+    const nt_field transition = NT_FIELD(nt_shape, transition, "m", 0.0, tangent, "b");
     return nt_field_check(&transition, 1, shape, problem);
 }
 
@@ -177,20 +178,10 @@ double nt_shape_indentation(const nt_shape *shape, double effective_modulus, dou
     return NAN;
 }
 
-static void store(double *out, long index, double value)
-{
-    if (out != NULL)
-        out[index] = value;
-}
-
 void nt_shape_eval_n(const nt_shape *shape, double effective_modulus, const nt_strided *arrays)
 {
     for (long i = 0; i < arrays->count; i++) {
-        const nt_law_value value = nt_shape_eval(shape, effective_modulus, arrays->in[i * arrays->in_stride]);
-        const long j = i * arrays->out_stride;
-        store(arrays->U, j, value.U);
-        store(arrays->F, j, value.F);
-        store(arrays->k, j, value.k);
-        store(arrays->a, j, value.a);
+        const double indentation = arrays->in[i * arrays->in_stride];
+        nt_strided_store(arrays, i, nt_shape_eval(shape, effective_modulus, indentation));
     }
 }

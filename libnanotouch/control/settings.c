@@ -6,8 +6,7 @@
 #include "nanotouch/scaling.h"
 #include "nanotouch/settings.h"
 
-#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
-    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_settings, path), doc}
+#define FIELD(path, ...) NT_FIELD(nt_settings, path, __VA_ARGS__)
 
 static const nt_field settings_fields[] = {
     FIELD(gains.rate, "Hz", 10.0, 1e6, "rate of the force loop"),

@@ -6,7 +6,7 @@
 
 #include "nanotouch/material.h"
 
-#define FIELD(path, unit, minimum, maximum, doc) {#path, unit, minimum, maximum, (unsigned)offsetof(nt_rig, path), doc}
+#define FIELD(path, ...) NT_FIELD(nt_rig, path, __VA_ARGS__)
 
 static const nt_field rig_fields[] = {
     FIELD(probe.spring_constant, "N/m", 1e-4, 1e4, "spring constant k_c of the cantilever"),

@@ -10,7 +10,7 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define FIELD(member, unit, minimum, maximum, doc) NT_FORCE_FIELD(nt_capillary, member, unit, minimum, maximum, doc)
+#define FIELD(member, ...) NT_FIELD(nt_capillary, member, __VA_ARGS__)
 
 static const nt_field capillary_fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),
@@ -63,7 +63,7 @@ void nt_capillary_trace_n(const nt_capillary *capillary, int *bridged, const nt_
         const double gap = arrays->in[i * arrays->in_stride];
         *bridged = nt_capillary_advance(capillary, *bridged, gap);
         const nt_law_value none = {0};
-        nt_law_store(arrays, i, *bridged || isnan(gap) ? nt_capillary_eval(capillary, gap) : none);
+        nt_strided_store(arrays, i, *bridged || isnan(gap) ? nt_capillary_eval(capillary, gap) : none);
     }
 }
 

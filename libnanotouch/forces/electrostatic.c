@@ -9,10 +9,8 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define SPHERE(member, unit, minimum, maximum, doc)                                                                    \
-    NT_FORCE_FIELD(nt_electrostatic, member, unit, minimum, maximum, doc)
-#define PLATE(member, unit, minimum, maximum, doc)                                                                     \
-    NT_FORCE_FIELD(nt_electrostatic_plate, member, unit, minimum, maximum, doc)
+#define SPHERE(member, ...) NT_FIELD(nt_electrostatic, member, __VA_ARGS__)
+#define PLATE(member, ...) NT_FIELD(nt_electrostatic_plate, member, __VA_ARGS__)
 
 static const nt_field sphere_fields[] = {
     SPHERE(radius, "m", 1e-10, 1.0, "radius R of the tip"),

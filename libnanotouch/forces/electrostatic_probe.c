@@ -16,10 +16,8 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define TIP(member, unit, minimum, maximum, doc)                                                                       \
-    NT_FORCE_FIELD(nt_electrostatic_tip, member, unit, minimum, maximum, doc)
-#define LEVER(member, unit, minimum, maximum, doc)                                                                     \
-    NT_FORCE_FIELD(nt_electrostatic_lever, member, unit, minimum, maximum, doc)
+#define TIP(member, ...) NT_FIELD(nt_electrostatic_tip, member, __VA_ARGS__)
+#define LEVER(member, ...) NT_FIELD(nt_electrostatic_lever, member, __VA_ARGS__)
 
 static const nt_field tip_fields[] = {
     TIP(radius, "m", 1e-10, 1.0, "radius R of the apex"),

@@ -11,7 +11,7 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define FIELD(member, unit, minimum, maximum, doc) NT_FORCE_FIELD(nt_hydration, member, unit, minimum, maximum, doc)
+#define FIELD(member, ...) NT_FIELD(nt_hydration, member, __VA_ARGS__)
 
 static const nt_field hydration_fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),

@@ -3,11 +3,7 @@
 #ifndef NANOTOUCH_FORCES_LAW_H
 #define NANOTOUCH_FORCES_LAW_H
 
-#include "nanotouch/types.h"
-
-/* One row of a table of fields, for a struct whose name is `type`. */
-#define NT_FORCE_FIELD(type, member, unit, minimum, maximum, doc)                                                      \
-    {#member, unit, minimum, maximum, (unsigned)offsetof(type, member), doc}
+#include "core/strided.h"
 
 /* The gap at which a law is evaluated; NaN stays NaN. */
 static inline double nt_law_gap(double gap, double minimum_gap)
@@ -27,25 +23,12 @@ static inline nt_law_value nt_law_hold(nt_law_value at_minimum, double depth)
     return at_minimum;
 }
 
-static inline void nt_law_store(const nt_strided *arrays, long i, nt_law_value value)
-{
-    const long j = i * arrays->out_stride;
-    if (arrays->U)
-        arrays->U[j] = value.U;
-    if (arrays->F)
-        arrays->F[j] = value.F;
-    if (arrays->k)
-        arrays->k[j] = value.k;
-    if (arrays->a)
-        arrays->a[j] = value.a;
-}
-
 /* Defines eval_n, the law `eval` of the parameters `type` over arrays. */
 #define NT_LAW_ARRAY(type, eval)                                                                                       \
     void eval##_n(const type *law, const nt_strided *arrays)                                                           \
     {                                                                                                                  \
         for (long i = 0; i < arrays->count; i++)                                                                       \
-            nt_law_store(arrays, i, eval(law, arrays->in[i * arrays->in_stride]));                                     \
+            nt_strided_store(arrays, i, eval(law, arrays->in[i * arrays->in_stride]));                                 \
     }
 
 #endif

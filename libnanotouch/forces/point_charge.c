@@ -10,7 +10,7 @@
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 
-#define FIELD(member, unit, minimum, maximum, doc) NT_FORCE_FIELD(nt_point_charge, member, unit, minimum, maximum, doc)
+#define FIELD(member, ...) NT_FIELD(nt_point_charge, member, __VA_ARGS__)
 
 static const nt_field fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the tip"),

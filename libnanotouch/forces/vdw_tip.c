@@ -8,7 +8,7 @@
 #include "nanotouch/field.h"
 #include "nanotouch/forces.h"
 
-#define FIELD(member, unit, minimum, maximum, doc) NT_FORCE_FIELD(nt_vdw_tip, member, unit, minimum, maximum, doc)
+#define FIELD(member, ...) NT_FIELD(nt_vdw_tip, member, __VA_ARGS__)
 
 static const nt_field tip_fields[] = {
     FIELD(radius, "m", 1e-10, 1.0, "radius R of the apex"),

@@ -4,6 +4,8 @@
 #ifndef NANOTOUCH_FIELD_H
 #define NANOTOUCH_FIELD_H
 
+#include <stddef.h>
+
 #include "nanotouch/status.h"
 
 #ifdef __cplusplus
@@ -18,6 +20,10 @@ typedef struct nt_field {
     unsigned offset;         /* of the double inside the description [byte] */
     const char *doc;         /* what it is, in a few words, with the paper's symbol */
 } nt_field;
+
+/* One row of the table of a struct `type`; the field is named by its path in it. */
+#define NT_FIELD(type, path, unit, minimum, maximum, doc)                                                              \
+    {#path, unit, minimum, maximum, (unsigned)offsetof(type, path), doc}
 
 /* Checks the fields of *object in the order of the table. NT_OK; NT_E_NOT_FINITE (NaN or infinite) or NT_E_RANGE with
  * the first offending field in *problem (NULL allowed); NT_E_ARGUMENT if fields or object is NULL. Thread-safe. */
