@@ -226,13 +226,18 @@ class _Stream:
         return piece
 
 
+TYPES = (images.Topography,)
+
+
 def test_an_answer_holds_data_only(tmp_path: Path) -> None:
     """Whatever bytes a worker that was taken over sends: an answer of known types within the limits, or none."""
     topography = images.Topography(synthetic.asymmetric(), (1e-7, 1e-7), "a", "b", "c")
     whole = b"".join(_transfer.packed([topography, {"x": (1, 2.5, None, True)}]))
-    back, rest = _transfer.unpacked(_Stream(whole), tmp_path)
+    back, rest = _transfer.unpacked(_Stream(whole), tmp_path, TYPES)
     np.testing.assert_array_equal(back.heights, topography.heights)
     assert rest == {"x": (1, 2.5, None, True)}
+    with pytest.raises(_transfer.BadAnswer):
+        _transfer.unpacked(_Stream(whole), tmp_path, (images.Channel,))  # of a type that was not asked for
     head = len(whole) - topography.heights.nbytes - topography.mask.nbytes
     for old, new in (
         (b"Topography", b"subprocess"), (b'"<f8"', b'"|O8"'), (b"[24, 32]", b"[-4, 32]"),
@@ -242,16 +247,16 @@ def test_an_answer_holds_data_only(tmp_path: Path) -> None:
         text = whole[8:head].replace(old, new)
         assert text != whole[8:head]
         with pytest.raises(_transfer.BadAnswer):
-            _transfer.unpacked(_Stream(len(text).to_bytes(8, "little") + text + whole[head:]), tmp_path)
+            _transfer.unpacked(_Stream(len(text).to_bytes(8, "little") + text + whole[head:]), tmp_path, TYPES)
     with pytest.raises(_transfer.BadAnswer, match="an answer of"):
-        _transfer.unpacked(_Stream((1 << 60).to_bytes(8, "little") + whole), tmp_path)
+        _transfer.unpacked(_Stream((1 << 60).to_bytes(8, "little") + whole), tmp_path, TYPES)
     rng = np.random.default_rng(11)
     for _ in range(300):
         damaged = bytearray(whole)
         for place in rng.integers(0, head, 3):
             damaged[place] = rng.integers(256)
         try:
-            _transfer.unpacked(_Stream(bytes(damaged)), tmp_path)
+            _transfer.unpacked(_Stream(bytes(damaged)), tmp_path, TYPES)
         except (_transfer.BadAnswer, EOFError):
             continue
 

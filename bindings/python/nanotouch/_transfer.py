@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Results over a pipe from a process that is not trusted: JSON and plain arrays, nothing that could run (no pickle).
 
-A frame is the length of the JSON in eight bytes, the JSON, and the arrays' bytes. Only types listed here come out, and
-they check themselves on the way.
+A frame is the length of the JSON in eight bytes, the JSON, and the arrays' bytes. Only types that are asked for come
+out, and they check themselves on the way.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import struct
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,14 +26,6 @@ _Arrays = dict[tuple[int, tuple[int, ...], str], tuple[int, np.ndarray[Any, Any]
 
 class BadAnswer(Error):
     """What came over the pipe is not an answer."""
-
-
-def _types() -> dict[str, type]:
-    from .curves.curve import ForceCurve, Segment
-    from .images.channel import Channel
-    from .images.topography import Topography
-
-    return {kind.__name__: kind for kind in (Channel, ForceCurve, Segment, Topography)}
 
 
 def packed(value: Any) -> list[bytes | memoryview]:
@@ -66,8 +58,9 @@ def _flattened(value: Any, arrays: _Arrays) -> Any:
     return str(value)  # paths, dates
 
 
-def unpacked(read: Callable[[int], bytes], file: Path) -> Any:
-    """The value of a frame whose bytes `read` gives; :class:`BadAnswer` if it is not a frame within the limits."""
+def unpacked(read: Callable[[int], bytes], file: Path, types: Sequence[type]) -> Any:
+    """The value, made of these types, of a frame whose bytes `read` gives; :class:`BadAnswer` if it is none within the
+    limits."""
     (length,) = struct.unpack("<Q", read(8))
     if length > MAX_JSON:
         raise BadAnswer(f"{file}: an answer of {length} bytes")
@@ -84,7 +77,7 @@ def unpacked(read: Callable[[int], bytes], file: Path) -> Any:
             np.frombuffer(read(dtype.itemsize * count), dtype).reshape(shape)
             for (dtype, shape), count in zip(sizes, counts, strict=True)
         ]
-        return _restored(frame["tree"], arrays, _types())
+        return _restored(frame["tree"], arrays, {kind.__name__: kind for kind in types})
     except (KeyError, IndexError, TypeError, ValueError, RecursionError) as error:
         raise BadAnswer(f"{file}: the answer is not valid: {error}") from error
 

@@ -19,6 +19,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args, get_origin
@@ -54,17 +55,19 @@ class Limits:
 LIMITS = Limits()
 
 
-def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer]) -> Answer:
-    """The answer of `job` ("images.read", ...) for `file`; :class:`ReadError` whatever happens to the worker."""
+def ask(job: str, file: Path, options: dict[str, Any], expected: type[Answer], parts: Sequence[type] = ()) -> Answer:
+    """The answer of `job` ("images.read", ...) for `file`, of a type that holds `parts`; :class:`ReadError` whatever
+    happens to the worker."""
     if sys.platform != "linux":
         raise Error(f"{file}: untrusted files are opened on Linux only, not on {sys.platform}")
     request = {"job": job, "file": str(file.absolute()), "options": options, "limits": asdict(LIMITS)}
+    kind = (get_args(expected) or (expected,))[0]
     with _lock:
-        answer = _process().ask(request, file, LIMITS)
+        answer = _process().ask(request, file, (kind, *parts))
     if isinstance(answer, dict) and "error" in answer:
         raise _failure(answer, file)
     items = answer if get_origin(expected) is list and isinstance(answer, list) else [answer]
-    if not all(isinstance(item, (get_args(expected) or (expected,))[0]) for item in items):
+    if not all(isinstance(item, kind) for item in items):
         raise ReadError(f"{file}: the worker's answer is not what was asked for", "worker")
     return cast(Answer, answer)
 
@@ -109,8 +112,9 @@ class _Process:
                 os.killpg(self.popen.pid, signal.SIGKILL)
             self.popen.wait()
 
-    def ask(self, request: dict[str, Any], file: Path, limits: Limits) -> Any:
-        """The answer, or a dict with ``"error"``."""
+    def ask(self, request: dict[str, Any], file: Path, types: Sequence[type]) -> Any:
+        """The answer, of these types, or a dict with ``"error"``."""
+        limits = Limits(**request["limits"])
         reading, writing = os.pipe()
         deadline = time.monotonic() + 3 * limits.time + _GRACE
         answer: Any = None
@@ -122,7 +126,7 @@ class _Process:
                 finally:
                     os.close(writing)
                 try:
-                    answer = _transfer.unpacked(lambda count: _read(pipe.fileno(), count, deadline), file)
+                    answer = _transfer.unpacked(lambda count: _read(pipe.fileno(), count, deadline), file, types)
                 except (_transfer.BadAnswer, EOFError, Error) as error:
                     problem = error
             self.socket.settimeout(max(1.0, deadline - time.monotonic()))

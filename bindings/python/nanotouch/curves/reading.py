@@ -15,7 +15,7 @@ from ..formats import refusal
 from . import afm_formats, jpk, nanoscope
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
-from .curve import ForceCurve
+from .curve import ForceCurve, Segment
 
 
 def read(
@@ -62,7 +62,8 @@ def read(
     given = _over_table(given, calibration, file)
     if untrusted:
         options = {"spring_constant": given.spring_constant, "sensitivity": given.sensitivity}
-        return [_rechecked(curve, file) for curve in _worker.ask("curves.read", file, options, list[ForceCurve])]
+        read_there = _worker.ask("curves.read", file, options, list[ForceCurve], [Segment])
+        return [_rechecked(curve, file) for curve in read_there]
     name, curves = _loaded(file, given)
     with guarded(file, name):
         if not curves:
