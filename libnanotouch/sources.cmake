@@ -88,6 +88,7 @@ set(nanotouch_sources_control
     control/margins.c
     control/modes.c
     control/motor.c
+    control/own_law.c
     control/paper_stage.c
     control/passivity.c
     control/preflight.c

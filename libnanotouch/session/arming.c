@@ -16,11 +16,18 @@ nt_status nt_session_refuse(nt_problem *problem, const char *field, const char *
     return isfinite(value) ? NT_E_RANGE : NT_E_NOT_FINITE;
 }
 
-/* Of this law at the stiffest contact of the plan; the margin that counts in a mode comes back. */
-double nt_session_margin(const nt_session *session, const nt_settings *settings, nt_margins *margins)
+/* A law of one's own is not tried where the margin is overridden: it may have a memory. */
+nt_verdict nt_session_judge(const nt_session *session, const nt_settings *settings, nt_mode mode, nt_margins *margins)
 {
-    const double stiffness = session->plan.maximum_stiffness;
-    return nt_margins_judge(&session->touch.rig, settings, stiffness, session->touch.mode, margins).margin;
+    nt_settings judged = *settings;
+    if (!(session->minimum_margin > 0.0) && judged.control.choice == NT_CONTROL_OWN)
+        judged.control.law = NULL;
+    return nt_margins_judge(&session->touch.rig, &judged, session->plan.maximum_stiffness, mode, margins);
+}
+
+int nt_session_allows(const nt_session *session, double margin)
+{
+    return session->minimum_margin <= 0.0 || margin >= session->minimum_margin;
 }
 
 /* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be
@@ -42,10 +49,10 @@ static double unseen_indentation(const nt_plan *plan, double free_force)
 
 nt_status nt_session_promise(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
 {
-    const double margin = nt_session_margin(session, &setup->settings, &session->margins);
-    if (!(margin >= setup->minimum_margin))
-        return nt_session_refuse(problem, "stability margin", "", margin, setup->minimum_margin, INFINITY);
     session->minimum_margin = setup->minimum_margin;
+    const nt_verdict verdict = nt_session_judge(session, &setup->settings, setup->mode, &session->margins);
+    if (!nt_session_allows(session, verdict.margin))
+        return nt_session_refuse(problem, verdict.field, "", verdict.margin, setup->minimum_margin, INFINITY);
     const nt_plan *plan = &session->plan;
     const nt_hazard hazard = {.slope = setup->slope,
                               .snap_in_force = plan->largest_pull_off_force,

@@ -126,19 +126,29 @@ nt_status nt_session_arm(nt_session *session, int confirmed)
     return nt_touch_arm(&session->touch_state, confirmed);
 }
 
-nt_status nt_session_set_mode(nt_session *session, nt_mode mode)
-{
-    return nt_touch_set_mode(&session->touch_state, mode);
-}
-
-nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling)
+/* Would the loop be armed in this mode, with these scales? */
+static int is_allowed(const nt_session *session, nt_mode mode, const nt_scaling *scaling)
 {
     nt_settings settings = session->touch.settings;
     settings.gains.alpha_p = scaling->alpha_p;
     settings.gains.alpha_f = scaling->alpha_f;
     nt_margins margins;
-    if (isfinite(scaling->alpha_p) && isfinite(scaling->alpha_f) &&
-        !(nt_session_margin(session, &settings, &margins) >= session->minimum_margin))
+    return nt_session_allows(session, nt_session_judge(session, &settings, mode, &margins).margin);
+}
+
+nt_status nt_session_set_mode(nt_session *session, nt_mode mode)
+{
+    if (mode > NT_MODE_CURVE)
+        return NT_E_ARGUMENT;
+    if (!is_allowed(session, mode, &session->touch_state.rescale.wanted))
+        return NT_E_RANGE;
+    return nt_touch_set_mode(&session->touch_state, mode);
+}
+
+nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling)
+{
+    if (isfinite(scaling->alpha_p) && isfinite(scaling->alpha_f) && scaling->alpha_p > 0.0 && scaling->alpha_f > 0.0 &&
+        !is_allowed(session, session->touch_state.wanted_mode, scaling))
         return NT_E_RANGE;
     return nt_touch_rescale(&session->touch_state, scaling);
 }

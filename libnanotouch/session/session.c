@@ -37,6 +37,8 @@ static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
         return nt_session_refuse(problem, "rise", "m", setup->rise, 0.0, setup->clearance + climb);
     if (!(setup->slope >= 0.0 && setup->slope <= 1e3))
         return nt_session_refuse(problem, "slope", "", setup->slope, 0.0, 1e3);
+    if (!(setup->minimum_margin >= 0.0))
+        return nt_session_refuse(problem, "minimum_margin", "", setup->minimum_margin, 0.0, INFINITY);
     if (!isfinite(setup->x))
         return nt_session_refuse(problem, "x", "m", setup->x, -1.0, 1.0);
     if (!isfinite(setup->y))

@@ -28,9 +28,10 @@ struct nt_session {
 /* Names what is wrong, and returns the status for it. */
 nt_status nt_session_refuse(nt_problem *problem, const char *field, const char *unit, double value, double minimum,
                             double maximum);
-/* The margin that counts in the session's mode, of these settings at the stiffest contact of the plan; all in *margins.
- */
-double nt_session_margin(const nt_session *session, const nt_settings *settings, nt_margins *margins);
+/* Of these settings in a mode at the stiffest contact of the plan. */
+nt_verdict nt_session_judge(const nt_session *session, const nt_settings *settings, nt_mode mode, nt_margins *margins);
+/* Is that margin enough? A minimum of 0 asks for none. */
+int nt_session_allows(const nt_session *session, double margin);
 /* Keeps margins and guarantee; refuses below the minimum margin. */
 nt_status nt_session_promise(nt_session *session, const nt_session_setup *setup, nt_problem *problem);
 /* Tare and sign test, on the rig's own time. */

@@ -224,7 +224,7 @@ static void the_height_servo_has_its_margin(void **state)
         nt_session *session = NULL;
         nt_problem problem = {0};
         assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_RANGE);
-        assert_string_equal(problem.field, "stability margin");
+        assert_string_equal(problem.field, "stability margin (height servo)");
     }
 }
 

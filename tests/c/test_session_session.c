@@ -259,64 +259,6 @@ static void the_emergency_stop(void **state)
     nt_session_close(session);
 }
 
-static void expect_refusal(const nt_session_setup *setup, nt_status status, const char *field)
-{
-    nt_session *session = (nt_session *)(void *)records;
-    nt_problem problem = {0};
-    assert_int_equal(nt_session_open(&session, setup, &problem), status);
-    assert_string_equal(problem.field ? problem.field : "", field);
-    assert_ptr_equal(session, records); /* untouched */
-    assert_int_equal(nt_session_open(&session, setup, NULL), status);
-}
-
-static void setups_are_refused_by_name(void **state)
-{
-    (void)state;
-    const nt_session_setup good = nt_session_defaults();
-    nt_session_setup bad = good;
-    bad.settings.gains.force_gain = 300.0; /* kappa = 149 kN/m, R1: 126 */
-    expect_refusal(&bad, NT_E_RANGE, "stability margin");
-    bad.minimum_margin = 0.5; /* overridden explicitly */
-    nt_session *session = open_session(&bad);
-    assert_true(nt_session_margins(session).margin < 1.0);
-    nt_session_close(session);
-    bad = good;
-    bad.minimum_margin = NAN;
-    expect_refusal(&bad, NT_E_RANGE, "stability margin");
-    bad = good;
-    bad.settings.gains.alpha_p = NAN;
-    expect_refusal(&bad, NT_E_NOT_FINITE, "gains.alpha_p");
-    bad = good;
-    bad.rig.master.damping = -1.0;
-    expect_refusal(&bad, NT_E_RANGE, "master.damping");
-    bad = good;
-    bad.scene.tip.radius = 20.0;
-    expect_refusal(&bad, NT_E_RANGE, "tip.radius");
-    bad = good;
-    bad.demand.relative_accuracy = 2.0;
-    expect_refusal(&bad, NT_E_RANGE, "demand.relative_accuracy");
-    bad = good;
-    bad.clearance = 0.0;
-    expect_refusal(&bad, NT_E_RANGE, "clearance");
-    bad = good;
-    bad.rise = 1e-3;
-    expect_refusal(&bad, NT_E_RANGE, "rise");
-    bad = good;
-    bad.x = HUGE_VAL;
-    expect_refusal(&bad, NT_E_NOT_FINITE, "x");
-    bad = good;
-    bad.ring_capacity = 0;
-    expect_refusal(&bad, NT_E_RANGE, "ring_capacity");
-    bad = good;
-    bad.settings.gains.delay = 16.0;
-    expect_refusal(&bad, NT_E_RANGE, "gains.delay");
-    bad = good;
-    bad.settings.limits.force = 1e-3;
-    expect_refusal(&bad, NT_E_RANGE, "limits.force");
-    assert_int_equal(nt_session_open(NULL, &good, NULL), NT_E_ARGUMENT);
-    nt_session_close(NULL);
-}
-
 static void inputs_are_checked(void **state)
 {
     (void)state;
@@ -343,7 +285,6 @@ int main(void)
         cmocka_unit_test(blocks_make_no_difference),
         cmocka_unit_test(a_full_ring_runs_nothing_and_drops_nothing),
         cmocka_unit_test(the_emergency_stop),
-        cmocka_unit_test(setups_are_refused_by_name),
         cmocka_unit_test(inputs_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -62,6 +62,7 @@ def test_a_law_in_python() -> None:
         return -reflected - 2.0 * (reflected - signals.smooth_force), signals.target
 
     one, other = Session(control=law), Session()
+    calls.clear()  # it has been tried
     script = [Input(0.5, 0.0, 0.0, 0.3)]
     mine, theirs = one.run(operator=script), other.run(operator=script)
     assert len(calls) == 3000
@@ -78,12 +79,75 @@ def test_a_law_that_fails_stops_the_loop_and_says_why() -> None:
             raise ZeroDivisionError("my law")
         return 0.0, signals.target
 
-    session = Session(control=law)
+    with pytest.raises(ZeroDivisionError, match="my law"):
+        Session(control=law)  # in the middle of the travel
+    session = Session(control=law, minimum_margin=0.0)
     with pytest.raises(ZeroDivisionError, match="my law"):
         session.advance(1.0, Input(1.0, 0.0, 0.0, 0.1))
     left = session.core.read(50_000)
     assert left["state"][-1] == record.STATES.index("RETRACT")
     assert np.isfinite(left["motor_force"]).all()
+
+
+@pytest.mark.parametrize("answer", [None, (1.0,), (1.0, 2.0, 3.0), 3.0, "ab", (1j, 0.0)])
+def test_a_law_that_gives_no_pair_is_named(answer: Any) -> None:
+    session = Session(control=lambda _signals: answer, minimum_margin=0.0)
+    with pytest.raises(TypeError, match=r"motor force .* and stage position"):
+        session.advance(0.01)
+
+
+def test_a_law_that_cannot_be_judged_is_refused() -> None:
+    def damped(signals: Signals) -> tuple[float, float]:
+        return -signals.alpha_f * signals.felt_force - 50.0 * signals.master_speed, signals.target
+
+    with pytest.raises(InvalidValue, match="own law, of no kind that can be judged"):
+        Session(control=damped)
+    Session(control=damped, minimum_margin=0.0).advance(0.01)
+
+
+def test_refusals_name_the_rule() -> None:
+    with pytest.raises(InvalidValue, match=r"stability margin \(R5 noise\) = .* valid is 1.5"):
+        Session(gains={"force_gain": 500.0})
+    with pytest.raises(InvalidValue, match=r"stability margin \(exact K_f\)"):
+        Session(rate=1e3, gains={"force_gain": 10.0, "alpha_p": 1e-3})
+    with pytest.raises(InvalidValue, match=r"stability margin \(R1 contact\)"):
+        Session(gains={"force_gain": 0.0, "alpha_p": 1e-2})
+    with pytest.raises(InvalidValue, match="minimum_margin = -1"):
+        Session(minimum_margin=-1.0)
+    session = Session(mode="curve", gains={"force_gain": 500.0})
+    with pytest.raises(InvalidValue, match=r"mode: R5 noise: margin .*, at least 1.5"):
+        session.set_mode("point")
+    with pytest.raises(InvalidValue, match=r"rescale: .* margin 0, at least 1.5"):
+        Session().rescale(alpha_p=1e-2)
+
+
+def test_one_scale_changes_without_the_other() -> None:
+    session = Session()
+    alpha_p, alpha_f = session.settings.gains.alpha_p, session.settings.gains.alpha_f
+    session.rescale(alpha_f=2.0 * alpha_f)
+    session.rescale(alpha_p=0.5 * alpha_p)
+    assert session.metadata()["events"][-1][2] == [0.5 * alpha_p, 2.0 * alpha_f]
+
+
+def test_what_cannot_be_replayed_is_refused_by_name() -> None:
+    recording = Session().run(0.5)
+    whole = recording.metadata
+
+    def changed(**entries: Any) -> record.Recording:
+        return record.Recording(recording.columns, whole | entries)
+
+    with pytest.raises(InvalidValue, match=r"every tick; after 0.0999 s .* goes on at 0.2 s"):
+        recording[np.r_[0:1000, 2000:5000]].replay()
+    with pytest.raises(InvalidValue, match="give no other law"):
+        recording.replay(lambda signals: (0.0, signals.target))
+    bad: list[dict[str, Any]] = [
+        {"mode": "x"}, {"control": "x"}, {"path": []}, {"master_start": "x"}, {"events": "abc"},
+        {"events": [[0, "zzz", []]]}, {"events": [[0, "aim", []]]}, {"events": [[0, "aim", ["x", 0, 0]]]},
+        {"events": [[0, "mode", ["x"]]]},
+    ]  # fmt: skip
+    for entries in bad:
+        with pytest.raises(InvalidValue):
+            changed(**entries).replay()
 
 
 def test_a_rig_without_a_gauge_is_felt_all_the_same() -> None:

@@ -80,6 +80,11 @@ class Margins(NamedTuple):
         )
 
 
+_NANS: dict[str, Any] = dict.fromkeys(Margins._fields, math.nan)
+UNKNOWN = Margins(**_NANS | {"rule": "own law, of no kind that can be judged"})
+"""of a loop about which nothing can be told"""
+
+
 def compute(rig: Rig, settings: Settings, contact_stiffness: float, mode: Mode = "point") -> Margins:
     """Margins of a loop in a mode of a session, at a contact stiffness k [N/m] (``math.inf``: a rigid sample)."""
     if math.isnan(contact_stiffness) or contact_stiffness < 0.0:
@@ -97,6 +102,17 @@ def compute(rig: Rig, settings: Settings, contact_stiffness: float, mode: Mode =
         passive_stiffness=found["stability_limit"] / gain,
         stable_stiffness=found["exact_limit"] / gain,
     )
+
+
+def of_own_law(rig: Rig, settings: Settings, amounts: Settings | None, contact_stiffness: float, mode: Mode) -> Margins:
+    """Margins of a law of one's own, from the settings with which the default law does the same; NaN where there are
+    none. The height servo does not ask the law."""
+    if amounts is not None:
+        return compute(rig, amounts, contact_stiffness, mode)
+    if core_mode(mode) == "touch":
+        return UNKNOWN
+    other = compute(rig, settings, contact_stiffness, mode)
+    return UNKNOWN._replace(height_margin=other.height_margin, least=other.least, rule=other.rule)
 
 
 class Response(NamedTuple):
@@ -227,7 +243,9 @@ class Width(NamedTuple):
 
 def z_width(recording: Recording) -> Width:
     """Between what the hand feels in air and in the stiffest contact met; from 0.1 Hz to three times HAND_BAND."""
-    felt, (rig, settings) = of_recording(recording), _described(recording)
+    felt, (rig, _, settings) = of_recording(recording), _described(recording)
+    if settings is None:
+        raise InvalidValue(f"Z-width of a recording: {UNKNOWN.rule}")
     frequency = np.geomspace(0.1, min(3.0 * HAND_BAND, 0.5 * settings.gains.rate), 200)
     angular = 2.0 * np.pi * frequency
     air, pressed = (response(rig, settings, k, frequency) for k in (0.0, felt.contact_stiffness))
@@ -241,36 +259,69 @@ def z_width(recording: Recording) -> Width:
     )
 
 
-def _described(recording: Recording) -> tuple[Rig, Settings]:
-    """What it was recorded with."""
+def _described(recording: Recording) -> tuple[Rig, Settings, Settings | None]:
+    """What it was recorded with, and the settings that its law amounts to, None where that is not known."""
+    metadata = recording.metadata
     try:
-        rig, settings = Rig(**recording.metadata["rig"]), Settings(**recording.metadata["settings"])
-        if recording.metadata["control"] != "own":
-            _core.set_control(settings.core, recording.metadata["control"])
+        rig, settings, control = Rig(**metadata["rig"]), Settings(**metadata["settings"]), metadata["control"]
+        if control == "own":
+            amounts = metadata.get("amounts")
+            return rig, settings, None if amounts is None else Settings(**amounts)
+        _core.set_control(settings.core, control)
     except KeyError as error:
         raise InvalidValue(f"the recording's metadata lacks {error}: it was not made by a session") from error
-    return rig, settings
+    except (TypeError, ValueError) as error:
+        raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
+    return rig, settings, settings
 
 
 def of_recording(recording: Recording) -> Felt:
     """Margins, energies and Z-width of a recording made by a session, from measured columns only."""
-    rig, settings = _described(recording)
+    rig, settings, amounts = _described(recording)
     k_eff = _steepest(recording, rig)
     k_c = rig.probe.spring_constant
     k = math.inf if k_eff >= 0.999 * k_c else k_eff / (1.0 - k_eff / k_c)
-    gains = settings.gains
-    moved = np.diff(recording.master_position, prepend=recording.master_position[:1])
-    middle = 0.5 * (recording.operator_force + np.concatenate([[0.0], recording.operator_force[:-1]]))
-    scaled = np.nan_to_num(recording.scaled_slave_force)  # a failed sensor gives nothing
-    given = 0.5 * (scaled + np.concatenate([[0.0], scaled[:-1]]))
+    gains = (amounts or settings).gains
+    position = _held(recording.master_position)
+    moved = np.diff(position, prepend=position[:1])
+    given = _middle(recording.parameter("alpha_f") * _held(recording.slave_force))
+    hand = _middle(_hand_force(recording, rig, settings))
     return Felt(
-        margins=compute(rig, settings, k, recording.metadata.get("mode", "point")),
+        margins=of_own_law(rig, settings, amounts, k, recording.metadata.get("mode", "point")),
         contact_stiffness=k,
         felt_stiffness=gains.alpha_f * gains.alpha_p * k_eff,
         free_damping=_drag(recording, rig),
-        energy=np.cumsum(middle * moved),
-        dissipated=np.cumsum((middle - given) * moved),
+        energy=np.cumsum(hand * moved),
+        dissipated=np.cumsum((hand - given) * moved),
     )
+
+
+def _middle(column: Floats) -> Floats:
+    """Over each step, 0 before the first."""
+    middle: Floats = 0.5 * (column + np.concatenate([[0.0], column[:-1]]))
+    return middle
+
+
+def _held(column: Floats) -> Floats:
+    """Where a sensor has failed its last good reading stands, 0 before the first."""
+    good = np.isfinite(column)
+    last = np.maximum.accumulate(np.where(good, np.arange(len(column)), -1)) if len(column) else np.arange(0)
+    held: Floats = np.where(last < 0, 0.0, column[np.maximum(last, 0)])
+    return held
+
+
+def _hand_force(recording: Recording, rig: Rig, settings: Settings) -> Floats:
+    """f_m [N]; without a gauge what the master shows of it, b v - tau_m, the motor force that acted, v over 20 ms."""
+    if rig["master.gauge"]:
+        return _held(recording.operator_force)
+    position, rate = _held(recording.master_position), settings.gains.rate
+    count, reach = len(position), max(1, round(0.01 * rate))
+    rows = np.arange(count)
+    moved = position[np.minimum(rows + reach, count - 1)] - position[np.maximum(rows - reach, 0)]
+    delay = round(settings.gains.delay) + 1  # the force that has been held when the sample is taken
+    acted = np.concatenate([np.zeros(delay), recording.motor_force])[:count]
+    force: Floats = rig.master.damping * moved * rate / (2 * reach) - acted
+    return force
 
 
 def _bins(recording: Recording) -> tuple[Floats, Floats, Floats, Floats]:
@@ -279,7 +330,7 @@ def _bins(recording: Recording) -> tuple[Floats, Floats, Floats, Floats]:
     rows = max(1, round(0.02 / step))
     count = len(recording) // rows
     columns = (recording.time, recording.master_position, recording.stage_position, recording.slave_force)
-    mean = [column[: count * rows].reshape(count, rows).mean(axis=1) for column in columns]
+    mean = [_held(column)[: count * rows].reshape(count, rows).mean(axis=1) for column in columns]
     return mean[0], mean[1], mean[2], mean[3]
 
 
@@ -287,7 +338,6 @@ def _steepest(recording: Recording, rig: Rig) -> float:
     """The largest slope of slave force over travel while pressed [N/m], 0 if it never was: chords over five times the
     noise, or a fifth of the largest force."""
     _, _, travel, force = _bins(recording)
-    force = np.nan_to_num(force)
     peak = float(np.max(force, initial=0.0))
     noise = rig.probe.spring_constant * rig.probe.sensitivity * rig.probe.noise / 6.0
     chord = max(5.0 * noise, 0.2 * peak)
@@ -316,7 +366,7 @@ def _drag(recording: Recording, rig: Rig) -> float:
     if len(time) < 3:
         return math.nan
     speed = np.gradient(position, time)
-    hand = np.interp(time, recording.time, recording.operator_force)
+    hand = np.interp(time, recording.time, _held(recording.operator_force))
     free = (np.abs(force) < noise) & (np.abs(speed) > 2.0 * rig.master.resolution / 0.02)
     total = float(np.sum(speed[free] ** 2))
     return float(np.sum(hand[free] * speed[free])) / total if total > 0.0 else math.nan

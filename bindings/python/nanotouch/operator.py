@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from nanotouch._arrays import Floats
 from nanotouch._path import Mode
+from nanotouch.errors import InvalidValue
 from nanotouch.plan import Plan
 from nanotouch.scene import Rig, Settings
 
@@ -63,6 +65,16 @@ class Touch(Protocol):
 
     def path_heights(self) -> tuple[Floats, Floats]:
         """Distance along the path and height of the surface there [m]."""
+
+
+def stretched(script: list[Input], duration: float | None) -> list[Input]:
+    """The script over another time [s]."""
+    if duration is None:
+        return script
+    total = sum(step.duration for step in script)
+    if not (0.0 < duration < math.inf and total > 0.0):
+        raise InvalidValue(f"duration = {duration} s: it must be above 0 s, and so must the script's own, {total:g} s")
+    return [step._replace(duration=step.duration * duration / total) for step in script]
 
 
 def script_for(session: Touch) -> list[Input]:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from nanotouch import _core
-from nanotouch._control import Law
-from nanotouch._path import core_mode
+from nanotouch._control import CONTROLS, Law
+from nanotouch._path import MODES, core_mode
 from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
 from nanotouch.errors import InvalidValue
@@ -19,6 +19,8 @@ from nanotouch.scene import Rig, Settings
 MEASURED = (
     "age", "lateness", "master_position", "operator_force", "stage_position", "deflection", "x", "y", "flags",
 )  # fmt: skip
+REQUESTS = {"aim": 3, "arm": 1, "mode": 1, "clutch": 1, "rescale": 2}
+"""that a session may be asked for between two ticks, and how many numbers each has"""
 
 
 def replay(recording: Recording, control: Law | None = None) -> Recording:
@@ -34,21 +36,51 @@ def replay(recording: Recording, control: Law | None = None) -> Recording:
     ]
     if missing:
         raise InvalidValue(f"the recording cannot be replayed: it lacks {', '.join(missing)}")
-    if len(recording) and recording.time[0] != 0.0:
-        raise InvalidValue(f"a replay begins at time 0 s; this recording begins at {recording.time[0]:.6g} s")
-    name = metadata["control"]
-    if name == "own" and control is None:
-        raise InvalidValue("the recording was made with a law of one's own: give it as control")
     settings, rig = Settings(**metadata["settings"]), Rig(**metadata["rig"])
+    _check_ticks(recording, settings.gains.rate)
+    start, name = _start(metadata), metadata["control"]
+    if (name == "own") is not callable(control):
+        law_is = "a law of one's own: give it as control" if name == "own" else f"control {name!r}: give no other law"
+        raise InvalidValue(f"the recording was made with {law_is}")
     law: Any = control if name == "own" else _resolved(name, rig)
-    x, y = metadata["path"][0]
-    start = {
-        "mode": core_mode(metadata["mode"]), "master": metadata["master_start"], "x": x, "y": y,
-        "events": metadata["events"],
-    }  # fmt: skip
     columns = {column: recording.columns[column] for column in MEASURED}
     found = _core.replay(rig.core, settings.core, law, start, columns)
     return Recording(recording.columns | found, metadata)
+
+
+def _check_ticks(recording: Recording, rate: float) -> None:
+    """Every tick from the first on, or the touch step would go another way."""
+    off = np.abs(recording.time * rate - np.arange(len(recording))) > 0.25
+    if len(recording) and off[0]:
+        raise InvalidValue(f"a replay begins at time 0 s; this recording begins at {recording.time[0]:.6g} s")
+    if off.any():
+        row = int(np.argmax(off))
+        raise InvalidValue(
+            f"a replay needs every tick; after {recording.time[row - 1]:.6g} s this recording goes on at "
+            f"{recording.time[row]:.6g} s"
+        )
+
+
+def _start(metadata: dict[str, Any]) -> dict[str, Any]:
+    """Where the touch step begins, and what was asked of it."""
+    try:
+        x, y = metadata["path"][0]
+        events = [
+            (int(tick), str(name), list(numbers) if name == "mode" else [float(number) for number in numbers])
+            for tick, name, numbers in metadata["events"]
+        ]
+        start = {"mode": core_mode(metadata["mode"]), "master": float(metadata["master_start"]), "x": x, "y": y}
+    except (TypeError, ValueError, LookupError) as error:
+        raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
+    for _, name, numbers in events:
+        if name not in REQUESTS or len(numbers) != REQUESTS[name]:
+            raise InvalidValue(f"the recording's metadata holds a request {name!r} with {len(numbers)} numbers")
+        if name == "mode" and numbers[0] not in {core_mode(mode) for mode in MODES}:
+            raise InvalidValue(f"the recording's metadata holds a request for a mode {numbers[0]!r}")
+    for key, valid in (("mode", MODES), ("control", (*CONTROLS, "own"))):
+        if metadata[key] not in valid:
+            raise InvalidValue(f"the recording's metadata: {key} {metadata[key]!r}: valid are {', '.join(valid)}")
+    return start | {"events": events}
 
 
 def _resolved(name: str, rig: Rig) -> str:

@@ -110,6 +110,13 @@ class Settings(Description, core_type=_core.Settings):
         return made
 
     @classmethod
+    def from_core(cls, core: _core.Settings) -> Self:
+        """Those that the C library has made."""
+        made = cls()
+        made._take(core)
+        return made
+
+    @classmethod
     def from_toml(cls, path: str | os.PathLike[str], rig: Rig) -> Self:
         """The settings of a TOML file over those that follow the rig; see :func:`read_toml`."""
         made = cls.for_rig(rig)

@@ -19,7 +19,7 @@ from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
 from nanotouch.margins import ForceRange, Margins
-from nanotouch.operator import Input, script_for
+from nanotouch.operator import Input, script_for, stretched
 from nanotouch.plan import Plan, terrain_of
 from nanotouch.record import Recording, Writer
 from nanotouch.scene import Rig, Scene, Settings
@@ -65,7 +65,8 @@ class Session:
     control : {"default", "paper", "impedance"} or callable
         The control law (docs/control.md), or one's own: a function of the signals of a period
         (:class:`nanotouch._core.Signals`) that returns the motor force [N] and where the stage shall be [m], under the
-        same supervisor and limits. A rig without a gauge has ``"impedance"`` as its default.
+        same supervisor and limits; it is tried before the session opens, to know its margins (``minimum_margin=0``
+        arms without, and leaves it alone). A rig without a gauge has ``"impedance"`` as its default.
     gains : mapping, optional
         Fields of ``settings.gains`` in SI that differ, such as ``{"force_gain": 10}``.
     mode : {"point", "scan", "topography", "approach", "curve"}
@@ -130,7 +131,9 @@ class Session:
         self.rig = Rig() if rig is None else rig.copy()
         self.surface = surface
         self.mode: Mode = mode
+        self._mode: Mode = mode  # that it is in now
         self.seed = _checked_seed(seed)
+        self.minimum_margin = float(minimum_margin)
         self.clearance = clearance
         self.path = checked_path(mode, path, surface)
         distance, heights = self.path_heights()
@@ -142,16 +145,18 @@ class Session:
         _choose(self.settings, rate, gains, delay)
         self.control = choose_control(self.settings, control)
         self._events: list[tuple[int, str, list[Any]]] = []
+        self._scales = [self.settings.gains.alpha_p, self.settings.gains.alpha_f]
         options = {
             "mode": core_mode(mode), "x": self.path[0][0], "y": self.path[0][1], "seed": self.seed,
             "clearance": clearance, "rise": float(heights.max() - heights[0]), "slope": _steepest(distance, heights),
-            "minimum_margin": minimum_margin, "relative_accuracy": rtol, "preflight": preflight,
+            "minimum_margin": self.minimum_margin, "relative_accuracy": rtol, "preflight": preflight,
             "law": control if callable(control) else None,
             **plant_options(probe_model, substep, faults),
         }  # fmt: skip
         self.core = _core.Session(
             self.scene.core, self.rig.core, self.settings.core, terrain_of(self.scene, surface), options
         )
+        self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
 
@@ -166,8 +171,12 @@ class Session:
         return float(self.settings.gains.rate)
 
     def margins(self) -> Margins:
-        """Margins at the stiffest contact of the plan, and why the session was to be refused, if it was."""
-        return margins.compute(self.rig, self.settings, self.plan.maximum_stiffness, self.mode)
+        """Margins at the stiffest contact of the plan, and why the session was to be refused, if it was; of a law of
+        one's own by what it was seen to do before the first tick, NaN where that is not known (docs/control.md)."""
+        stiffness = self.plan.maximum_stiffness
+        if self.control == "own":
+            return margins.of_own_law(self.rig, self.settings, self._amounts, stiffness, self.mode)
+        return margins.compute(self.rig, self.settings, stiffness, self.mode)
 
     @property
     def stability_margin(self) -> float:
@@ -234,7 +243,7 @@ class Session:
         progress : callable, optional
             Called with the fraction done.
         """
-        script = _stretched(list(operator) if operator is not None else script_for(self), duration)
+        script = stretched(list(operator) if operator is not None else script_for(self), duration)
         for step in script:
             self._check(step)
         ticks = [round(step.duration * self.rate) for step in script]
@@ -283,6 +292,7 @@ class Session:
             "start_height": self.core.start_height,
             "master_start": self.core.master_start,
             "control": self.control,
+            "amounts": None if self._amounts is None else self._amounts.to_dict(),
             "tare": list(self.core.tare),
             "events": [[tick, name, numbers] for tick, name, numbers in self._events],
             "mode": self.mode,
@@ -307,16 +317,32 @@ class Session:
         """Go on in another mode from where the stage stands; the force fades out and in again."""
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
+        self._check_margin("mode", mode, self._scales)
         self._request("mode", self.core.set_mode, [core_mode(mode)], [core_mode(mode)])
+        self._mode = mode
 
     def rescale(self, alpha_p: float | None = None, alpha_f: float | None = None) -> None:
         """Change the scales [m/m], [N/N] while running: without a bump, and as far as it is passive (docs/control.md).
 
         Refused where the loop would run closer to its stability limit than the session's minimum.
         """
-        gains = self.settings.gains
-        pair = [gains.alpha_p if alpha_p is None else alpha_p, gains.alpha_f if alpha_f is None else alpha_f]
+        now = self._scales
+        pair = [now[0] if alpha_p is None else alpha_p, now[1] if alpha_f is None else alpha_f]
+        self._check_margin("rescale", self._mode, pair)
         self._request("rescale", self.core.rescale, pair, pair)
+        self._scales = pair
+
+    def _check_margin(self, what: str, mode: Mode, scales: list[float]) -> None:
+        """Refuse what the C library would, by the rule that it does not name; only it can try a law of one's own."""
+        asked = self.settings.copy()
+        asked["gains.alpha_p"], asked["gains.alpha_f"] = scales
+        if self.control == "own":
+            return
+        found = margins.compute(self.rig, asked, self.plan.maximum_stiffness, mode)
+        if found.least < self.minimum_margin:
+            raise InvalidValue(
+                f"{what}: {found.rule}: margin {found.least:.3g}, at least {self.minimum_margin:g} is needed"
+            )
 
     def clutch(self, open: bool = True) -> None:
         """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
@@ -345,15 +371,6 @@ def _joined(blocks: Sequence[Columns]) -> Columns:
 
 def _blocks_of(ticks: int) -> list[int]:
     return [min(BLOCK_TICKS, ticks - start) for start in range(0, ticks, BLOCK_TICKS)]
-
-
-def _stretched(script: list[Input], duration: float | None) -> list[Input]:
-    if duration is None:
-        return script
-    total = sum(step.duration for step in script)
-    if not (0.0 < duration < math.inf and total > 0.0):
-        raise InvalidValue(f"duration = {duration} s: it must be above 0 s, and so must the script's own, {total:g} s")
-    return [step._replace(duration=step.duration * duration / total) for step in script]
 
 
 def _checked_seed(seed: int) -> int:

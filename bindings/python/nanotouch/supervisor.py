@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from nanotouch import _core
 from nanotouch.columns import STATES
+from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Settings
 
 #: names of the bits of ``reasons``
@@ -98,11 +99,15 @@ class Supervisor:
         unstable : bool
             The passivity observer has nothing left.
         """
-        numbers = {
+        unknown = [flags] if isinstance(flags, str) else [name for name in flags if name not in FLAGS]
+        if unknown:
+            raise InvalidValue(f"flags: {unknown[0]!r}: valid is a tuple of {', '.join(FLAGS)}")
+        numbers: dict[str, Any] = {
             "deflection": deflection, "stage_position": stage_position, "master_position": master_position,
             "operator_force": operator_force, "age": age, "lateness": lateness,
-            "flags": sum({FLAGS[name] for name in flags}),
         }  # fmt: skip
+        numbers = {name: float(value) for name, value in numbers.items()}
+        numbers["flags"] = sum({FLAGS[name] for name in flags})
         if math.isnan(reference):
             reference = stage_position
         state, reasons = self._core.step(numbers, reference, moves_sideways, unstable)

@@ -4,14 +4,24 @@
 
 static constexpr const char *controls[] = {"default", "paper", "impedance"};
 
+static nt_effort effort_of(const py::object &answer)
+{
+    try {
+        const auto [force, stage] = answer.cast<std::pair<double, double>>();
+        return {force, stage};
+    } catch (const py::cast_error &) {
+        throw py::type_error("control: the law must return motor force [N] and stage position [m], two numbers, not " +
+                             py::repr(answer).cast<std::string>());
+    }
+}
+
 static nt_effort call_law(void *context, const nt_gains *gains, const nt_signals *signals)
 {
     auto *law = static_cast<OwnLaw *>(context);
     const py::gil_scoped_acquire gil;
     (void)gains;
     try {
-        const auto [force, stage] = law->call(*signals).cast<std::pair<double, double>>();
-        return {force, stage};
+        return effort_of(law->call(*signals));
     } catch (...) {
         if (!law->error)
             law->error = std::current_exception();

@@ -12,6 +12,7 @@ struct Session {
     nt_session *handle = nullptr;
     Terrain terrain; // outlives the handle, as the law does
     OwnLaw law;
+    std::unique_ptr<Described<nt_settings>> amounts; // what the law amounts to, where that is known
     std::mutex one_at_a_time;
     ~Session()
     {
@@ -76,7 +77,16 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
         set_control(setup.settings, made->law);
     }
     nt_problem problem{};
-    raise_on(nt_session_open(&made->handle, &setup, &problem), problem, "session");
+    const nt_status status = nt_session_open(&made->handle, &setup, &problem);
+    made->law.raise(); // it has been tried
+    raise_on(status, problem, "session");
+    if (setup.settings.control.choice == NT_CONTROL_OWN && setup.minimum_margin > 0.0) {
+        Described<nt_settings> amounts{};
+        const double stiffness = nt_session_plan(made->handle)->maximum_stiffness;
+        if (nt_margins_own_law(&setup.rig, &setup.settings, stiffness, &amounts.value) == NT_OK)
+            made->amounts = std::make_unique<Described<nt_settings>>(amounts);
+        made->law.raise();
+    }
     return made;
 }
 
@@ -152,6 +162,9 @@ static void bind_requests(py::class_<Session> &type)
         .def("clutch", [](Session &self,
                           bool open) { alone(self, [=](nt_session *handle) { nt_session_clutch(handle, open); }); })
         .def_property_readonly("guarantee", &guarantee_of)
+        .def_property_readonly(
+            "amounts",
+            [](const Session &self) -> py::object { return self.amounts ? py::cast(*self.amounts) : py::none(); })
         .def_property_readonly("tare",
                                [](const Session &self) {
                                    const nt_tare tare = nt_session_tare(self.handle);

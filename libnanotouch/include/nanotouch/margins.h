@@ -31,14 +31,23 @@ NT_API nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, d
 
 /* What a session is to be judged by: the smallest of its margins, each scaled so that 1 is the limit. */
 typedef struct nt_verdict {
-    double margin;    /* [-] */
-    const char *rule; /* which one: "R1 contact", "exact contact", "finger", "R4 steps", ...; static */
+    double margin;     /* [-] */
+    const char *rule;  /* which one: "R1 contact", "exact contact", "exact K_f", "R4 steps", ...; static */
+    const char *field; /* the same for an nt_problem: "stability margin (R1 contact)", ...; static */
 } nt_verdict;
 /* The margins of these settings' law into *margins, and the verdict. In touch: R1 and the exact limit over kappa, K_f's
  * limit over K_f, the motor's force over one step and over three standard deviations of its noise, and the virtual
- * coupling. Topography and approach: the height servo alone. A curve moves no master: infinite. */
+ * coupling. Topography and approach: the height servo alone. A curve moves no master: infinite. A law of one's own is
+ * tried first (nt_margins_own_law); where that does not succeed, all but the height servo's is NaN. */
 NT_API nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
                                    nt_mode mode, nt_margins *margins);
+/* The settings with which the default law does what a law of one's own does, found by calling that law some hundred
+ * times: its slopes at rest under six forces between the limits of either sign; those with the smallest margin.
+ * NT_E_UNSUPPORTED if it is none of that kind: it has memory, bends, gives no number, sends the stage elsewhere than to
+ * its target, or hears what the rules know nothing of (positions, raw speeds, raw and smooth f_m both, damping).
+ * NT_E_ARGUMENT for any other law. */
+NT_API nt_status nt_margins_own_law(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
+                                    nt_settings *amounts);
 
 /* The loop at one frequency. */
 typedef struct nt_loop_response {

@@ -29,9 +29,10 @@ typedef struct nt_session_setup {
     double rise;                /* how far the surface rises above the start along the path [m], >= 0 */
     double slope;               /* of the surface where it is steepest along the path [-], >= 0 */
     uint64_t seed;
-    long ring_capacity;    /* records held between two reads; rounded up to a power of two */
-    double minimum_margin; /* refuse to open below this stability margin (R1) [-] */
-    int preflight;         /* 1: tare and sign test before the first tick (preflight.h) */
+    long ring_capacity; /* records held between two reads; rounded up to a power of two */
+    double
+        minimum_margin; /* refuse to open below this stability margin; 0: never, and a law of one's own is not tried */
+    int preflight;      /* 1: tare and sign test before the first tick (preflight.h) */
     nt_probe_model probe_model;
     double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_faults *faults; /* of the rig from its switching on, before preflight; copied; NULL: none */
@@ -72,8 +73,8 @@ typedef struct nt_record {
     uint32_t reasons;       /* NT_REASON_* */
 } nt_record;
 
-/* Opens a session. NT_E_RANGE with problem->field "stability
- * margin" if the loop would run closer to its stability limit than minimum_margin, or with what preflight has found.
+/* Opens a session. NT_E_RANGE with nt_verdict.field if the loop would run closer to its stability limit than
+ * minimum_margin, or with what preflight has found; NT_E_NOT_FINITE if the margin of a law of one's own is not known.
  * The session belongs to the caller: nt_session_close. */
 NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
 /* Accepts NULL. */
@@ -90,7 +91,7 @@ NT_API NT_REALTIME long nt_session_read(nt_session *session, nt_record *records,
 /* Back to RUN after a stop (nt_touch_arm). */
 NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
 /* Requests to the touch step between two ticks (touch.h). A new scale with which the loop would run closer to its limit
- * than minimum_margin is refused with NT_E_RANGE. */
+ * than minimum_margin is refused with NT_E_RANGE, and so is a mode. */
 NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode);
 NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling);
 NT_API void nt_session_clutch(nt_session *session, int open);

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Laws of one's own: those that amount to the default law have its margins, the others have none. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/margins.h"
+#include "nanotouch/servo.h"
+
+/* tau = -reflection alpha_f f_s + raw f_m + smooth f_m' + share b v; the rest is what the rules do not know. */
+typedef struct mine {
+    double reflection, raw, smooth, share;
+    double spring, raw_speed, follows, memory, bend, cubic;
+    double kept;
+} mine;
+
+static nt_effort own(void *context, const nt_gains *gains, const nt_signals *s)
+{
+    mine *law = context;
+    (void)gains;
+    law->kept += law->memory * (s->felt_force - law->kept);
+    const double f = s->scaling.alpha_f * (s->felt_force + law->kept);
+    const double force = -law->reflection * f - law->cubic * f * f * f + law->raw * s->operator_force +
+                         law->smooth * s->smooth_force + law->share * s->master_damping * s->smooth_speed -
+                         law->spring * s->master_position + law->raw_speed * s->master_speed -
+                         law->bend * fmax(0.0, f - 0.25 * 5.0);
+    return (nt_effort){force, s->target + law->follows * s->stage_position};
+}
+
+static nt_settings with(const nt_rig *rig, mine *law)
+{
+    nt_settings settings = nt_settings_defaults(rig);
+    settings.control = (nt_control){NT_CONTROL_OWN, own, law};
+    return settings;
+}
+
+static const double stiffness = 1e3;
+
+/* A law with other constants than the settings is judged by its own. */
+static void a_law_is_judged_by_its_own_gains(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    static const mine laws[] = {{.reflection = 3.0, .smooth = 2.0}, {.reflection = 41.0, .smooth = 40.0},
+                                {.reflection = 41.0, .raw = 40.0},  {.reflection = 1.0},
+                                {.reflection = 2.0, .smooth = 7.0}, {.reflection = 3.0, .smooth = 2.0, .share = 0.8}};
+    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+        mine law = laws[i];
+        const nt_settings settings = with(&rig, &law);
+        nt_settings same = nt_settings_defaults(&rig);
+        same.gains.force_gain = fmax(law.raw, law.smooth);
+        same.gains.alpha_f *= law.reflection / (1.0 + same.gains.force_gain);
+        same.gains.velocity_feedforward = law.share;
+        if (law.raw > 0.0)
+            same.gains.force_filter = 1e6;
+        nt_margins mine_found, expected;
+        const nt_verdict verdict = nt_margins_judge(&rig, &settings, stiffness, NT_MODE_TOUCH, &mine_found);
+        const nt_verdict wanted = nt_margins_judge(&rig, &same, stiffness, NT_MODE_TOUCH, &expected);
+        /* slopes by differences of 1e-6 of a range: rounding leaves 1e-9 of them */
+        assert_true(fabs(verdict.margin / wanted.margin - 1.0) < 1e-7);
+        assert_string_equal(verdict.rule, wanted.rule);
+        assert_true(fabs(mine_found.loop_stiffness / expected.loop_stiffness - 1.0) < 1e-7);
+        assert_true(fabs(mine_found.exact_limit / expected.exact_limit - 1.0) < 1e-7);
+    }
+}
+
+/* The library's own default law, given as somebody's, is what it is; with and without regions. */
+static void the_default_law_amounts_to_itself(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    settings.gains.alpha_f_retract = 2.0;
+    settings.gains.velocity_feedforward = 0.3;
+    nt_margins margins, expected;
+    const double wanted = nt_margins_judge(&rig, &settings, stiffness, NT_MODE_TOUCH, &expected).margin;
+    settings.control = (nt_control){NT_CONTROL_OWN, nt_servo_default, NULL};
+    const double found = nt_margins_judge(&rig, &settings, stiffness, NT_MODE_TOUCH, &margins).margin;
+    assert_true(fabs(found / wanted - 1.0) < 1e-7);
+    settings.gains.coupling_stiffness = 500.0;
+    settings.gains.coupling_damping = 20.0;
+    nt_settings amounts;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(fabs(amounts.gains.alpha_f / (2.0 * settings.gains.alpha_f) - 1.0) < 1e-7);
+    settings.control.choice = NT_CONTROL_DEFAULT;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_ARGUMENT);
+}
+
+/* tau = -f - c f^3 is steepest at the largest force that is tried, the gauge's 5 N: 1 + 3 c 25. */
+static void a_bent_law_is_judged_where_it_is_steepest(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    mine law = {.reflection = 1.0, .cubic = 0.1};
+    const nt_settings settings = with(&rig, &law);
+    nt_settings amounts;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(fabs(amounts.gains.alpha_f / settings.gains.alpha_f - 8.5) < 1e-4);
+    assert_true(amounts.gains.force_gain < 1e-9);
+}
+
+static nt_effort no_number(void *unused, const nt_gains *gains, const nt_signals *s)
+{
+    (void)unused;
+    (void)gains;
+    return (nt_effort){NAN, s->target};
+}
+
+static void what_the_rules_do_not_know_has_no_margin(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    static const mine laws[] = {{.reflection = 3.0, .smooth = 2.0, .memory = 0.1},
+                                {.reflection = 3.0, .smooth = 2.0, .spring = 10.0},
+                                {.reflection = 3.0, .smooth = 2.0, .raw_speed = -10.0},
+                                {.reflection = 3.0, .smooth = 2.0, .follows = 0.1},
+                                {.reflection = 3.0, .smooth = 2.0, .raw = 2.0},
+                                {.reflection = 3.0, .smooth = 2.0, .share = -1.0},
+                                {.reflection = 3.0, .smooth = 2.0, .share = 0.9},
+                                {.reflection = -1.0},
+                                {.reflection = 1.0, .bend = 5.0}};
+    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+        mine law = laws[i];
+        const nt_settings settings = with(&rig, &law);
+        nt_settings amounts;
+        nt_margins margins;
+        assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_E_UNSUPPORTED);
+        const nt_verdict verdict = nt_margins_judge(&rig, &settings, stiffness, NT_MODE_TOUCH, &margins);
+        assert_true(isnan(verdict.margin) && isnan(margins.exact_limit) && isnan(margins.margin));
+        assert_true(margins.height_margin > 0.0); /* the height servo knows no law */
+        assert_true(nt_margins_judge(&rig, &settings, stiffness, NT_MODE_CURVE, &margins).margin == (double)INFINITY);
+    }
+    nt_settings broken = nt_settings_defaults(&rig);
+    broken.control = (nt_control){NT_CONTROL_OWN, no_number, NULL};
+    nt_settings amounts;
+    assert_int_equal(nt_margins_own_law(&rig, &broken, stiffness, &amounts), NT_E_UNSUPPORTED);
+    /* behind a virtual coupling alpha_f has to be the session's */
+    mine law = {.reflection = 2.0};
+    nt_settings coupled = with(&rig, &law);
+    assert_int_equal(nt_margins_own_law(&rig, &coupled, stiffness, &amounts), NT_OK);
+    coupled.gains.coupling_stiffness = 500.0;
+    assert_int_equal(nt_margins_own_law(&rig, &coupled, stiffness, &amounts), NT_E_UNSUPPORTED);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_law_is_judged_by_its_own_gains),
+        cmocka_unit_test(the_default_law_amounts_to_itself),
+        cmocka_unit_test(a_bent_law_is_judged_where_it_is_steepest),
+        cmocka_unit_test(what_the_rules_do_not_know_has_no_margin),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What is refused before arming and while running, and by which name. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "nanotouch/nanotouch.h"
+
+static char untouched;
+
+static nt_session *open_session(const nt_session_setup *setup)
+{
+    nt_session *session = NULL;
+    nt_problem problem = {0};
+    if (nt_session_open(&session, setup, &problem) != NT_OK)
+        fail_msg("%s", problem.field ? problem.field : "?");
+    return session;
+}
+
+static void expect_refusal(const nt_session_setup *setup, nt_status status, const char *field)
+{
+    nt_session *session = (nt_session *)(void *)&untouched;
+    nt_problem problem = {0};
+    assert_int_equal(nt_session_open(&session, setup, &problem), status);
+    assert_string_equal(problem.field ? problem.field : "", field);
+    assert_ptr_equal(session, &untouched);
+    assert_int_equal(nt_session_open(&session, setup, NULL), status);
+}
+
+/* What was opened as a curve, which no gain makes unstable, is judged again before the hand takes part. */
+static void modes_and_scales_are_judged_while_running(void **state)
+{
+    (void)state;
+    nt_session_setup setup = nt_session_defaults();
+    setup.mode = NT_MODE_CURVE;
+    setup.settings.gains.force_gain = 300.0;
+    nt_session *session = open_session(&setup);
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH), NT_E_RANGE);
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_APPROACH), NT_OK);
+    assert_int_equal(nt_session_set_mode(session, (nt_mode)9), NT_E_ARGUMENT);
+    nt_session_close(session);
+    setup.settings.gains.force_gain = 2.0;
+    session = open_session(&setup);
+    const nt_scaling steep = {100.0 * setup.settings.gains.alpha_p, setup.settings.gains.alpha_f};
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH), NT_OK);
+    assert_int_equal(nt_session_rescale(session, &steep), NT_E_RANGE); /* by the mode that it is in now */
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_CURVE), NT_OK);
+    assert_int_equal(nt_session_rescale(session, &steep), NT_OK);
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH), NT_E_RANGE); /* by the scales that it has now */
+    nt_session_close(session);
+}
+
+static double own_gain = 2.0;
+
+/* The paper's motor law with a gain that the settings do not know. */
+static nt_effort own_law(void *calls, const nt_gains *gains, const nt_signals *signals)
+{
+    (void)gains;
+    ++*(int *)calls;
+    const double reflected = signals->scaling.alpha_f * signals->felt_force;
+    return (nt_effort){-reflected - own_gain * (reflected - signals->smooth_force), signals->target};
+}
+
+/* A law of one's own is armed by its own margins; overridden, it is not even called. */
+static void an_own_law_is_judged_by_what_it_does(void **state)
+{
+    (void)state;
+    int calls = 0;
+    nt_session_setup setup = nt_session_defaults();
+    setup.settings.control = (nt_control){NT_CONTROL_OWN, own_law, &calls};
+    own_gain = 2.0;
+    nt_session *session = open_session(&setup);
+    const nt_margins found = nt_session_margins(session);
+    nt_session_close(session);
+    setup.settings.control = (nt_control){.choice = NT_CONTROL_DEFAULT};
+    session = open_session(&setup);
+    assert_true(fabs(found.exact_limit / nt_session_margins(session).exact_limit - 1.0) < 1e-7);
+    nt_session_close(session);
+    setup.settings.control = (nt_control){NT_CONTROL_OWN, own_law, &calls};
+    own_gain = 300.0; /* and the settings still say 2 */
+    expect_refusal(&setup, NT_E_RANGE, "stability margin (R5 noise)");
+    setup.minimum_margin = 0.0;
+    calls = 0;
+    session = open_session(&setup);
+    assert_int_equal(calls, 0);
+    assert_true(isnan(nt_session_margins(session).exact_limit));
+    nt_session_close(session);
+    own_gain = NAN;
+    setup.minimum_margin = 1.5;
+    expect_refusal(&setup, NT_E_NOT_FINITE, "stability margin (own law, of no kind that can be judged)");
+}
+
+static void setups_are_refused_by_name(void **state)
+{
+    (void)state;
+    const nt_session_setup good = nt_session_defaults();
+    nt_session_setup bad = good;
+    bad.settings.gains.force_gain =
+        300.0; /* kappa = 149 kN/m, R1: 121; three sigma of its noise are 0.6 of the motor */
+    expect_refusal(&bad, NT_E_RANGE, "stability margin (R5 noise)");
+    bad.rig.probe.noise = bad.rig.master.gauge_noise = bad.rig.master.gauge_resolution = 0.0;
+    bad.rig.stage.command_resolution = bad.rig.master.resolution = 0.0; /* leaves the loop itself */
+    expect_refusal(&bad, NT_E_RANGE, "stability margin (R1 contact)");
+    bad.minimum_margin = 0.5; /* overridden explicitly */
+    nt_session *session = open_session(&bad);
+    assert_true(nt_session_margins(session).margin < 1.0);
+    nt_session_close(session);
+    bad = good;
+    bad.minimum_margin = NAN;
+    expect_refusal(&bad, NT_E_NOT_FINITE, "minimum_margin");
+    bad.minimum_margin = -1.0;
+    expect_refusal(&bad, NT_E_RANGE, "minimum_margin");
+    bad = good;
+    bad.settings.gains.alpha_p = NAN;
+    expect_refusal(&bad, NT_E_NOT_FINITE, "gains.alpha_p");
+    bad = good;
+    bad.rig.master.damping = -1.0;
+    expect_refusal(&bad, NT_E_RANGE, "master.damping");
+    bad = good;
+    bad.scene.tip.radius = 20.0;
+    expect_refusal(&bad, NT_E_RANGE, "tip.radius");
+    bad = good;
+    bad.demand.relative_accuracy = 2.0;
+    expect_refusal(&bad, NT_E_RANGE, "demand.relative_accuracy");
+    bad = good;
+    bad.clearance = 0.0;
+    expect_refusal(&bad, NT_E_RANGE, "clearance");
+    bad = good;
+    bad.rise = 1e-3;
+    expect_refusal(&bad, NT_E_RANGE, "rise");
+    bad = good;
+    bad.x = HUGE_VAL;
+    expect_refusal(&bad, NT_E_NOT_FINITE, "x");
+    bad = good;
+    bad.ring_capacity = 0;
+    expect_refusal(&bad, NT_E_RANGE, "ring_capacity");
+    bad = good;
+    bad.settings.gains.delay = 16.0;
+    expect_refusal(&bad, NT_E_RANGE, "gains.delay");
+    bad = good;
+    bad.settings.limits.force = 1e-3;
+    expect_refusal(&bad, NT_E_RANGE, "limits.force");
+    assert_int_equal(nt_session_open(NULL, &good, NULL), NT_E_ARGUMENT);
+    nt_session_close(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(setups_are_refused_by_name),
+        cmocka_unit_test(modes_and_scales_are_judged_while_running),
+        cmocka_unit_test(an_own_law_is_judged_by_what_it_does),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
