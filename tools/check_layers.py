@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Check who includes whom, and that the list of sources is complete.
+"""Check who includes or imports whom, and that the list of sources is complete.
 
 Prints each offence as file:line and exits with their number.
 """
@@ -48,6 +48,23 @@ SYSTEM_HEADERS = {
 }  # fmt: skip
 HOSTED_FILES = {"hal/loop.c"}  # of hal, what is outside the portable core
 PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
+
+# The modules and packages of the Python library from the bottom up; each may import what stands before it.
+PYTHON = ROOT / "bindings/python/nanotouch"
+PYTHON_LAYERS = {
+    "what all need": "_core errors columns formats units _arrays _digest _files _writing _drawing",
+    "readers": "_transfer _worker _readers",
+    "laws": "contact forces geometry materials",
+    "devices": "faults hal _plant",
+    "descriptions": "description scene presets",
+    "measured": "images surface curves",
+    "what is computed": "_plan_terms _plan_text plan interaction reference",
+    "a touch": "_path _control supervisor record replay margins operator session",
+    "results": "plots fit maps batch",
+    "a process of its own": "_worker_process",
+}
+# Methods for convenience, such as Scene.plan, may import what makes their answer: inside a function, or for its type.
+CONVENIENT = {("scene", "plan"), ("scene", "surface"), ("record", "replay")}
 
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -128,13 +145,15 @@ def check_users() -> Iterator[str]:
                     yield f'{path.relative_to(ROOT)}:{number}: "{name}" is not a public header'
 
 
-def imported(tree: ast.AST) -> Iterator[tuple[int, str]]:
-    """Yield line number and dotted name of every absolute import of a Python module."""
-    for node in ast.walk(tree):
+def imported(path: Path) -> Iterator[tuple[ast.stmt, str]]:
+    """Yield the statement and the dotted name of every import of a Python file."""
+    package = list(path.relative_to(PYTHON.parent).parts[:-1]) if path.is_relative_to(PYTHON) else []
+    for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
-            yield from ((node.lineno, alias.name) for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            yield from ((node.lineno, f"{node.module}.{alias.name}") for alias in node.names)
+            yield from ((node, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            start = package[: len(package) + 1 - node.level] if node.level else []
+            yield from ((node, ".".join([*start, *filter(None, [node.module]), alias.name])) for alias in node.names)
 
 
 def check_python() -> Iterator[str]:
@@ -144,14 +163,31 @@ def check_python() -> Iterator[str]:
         ("apps", re.compile(r"nanotouch\.(.*\.)?_")),
     ):
         for path in sorted((ROOT / folder).rglob("*.py")):
-            for number, name in imported(ast.parse(path.read_text())):
+            for node, name in imported(path):
                 if forbidden.match(name) and not name.endswith("__"):
-                    yield f"{path.relative_to(ROOT)}:{number}: may not import {name}"
+                    yield f"{path.relative_to(ROOT)}:{node.lineno}: may not import {name}"
+
+
+def check_python_layers() -> Iterator[str]:
+    """Yield the imports within the Python library that go up, and modules without a layer."""
+    ranks = {name: rank for rank, name in enumerate(" ".join(PYTHON_LAYERS.values()).split())}
+    for path in sorted(PYTHON.rglob("*.py")):
+        layer = path.relative_to(PYTHON).parts[0].removesuffix(".py")
+        if layer == "__init__":  # the names of the whole, loaded when they are first used
+            continue
+        if layer not in ranks:
+            yield f"{path.relative_to(ROOT)}:1: {layer} has no layer in tools/check_layers.py"
+            continue
+        for node, name in imported(path):
+            used = name.split(".")[1] if name.startswith("nanotouch.") else ""
+            convenient = (layer, used) in CONVENIENT and node.col_offset > 0
+            if ranks.get(used, -1) > ranks[layer] and not convenient:
+                yield f"{path.relative_to(ROOT)}:{node.lineno}: {layer} may not import {used}"
 
 
 def main() -> int:
     """Print all offences."""
-    offences = [*check_sources(), *check_library(), *check_users(), *check_python()]
+    offences = [*check_sources(), *check_library(), *check_users(), *check_python(), *check_python_layers()]
     print("\n".join(offences) or "every source is listed, every include and import keeps to its layer")
     return min(len(offences), 99)
 
