@@ -73,21 +73,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def as_json(value: Any) -> Any:
-    """What JSON has a spelling for: NaN (not known) is null, infinities are the strings ``"inf"`` and ``"-inf"``; terms
-    and warnings are objects."""
+    """What JSON has a spelling for: NaN (not known) is null, infinities are the strings ``"inf"`` and ``"-inf"``."""
     if isinstance(value, dict):
-        return {key: as_json(_named(key, entry)) for key, entry in value.items()}
+        return {key: as_json(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
         return [as_json(entry) for entry in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     return value
-
-
-def _named(key: str, value: Any) -> Any:
-    """The rows of terms and warnings with their names."""
-    kind = {"terms": nt.plan.Term, "warnings": nt.plan.Warning}.get(key)
-    return value if kind is None else [kind(*row)._asdict() for row in value]
 
 
 def _descriptions(name: str) -> tuple[Scene, Rig, Demand]:

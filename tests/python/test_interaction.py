@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -21,6 +23,28 @@ PRESETS = random_scenes.PRESETS
 # Of quadrature: 8 Gauss points on pieces that end wherever the force has a kink; what is left are the joins of the
 # tables' cells and panels inside pieces, where a higher derivative of the energy jumps: up to some 1e-9 of force x way.
 QUADRATURE = 1e-8
+
+
+@pytest.mark.parametrize(
+    "duplicate", [Interaction.copy, copy.copy, copy.deepcopy, lambda c: pickle.loads(pickle.dumps(c))]
+)
+def test_copies_are_independent(duplicate: Any) -> None:
+    contact = Interaction(Scene().plan())
+    contact.advance([0.0, 0.0, -1e-9])
+    twin, before = duplicate(contact), contact.state
+    assert twin.state == before
+    assert before.attached
+    twin.advance([0.0, 0.0, 1e-6])
+    assert contact.state == before
+    assert not twin.state.attached
+
+
+def test_a_place_that_is_not_a_number_has_no_force() -> None:
+    """On a flat, too, where the place does not matter; and no history."""
+    contact = Interaction(Scene().plan())
+    for pose in ([math.nan, 0.0, 0.0], [0.0, math.nan, 0.0], [0.0, 0.0, math.nan]):
+        assert all(math.isnan(value) for value in contact.advance(pose))
+    assert contact.state == State()
 
 
 def scene_of(name: str) -> Scene:

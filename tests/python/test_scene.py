@@ -10,6 +10,7 @@ import pickle
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -309,5 +310,17 @@ def test_gold_pulls_as_in_figure_6() -> None:
     plan = scene.plan()
     assert plan.explain()["adhesion_source"] == "meniscus"
     assert plan.pull_off_force == pytest.approx(4 * math.pi * 0.072 * 30e-9, rel=0.02)
-    assert "electrostatic: left out, at most 0.2617 nN, 0.96 % of the pull-off" in str(scene.plan(rtol=0.02))
+    assert "electrostatic: left out, at most 261.7 pN, 0.96 % of the pull-off" in str(scene.plan(rtol=0.02))
     assert "electrostatic: of the sphere" in str(scene.plan(rtol=1e-3))
+
+
+@pytest.mark.parametrize("value", ["3e-8", "20", b"3", None, True, np.bool_(True), [2e-8], 1j, np.array([2e-8])])
+def test_what_is_no_number_is_refused_by_name(value: object) -> None:
+    with pytest.raises(InvalidValue, match=r"^tip\.radius = .*: it must be a number$"):
+        Scene(tip={"radius": value})  # type: ignore[dict-item]
+
+
+@pytest.mark.parametrize("value", [3e-8, np.float64(3e-8), np.array(3e-8)])
+def test_numbers_of_numpy_are_numbers(value: float) -> None:
+    assert Scene(tip={"radius": value}).tip.radius == 3e-8
+    assert Scene(tip={"conducting": np.bool_(False)}).tip.conducting == "no"  # type: ignore[dict-item]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nanotouch.errors import InvalidValue
-from nanotouch.units import UNITS, from_si, key_spellings, parse_quantity, to_si
+from nanotouch.units import UNITS, from_si, in_words, key_spellings, parse_quantity, to_si
 
 SPELLINGS = [(unit, spelling) for unit, spellings in UNITS.items() for spelling in spellings]
 
@@ -109,3 +109,12 @@ def test_keys() -> None:
 @pytest.mark.parametrize("unit", UNITS)
 def test_keys_are_bare_keys_of_toml(unit: str) -> None:
     assert all(key.replace("_", "").isalnum() and key.isascii() for key in key_spellings("x", unit))
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "said"),
+    [(3.936e-10, "N", "393.6 pN"), (9.9996e-10, "N", "1 nN"), (0.0, "N", "0 N"), (-3.2, "V", "-3.2 V"),
+     (1162.4, "N/m", "1.162 kN/m"), (0.379, "", "0.379"), (math.inf, "N", "inf N"), (math.nan, "m", "nan m")],
+)  # fmt: skip
+def test_numbers_in_words(value: float, unit: str, said: str) -> None:
+    assert in_words(value, unit) == said

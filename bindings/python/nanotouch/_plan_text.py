@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from nanotouch._plan_terms import Term, Warning
+from nanotouch.units import in_words
 
 _NAMES = {
     "vdw": "van der Waals", "electrostatic": "electrostatic", "charge": "trapped charge",
@@ -19,18 +20,21 @@ _CONTACT = {
 }  # fmt: skip
 _FORMS = {"derjaguin": "in Derjaguin's form", "sphere": "of the sphere", "tip": "of the whole tip", "on": "computed"}
 _SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
-_QUANTITIES = ("force", "stiffness", "contact radius", "folds")
+_QUANTITIES = {"force": "force", "stiffness": "stiffness", "radius": "contact radius", "folds": "folds"}
+_UNITS = {"force": "N", "stiffness": "N/m", "radius": "m", "folds": "m"}
+#: below this a shift of a fold is no more than rounding [m]
+_IN_PLACE = 1e-15
 
 
 def text_of(facts: dict[str, Any]) -> str:
     """All of it."""
-    contact, *others = (Term(*term) for term in facts["terms"])
+    contact, *others = _terms(facts)
     lines = [_contact(contact, facts)]
-    lines += [_term(term, facts["pull_off_force"]) for term in others if term.force > 0.0]
+    lines += [_term(term, facts) for term in others if term.force > 0.0]
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
     lines.append(_total(facts))
-    lines.append(_numbers(facts))
+    lines.append(_numbers(contact, facts))
     return "\n".join(lines + [f"warning: {Warning(*warning)}" for warning in facts["warnings"]])
 
 
@@ -54,54 +58,91 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
         felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
-        within = f", within {_percent(term.bound)}" if term.form == "paraboloid" else ""
+        apart = term.form == "paraboloid" and facts["quantity"] != "folds"
+        within = f", within {_percent(term.bound)}" if apart else ""
         return f"contact: {law}{within}, no adhesion{felt}"
     text = f"contact: {law}"
     if math.isfinite(facts["lambda"]):
         text += f", lambda {facts['lambda']:.3g}"
     text += f"; adhesion {_SOURCES[facts['adhesion_source']]}, w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2"
+    if any(other.name == "vdw" and other.force > 0.0 for other in _terms(facts)):
+        text += " beside van der Waals"
     rivals = {name.upper() if name != "hertz" else "Hertz": error for name, error in facts["rivals"].items()}
     if math.isfinite(facts["lambda"]):
-        text += "; " + ", ".join(f"{name} would err by {_percent(error)}" for name, error in rivals.items())
+        text += "; " if facts["quantity"] == "force" else "; in force "
+        text += ", ".join(f"{name} would err by {_percent(error)}" for name, error in rivals.items())
     return text
 
 
-def _term(term: Term, pull_off_force: float) -> str:
-    share = f", {_percent(term.force / pull_off_force)} of the pull-off" if pull_off_force > 0.0 else ""
-    size = f"at most {_nano(term.force)} nN{share}"
+def _terms(facts: dict[str, Any]) -> list[Term]:
+    return [Term(*term) for term in facts["terms"]]
+
+
+def _term(term: Term, facts: dict[str, Any]) -> str:
+    pull_off_force = facts["pull_off_force"]
+    size = f"at most {in_words(term.force, 'N')}"
+    if pull_off_force > 0.0:
+        size += f", {_share(term.force / pull_off_force)} the pull-off"
     if not term.included:
-        return f"{_NAMES[term.name]}: left out, {size}"
+        unfelt = f"; no part of the {_QUANTITIES[facts['quantity']]}" if term.bound == 0.0 else ""
+        return f"{_NAMES[term.name]}: left out, {size}{unfelt}"
     error = f"; this form errs by {_percent(term.bound)}" if term.bound > 0.0 else ""
     return f"{_NAMES[term.name]}: {_FORMS[term.form]}, {size}{error}"
 
 
 def _surface(contact: Term, facts: dict[str, Any]) -> str:
-    least, largest, own = (facts[name] * 1e9 for name in ("least_radius", "largest_radius", "radius"))
-    radii, error = f"{least:.4g} to {largest:.4g} nm", _percent(facts["curvature_error"])
+    least, largest, own = (in_words(facts[name], "m") for name in ("least_radius", "largest_radius", "radius"))
+    radii, error = f"{least} to {largest}", _percent(facts["curvature_error"])
     if contact.form.startswith("local"):
-        return f"surface: curved, effective radius {radii}; the tip's own {own:.4g} nm everywhere would err by {error}"
-    return f"surface: curvature left out, the tip's own {own:.4g} nm in place of {radii}, which errs by {error}"
+        return f"surface: curved, effective radius {radii}; the tip's own {own} everywhere would err by {error}"
+    return f"surface: curvature left out, the tip's own {own} in place of {radii}, which errs by {error}"
 
 
 def _total(facts: dict[str, Any]) -> str:
-    quantity = _QUANTITIES[("force", "stiffness", "radius", "folds").index(facts["quantity"])]
-    text = f"{quantity} within {_percent(facts['bound'])}, folds within {facts['fold_shift'] * 1e9:.2g} nm"
+    """What the bound says and what it costs."""
+    text = _folds(facts) if facts["quantity"] == "folds" else f"{_within(facts)}; {_folds(facts)}"
     if not math.isnan(facts["model_error"]):
         text += f" (beside Lennard-Jones the model itself errs by {_percent(facts['model_error'])})"
     return f"{text}; cost {facts['cost']:.3g} Hertz evaluations, everything exact {facts['full_cost']:.3g}"
 
 
-def _numbers(facts: dict[str, Any]) -> str:
+def _within(facts: dict[str, Any]) -> str:
+    quantity = facts["quantity"]
+    text = f"{_QUANTITIES[quantity]} within {_percent(facts['bound'])}"
+    scale = in_words(facts["scale"], _UNITS[quantity])
+    pulled = ", the pull-off" if quantity == "force" and facts["scale"] == facts["pull_off_force"] else ""
+    return f"{text} of the larger of itself and {scale}{pulled}"
+
+
+def _folds(facts: dict[str, Any]) -> str:
+    shift = facts["fold_shift"]
+    if facts["quantity"] == "folds":
+        shift = max(shift, facts["bound"] * facts["scale"])
+    without = facts["adhesion_source"] == "none" and facts["fold_shift"] == 0.0
+    if without or not _terms(facts)[0].included:
+        return "no folds"
+    return "folds in place" if shift < _IN_PLACE else f"folds within {in_words(shift, 'm', 2)}"
+
+
+def _numbers(contact: Term, facts: dict[str, Any]) -> str:
+    pull_off = f"pull-off {in_words(facts['pull_off_force'], 'N')}" if facts["pull_off_force"] > 0.0 else "no pull-off"
+    if not contact.included:
+        return f"{pull_off}, in contact, which is not visited"
     spring = facts["minimum_spring"]
-    jump = "the force jumps in, whatever the spring" if math.isinf(spring) else f"no jump-in above {spring:.3g} N/m"
-    return (
-        f"pull-off {_nano(facts['pull_off_force'])} nN; {jump}; stiffest contact {facts['maximum_stiffness']:.3g} N/m"
-    )
+    jump = f"no jump-in above {in_words(spring, 'N/m', 3)}" if spring > 0.0 else "no jump-in"
+    if math.isinf(spring):
+        jump = "the force jumps in, whatever the spring"
+    return f"{pull_off}; {jump}; stiffest contact {in_words(facts['maximum_stiffness'], 'N/m', 3)}"
 
 
-def _nano(force: float) -> str:
-    return f"{force * 1e9:.4g}"
+def _share(share: float) -> str:
+    """``2.2 % of``, ``25 times``."""
+    return f"{share:.2g} times" if share > 9.95 else f"{_percent(share)} of"
 
 
 def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %"
+    """In per cent; as a bare number where that would be lost in zeros."""
+    if 0.0 < share < 1e-5:
+        return f"{share:.2g}"
+    percent = 100.0 * share
+    return f"{percent:.0f} %" if percent > 99.0 else f"{percent:.2g} %"

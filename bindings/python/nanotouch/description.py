@@ -12,6 +12,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple, Self
 
+import numpy as np
+
 from nanotouch.errors import InvalidValue
 from nanotouch.units import from_si, key_spellings, to_si
 
@@ -32,7 +34,7 @@ class Field(NamedTuple):
 
     def number_of(self, choice: object, label: str) -> float:
         """The number of a choice given by its name; yes and no may be true and false."""
-        if isinstance(choice, bool) and self.choices == ("no", "yes"):
+        if isinstance(choice, bool | np.bool_) and self.choices == ("no", "yes"):
             return float(choice)
         if isinstance(choice, str) and choice in self.choices:
             return float(self.choices.index(choice))
@@ -211,7 +213,7 @@ class Description(Mapping[str, float]):
         if name not in self.fields:
             raise KeyError(name)
         field = self.fields[name]
-        number = field.number_of(value, name) if field.choices else float(value)
+        number = field.number_of(value, name) if field.choices else _as_number(value, name)
         field.check(number, name, number)
         self.core.set(name, number)
 
@@ -248,6 +250,16 @@ def _as_table(section: str, values: Any) -> Mapping[str, Any]:
     if not isinstance(values, Mapping):
         raise InvalidValue(f"[{section}] must be a table of keys, not {values!r}")
     return values
+
+
+def _as_number(value: Any, label: str) -> float:
+    """A number of one's own or of numpy's; text, truth values and what has parts are none."""
+    if isinstance(value, bool | np.bool_ | str | bytes):
+        raise InvalidValue(f"{label} = {value!r}: it must be a number")
+    try:
+        return _as_float(value)
+    except TypeError as error:
+        raise InvalidValue(f"{label} = {value!r}: it must be a number") from error
 
 
 def _as_float(value: float) -> float:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,9 @@ from nanotouch.plan import Plan, begins_attached
 
 #: size of the history of one contact in the C library [byte]
 STATE_SIZE: int = _core.interaction_state_size
+
+
+_Kind = TypeVar("_Kind", bound="Interaction")
 
 
 class State(NamedTuple):
@@ -96,9 +99,16 @@ class Interaction:
 
     def copy(self) -> Self:
         """An independent contact with the same history."""
-        made = type(self)(self.plan)
-        made.state = self.state
-        return made
+        return _restore(type(self), self.plan, self.state)
+
+    def __copy__(self) -> Self:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> Any:
+        return _restore, (type(self), self.plan, self.state)
 
 
 def step(plan: Plan, states: ArrayLike, poses: ArrayLike) -> tuple[Floats, Value]:
@@ -121,6 +131,12 @@ def step(plan: Plan, states: ArrayLike, poses: ArrayLike) -> tuple[Floats, Value
         raise InvalidValue(f"states of shape {history.shape}: {len(rows)} poses need ({len(rows)}, 3)")
     after, values = _core.interaction_step(plan.core, history, rows)
     return after, _value(values, False)
+
+
+def _restore(kind: type[_Kind], plan: Plan, state: State) -> _Kind:
+    made = kind(plan)
+    made.state = state
+    return made
 
 
 def _rows(pose: ArrayLike) -> tuple[Floats, bool]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -26,9 +27,10 @@ History = Literal["approach", "retract"]
 class Plan:
     """What is computed for a scene, and why; see ``print(plan)``. Immutable."""
 
-    def __init__(self, core: _core.Plan) -> None:
+    def __init__(self, core: _core.Plan, made_from: tuple[Any, ...] | None = None) -> None:
         self.core = core
         self._facts: dict[str, Any] = core.as_dict()
+        self._made_from = made_from
 
     @classmethod
     def make(
@@ -36,14 +38,11 @@ class Plan:
     ) -> Plan:
         """The cheapest plan that keeps a demand; see :meth:`nanotouch.Scene.plan`."""
         wanted = Demand() if demand is None else demand
-        return cls(
-            _core.Plan(
-                scene.core,
-                wanted.core,
-                None if probe is None else probe.core,
-                terrain_of(scene, surface),
-            )
-        )
+        if not isinstance(probe, Rig | None):
+            raise TypeError(f"probe must be a Rig, not {type(probe).__name__}")
+        rig = None if probe is None else probe.copy()
+        core = _core.Plan(scene.core, wanted.core, None if rig is None else rig.core, terrain_of(scene, surface))
+        return cls(core, (scene.copy(), wanted.copy(), rig, surface))
 
     @property
     def terms(self) -> list[Term]:
@@ -132,8 +131,11 @@ class Plan:
         return self.core.stable_step(mass)
 
     def explain(self) -> dict[str, Any]:
-        """The plan as data, SI."""
-        return dict(self._facts)
+        """The plan as data, SI: numbers, names, lists and dicts of one's own; ``nanotouch plan --json`` writes it."""
+        facts = copy.deepcopy(self._facts)
+        facts["terms"] = [term._asdict() for term in self._all_terms()]
+        facts["warnings"] = [warning._asdict() for warning in self.warnings]
+        return facts
 
     def force(self, gap: ArrayLike, history: History = "approach") -> Any:
         """Force on the tip [N] along a path of gaps [m], in their order, starting apart or in contact."""
@@ -144,6 +146,17 @@ class Plan:
         contact = _core.Interaction(self.core)
         contact.state = (begins_attached(history), 0.0, 0.0)
         return as_law(contact.run_gaps(as_floats(gap, "gap")))
+
+    def __copy__(self) -> Plan:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Plan:
+        return self
+
+    def __reduce__(self) -> Any:
+        if self._made_from is None:
+            raise TypeError("a session's plan cannot be pickled: make one by scene.plan()")
+        return Plan.make, self._made_from
 
     def __str__(self) -> str:
         return text_of(self._facts)

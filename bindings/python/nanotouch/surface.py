@@ -34,7 +34,11 @@ class Surface:
             heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
         self.topography = topography
         self.tip_radius = tip_radius
+        self.tip_half_angle = tip_half_angle
         self.core = _core.Surface(heights, dy, dx, overwrite=True)  # `heights` is nobody else's
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.topography, self.tip_radius, self.tip_half_angle)
 
     @property
     def size(self) -> tuple[float, float]:
