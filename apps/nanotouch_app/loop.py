@@ -15,7 +15,10 @@ from nanotouch_app.quantity import parse_quantity
 
 
 def add_options(group: Any) -> None:
-    """The law, the delay and what the forces are scaled for."""
+    """The rate, the law, the delay and what the forces are scaled for."""
+    group.add_argument(
+        "--rate", metavar="FREQUENCY", help="of the force loop, as 5kHz (default: that of the scene, or 10kHz)"
+    )
     group.add_argument(
         "--control", choices=CONTROLS, default="default", help="control law; paper: Eq. 16-17 as printed; impedance: "
         "for a master without force sensor (default: %(default)s)"
@@ -26,6 +29,11 @@ def add_options(group: Any) -> None:
         "Eq. 19): 'plan' for pull-off to force limit, the recording.mcap of a test touch, or LOW,HIGH with an equals "
         "sign, --force-range=-20nN,500nN (default: the paper's attraction of 0.6 uN to the probe's range)"
     )  # fmt: skip
+
+
+def rate_of(text: str | None) -> float | None:
+    """[Hz]"""
+    return None if text is None else parse_quantity(text, "Hz")
 
 
 def delay_of(text: str | None) -> float:
@@ -55,7 +63,8 @@ def _force_range(text: str, plan: nt.Plan, settings: nt.Settings) -> ForceRange:
 
 def close(settings: nt.Settings, args: Any) -> None:
     """Law, rate and delay into the settings."""
-    if args.rate is not None:
-        settings["gains.rate"] = parse_quantity(args.rate, "Hz")
+    rate = rate_of(args.rate)
+    if rate is not None:
+        settings["gains.rate"] = rate
     settings["gains.delay"] = settings.gains.delay + delay_of(args.delay) * settings.gains.rate
     choose_control(settings, args.control)

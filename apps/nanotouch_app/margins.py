@@ -41,7 +41,6 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("scene", nargs="?", metavar="FILE", help="TOML file with scene, rig and gains (default: "
                         "the paper's), or the recording.mcap of a session")  # fmt: skip
-    parser.add_argument("--rate", metavar="FREQUENCY", help="of the force loop, as 10kHz")
     loop.add_options(parser)
     parser.add_argument("--mode", choices=MODES, default="point", help="(default: %(default)s)")
     parser.add_argument("--path", metavar="LENGTH", help="of the stage, as 0.4um, for the resolution budget")

@@ -13,6 +13,7 @@ from typing import Any, get_args
 import nanotouch as nt
 from nanotouch import margins, plots, record
 from nanotouch.errors import InvalidValue
+from nanotouch.operator import script_for
 from nanotouch.scene import read_tables
 from nanotouch.session import MODES, ProbeModel
 
@@ -26,7 +27,8 @@ SURFACES: dict[str, Callable[[], nt.Topography]] = {
 }
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
 MOVING = ("scan", "topography")
-LONGEST = 600.0  # [s]: 6 million steps, 1 GB of memory
+LONGEST = 600.0  # [s]
+MOST_STEPS = 6_000_000  # 1 GB of memory
 EPILOG = """examples:
   nanotouch touch                                            press on a grating of 480 nm
   nanotouch touch --surface dots --mode topography           feel quantum dots at constant force
@@ -80,6 +82,7 @@ def run(args: argparse.Namespace) -> int:
     topography = _topography(args)
     session = _session(args, topography)
     duration = None if args.duration is None else _duration(args.duration)
+    _check_steps(session, duration)
     out = output.folder(args.out)
     output.clear(out, FILES)
     print(describe(topography))
@@ -136,7 +139,10 @@ def _session(args: argparse.Namespace, topography: nt.Topography) -> nt.Session:
     settings = scaled.settings.copy()
     loop.scale_force(args.force_range, scaled.plan, rig, settings)
     settings.update_from_tables(tables)
-    session = nt.Session(scene, rig, settings=settings, minimum_margin=0.0, delay=loop.delay_of(args.delay), **what)
+    session = nt.Session(
+        scene, rig, settings=settings, rate=loop.rate_of(args.rate), delay=loop.delay_of(args.delay),
+        minimum_margin=0.0, **what,
+    )  # fmt: skip
     found = session.margins()
     if not found.least >= args.minimum_margin:
         raise InvalidValue(
@@ -161,6 +167,15 @@ def _duration(text: str) -> float:
     if not 0.0 < duration <= LONGEST:
         raise InvalidValue(f"--duration {text}: valid is above 0 s, up to {LONGEST:g} s")
     return duration
+
+
+def _check_steps(session: nt.Session, duration: float | None) -> None:
+    lasts = sum(step.duration for step in script_for(session)) if duration is None else duration
+    if lasts * session.rate > MOST_STEPS:
+        raise InvalidValue(
+            f"{lasts:.3g} s at {session.rate / 1e3:g} kHz are {lasts * session.rate:.3g} steps; valid is up to "
+            f"{MOST_STEPS:.0e}: a shorter --duration, or a lower --rate"
+        )
 
 
 def _record(session: nt.Session, duration: float | None, out: Path) -> nt.Recording:

@@ -257,6 +257,14 @@ def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.Ca
     assert read.metadata["probe_model"] == "dynamic"
     assert read.metadata["settings"]["gains"]["delay"] == 11.0  # periods of 0.1 ms, with the rig's own
     assert read.metadata["alpha_f"] == pytest.approx(10.0 / 500e-9)  # Eq. 19, a gauge or motor of 5 N
+    assert main([*command, "--rate", "2kHz", "--delay", "1ms"]) == 0
+    read = record.read(tmp_path / "recording.mcap")
+    assert read.metadata["loop_rate"] == 2e3
+    assert read.metadata["settings"]["gains"]["delay"] == 3.0
+    assert len(read) == pytest.approx(4000, abs=8)
+    assert "at 2 kHz" in capsys.readouterr().out
+    assert main(["touch", "--rate", "1MHz", "--out", str(tmp_path)]) == 2
+    assert "a lower --rate" in capsys.readouterr().err
     assert main([*command, "--force-range", str(tmp_path / "recording.mcap")]) == 0
     assert main([*command, "--force-range", "plan"]) == 0
     assert main([*command, "--force-range", "5"]) == 2
