@@ -101,7 +101,8 @@ set(nanotouch_sources_control
     control/stability.c
     control/stage_loop.c
     control/supervisor.c
-    control/touch.c)
+    control/touch.c
+    control/verdict.c)
 set(nanotouch_sources_sim hal/sim/faults.c hal/sim/probe.c hal/sim/sim.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "control/sampled.h"
+#include "control/verdict.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
 
@@ -90,18 +91,17 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     return compute(rig, gains, contact_stiffness, &loop);
 }
 
-#define VERDICT(margin, name) {margin, name, "stability margin (" name ")"}
-
 /* In touch; rig and gains are those that the law amounts to. */
 static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, const nt_gains *gains, double coupling)
 {
     const nt_verdict verdicts[] = {
-        VERDICT(margins->margin, "R1 contact"),
-        VERDICT(margins->exact_limit / margins->loop_stiffness, "exact contact"),
-        VERDICT(gains->force_gain > 0.0 ? margins->force_gain_limit / gains->force_gain : (double)INFINITY, "exact K_f"),
-        VERDICT(rig->master.max_force / margins->quantisation_step, "R4 steps"),
-        VERDICT(rig->master.max_force / (3.0 * margins->force_noise), "R5 noise"),
-        VERDICT(coupling, "virtual coupling"),
+        NT_VERDICT(margins->margin, "R1 contact"),
+        NT_VERDICT(margins->exact_limit / margins->loop_stiffness, "exact contact"),
+        NT_VERDICT(gains->force_gain > 0.0 ? margins->force_gain_limit / gains->force_gain : (double)INFINITY,
+                   "exact K_f"),
+        NT_VERDICT(rig->master.max_force / margins->quantisation_step, "R4 steps"),
+        NT_VERDICT(rig->master.max_force / (3.0 * margins->force_noise), "R5 noise"),
+        NT_VERDICT(coupling, "virtual coupling"),
     };
     nt_verdict least = verdicts[0];
     for (int i = 1; i < (int)(sizeof verdicts / sizeof verdicts[0]); i++)
@@ -110,27 +110,9 @@ static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, cons
     return least;
 }
 
-/* A law of one's own, that is: what it amounts to, or not a number, which is refused. The height servo has none. */
-static nt_verdict judge_own(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
-                            nt_margins *margins)
+nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
+                               nt_margins *margins)
 {
-    nt_settings amounts = *settings;
-    const nt_status status = nt_margins_own_law(rig, settings, contact_stiffness, &amounts);
-    amounts.control.choice = NT_CONTROL_DEFAULT;
-    const nt_verdict verdict = nt_margins_judge(rig, &amounts, contact_stiffness, mode, margins);
-    if (status == NT_OK)
-        return verdict;
-    const double height = margins->height_margin;
-    *margins = (nt_margins){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-    margins->height_margin = height;
-    return mode == NT_MODE_TOUCH ? (nt_verdict)VERDICT(NAN, "own law, of no kind that can be judged") : verdict;
-}
-
-nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
-                            nt_margins *margins)
-{
-    if (settings->control.choice == NT_CONTROL_OWN)
-        return judge_own(rig, settings, contact_stiffness, mode, margins);
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
     nt_sampled_loop loop = nt_sampled_loop_make(&shape.rig, &shape.gains);
     if (settings->control.choice == NT_CONTROL_PAPER) {
@@ -142,11 +124,11 @@ nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, doub
     }
     *margins = compute(&shape.rig, &shape.gains, shape.contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
-        return (nt_verdict)VERDICT(INFINITY, "none");
+        return (nt_verdict)NT_VERDICT(INFINITY, "none");
     if (mode != NT_MODE_TOUCH)
-        return (nt_verdict)VERDICT(margins->height_margin, "height servo");
+        return (nt_verdict)NT_VERDICT(margins->height_margin, "height servo");
     const double coupling = nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness, margins->loop_delay);
-    const nt_verdict stage = VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
+    const nt_verdict stage = NT_VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
     const nt_verdict touch = judge_touch(margins, &shape.rig, &shape.gains, coupling);
     return stage.margin >= touch.margin ? touch : stage;
 }

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "nanotouch/margins.h"
+#include "control/verdict.h"
 #include "nanotouch/servo.h"
 
 #define LARGEST_FEEDFORWARD 0.8 /* these three as in the table of gains */
@@ -171,7 +171,7 @@ nt_status nt_margins_own_law(const nt_rig *rig, const nt_settings *settings, dou
         const nt_status status = amounts_at(rig, settings, shares[i] * largest, &found);
         if (status != NT_OK)
             return status;
-        const double margin = nt_margins_judge(rig, &found, contact_stiffness, NT_MODE_TOUCH, &margins).margin;
+        const double margin = nt_verdict_on_known(rig, &found, contact_stiffness, NT_MODE_TOUCH, &margins).margin;
         if (i == 0 || !(margin >= least)) {
             least = margin;
             worst = found;
