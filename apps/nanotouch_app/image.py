@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     rough = images.roughness(clean)
     facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
     print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
-    table = None if threshold is None else images.grains(clean, threshold, pits=args.pits)
+    table = None if threshold is None else _grains(clean, threshold, args.pits)
     if table is not None:
         _tell(table, out, facts)
     output.write_json(out / "image.json", facts)
@@ -103,7 +103,7 @@ def _described(image: images.Topography) -> str:
         f"{height * 1e6:.4g} um, heights over {_nm(image.height_range)}"
     ]
     if image.masked_pixels:
-        lines.append(f"{image.masked_pixels} missing pixels filled from their neighbours")
+        lines.append(f"missing pixels filled from their neighbours: {image.masked_pixels}")
     return "\n".join(lines)
 
 
@@ -166,6 +166,13 @@ def _without_tip(
     return clean
 
 
+def _grains(image: images.Topography, threshold: float | str, pits: bool) -> images.GrainTable:
+    """The particles; what speaks against them is told with the table."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        return images.grains(image, threshold, pits=pits)
+
+
 def _tell(table: images.GrainTable, out: Path, facts: dict[str, Any]) -> None:
     print(table)
     if len(table):
@@ -178,7 +185,8 @@ def _tell(table: images.GrainTable, out: Path, facts: dict[str, Any]) -> None:
     if len(table) > LISTED:
         print(f"  and {len(table) - LISTED} more in grains.csv")
     table.to_csv(out / "grains.csv")
-    facts["grains"] = {"count": len(table), "coverage": table.coverage, "threshold_m": table.threshold}
+    facts["grains"] = {"count": len(table), "coverage": table.coverage, "threshold_m": table.threshold,
+                       "warnings": list(table.warnings)}  # fmt: skip
 
 
 def _nm(metres: float) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -136,3 +137,47 @@ def test_the_table_as_csv(tmp_path: Path) -> None:
     assert [row["border"] for row in rows] == [str(int(b)) for b in table.border]
     assert set(rows[0]) == {"number", *table.columns()}
     assert "10 particles" in str(table)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_dots_raise_no_doubt(seed: int) -> None:
+    """Warnings are errors in these tests; many dots on a flat give none."""
+    rough = quantum_dots(seed, 90)[0] + 0.3e-9 * np.random.default_rng(seed).standard_normal((N, N))
+    assert images.grains(topography(rough)).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("under", "said"),
+    [
+        (lambda x, y: 4e-9 * (x > 0.4), "a terrace, the bow of a scanner"),
+        (lambda x, y: 30e-9 * ((x - 0.5) ** 2 + (y - 0.5) ** 2), "a terrace, the bow of a scanner"),
+        (lambda x, y: 4e-9 * ((x > 0.4) + 1.0 * (x > 0.7)), "the base is hardly a flat; look for pits"),
+    ],
+    ids=["terrace", "bow", "stairs"],
+)
+def test_what_lies_under_the_dots_is_said(under: object, said: str) -> None:
+    """The same dots on a terrace, on a bow of the scanner, on stairs."""
+    y, x = np.indices((N, N)) / N
+    heights = quantum_dots(1)[0] + under(x, y) + 0.2e-9 * np.random.default_rng(1).standard_normal((N, N))  # type: ignore[operator]
+    with warnings.catch_warnings(record=True) as raised:
+        warnings.simplefilter("always")
+        table = images.grains(topography(heights))
+    assert [str(warning.message) for warning in raised] == list(table.warnings)
+    assert said in " ".join(table.warnings)
+    assert f"warning: {table.warnings[0]}" in str(table)
+
+
+def test_noise_alone_is_said() -> None:
+    heights = 1e-9 * np.random.default_rng(1).standard_normal((N, N))
+    with pytest.warns(UserWarning, match="times the noise of a pixel"):
+        images.grains(topography(heights))
+
+
+def test_the_sizes_are_those_of_whole_particles() -> None:
+    """One in the middle, one that the border cuts: one size is told, not a range of one; none where all are cut."""
+    both = topography(cap(200e-9, 200e-9, 40e-9, 12e-9) + cap(0.0, 100e-9, 40e-9, 12e-9))
+    assert "2 particles above" in (text := str(images.grains(both)))
+    assert "of the others height 11.99 nm, diameter" in text.replace("12 nm", "11.99 nm")
+    alone = str(images.grains(topography(cap(0.0, 100e-9, 40e-9, 12e-9))))
+    assert alone.startswith("1 particle above")
+    assert "height" not in alone

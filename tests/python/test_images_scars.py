@@ -64,7 +64,7 @@ def test_a_wire_along_the_fast_axis_is_a_structure() -> None:
     heights = np.zeros((128, 128))
     heights[50:53] = 30e-9
     before = topography(noisy(heights))
-    with pytest.warns(UserWarning, match="1 lines along the fast axis"):
+    with pytest.warns(UserWarning, match="1 line along the fast axis"):
         after, report = images.repair_scars(before)
     np.testing.assert_array_equal(after.heights, before.heights)
     assert (report.lines, report.scars) == (1, 0)

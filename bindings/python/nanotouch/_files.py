@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import logging
 import struct
 import warnings
 import zipfile
@@ -16,6 +17,7 @@ from .errors import Error, ReadError, require
 #: Largest file opened [byte]: the largest single AFM files (force maps) are a few hundred megabytes.
 MAX_FILE_SIZE = 1 << 30
 MAX_UNPACKED = 1 << 31  # of all that a container says it holds [byte]
+_TALKATIVE = ("tifffile", "afmformats.formats")  # they log what they raise as well
 _HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk")
 
 
@@ -44,13 +46,27 @@ def checked_path(path: str | PathLike[str]) -> Path:
 
 
 @contextmanager
-def guarded(file: Path, reader: str) -> Iterator[None]:
-    """Turn whatever a foreign reader raises into one :class:`ReadError` that names it; its warnings are not the user's.
+def _quiet() -> Iterator[None]:
+    loggers = [logging.getLogger(name) for name in _TALKATIVE]
+    before = [logger.disabled for logger in loggers]
+    try:
+        for logger in loggers:
+            logger.disabled = True
+        yield
+    finally:
+        for logger, disabled in zip(loggers, before, strict=True):
+            logger.disabled = disabled
 
-    ``BaseException`` because afmformats derives its errors from it; a stop by the user passes through.
+
+@contextmanager
+def guarded(file: Path, reader: str) -> Iterator[None]:
+    """Turn whatever a foreign reader raises into one :class:`ReadError` that names it.
+
+    Its warnings, and what is logged of the same, are not the user's. ``BaseException`` because afmformats derives its
+    errors from it; a stop by the user passes through.
     """
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _quiet():
             warnings.simplefilter("ignore")
             yield
     except ReadError as error:

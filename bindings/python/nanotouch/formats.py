@@ -106,9 +106,9 @@ FORMATS: tuple[Format, ...] = (
     _refuses("Igor packed experiment", ".pxp", "images", "save the wave in Igor as .ibw"),
     _refuses("RIBM high-speed AFM", ".asd", "images", _GWY),
     _refuses("Topometrix", ".tfr .ffr .zfr", "images", _GWY, (0, b"#R3"), (0, b"#R4"), (0, b"#R5")),
-    _refuses("a picture (PNG)", ".png", "images", "a picture holds colours, not heights: use the instrument's own file",
+    _refuses("picture (PNG)", ".png", "images", "a picture holds colours, not heights: use the instrument's own file",
              (0, b"\x89PNG")),
-    _refuses("a picture (JPEG)", ".jpg .jpeg", "images",
+    _refuses("picture (JPEG)", ".jpg .jpeg", "images",
              "a picture holds colours, not heights: use the instrument's own file", (0, b"\xff\xd8\xff")),
     _reads("JPK force curve", ".jpk-force", "curves", _OWN, f"{_REAL}, {_MADE}"),
     _reads("JPK force map", ".jpk-force-map", "curves", _OWN, f"{_REAL}, {_MADE}"),
@@ -139,7 +139,7 @@ def refusal(file: Path, head: bytes, kind: Kind) -> str | None:
     """Why a known file of this kind is not read and what to do; None if it is not known as such."""
     for known in FORMATS:
         if known.kind == kind and not known.reader and known.matches(file, head):
-            return f"{known.name} files are not read as {kind}: {known.remedy}"
+            return f"{known.name}: not read as {kind}; {known.remedy}"
     return None
 
 

@@ -8,9 +8,6 @@ approach is refused.
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -30,8 +27,7 @@ _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a volta
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
-    with _quiet():
-        return [_converted(data, file) for data in _loaded(file, calibration)]
+    return [_converted(data, file) for data in _loaded(file, calibration)]
 
 
 def _loaded(file: Path, calibration: Calibration) -> list[Any]:
@@ -49,17 +45,6 @@ def _loaded(file: Path, calibration: Calibration) -> list[Any]:
         if missing:
             raise ReadError(f"{file}: states no {' and no '.join(missing)}; give it") from None
         return list(afmformats.load_data(file, meta_override={key: given[key] for key in error.meta_keys}))
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """afmformats logs the traceback of whatever it raises."""
-    logger = logging.getLogger("afmformats.formats")
-    was_disabled, logger.disabled = logger.disabled, True
-    try:
-        yield
-    finally:
-        logger.disabled = was_disabled
 
 
 def _converted(data: Any, file: Path) -> ForceCurve:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from nanotouch._words import times
 from nanotouch.curves import ForceCurve, analyse
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.scene import Scene
@@ -192,7 +193,7 @@ def _notes(closest: FitResult, noise: float, alike: list[Candidate]) -> tuple[st
     notes = []
     if noise > 0.0 and closest.residual_rms > 1.5 * noise:
         notes.append(
-            f"even the closest model leaves {closest.residual_rms / noise:.2g} times the noise: that is taken as the "
+            f"even the closest model leaves {times(closest.residual_rms / noise)} the noise: that is taken as the "
             "uncertainty of a point, and none may be right"
         )
     moduli = [c.result.values["effective_modulus"] for c in alike

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from nanotouch._words import times
+
 from .models import Model
 from .points import Points
 from .show import with_sigma
@@ -50,7 +52,7 @@ def doubts(
         )
     if misfit > _MISFIT and np.isfinite(misfit):
         notes.append(
-            f"the residuals are {misfit:.2g} times the noise: this model does not describe the curve, and sigma covers "
+            f"the residuals are {times(misfit)} the noise: this model does not describe the curve, and sigma covers "
             "only part of that"
         )
         if tear_unused or solution.rms > _WRONG * float(np.ptp(points.force)):
@@ -99,7 +101,7 @@ def _doubt_contact(model: Model, found: dict[str, Any], options: Any, identifiab
     ratio = found["contact_stiffness"] / options.spring_constant
     if not identifiable.get("effective_modulus", True) and ratio > _STIFF:
         notes.append(
-            f"the contact ({found['contact_stiffness']:.3g} N/m) is {ratio:.2g} times stiffer than the cantilever "
+            f"the contact ({found['contact_stiffness']:.3g} N/m) is {times(ratio)} stiffer than the cantilever "
             f"({options.spring_constant:.3g} N/m), whose own slope the curve shows: it hardly depends on the modulus"
         )
     if model.name not in _SHARP and found["contact_radius"] > _SMALL_CONTACT * options.radius:

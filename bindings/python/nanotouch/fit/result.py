@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from nanotouch._words import times
 from nanotouch.curves import CurveReport
 
 from .models import Floats
@@ -145,6 +146,6 @@ class FitResult:
                                            f"measured {newton(self.measured_pull_off_force)}"))  # fmt: skip
         rows += [
             ("snap-in force", f"measured {newton(self.measured_snap_in_force)}"),
-            ("residual", f"{newton(self.residual_rms)} RMS, {self.misfit:.2g} times the noise"),
+            ("residual", f"{newton(self.residual_rms)} RMS, {times(self.misfit)} the noise"),
         ]
         return rows

@@ -46,7 +46,7 @@ class Page(NamedTuple):
 
 
 def with_sigma(value: float, sigma: float, unit: str) -> str:
-    """``(15.34 +- 0.12) kPa``: a common prefix, sigma with two digits; without sigma if that is 0."""
+    """``(15.34 +- 0.12) kPa``: a common prefix, two digits of sigma; without sigma if that is 0."""
     power = 0
     larger = max(abs(value), sigma) if np.isfinite(sigma) else abs(value)
     if unit and larger != 0.0 and np.isfinite(larger):
@@ -55,10 +55,11 @@ def with_sigma(value: float, sigma: float, unit: str) -> str:
     unit = f" {_PREFIXES[power]}{unit}" if unit else ""
     if sigma == 0.0:
         return f"{shown:.4g}{unit}"
-    if not 0.0 < spread <= 1e3 * abs(shown):
-        return f"{shown:.4g}{unit} (sigma {spread:.2g})"
+    if not np.isfinite(spread):
+        return f"{shown:.4g}{unit} (sigma {spread})"
     digits = max(0, 1 - int(np.floor(np.log10(spread))))
-    return f"({shown:.{digits}f} +- {spread:.{digits}f}){unit}"
+    rounded = round(shown, digits) + 0.0  # no negative zero
+    return f"({rounded:.{digits}f} +- {spread:.{digits}f}){unit}"
 
 
 def newton(force: float) -> str:

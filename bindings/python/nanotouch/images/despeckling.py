@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .._words import counted
 from ..errors import require
 from ._robust import MAD
 from .topography import Topography
@@ -37,7 +38,8 @@ class DespeckleReport:
     def __str__(self) -> str:
         if not self.pixels:
             return f"no speckles above {self.threshold * 1e9:.3g} nm"
-        return f"{self.pixels} speckled pixels repaired, the worst {self.largest * 1e9:.3g} nm off its surroundings"
+        repaired = f"{counted(self.pixels, 'speckled pixel')} repaired"
+        return f"{repaired}, the worst {self.largest * 1e9:.3g} nm off its surroundings"
 
 
 def despeckle(topography: Topography) -> tuple[Topography, DespeckleReport]:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
+from .._words import counted
 from ..errors import InvalidValue
 from . import rows, terraces
 from ._robust import block_means, digit, reduction, used_pixels
@@ -232,7 +233,8 @@ class _Job:
     def _rows_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
         lasting = f"{found.lasting * 1e9:.3g} nm that last along y were kept"
         if found.jumps:
-            lasting += f", with {found.jumps} steps across whole rows up to {found.highest_jump * 1e9:.4g} nm"
+            steps = counted(found.jumps, "step")
+            lasting += f", with {steps} across whole rows up to {found.highest_jump * 1e9:.4g} nm"
         if found.period is not None:
             return f"none; {lasting}", (
                 f"rows repeat every {found.period:.3g} rows over {found.wave * 1e9:.4g} nm: taken for a grating along "
@@ -241,9 +243,10 @@ class _Job:
         if not found.agreed:
             return f"no offsets on which both halves of the image agree; {lasting}", ""
         if found.single:
+            off = counted(len(found.single), "row was", "rows were")
             return f"offsets of rows; {lasting}", (
-                f"{len(found.single)} rows were off by up to {found.highest_single * 1e9:.4g} nm and put back (the "
-                f"first is row {found.single[0]}); if that is a wire along the fast axis, level without rows"
+                f"{off} off by up to {found.highest_single * 1e9:.4g} nm and put back (the first is row "
+                f"{found.single[0]}); if that is a wire along the fast axis, level without rows"
             )
         return f"offsets of rows; {lasting}", ""
 
@@ -253,7 +256,7 @@ class _Job:
         if found.period is not None:
             what = f"a grating along the fast axis of {found.period:.3g} rows, {found.wave * 1e9:.4g} nm high"
         elif found.jumps and found.highest_jump > rms:
-            what = f"{found.jumps} steps along the fast axis, up to {found.highest_jump * 1e9:.4g} nm high"
+            what = f"{counted(found.jumps, 'step')} along the fast axis, up to {found.highest_jump * 1e9:.4g} nm high"
         elif lasting > 4.0 * rms:
             what = f"a structure along the fast axis, {lasting * 1e9:.4g} nm high over {rms * 1e9:.3g} nm rms left"
         else:

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass, fields
+import warnings
+from dataclasses import dataclass, fields, replace
 from os import PathLike
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
+from .._words import counted
 from ..errors import InvalidValue, require
 from ._robust import MAD, pixel_noise
 from .topography import Topography
@@ -20,6 +22,10 @@ _STANDARD_DEVIATIONS = 5.0  # of the flat above which a pixel belongs to a parti
 _STANDS_OUT = 10.0
 _SADDLE = 0.2  # of the lower peak's height: two peaks are two particles if the saddle between them is so much lower
 _BINS = 512  # of Otsu's histogram
+_TILES = 4  # of the image along each side
+_FILLED = 0.9  # share of a tile from which no flat is left in it; of dense grains 0.8 is found
+_MOST = 0.5  # share of the image
+_NOISY = 2.0  # standard deviations of a pixel
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +58,8 @@ class GrainTable:
         Height over the base above which pixels were counted [m].
     noise : float
         Standard deviation of the flat, or of the lower class [m].
+    warnings : tuple of str
+        Why the particles may be none, in words.
     """
 
     x: Floats
@@ -67,6 +75,7 @@ class GrainTable:
     base: float
     threshold: float
     noise: float
+    warnings: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.x)
@@ -92,15 +101,22 @@ class GrainTable:
                 writer.writerow([number, *(f"{v:.6g}" if isinstance(v, np.floating) else int(v) for v in row)])
 
     def __str__(self) -> str:
-        if not len(self):
-            return f"no particles above {self.threshold * 1e9:.3g} nm"
-        inner = ~self.border if not self.border.all() else np.ones(len(self), bool)
-        height, diameter = self.height[inner] * 1e9, self.diameter[inner] * 1e9
+        found = f"{counted(len(self), 'particle')} above {self.threshold * 1e9:.3g} nm"
+        if len(self):
+            cut = int(self.border.sum())
+            found += f" ({cut} cut by the border), {100 * self.coverage:.3g} % of the area"
+            if cut < len(self):
+                found += f"; {'of the others ' if cut else ''}{self._sizes()}"
+        return "\n".join([found, *(f"  warning: {text}" for text in self.warnings)])
+
+    def _sizes(self) -> str:
+        """Of those that the border does not cut."""
+        height, diameter = self.height[~self.border] * 1e9, self.diameter[~self.border] * 1e9
+        if height.size == 1:
+            return f"height {height[0]:.4g} nm, diameter {diameter[0]:.4g} nm"
         return (
-            f"{len(self)} particles above {self.threshold * 1e9:.3g} nm ({int(self.border.sum())} cut by the border), "
-            f"{100 * self.coverage:.3g} % of the area; of the others height {np.median(height):.4g} nm "
-            f"({height.min():.4g} .. {height.max():.4g}), diameter {np.median(diameter):.4g} nm "
-            f"({diameter.min():.4g} .. {diameter.max():.4g})"
+            f"height {np.median(height):.4g} nm ({height.min():.4g} .. {height.max():.4g}), "
+            f"diameter {np.median(diameter):.4g} nm ({diameter.min():.4g} .. {diameter.max():.4g})"
         )
 
 
@@ -133,6 +149,11 @@ def grains(
         one by a fifth of its height, and by five standard deviations of the noise of a pixel.
     pits : bool
         Look for pits in place of particles.
+
+    Warns
+    -----
+    UserWarning
+        Where what was found is more likely a terrace, a bow of the scanner or noise: ``table.warnings``.
     """
     if smallest < 1:
         raise InvalidValue(f"smallest: {smallest} pixels, expected 1 or more")
@@ -144,7 +165,34 @@ def grains(
     if split and count > 1:
         labels = _parted(over, labels, _STANDARD_DEVIATIONS * pixel_noise(z))
     labels = _numbered(over, labels, smallest)
-    return _measured(topography, over, labels, (-base if pits else base, least, noise))
+    jitter = pixel_noise(z)
+    doubts = _doubts(labels, least / jitter if jitter > 0.0 else np.inf, pits)
+    for text in doubts:
+        warnings.warn(text, stacklevel=2)
+    return replace(_measured(topography, over, labels, (-base if pits else base, least, noise)), warnings=doubts)
+
+
+def _doubts(labels: NDArray[np.int32], over_noise: float, pits: bool) -> tuple[str, ...]:
+    """Why the particles may be none; over_noise: the threshold over the noise of a pixel."""
+    inside = labels > 0
+    ny, nx = inside.shape
+    tiles = [inside[j * ny // _TILES : (j + 1) * ny // _TILES, i * nx // _TILES : (i + 1) * nx // _TILES].mean()
+             for j in range(_TILES) for i in range(_TILES)]  # fmt: skip
+    found = []
+    if over_noise < _NOISY:
+        found.append(f"the threshold is only {over_noise:.2g} times the noise of a pixel: most of it may be noise")
+    if max(tiles) > _FILLED:
+        found.append(
+            "a sixteenth of the image or more lies in particles as a whole: a terrace, the bow of a scanner or one "
+            "large particle; level with poly2 (a bow), or give a threshold above the terraces"
+        )
+    if inside.mean() > _MOST:
+        other = "leave pits out" if pits else "look for pits"
+        found.append(
+            f"{100 * inside.mean():.3g} % of the image lies in {'pits' if pits else 'particles'}: the base is hardly a "
+            f"flat; {other} if what lies between them is meant"
+        )
+    return tuple(found)
 
 
 def _flat(z: Floats) -> tuple[float, float]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
+from .._words import counted
 from ..errors import require
 from ._robust import MAD, block_means, digit, middle
 from .topography import Topography
@@ -54,8 +55,11 @@ class ScarReport:
     def __str__(self) -> str:
         if self.refused:
             return "no scars repaired: too many to be anything but the surface"
-        kept = f"; {self.lines} lines across the whole image left" if self.lines else ""
-        return f"{self.scars} scars ({self.pixels} pixels) repaired, up to {self.largest * 1e9:.3g} nm removed{kept}"
+        kept = f"; {counted(self.lines, 'line')} across the whole image left" if self.lines else ""
+        if not self.scars:
+            return f"no scars{kept}"
+        repaired = f"{counted(self.scars, 'scar')} ({self.pixels} pixels) repaired"
+        return f"{repaired}, up to {self.largest * 1e9:.3g} nm removed{kept}"
 
 
 def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
@@ -83,7 +87,8 @@ def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
         return topography, ScarReport(0, 0, threshold, 0.0, 0, False)
     scar, scars, lines = _without_lines(found)
     if lines:
-        warnings.warn(f"{lines} lines along the fast axis look like scars across the whole image: left", stacklevel=2)
+        like = counted(lines, "line along the fast axis looks like a scar", "lines along the fast axis look like scars")
+        warnings.warn(f"{like} across the whole image: left", stacklevel=2)
     if np.count_nonzero(scar) > _MOST * z.size:
         share = 100 * np.count_nonzero(scar) / z.size
         warnings.warn(f"{share:.3g} % of the image look like scars: taken for its texture and left", stacklevel=2)
