@@ -30,6 +30,7 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
         {"limits.force", "N", limits->force, 0.0, saturation},
         {"gains.set_point", "N", settings->gains.set_point, 0.0, limits->force},
         {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},
+        {"limits.retract_speed", "m/s", limits->retract_speed, 0.0, rig->stage.max_speed},
         {"limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force},
         {"gains.force_gain", "", needs_gauge && rig->master.gauge == 0.0 ? settings->gains.force_gain : 0.0, 0.0, 0.0},
     };

@@ -74,11 +74,9 @@ static double promised(const loop *l, double slope)
     return promise(l, slope).force;
 }
 
-/* The guarantee, and what is written beside it for a blind lift (docs/safety.md) [N]. */
 static double bound_of(const loop *l, const fault_case *one, const fault_case *other)
 {
-    const double blind = l->touch.rig.probe.spring_constant * l->touch.settings.limits.retract_distance;
-    return promised(l, 0.0) + (is_blind_lift(one, other) ? blind : 0.0);
+    return is_blind_lift(one, other) ? promise(l, 0.0).two_faults : promised(l, 0.0);
 }
 
 static void print_reasons(uint32_t reasons)
@@ -258,6 +256,18 @@ static void a_turned_stage_keeps_the_guarantee(void **state)
     print_message("turned at 0.98 of the limit: worst force %.0f nN, bound %.0f nN\n", 1e9 * worst,
                   1e9 * promised(&l, 0.0));
     assert_true(worst > limit && worst < promised(&l, 0.0));
+    l = begun; /* and lifted blindly, all the way into the sample */
+    l.sim.plan = &begun.plan;
+    const nt_fault both[] = {{NT_FAULT_GAIN, NT_CHANNEL_STAGE, 0.0, FOREVER, -1.0},
+                             {NT_FAULT_DROPOUT, NT_CHANNEL_RIG, 0.0, FOREVER, 0.0}};
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(nt_sim_inject(&l.sim, &both[i]), NT_OK);
+    for (int i = 0; i < 3000; i++) {
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+        worst = fmax(worst, l.sim.truth.tip_force);
+    }
+    print_message("... blindly: worst force %.0f nN, bound %.0f nN\n", 1e9 * worst, 1e9 * promise(&l, 0.0).two_faults);
+    assert_true(worst > 0.9 * promise(&l, 0.0).two_faults && worst < promise(&l, 0.0).two_faults);
 }
 
 /* A motor that gives far more than it is told, over 20 s: either the observer holds, or the master swings by less than
