@@ -2,7 +2,9 @@
  * Messages of the statuses, and problems in words: see status.h. */
 #include "nanotouch/status.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 const char *nt_status_message(nt_status status)
 {
@@ -16,6 +18,14 @@ const char *nt_status_message(nt_status status)
     return "unknown status";
 }
 
+/* A limit that is still valid once %g has rounded it to six digits; `up` is 1 for a minimum, -1 for a maximum. */
+static double inside(double limit, double up)
+{
+    char digits[32];
+    (void)snprintf(digits, sizeof digits, "%g", limit);
+    return up * (strtod(digits, NULL) - limit) < 0.0 ? limit + up * 5.1e-6 * fabs(limit) : limit;
+}
+
 const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size)
 {
     if (problem == NULL || text == NULL || size == 0)
@@ -23,6 +33,7 @@ const char *nt_problem_print(const nt_problem *problem, char *text, unsigned siz
     const char *unit = problem->unit == NULL ? "" : problem->unit;
     const char *space = unit[0] == '\0' ? "" : " ";
     (void)snprintf(text, size, "%s = %g%s%s: valid is %g .. %g%s%s", problem->field == NULL ? "?" : problem->field,
-                   problem->value, space, unit, problem->minimum, problem->maximum, space, unit);
+                   problem->value, space, unit, inside(problem->minimum, 1.0), inside(problem->maximum, -1.0), space,
+                   unit);
     return text;
 }

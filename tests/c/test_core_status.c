@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -44,6 +45,23 @@ static void problem_without_unit(void **state)
     assert_string_equal(nt_problem_print(&bare, text, sizeof text), "? = 1: valid is 0 .. 2");
 }
 
+/* What is said to be valid is, though it is said with six digits. */
+static void limits_are_printed_inwards(void **state)
+{
+    (void)state;
+    char text[100];
+    double low = 1.0, high = 1.0;
+    for (int i = 0; i < 2000; i++) {
+        const nt_problem problem = {"x", "", 0.0, 1e-12 * (1.0 + 1e-10) * (1.0 + 0.0047 * i), 1e3 / (7.0 + 0.0031 * i)};
+        nt_problem_print(&problem, text, sizeof text);
+        assert_int_equal(sscanf(text, "x = 0: valid is %lg .. %lg", &low, &high), 2);
+        assert_true(low >= problem.minimum && low < problem.minimum * (1.0 + 2e-5));
+        assert_true(high <= problem.maximum && high > problem.maximum * (1.0 - 2e-5));
+    }
+    const nt_problem open = {"x", "", -1.0, 0.0, HUGE_VAL};
+    assert_string_equal(nt_problem_print(&open, text, sizeof text), "x = -1: valid is 0 .. inf");
+}
+
 static void short_text_is_cut_and_ended(void **state)
 {
     (void)state;
@@ -63,7 +81,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_status_has_its_own_message), cmocka_unit_test(unknown_status_has_a_message),
         cmocka_unit_test(problem_reads_as_a_sentence),      cmocka_unit_test(problem_without_unit),
-        cmocka_unit_test(short_text_is_cut_and_ended),
+        cmocka_unit_test(limits_are_printed_inwards),       cmocka_unit_test(short_text_is_cut_and_ended),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

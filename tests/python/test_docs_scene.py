@@ -59,6 +59,14 @@ def test_plan_is_printed_as_on_the_page() -> None:
     assert f"```\n{Scene().plan()}\n```" in page("plan")
 
 
+def test_refusals_are_those_of_the_page(capsys: pytest.CaptureFixture[str]) -> None:
+    (block,) = re.findall(r"```\n(\$ nanotouch plan.*?)```", page("plan"), re.DOTALL)
+    shown = block.splitlines()
+    for command, answer in zip(shown[::2], shown[1::2], strict=True):
+        assert main(command.split()[2:]) == 2
+        assert capsys.readouterr().err.strip() == answer
+
+
 def test_costs_are_those_of_the_page() -> None:
     """Every term of a plan has the cost of its row; all forms that presets and their neighbours come to are asked."""
     rows = re.findall(r"^\| (contact|vdw|electrostatic|charge|double layer|hydration|steric) \| (.*?) \| ([\d, ]+) \|$",

@@ -7,6 +7,8 @@ import copy
 import json
 import math
 import pickle
+import re
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nanotouch import Demand, Plan, Rig, Scene, Surface, presets, reference, surface
 from nanotouch.errors import Error, InvalidValue
+from nanotouch.scene import Quantity
 
 PRESETS = random_scenes.PRESETS
 
@@ -121,6 +124,25 @@ def test_facts_without_effect_are_told() -> None:
     said = str(scene.plan())
     assert "warning: contact potential, which does not act between these bodies: 3 V\n" in said
     assert "warning: measured pull-off force, not used: the adhesion is given otherwise: 12 nN" in said
+
+
+@pytest.mark.parametrize("quantity", get_args(Quantity))
+def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
+    """Least accuracy, least budget, largest Hamaker constant: taken as printed, they do."""
+    for name in PRESETS:
+        scene = getattr(presets, name)()[0]
+        for limit, ask in (
+            ("relative_accuracy", lambda value, scene=scene: scene.plan(rtol=value, quantity=quantity)),
+            ("budget", lambda value, scene=scene: scene.plan(rtol=1e-3, budget=value, quantity=quantity)),
+        ):
+            with pytest.raises(InvalidValue, match=limit) as refusal:
+                ask(1e-18 if limit == "relative_accuracy" else 0.5)
+            ask(float(re.findall(r"valid is (\S+) \.\.", str(refusal.value))[0]))
+    scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"hamaker_constant": 1e-17})
+    with pytest.raises(InvalidValue, match="hamaker_constant") as refusal:
+        scene.plan()
+    scene.adhesion.hamaker_constant = float(re.findall(r"\.\. (\S+) J", str(refusal.value))[0])
+    scene.plan(rtol=0.3)
 
 
 def test_plan_without_adhesion_is_hertz() -> None:

@@ -114,7 +114,8 @@ def test_keys_are_bare_keys_of_toml(unit: str) -> None:
 @pytest.mark.parametrize(
     ("value", "unit", "said"),
     [(3.936e-10, "N", "393.6 pN"), (9.9996e-10, "N", "1 nN"), (0.0, "N", "0 N"), (-3.2, "V", "-3.2 V"),
-     (1162.4, "N/m", "1.162 kN/m"), (0.379, "", "0.379"), (math.inf, "N", "inf N"), (math.nan, "m", "nan m")],
+     (1162.4, "N/m", "1.162 kN/m"), (0.379, "", "0.379"), (1053.0, "", "1053"),
+     (math.inf, "N", "inf N"), (math.nan, "m", "nan m")],
 )  # fmt: skip
 def test_numbers_in_words(value: float, unit: str, said: str) -> None:
     assert in_words(value, unit) == said

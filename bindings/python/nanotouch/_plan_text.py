@@ -103,7 +103,8 @@ def _total(facts: dict[str, Any]) -> str:
     text = _folds(facts) if facts["quantity"] == "folds" else f"{_within(facts)}; {_folds(facts)}"
     if not math.isnan(facts["model_error"]):
         text += f" (beside Lennard-Jones the model itself errs by {_percent(facts['model_error'])})"
-    return f"{text}; cost {facts['cost']:.3g} Hertz evaluations, everything exact {facts['full_cost']:.3g}"
+    cost, full = (in_words(facts[name], "", 3) for name in ("cost", "full_cost"))
+    return f"{text}; cost {cost} Hertz evaluations, everything exact {full}"
 
 
 def _within(facts: dict[str, Any]) -> str:

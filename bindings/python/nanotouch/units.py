@@ -99,6 +99,8 @@ def engineering(unit: str, values: ArrayLike) -> tuple[str, float]:
 def in_words(value: float, unit: str, digits: int = 4) -> str:
     """A number with its unit under a prefix that suits: ``in_words(3.936e-10, "N")`` is ``"393.6 pN"``."""
     rounded = float(f"{value:.{digits}g}")  # before the prefix is chosen: 999.96 pN are 1 nN
+    if not unit and 1e3 <= abs(rounded) < 1e6:
+        return f"{rounded:.0f}"  # not 1.05e+03
     prefixed, factor = engineering(unit, [rounded]) if unit else ("", 1.0)
     return f"{rounded * factor:.{digits}g} {prefixed}".rstrip()
 
