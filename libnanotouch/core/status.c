@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 const char *nt_status_message(nt_status status)
 {
@@ -22,8 +21,10 @@ const char *nt_status_message(nt_status status)
 static double inside(double limit, double up)
 {
     char digits[32];
+    double printed = limit;
     (void)snprintf(digits, sizeof digits, "%g", limit);
-    return up * (strtod(digits, NULL) - limit) < 0.0 ? limit + up * 5.1e-6 * fabs(limit) : limit;
+    (void)sscanf(digits, "%lf", &printed);
+    return up * (printed - limit) < 0.0 ? limit + up * 5.1e-6 * fabs(limit) : limit;
 }
 
 const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size)
