@@ -7,8 +7,8 @@
 
 #include <math.h>
 
+#include "control/known_law.h"
 #include "control/sampled.h"
-#include "control/verdict.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
 

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "control/verdict.h"
+#include "control/known_law.h"
 #include "nanotouch/servo.h"
 
 #define LARGEST_FEEDFORWARD 0.8 /* these three as in the table of gains */

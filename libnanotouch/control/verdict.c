@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What a session is judged by, whatever its law. */
-#include "control/verdict.h"
+#include "control/known_law.h"
 
 #include <math.h>
 

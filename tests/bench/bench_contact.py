@@ -10,25 +10,14 @@ from __future__ import annotations
 
 import json
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from nanotouch.contact import reduced
+from timing import least
 
 COUNT = 1_000_000
 RUNS = {"table": 30, "polished": 10, "exact": 3}
-
-
-def least(work: Callable[[], object], runs: int) -> float:
-    """Least time of one call [s]."""
-    times = []
-    for _ in range(runs):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times)
 
 
 def main() -> None:

@@ -9,24 +9,12 @@ Run: pip install Adhesion; python bench_peer.py
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-
 import numpy as np
 from nanotouch.contact import reduced
+from timing import least
 
 LAMBDAS = (0.01, 0.27, 1.0, 5.8, 100.0, 1e5)
 RADII = np.linspace(1.0, 5.0, 40)  # on the stable branch of every lambda
-
-
-def least(work: Callable[[], object], runs: int = 5) -> float:
-    """Least processor time of one call [s]."""
-    times = []
-    for _ in range(runs):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times)
 
 
 def main() -> None:

@@ -178,7 +178,7 @@ static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings
         states.mutable_data()[i] = static_cast<uint8_t>(command.state);
         reasons.mutable_data()[i] = command.reasons;
     }
-    law.raise();
+    law.rethrow();
     py::dict out;
     out["motor_force"] = motor_force;
     out["stage_command"] = stage_command;

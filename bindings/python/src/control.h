@@ -12,7 +12,7 @@ struct OwnLaw {
     py::object call;
     std::exception_ptr error;
 
-    void raise()
+    void rethrow()
     {
         if (error)
             std::rethrow_exception(std::exchange(error, nullptr));

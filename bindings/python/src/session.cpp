@@ -78,14 +78,14 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     }
     nt_problem problem{};
     const nt_status status = nt_session_open(&made->handle, &setup, &problem);
-    made->law.raise(); // it has been tried
+    made->law.rethrow(); // it has been tried
     raise_on(status, problem, "session");
     if (setup.settings.control.choice == NT_CONTROL_OWN && setup.minimum_margin > 0.0) {
         Described<nt_settings> amounts{};
         const double stiffness = nt_session_plan(made->handle)->maximum_stiffness;
         if (nt_margins_own_law(&setup.rig, &setup.settings, stiffness, &amounts.value) == NT_OK)
             made->amounts = std::make_unique<Described<nt_settings>>(amounts);
-        made->law.raise();
+        made->law.rethrow();
     }
     return made;
 }
@@ -101,7 +101,7 @@ template <class Call> static auto alone(Session &self, Call call)
 static void advance_session(Session &self, long ticks)
 {
     const nt_status status = alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); });
-    self.law.raise();
+    self.law.rethrow();
     raise_on(status, "advance");
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The verdict on the laws whose gains are known, which that on a law of one's own rests on; private to control/. */
-#ifndef NANOTOUCH_CONTROL_VERDICT_H
-#define NANOTOUCH_CONTROL_VERDICT_H
+#ifndef NANOTOUCH_CONTROL_KNOWN_LAW_H
+#define NANOTOUCH_CONTROL_KNOWN_LAW_H
 
 #include "nanotouch/margins.h"
 
