@@ -15,8 +15,8 @@ import numpy as np
 from nanotouch import margins, plots, record
 from nanotouch.errors import InvalidValue, require
 from nanotouch.margins import Margins, Resolution
-from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION
-from nanotouch.record import replacing, write_csv
+from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION, new_figure, saved
+from nanotouch.record import write_csv
 from nanotouch.scene import read_tables
 from nanotouch.session import INDENTATION_RANGE, MODES, settings_for_path
 
@@ -165,13 +165,12 @@ def _map(rig: nt.Rig, settings: nt.Settings, out: Any) -> None:
     )  # fmt: skip
     columns = {header: list(values) for header, values in zip(headers, zip(*rows, strict=True), strict=True)}
     write_csv(out / "stability.csv", columns, {"command": "nanotouch margins"})
-    with replacing(out / "stability.png") as part:
-        draw(rig, settings, trials).savefig(part, format="png", dpi=140)
+    saved(draw(rig, settings, trials), out / "stability.png", dpi=140)
 
 
 def draw(rig: nt.Rig, settings: nt.Settings, trials: dict[str, list[Limit]]) -> Any:
     """Left: K_f over the rate at three stiffnesses. Right: the Z-width over the rate at four K_f."""
-    figure = require("matplotlib.figure", "app").Figure(figsize=(12.5, 6.2), layout="constrained")
+    figure = new_figure(12.5, 6.2)
     left, right = figure.subplots(1, 2)
     rates = np.geomspace(100.0, 100e3, 121)
     _gain_panel(left, rig, settings, trials, rates)

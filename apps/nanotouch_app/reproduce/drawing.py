@@ -7,9 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from nanotouch.errors import require
-from nanotouch.plots import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
-from nanotouch.record import replacing
+from nanotouch.plots import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, new_figure, saved
 
 #: colour and dashes of the curves, in order
 LOOKS: tuple[tuple[str, Any], ...] = (
@@ -20,10 +18,9 @@ GREY = "0.4"
 
 def save(draw: Callable[[Any], None], path: Path) -> None:
     """Draw on a new figure and write it, whole or not at all."""
-    figure = require("matplotlib.figure", "app").Figure(figsize=(11.0, 5.0), layout="constrained")
+    figure = new_figure(11.0, 5.0)
     draw(figure)
-    with replacing(path) as part:
-        figure.savefig(part, format="png", dpi=150)
+    saved(figure, path)
 
 
 def dress(panel: Any, title: str, across: str, up: str, legend: str | None = "best") -> None:

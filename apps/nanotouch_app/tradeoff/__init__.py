@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch.errors import InvalidValue, require
+from nanotouch.plots import saved
 from nanotouch.record import write_csv
 
 from nanotouch_app import output
@@ -52,9 +53,9 @@ def run(args: argparse.Namespace) -> int:
     write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
     write_csv(out / "plans.csv", plans.columns(planned), {"command": how, "against": "nanotouch.reference"})
     write_csv(out / "plant.csv", plant.columns(ways), {"command": how, "against": f"sub-step {plant.REFERENCE} rad"})
-    drawing.save(drawing.trade(rows), out / "tradeoff.png")
-    drawing.save(drawing.maps(maps), out / "errormap.png")
-    drawing.save(plans.draw(planned), out / "plans.png")
+    saved(drawing.trade(rows), out / "tradeoff.png", dpi=140)
+    saved(drawing.maps(maps), out / "errormap.png", dpi=140)
+    saved(plans.draw(planned), out / "plans.png", dpi=140)
     if args.doc:
         page.write(args.doc, maps, rows, planned)
     print(page.summary(rows))

@@ -5,12 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from nanotouch.errors import require
-from nanotouch.record import replacing
+from nanotouch.plots import new_figure
 
 from nanotouch_app.tradeoff import errors
 from nanotouch_app.tradeoff.errors import CONTROLS, Control
@@ -21,15 +20,9 @@ from nanotouch_app.tradeoff.solvers import HERTZ
 MARKERS = "svD^o*Ph"
 
 
-def save(figure: Any, path: Path) -> None:
-    """Write a figure, whole or not at all."""
-    with replacing(path) as part:
-        figure.savefig(part, format="png", dpi=140)
-
-
 def trade(rows: list[Row]) -> Any:
     """Error against cost: adhesive and moderate loads (rows), against exact MD and Lennard-Jones (columns)."""
-    figure = require("matplotlib.figure", "app").Figure(figsize=(13.0, 9.5), layout="constrained")
+    figure = new_figure(13.0, 9.5)
     panels = figure.subplots(2, 2, sharex=True)
     truths: tuple[tuple[str, Callable[[Row], float]], ...] = (
         ("exact Maugis-Dugdale", lambda row: row.against_exact),
@@ -89,7 +82,7 @@ def maps(found: Maps) -> Any:
     """Error over lambda and load of every model (columns), for grips and for load control (rows)."""
     names = list(dict.fromkeys(name for _, name in found.error))
     matplotlib = require("matplotlib", "app")
-    figure = require("matplotlib.figure", "app").Figure(figsize=(3.6 * len(names) + 1.2, 8.5), layout="constrained")
+    figure = new_figure(3.6 * len(names) + 1.2, 8.5)
     panels = figure.subplots(2, len(names), sharex=True, sharey=True)
     norm = require("matplotlib.colors", "app").LogNorm(1e-10, 1.0)
     for line, control in zip(panels, CONTROLS, strict=True):

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from nanotouch import Plan, Scene, presets, reference
 from nanotouch.errors import InvalidValue, require
+from nanotouch.plots import new_figure
 from numpy.typing import NDArray
 
 from nanotouch_app.plan import PRESETS
@@ -142,7 +143,7 @@ def summary(rows: list[Row]) -> str:
 
 def draw(rows: list[Row]) -> Any:
     """A panel for each preset: the step of the cost, and at each step the bound and the error."""
-    figure = require("matplotlib.figure", "app").Figure(figsize=(14.0, 7.0), layout="constrained")
+    figure = new_figure(14.0, 7.0)
     panels = figure.subplots(2, math.ceil(len(PRESETS) / 2), sharex=True, sharey=True).ravel()
     for panel, name in zip(panels, PRESETS, strict=False):
         _panel(panel, [row for row in rows if row.preset == name])

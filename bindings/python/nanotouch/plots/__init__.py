@@ -4,7 +4,7 @@
 Every function returns the ``Figure`` and, with ``save=``, also writes it (whole or not at all). Of long records the
 extremes of each stretch are drawn, so that a snap-in of one sample stays visible."""
 
-from .._drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
+from .._drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, new_figure, saved
 from ..units import PREFIXES, engineering
 from .along_line import line
 from .events import Adhesion, adhesion, phases
@@ -15,5 +15,6 @@ from .panels import LONG, STATE_COLOURS, STRETCHES, envelope
 
 __all__ = [
     "BLUE", "GREEN", "LONG", "ORANGE", "PREFIXES", "PURPLE", "SKY", "STATE_COLOURS", "STRETCHES", "VERMILION",
-    "Adhesion", "adhesion", "engineering", "envelope", "force_curves", "force_gap", "line", "phases", "time", "z_width",
+    "Adhesion", "adhesion", "engineering", "envelope", "force_curves", "force_gap", "line", "new_figure", "phases",
+    "saved", "time", "z_width",
 ]  # fmt: skip
