@@ -3,6 +3,7 @@
 #ifndef FORCE_LAWS_H
 #define FORCE_LAWS_H
 
+#include "assertions.h"
 #include "nanotouch/types.h"
 
 /* A law as the checks see it. FORCE_LAW(nt_vdw, nt_vdw_eval) defines nt_vdw_eval_at and nt_vdw_eval_over for it. */
@@ -22,12 +23,6 @@ typedef struct force_law {
     {                                                                                                                  \
         eval##_n((const type *)parameters, arrays);                                                                    \
     }
-
-static inline void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 /* F = -dU/dh and k = -dF/dh between two gaps: five points with step 2e-3 h, truncation (2e-3)^4 times the fifth
  * derivative, some hundred for the steepest power law (an exponential: to gaps of some ten decay lengths); rounding

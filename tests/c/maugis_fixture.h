@@ -3,6 +3,7 @@
 #ifndef TESTS_MAUGIS_FIXTURE_H
 #define TESTS_MAUGIS_FIXTURE_H
 
+#include "assertions.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 
@@ -27,12 +28,6 @@ static inline nt_law_value eval(const nt_maugis *maugis, double indentation, nt_
     assert_int_equal(nt_maugis_eval(maugis, indentation, branch, &value, &info), NT_OK);
     assert_in_range(info.iterations, 0, 20);
     return value;
-}
-
-static inline void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
 }
 
 static inline nt_branch branch_of(int unstable)

@@ -8,14 +8,9 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 static const nt_contact silicon = {20e-9, 76.9e9, 0.144, 7e8};
 

@@ -10,16 +10,11 @@
 #include <cmocka.h>
 
 #include "../reference/jkr_table.h"
+#include "assertions.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 static const nt_contact reduced = {1.0, 0.75, 1.0 / NT_PI, 0.0}; /* K = R = pi w = 1 */
 static const nt_contact silicon = {20e-9, 76.9e9, 0.144, 0.0};

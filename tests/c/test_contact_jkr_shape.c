@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/geometry.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 static const nt_jkr_shape cone = {{NT_SHAPE_CONE, 0, 0.0, 0.6, 0.0}, 1e6, 0.05};
 static const nt_jkr_shape punch = {{NT_SHAPE_PUNCH, 0, 50e-9, 0.0, 0.0}, 1e6, 0.05};

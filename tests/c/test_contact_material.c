@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/material.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 /* The paper's silicon pair, E = 135 GPa, nu = 0.35 twice: E* = 135/(2 (1 - 0.35^2)) = 76.92 GPa. */
 static void effective_modulus_of_the_papers_pair(void **state)

@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "contact/profile.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 static const nt_rim rims[] = {{0.0, 0.3}, {0.2, 0.3}, {0.3, 0.3}, {0.0, 2.7}, {2.7, 2.7}};
 

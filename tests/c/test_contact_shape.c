@@ -9,15 +9,10 @@
 #include <cmocka.h>
 
 #include "../reference/geometry_table.h"
+#include "assertions.h"
 #include "nanotouch/geometry.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 /* One of each kind, as a tip of some 20 nm. */
 static const nt_shape tips[] = {

@@ -8,14 +8,9 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 /* Sneddon's integrals for a rigid profile f(r) of contact radius a:
  *     delta = a Int_0^a f'(r)/sqrt(a^2 - r^2) dr,     F = 2 E* Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr,

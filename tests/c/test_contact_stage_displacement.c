@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/geometry.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 static const nt_shape sphere = {NT_SHAPE_PARABOLOID, 0, 30e-9, 0.0, 0.0};
 static const nt_lever lever = {8.0, 0.2};

@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/geometry.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 /* Two equal balls are one of half the radius on a flat; a flat changes nothing; a hollow makes the ball seem larger. */
 static void effective_radius(void **state)

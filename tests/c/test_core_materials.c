@@ -8,13 +8,8 @@
 
 #include <cmocka.h>
 
+#include "assertions.h"
 #include "nanotouch/material.h"
-
-static void assert_within(double value, double expected, double bound)
-{
-    if (!(fabs(value - expected) <= bound))
-        fail_msg("%.17g differs from %.17g by %g, bound %g", value, expected, fabs(value - expected), bound);
-}
 
 static void every_entry_is_sane_and_found(void **state)
 {
