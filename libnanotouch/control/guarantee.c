@@ -44,7 +44,7 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     found.force = limits->force + found.motion + found.ringing + found.snap_in + found.noise;
     const double lift =
         limits->retract_distance + ringing_amplitude(&rig->stage, shape.gains.stage_damping, limits->retract_speed);
-    found.two_faults = found.force + k_eff * lift;
+    found.with_faults = found.force + k_eff * lift;
     /* first touch is noticed where the force leaves the noise, and read with it; a tip that snaps in goes over what
      * that stretches the lever by */
     const double read = (2.0 * found.noise + hazard->snap_in_force) / probe->spring_constant;

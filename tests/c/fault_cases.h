@@ -143,4 +143,54 @@ static inline nt_status observe(loop *l, int time, outcome *o)
     return NT_OK;
 }
 
+static loop pressed, pressed_slow; /* at rest in contact at 3 N, RUN; at 10 kHz and at 1 kHz */
+
+static inline int press_at(loop *l, double rate)
+{
+    nt_session_setup setup = nt_session_defaults();
+    setup.clearance = 20e-9;
+    setup.settings.gains.rate = rate;
+    if (loop_open(l, &setup) != NT_OK)
+        return 1;
+    loop_push(l, 3.0, 0.5);
+    for (int i = 0; i < 3.0 * rate; i++)
+        if (loop_tick(l, NULL, NULL) != NT_OK || l->command.state != NT_RUN)
+            return 1;
+    return 0;
+}
+
+static inline int press(void **state)
+{
+    (void)state;
+    return press_at(&pressed, 10e3) || press_at(&pressed_slow, 1e3);
+}
+
+/* The pressed rig with these faults from now on; NULL for none. */
+static inline void start(loop *l, const fault_case *one, const fault_case *other)
+{
+    const fault_case *const cases[] = {one, other};
+    const loop *begun = is_slow(one) ? &pressed_slow : &pressed;
+    *l = *begun;
+    l->sim.plan = &begun->plan;
+    for (int i = 0; i < 2; i++)
+        if (cases[i] != NULL) {
+            nt_fault fault = cases[i]->fault;
+            fault.start = (double)l->sim.tick * l->sim.period;
+            assert_int_equal(nt_sim_inject(&l->sim, &fault), NT_OK);
+        }
+}
+
+/* What nt_guarantee has in store for a surface of this slope. */
+static inline nt_guarantee promise(const loop *l, double slope)
+{
+    const nt_hazard hazard = {
+        .slope = slope, .snap_in_force = l->plan.pull_off_force, .stiffness = l->plan.maximum_stiffness};
+    return nt_guarantee_compute(&l->touch.rig, &l->touch.settings, &hazard);
+}
+
+static inline double promised(const loop *l, double slope)
+{
+    return promise(l, slope).force;
+}
+
 #endif

@@ -28,7 +28,7 @@ static void it_is_the_limit_and_its_terms(void **state)
     /* 26 um/s (20, and 60 1/s of 0.1 um) for D, on 8 and 1000 N/m in series */
     assert_true(fabs(g.motion - 26e-6 * g.reaction_time * 8.0 / 1.008) < 1e-15);
     const double k_eff = 8.0 / 1.008, share = settings.limits.retract_speed / 26e-6; /* the wrong way, ringing */
-    assert_true(fabs(g.two_faults - g.force - k_eff * settings.limits.retract_distance - share * g.ringing) < 1e-18);
+    assert_true(fabs(g.with_faults - g.force - k_eff * settings.limits.retract_distance - share * g.ringing) < 1e-18);
     assert_true(g.indentation > settings.limits.indentation + 26e-6 * g.reaction_time);
 }
 

@@ -12,43 +12,6 @@
 #include "fault_cases.h"
 #include "nanotouch/random.h"
 
-static loop pressed, pressed_slow; /* at rest in contact at 3 N, RUN; at 10 kHz and at 1 kHz */
-
-static int press_at(loop *l, double rate)
-{
-    nt_session_setup setup = nt_session_defaults();
-    setup.clearance = 20e-9;
-    setup.settings.gains.rate = rate;
-    if (loop_open(l, &setup) != NT_OK)
-        return 1;
-    loop_push(l, 3.0, 0.5);
-    for (int i = 0; i < 3.0 * rate; i++)
-        if (loop_tick(l, NULL, NULL) != NT_OK || l->command.state != NT_RUN)
-            return 1;
-    return 0;
-}
-
-static int press(void **state)
-{
-    (void)state;
-    return press_at(&pressed, 10e3) || press_at(&pressed_slow, 1e3);
-}
-
-/* The pressed rig with these faults from now on; NULL for none. */
-static void start(loop *l, const fault_case *one, const fault_case *other)
-{
-    const fault_case *const cases[] = {one, other};
-    const loop *begun = is_slow(one) ? &pressed_slow : &pressed;
-    *l = *begun;
-    l->sim.plan = &begun->plan;
-    for (int i = 0; i < 2; i++)
-        if (cases[i] != NULL) {
-            nt_fault fault = cases[i]->fault;
-            fault.start = (double)l->sim.tick * l->sim.period;
-            assert_int_equal(nt_sim_inject(&l->sim, &fault), NT_OK);
-        }
-}
-
 /* bound: of the force [N]. */
 static void check_bounds(const loop *l, const outcome *o, double bound)
 {
@@ -61,22 +24,9 @@ static void check_bounds(const loop *l, const outcome *o, double bound)
         assert_true(o->lifted <= limits->retract_distance * (1.0 + 1e-12) + 150e-9);
 }
 
-/* What nt_guarantee has in store for a surface of this slope. */
-static nt_guarantee promise(const loop *l, double slope)
-{
-    const nt_hazard hazard = {
-        .slope = slope, .snap_in_force = l->plan.pull_off_force, .stiffness = l->plan.maximum_stiffness};
-    return nt_guarantee_compute(&l->touch.rig, &l->touch.settings, &hazard);
-}
-
-static double promised(const loop *l, double slope)
-{
-    return promise(l, slope).force;
-}
-
 static double bound_of(const loop *l, const fault_case *one, const fault_case *other)
 {
-    return is_blind_lift(one, other) ? promise(l, 0.0).two_faults : promised(l, 0.0);
+    return is_blind_lift(one, other) ? promise(l, 0.0).with_faults : promised(l, 0.0);
 }
 
 static void print_reasons(uint32_t reasons)
@@ -266,8 +216,8 @@ static void a_turned_stage_keeps_the_guarantee(void **state)
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
         worst = fmax(worst, l.sim.truth.tip_force);
     }
-    print_message("... blindly: worst force %.0f nN, bound %.0f nN\n", 1e9 * worst, 1e9 * promise(&l, 0.0).two_faults);
-    assert_true(worst > 0.9 * promise(&l, 0.0).two_faults && worst < promise(&l, 0.0).two_faults);
+    print_message("... blindly: worst force %.0f nN, bound %.0f nN\n", 1e9 * worst, 1e9 * promise(&l, 0.0).with_faults);
+    assert_true(worst > 0.9 * promise(&l, 0.0).with_faults && worst < promise(&l, 0.0).with_faults);
 }
 
 /* A motor that gives far more than it is told, over 20 s: either the observer holds, or the master swings by less than

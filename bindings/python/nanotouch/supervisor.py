@@ -39,8 +39,8 @@ class Guarantee(NamedTuple):
     """of the reading [N]"""
     force: float
     """limit and all of these: never more than this on the sample, either sign [N]"""
-    two_faults: float
-    """the same where two things fail at once, a stage that turns its sign while nothing fresh is read among them [N]"""
+    with_faults: float
+    """the same whatever fails at once, a stage that turns its sign while nothing is read of it among it [N]"""
     indentation: float
     """never more than this past first touch, where the tip stands sideways [m]"""
 
@@ -51,8 +51,8 @@ class Guarantee(NamedTuple):
             f"{(self.force - terms) * 1e9:.0f} nN and {terms * 1e9:.0f} nN before a stop shows (motion "
             f"{self.motion * 1e9:.0f}, ringing {self.ringing * 1e9:.0f}, snap-in {self.snap_in * 1e9:.0f}, noise "
             f"{self.noise * 1e9:.0f}); indentation at most {self.indentation * 1e9:.0f} nm; reaction within "
-            f"{self.reaction_time * 1e3:.2f} ms; at most {self.two_faults * 1e9:.0f} nN should two things fail at once, "
-            "the stage turning its sign while nothing is read"
+            f"{self.reaction_time * 1e3:.2f} ms; at most {self.with_faults * 1e9:.0f} nN whatever "
+            "fails at once, a stage that turns its sign unseen among it"
         )
 
 

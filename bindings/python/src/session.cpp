@@ -142,7 +142,7 @@ static py::dict guarantee_of(const Session &self)
     out["snap_in"] = guarantee.snap_in;
     out["noise"] = guarantee.noise;
     out["force"] = guarantee.force;
-    out["two_faults"] = guarantee.two_faults;
+    out["with_faults"] = guarantee.with_faults;
     out["indentation"] = guarantee.indentation;
     return out;
 }

@@ -25,8 +25,8 @@ typedef struct nt_guarantee {
     double snap_in;       /* the tip arrives with the energy of the attraction [N] */
     double noise;         /* 6 sigma and a step of the reading [N] */
     double force;         /* limit and all four: never more than this on the sample, either sign [N] */
-    double two_faults;    /* the same where two things fail at once: a stage that turns its sign while nothing fresh is
-                             read is lifted into the sample, by all of retract_distance [N] */
+    double with_faults;   /* the same whatever fails at once: a stage that turns its sign while nothing is read of it is
+                             lifted into the sample, by all of retract_distance [N] */
     double indentation;   /* never more than this past first touch, at rest sideways [m] */
 } nt_guarantee;
 NT_API nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard);

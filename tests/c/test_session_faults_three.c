@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Three faults at once, every three of the table: the force stays below what the guarantee has for any faults, and
+ * below the guarantee itself unless a turned stage is lifted unseen. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "fault_cases.h"
+
+/* Beside those two that blind it, any two that take both of its readings. */
+static int takes(const nt_fault *fault, nt_channel channel)
+{
+    return fault->channel == channel && fault->duration > ONE_TICK;
+}
+
+static int is_unseen(const fault_case *const three[3])
+{
+    int turned = 0, blind = 0, position = 0, deflection = 0;
+    for (int i = 0; i < 3; i++) {
+        const nt_fault *fault = &three[i]->fault;
+        turned |= turns_the_stage(fault);
+        blind |= blinds(fault);
+        position |= takes(fault, NT_CHANNEL_STAGE_POSITION);
+        deflection |= takes(fault, NT_CHANNEL_DEFLECTION);
+    }
+    return turned && (blind || (position && deflection));
+}
+
+static void every_three_faults_keep_the_bounds(void **state)
+{
+    (void)state;
+    static loop l;
+    double worst = 0.0, unseen = 0.0;
+    int triples = 0;
+    for (int i = 0; i < FAULT_CASES; i++)
+        for (int j = 0; j < i; j++)
+            for (int k = 0; k < j; k++) {
+                const fault_case *const three[3] = {&fault_cases[i], &fault_cases[j], &fault_cases[k]};
+                if (is_slow(three[0]) || is_slow(three[1]) || is_slow(three[2]))
+                    continue;
+                outcome o;
+                start(&l, three[0], three[1]);
+                nt_fault third = three[2]->fault;
+                third.start = (double)l.sim.tick * l.sim.period;
+                assert_int_equal(nt_sim_inject(&l.sim, &third), NT_OK);
+                assert_int_equal(observe(&l, 1500, &o), NT_OK);
+                const nt_guarantee bound = promise(&l, 0.0);
+                double *kept = is_unseen(three) ? &unseen : &worst;
+                *kept = fmax(*kept, o.worst_force);
+                if (!o.finite || o.late_motor != 0.0 || !(*kept < (kept == &worst ? bound.force : bound.with_faults)))
+                    fail_msg("%s, %s, %s: %.0f nN", three[0]->name, three[1]->name, three[2]->name,
+                             1e9 * o.worst_force);
+                triples++;
+            }
+    print_message("%d triples: worst force %.0f nN, %.0f nN where a turned stage is lifted unseen\n", triples,
+                  1e9 * worst, 1e9 * unseen);
+    assert_true(worst > 0.9e-6 && unseen > 4e-6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_three_faults_keep_the_bounds)};
+    return cmocka_run_group_tests(tests, press, NULL);
+}
