@@ -52,7 +52,7 @@ PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 # The modules and packages of the Python library from the bottom up; each may import what stands before it.
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
-    "what all need": "_core errors columns formats units _arrays _digest _files _writing _drawing",
+    "what all need": "_core errors columns formats units _arrays _digest _files _words _writing _drawing",
     "readers": "_transfer _worker _readers",
     "laws": "contact forces geometry materials",
     "devices": "faults hal _plant",

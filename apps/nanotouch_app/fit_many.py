@@ -40,15 +40,21 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
         )  # fmt: skip
     sheets = sheet.draw(summary.pictures, folder, out.stem)
     print(summary)
-    for row in _worst(summary.rows):
-        number = "" if row["curve"] == "" else f"#{row['curve']}"
-        print(f"  {row['status']}: {row['file']}{number}: {row['reason'].removeprefix(row['file'] + ': ')}")
+    _tell_without(summary.rows)
     for name in summary.unused:
         print(f"  note: the sidecar's {name!r} is none of these files")
+    drawn = len(sheets) * sheet.ACROSS * sheet.DOWN
+    if drawn < len(summary.pictures):
+        print(f"  note: the sheets show the first {drawn} of {len(summary.pictures)} fits")
     print(f"written to {folder}/: {', '.join([out.name, f'{out.name}.json', *(path.name for path in sheets)])}")
     return 0 if summary.count("ok") else 1
 
 
-def _worst(rows: list[dict[str, Any]], most: int = 20) -> list[dict[str, Any]]:
+def _tell_without(rows: list[dict[str, Any]], most: int = 20) -> None:
+    """The curves without a result, and why."""
     without = [row for row in rows if row["status"] != "ok"]
-    return without[:most]
+    for row in without[:most]:
+        number = "" if row["curve"] == "" else f"#{row['curve']}"
+        print(f"  {row['status']}: {row['file']}{number}: {row['reason'].removeprefix(row['file'] + ': ')}")
+    if len(without) > most:
+        print(f"  and {len(without) - most} more in the table")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -179,3 +180,57 @@ def test_the_command(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture
         "results-01.png", "results.csv", "results.csv.journal", "results.csv.json"]  # fmt: skip
     assert main(["fit", str(folder), "--out", str(tmp_path)]) == 2
     assert "results.csv" in capsys.readouterr().err
+
+
+NAMES = [
+    b"a\xff.ibw",
+    b"new\nline.ibw",
+    b'comma, "quote".ibw',
+    "Größe µm 漢字.ibw".encode(),
+    b"$a$\\b$.ibw",
+    b"=SUM(A1).ibw",
+]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems do not have such names")
+def test_any_name_a_file_can_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Bytes that are no UTF-8, line ends, formulas of matplotlib: a row, a picture and a line of text for each."""
+    pytest.importorskip("matplotlib")
+    main: Any = pytest.importorskip("nanotouch_app.main").main
+    folder = tmp_path / "names"
+    folder.mkdir()
+    write_ibw_curve(tmp_path / "a.ibw", known_curve())
+    for name in NAMES:
+        (folder / os.fsdecode(name)).write_bytes((tmp_path / "a.ibw").read_bytes())
+    (folder / os.fsdecode(b"cut\xff.ibw")).write_bytes(b"short")
+    out = tmp_path / "results.csv"
+    for _ in range(2):  # the second reads the journal
+        assert main(["fit", str(folder), "--model", "jkr", "--radius", "30nm", "--out", str(out)]) == 0
+        assert "7 curves: 6 ok, 0 excluded, 1 failed" in capsys.readouterr().out
+    found = {Path(row["file"]).name for row in rows_of(out)}
+    written = [os.fsdecode(name).encode("utf-8", "backslashreplace").decode() for name in [*NAMES, b"cut\xff.ibw"]]
+    assert found == set(written)
+    one = str(folder / os.fsdecode(NAMES[0]))
+    assert main(["fit", one, "--model", "jkr", "--radius", "30nm", "--out", str(tmp_path / "one")]) == 0
+
+
+def test_what_a_run_is_given_is_no_curve(folder: Path) -> None:
+    """Table, sidecar and the results themselves may lie among the curves; names with brackets are names."""
+    table = write(folder / "table.csv", "file,spring_constant,sensitivity\nb.*,2N/m,\n")
+    sidecar = write(folder / "day.toml", '["cut.ibw"]\nexclude = "cut off"\n')
+    for _ in range(2):
+        summary = batch.fit_files(
+            [folder], folder / "r[1].csv", "jkr", sidecar=sidecar, reading={"calibration": str(table)}, **RADIUS
+        )
+        (folder / "r[1]-01.png").write_bytes(b"a sheet")
+        assert [Path(row["file"]).name for row in summary.rows] == ["a.ibw", "b.ibw", "cut.ibw", "notes.md"]
+    with pytest.raises(nt.errors.InvalidValue, match="no curve"):
+        batch.fit_files([table], folder / "other.csv", reading={"calibration": str(table)})
+
+
+def test_many_failures_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main: Any = pytest.importorskip("nanotouch_app.main").main
+    for number in range(23):
+        (tmp_path / f"{number:02d}.ibw").write_bytes(b"no wave")
+    assert main(["fit", str(tmp_path), "--out", str(tmp_path / "results.csv")]) == 1
+    assert "and 3 more in the table" in capsys.readouterr().out

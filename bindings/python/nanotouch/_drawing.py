@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +22,15 @@ def new_figure(width: float, height: float) -> Any:
     return require("matplotlib.figure", "app").Figure(figsize=(width, height), layout="constrained")
 
 
+def plain(text: str) -> str:
+    """A user's text, in which dollar signs make no formula."""
+    return text.replace("$", r"\$")
+
+
 def saved(figure: Any, save: StrPath | None, dpi: int = 150) -> Any:
     """The figure, also written where a path is given, whole or not at all; its ending names the format."""
     if save is not None:
-        with replacing(save) as part:
+        with replacing(save) as part, warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph", UserWarning)  # of a name that the font lacks: a box is drawn
             figure.savefig(part, format=Path(save).suffix.lstrip(".") or "png", dpi=dpi)
     return figure

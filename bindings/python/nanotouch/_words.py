@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers in sentences."""
+"""Numbers and names in sentences."""
 
 from __future__ import annotations
 
@@ -14,3 +14,8 @@ def counted(number: int, noun: str, plural: str = "") -> str:
 def times(ratio: float) -> str:
     """A ratio with two digits and no exponent: ``"2.4 times"``, ``"250 times"``."""
     return f"{ratio:.2g} times" if ratio < 99.5 else f"{float(f'{ratio:.2g}'):.0f} times"
+
+
+def printable(text: str) -> str:
+    """The same where it can be printed; of a file's name, bytes that are no character are written out."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -17,6 +17,7 @@ import numpy as np
 import nanotouch
 
 from .._digest import file_digest
+from .._words import counted, printable
 from .._writing import replacing
 from ..contact import Model
 from ..curves import CalibrationTable, read
@@ -62,7 +63,8 @@ class Summary:
 
     def __str__(self) -> str:
         counts = ", ".join(f"{self.count(status)} {status}" for status in ("ok", "excluded", "failed"))
-        return f"{len(self.rows)} curves: {counts}; {self.reused} files from an earlier run"
+        reused = f"; {counted(self.reused, 'file')} from an earlier run" if self.reused else ""
+        return f"{counted(len(self.rows), 'curve')}: {counts}{reused}"
 
 
 def files_of(names: Iterable[str | os.PathLike[str]]) -> list[Path]:
@@ -109,10 +111,10 @@ def fit_files(
         Called with the fraction done.
     """
     reading = dict(reading or {})
+    out = Path(out)
+    files = _without(files_of(names), (*_own(out), *_given(sidecar, reading)))
     if isinstance(reading.get("calibration"), str | os.PathLike):
         reading["calibration"] = CalibrationTable.from_csv(reading["calibration"])
-    files, out = files_of(names), Path(out)
-    files = [file for file in files if file not in _own(out)]
     decided = Sidecar() if sidecar is None else Sidecar.from_toml(sidecar)
     made_of = {
         "version": nanotouch.__version__,
@@ -142,9 +144,24 @@ def fit_files(
     return Summary(rows, [p for entry in entries for p in entry["pictures"]], reused, decided.unused(files))
 
 
+def _without(files: list[Path], others: tuple[Path, ...]) -> list[Path]:
+    """The curves among the files."""
+    known = {path.resolve() for path in others}
+    curves = [file for file in files if file.resolve() not in known]
+    if not curves:
+        raise InvalidValue(f"{', '.join(map(str, files))}: the run's own files, and no curve")
+    return curves
+
+
 def _own(out: Path) -> tuple[Path, ...]:
     """What a run leaves itself, which is no force curve."""
-    return (out, _beside(out, "json"), _beside(out, "journal"), *out.parent.glob(f"{out.stem}-[0-9][0-9].png"))
+    sheets = out.parent.glob(f"{glob.escape(out.stem)}-[0-9][0-9].png")
+    return (out, _beside(out, "json"), _beside(out, "journal"), *sheets)
+
+
+def _given(sidecar: str | os.PathLike[str] | None, reading: Mapping[str, Any]) -> list[Path]:
+    """Tables that a run is given, which may lie among the curves."""
+    return [Path(file) for file in (sidecar, reading.get("calibration")) if isinstance(file, str | os.PathLike)]
 
 
 def _beside(out: Path, ending: str) -> Path:
@@ -182,7 +199,7 @@ def _fitted(
         curves = read(file, **reading)
     except Exception as error:
         return [_row_without(file, None, "failed", _said(error))], []
-    rows, pictures = [], []
+    rows, pictures, name = [], [], printable(file.name)
     for index, curve in enumerate(curves):
         decision = decided.of(file, index)
         if decision.exclude:
@@ -194,7 +211,7 @@ def _fitted(
             rows.append(_row_without(file, index, "failed", _said(error)))
             continue
         rows.append(_row(file, index, result, decision))
-        pictures.append(_picture(file.name if len(curves) == 1 else f"{file.name}#{index}", result))
+        pictures.append(_picture(name if len(curves) == 1 else f"{name}#{index}", result))
     return rows, pictures
 
 
@@ -245,7 +262,8 @@ def _picture(name: str, result: FitResult) -> dict[str, Any]:
 
 def _write_csv(path: Path, rows: list[Row]) -> None:
     names = list(dict.fromkeys(key for row in rows for key in row))
-    with replacing(path) as part, part.open("w", encoding="utf-8", newline="") as stream:
+    # file names may hold bytes that are no UTF-8
+    with replacing(path) as part, part.open("w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
         writer = csv.DictWriter(stream, names, restval="")
         writer.writeheader()
         writer.writerows(rows)

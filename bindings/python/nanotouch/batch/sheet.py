@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._drawing import VERMILION, new_figure, saved
+from .._drawing import VERMILION, new_figure, plain, saved
 from ..units import engineering
 
 ACROSS, DOWN = 5, 6
@@ -57,7 +57,8 @@ def _curve(panel: Any, picture: Mapping[str, Any]) -> None:
     panel.plot((z - z.min()) * scale_z, force * scale_f, ".", ms=2.5, color="0.55")
     panel.plot((z - z.min()) * scale_z, fitted * scale_f, lw=1.0, color=colour)
     panel.axhline(0.0, color="0.8", lw=0.6, zorder=0)
-    panel.set_title(f"{_short(picture['name'])}\n{picture['text'].replace('+-', '±')}", fontsize=6.5, color=colour)
+    text = picture["text"].replace("+-", "±")
+    panel.set_title(f"{plain(_short(picture['name']))}\n{text}", fontsize=6.5, color=colour)
     panel.tick_params(labelsize=6)
     panel.set_xlabel(wide, fontsize=6, labelpad=1)
     panel.set_ylabel(strong, fontsize=6, labelpad=1)

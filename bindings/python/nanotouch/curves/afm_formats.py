@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._words import printable
 from ..errors import ReadError, require
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS
@@ -27,7 +28,7 @@ _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a volta
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
-    return [_converted(data, file) for data in _loaded(file, calibration)]
+    return [_converted(data, file, number) for number, data in enumerate(_loaded(file, calibration))]
 
 
 def _loaded(file: Path, calibration: Calibration) -> list[Any]:
@@ -47,8 +48,8 @@ def _loaded(file: Path, calibration: Calibration) -> list[Any]:
         return list(afmformats.load_data(file, meta_override={key: given[key] for key in error.meta_keys}))
 
 
-def _converted(data: Any, file: Path) -> ForceCurve:
-    meta = dict(data.metadata.items())
+def _converted(data: Any, file: Path, number: int) -> ForceCurve:
+    meta = dict(data.metadata.items()) | {"enum": number}  # counted from 0, of Asylum's too
     z_channel = next((c for c in _Z_CHANNELS if c in data.columns), None)
     if z_channel is None or "force" not in data.columns:
         raise ReadError(f"{file}: curve {data.enum} lacks a height or a force; it has {', '.join(data.columns)}")
@@ -58,7 +59,7 @@ def _converted(data: Any, file: Path) -> ForceCurve:
     # Without a time column none is invented: the sampling rates in the headers do not always hold (Asylum's do not).
     time = np.asarray(data["time"], np.float64) if "time" in data.columns else np.full(z.size, np.nan)
     segments = tuple(Segment(role, time[part], z[part], z_channel, force[part]) for role, part in _parts(data, z))
-    return ForceCurve(segments, meta, file.name)
+    return ForceCurve(segments, meta, printable(file.name))
 
 
 def _parts(data: Any, z: NDArray[np.float64]) -> list[tuple[Role, slice]]:

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._files import check_unpacked
+from .._words import printable
 from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS
@@ -120,7 +121,7 @@ class Archive:
         if not segments:
             raise ReadError(f"{self.file}: curve {enum} has no segments")
         meta |= {"duration": start, "segment count": len(segments), "point count": sum(len(s) for s in segments)}
-        return ForceCurve(tuple(segments), meta, self.file.name)
+        return ForceCurve(tuple(segments), meta, printable(self.file.name))
 
     def place(self, number: int) -> dict[str, Any]:
         """What a curve's ``meta`` says of grid and position, from its header alone."""

@@ -19,6 +19,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .._words import printable
 from ..errors import ReadError
 from .checks import MAX_POINTS
 from .curve import ForceCurve, Segment
@@ -101,7 +102,7 @@ def read(file: Path) -> list[ForceCurve]:
                 for role, part in parts
             ),
             meta | _place(number, line, len(raw)),
-            file.name,
+            printable(file.name),
         )
         for number in range(len(raw))
     ]

@@ -10,6 +10,7 @@ from typing import Any
 from .. import _worker
 from .._files import checked_path, guarded, refuse_traps
 from .._readers import head_of, registered_for
+from .._words import printable
 from ..errors import ReadError
 from ..formats import refusal
 from . import afm_formats, jpk, nanoscope
@@ -156,4 +157,4 @@ def _rechecked(curve: ForceCurve, file: Path) -> ForceCurve:
         meta["path"] = file
     with guarded(file, "worker"):
         check_curve(curve, file)
-    return ForceCurve(curve.segments, meta, file.name)
+    return ForceCurve(curve.segments, meta, printable(file.name))

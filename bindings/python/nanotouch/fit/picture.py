@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch._drawing import BLUE, GREEN, VERMILION, new_figure, saved
+from nanotouch._drawing import BLUE, GREEN, VERMILION, new_figure, plain, saved
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.units import engineering
 
@@ -30,7 +30,7 @@ def draw(curve: ForceCurve, result: FitResult, save: str | os.PathLike[str] | No
     fitted = figure.add_subplot(grid[:2, 1])
     _fitted(fitted, result)
     _residuals(figure.add_subplot(grid[2, 1], sharex=fitted), result)
-    figure.suptitle(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {result.title}")
+    figure.suptitle(plain(f"{curve.name}, curve {curve.meta.get('enum', 0)}: {result.title}"))
     return saved(figure, save, dpi=130)
 
 

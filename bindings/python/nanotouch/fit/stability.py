@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch._drawing import BLUE, new_figure, saved
+from nanotouch._drawing import BLUE, new_figure, plain, saved
 from nanotouch.curves import ForceCurve, analyse
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.units import engineering
@@ -62,7 +62,7 @@ class Stability:
         )
         panel.set_xlabel(f"end of the window, indentation $\\delta$ ({wide})")
         panel.set_ylabel(f"effective modulus $E^*$ ({stiff})")
-        panel.set_title(f"{self.whole.name}: {self.whole.title}", fontsize=10)
+        panel.set_title(plain(f"{self.whole.name}: {self.whole.title}"), fontsize=10)
         panel.legend(fontsize=8)
         return saved(figure, save, dpi=130)
 

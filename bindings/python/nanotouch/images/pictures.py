@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .._drawing import new_figure, saved
+from .._drawing import new_figure, plain, saved
 from ..errors import InvalidValue
 from ..units import engineering
 from .particles import GrainTable
@@ -47,7 +47,7 @@ def draw(
     axes = figure.subplots(1, len(shown), squeeze=False)[0]
     for axis, (title, topography) in zip(axes, shown.items(), strict=True):
         _picture(figure, axis, topography)
-        axis.set_title(title, fontsize="medium")
+        axis.set_title(plain(title), fontsize="medium")
     if grains is not None and len(grains):
         _outlines(axes[-1], list(shown.values())[-1], grains)
     return saved(figure, save, dpi=90)

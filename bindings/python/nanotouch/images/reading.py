@@ -12,6 +12,7 @@ import numpy as np
 from .. import _worker
 from .._files import checked_path, guarded, refuse_traps
 from .._readers import head_of, registered_for
+from .._words import printable
 from ..errors import InvalidValue, ReadError
 from ..formats import refusal
 from . import hdf5, surfacetopography
@@ -122,7 +123,7 @@ def _checked(plane: Plane, file: Path, given_pixel: tuple[float, float] | None, 
     heights, mask = filled(plane.values * _height_scale(plane, z_unit, file), file)
     if plane.mask is not None:
         mask |= plane.mask
-    topography = Topography(heights, pixel_size, file.name, plane.name, plane.source, mask)
+    topography = Topography(heights, pixel_size, printable(file.name), plane.name, plane.source, mask)
     check_scale(topography, file)
     return topography
 

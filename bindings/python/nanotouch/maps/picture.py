@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._drawing import new_figure, saved
+from .._drawing import new_figure, plain, saved
 from ..errors import InvalidValue, require
 from ..units import engineering
 from .dataset import determined, doubtful, flag_counts
@@ -55,7 +55,7 @@ def draw(data: Any, names: tuple[str, ...] = PANELS, save: str | os.PathLike[str
         panel.set_ylabel(labels[1])
     for panel in panels[count:]:
         panel.set_axis_off()
-    figure.suptitle(f"{data.attrs.get('title', '')}, {data.sizes['y']} x {data.sizes['x']} curves", fontsize=10)
+    figure.suptitle(f"{plain(data.attrs.get('title', ''))}, {data.sizes['y']} x {data.sizes['x']} curves", fontsize=10)
     return saved(figure, save, dpi=130)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._digest import file_digest
+from .._words import printable
 from ..curves import ForceCurve, Segment, Stream, read, stream
 from ..errors import InvalidValue
 
@@ -246,7 +247,7 @@ def volume_of(source: Any, z: Any, deflection: bool, reading: Mapping[str, Any])
         path = Path(source)
         known = {key: value for key, value in reading.items() if key != "untrusted"}
         found = None if reading["untrusted"] else stream(path, **known)
-        return CurveVolume.of(read(path, **reading) if found is None else found, path.name, path)
+        return CurveVolume.of(read(path, **reading) if found is None else found, printable(path.name), path)
     if isinstance(source, Sequence) and source and isinstance(source[0], ForceCurve):
         return CurveVolume.of(source, source[0].name)
     if not hasattr(source, "shape"):
