@@ -9,13 +9,8 @@
 nt_reduced_units nt_reduced_units_of(const nt_contact *contact)
 {
     const double energy = NT_PI * contact->work_of_adhesion;
-    const double root_length = cbrt(energy / (4.0 / 3.0 * contact->effective_modulus)); /* (pi w/K)^(1/3) [m^(1/3)] */
-    const double root_radius = cbrt(contact->radius);
-    return (nt_reduced_units){
-        .load = energy * contact->radius,
-        .radius = root_length * root_radius * root_radius,
-        .indentation = root_length * root_length * root_radius,
-    };
+    const double R = contact->radius, ratio = cbrt(energy / (4.0 / 3.0 * contact->effective_modulus) / R);
+    return (nt_reduced_units){.load = energy * R, .radius = ratio * R, .indentation = ratio * ratio * R};
 }
 
 nt_law_value nt_reduced_to_si(const nt_law_value *reduced, const nt_reduced_units *units)

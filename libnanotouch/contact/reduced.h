@@ -24,7 +24,7 @@ typedef struct nt_reduced_units {
     double load, radius, indentation; /* [N], [m], [m] */
 } nt_reduced_units;
 
-/* Products of cube roots, so that no intermediate leaves the range of a double. */
+/* By one cube root, (pi w/(K R))^(1/3), so that no intermediate leaves the range of a double. */
 nt_reduced_units nt_reduced_units_of(const nt_contact *contact);
 
 /* Reduced {U, F, k, a} in SI. */

@@ -39,8 +39,9 @@ static nt_law_value sum(const nt_double_layer *layer, double gap, double A, doub
 {
     const double x = nt_law_gap(gap, layer->minimum_gap) / layer->debye_length, kappa = 1.0 / layer->debye_length;
     const double C = NT_PI * NT_VACUUM_PERMITTIVITY * layer->relative_permittivity * layer->radius;
-    const double e = exp(-x), more = 1.0 + e, less = -expm1(-x);
-    const double log_less = x < 0.7 ? log(less) : log1p(-e); /* each where its argument keeps its digits */
+    const int near = x < 0.7; /* of two ways the one that keeps its digits */
+    const double e = near ? 1.0 + expm1(-x) : exp(-x), more = 1.0 + e, less = near ? -expm1(-x) : 1.0 - e;
+    const double log_less = near ? log(less) : log1p(-e);
     const nt_law_value value = {.U = C * (A * log1p(e) + B * log_less),
                                 .F = C * kappa * e * (A / more - B / less),
                                 .k = C * square(kappa) * e * (A / square(more) - B / square(less))};

@@ -75,17 +75,22 @@ static nt_law_value cone(double L, double q, double x1)
                           .k = -(rest * rest / x1 + q * t / x2 * (1.0 / x1 + 1.0 / x2))};
 }
 
-nt_law_value nt_electrostatic_tip_eval(const nt_electrostatic_tip *tip, double gap)
+nt_law_value nt_electrostatic_tip_eval_with(const nt_electrostatic_tip *tip, const nt_tip_angle *angle, double gap)
 {
-    const double R = tip->radius, sine = sin(tip->half_angle), h = nt_law_gap(gap, tip->minimum_gap);
-    const double log_tan = log(tan(0.5 * tip->half_angle)), c = R * (1.0 - sine);
+    const double R = tip->radius, sine = angle->sine, c = R * (1.0 - sine), h = nt_law_gap(gap, tip->minimum_gap);
     const double strength = NT_PI * NT_VACUUM_PERMITTIVITY * tip->potential * tip->potential;
-    const double share = strength / (log_tan * log_tan);
+    const double share = strength / (angle->log_cot * angle->log_cot);
     const nt_law_value sphere = apex(R, c, h), flank = cone(tip->height, R * (1.0 - sine * sine) / sine, h + c);
     const nt_law_value value = {.U = strength * sphere.U + share * flank.U,
                                 .F = strength * sphere.F + share * flank.F,
                                 .k = strength * sphere.k + share * flank.k};
     return nt_law_hold(value, tip->minimum_gap - gap);
+}
+
+nt_law_value nt_electrostatic_tip_eval(const nt_electrostatic_tip *tip, double gap)
+{
+    const nt_tip_angle angle = nt_tip_angle_of(tip->half_angle);
+    return nt_electrostatic_tip_eval_with(tip, &angle, gap);
 }
 
 nt_law_value nt_electrostatic_lever_eval(const nt_electrostatic_lever *lever, double gap)

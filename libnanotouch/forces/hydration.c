@@ -33,7 +33,7 @@ nt_law_value nt_hydration_eval(const nt_hydration *hydration, double gap)
     const double l_1 = hydration->decay_length, l_2 = hydration->second_decay_length;
     const double h = nt_law_gap(gap, hydration->minimum_gap), per_area = 2.0 * NT_PI * hydration->radius;
     const double F_1 = per_area * hydration->amplitude * exp(-h / l_1);
-    const double F_2 = per_area * hydration->second_amplitude * exp(-h / l_2);
+    const double W_2 = hydration->second_amplitude, F_2 = W_2 == 0.0 ? 0.0 : per_area * W_2 * exp(-h / l_2);
     const nt_law_value value = {.U = F_1 * l_1 + F_2 * l_2, .F = F_1 + F_2, .k = F_1 / l_1 + F_2 / l_2};
     return nt_law_hold(value, hydration->minimum_gap - gap);
 }

@@ -33,45 +33,25 @@ static double pressure_scale(const nt_steric *steric)
     return NT_BOLTZMANN * steric->temperature / steric->spacing / steric->spacing / steric->spacing;
 }
 
-/* Sum of weight exp(rate t) of two or three terms, without its powers of t below `first`, which cancel. */
-typedef struct exponentials {
-    double weight[3], rate[3];
-    int first; /* the lowest power of t that is left */
-} exponentials;
-
-static double exponentials_at(const exponentials *sum, double t)
-{
-    double value = 0.0;
-    for (int i = 0; i < 3; i++) {
-        const double x = sum->rate[i] * t;
-        if (t > 0.5) {
-            value += sum->weight[i] * expm1(x);
-            continue;
-        }
-        double power = sum->weight[i];
-        for (int n = 1; n < 24; n++) { /* (2.75 * 0.5)^24/24! < 2^-53 */
-            power *= x / n;
-            value += n >= sum->first ? power : 0.0;
-        }
-    }
-    return value;
-}
-
-/* With h = T exp(-t): p = scale [exp(9t/4) - exp(-3t/4)]; its integral from T to h, T scale 4/35 [7 exp(5t/4) + 5
- * exp(-7t/4) - 12], is of second order in t, that of it again of third. */
+/* With q = (h/T)^(1/4), in units of 2 pi R kT/s^3, T and T^2: the pressure, its integral from T to h and that of it
+ * again, k = q^-9 - q^3        F = 4/35 [7 q^-5 + 5 q^7 - 12]        U = 16/385 [77 q^-1 - 105 + 33 q^4 - 5 q^11],
+ * vanish at q = 1 in first, second and third order: these powers of 1 - q are divided out, which leaves polynomials
+ * whose coefficients are all above 0. */
 nt_law_value nt_steric_eval(const nt_steric *steric, double gap)
 {
-    static const exponentials pressure = {{1.0, -1.0, 0.0}, {2.25, -0.75, 0.0}, 1};
-    static const exponentials force = {{7.0, 5.0, 0.0}, {1.25, -1.75, 0.0}, 2};
-    static const exponentials energy = {{28.0, -20.0 / 11.0, 12.0}, {0.25, -2.75, -1.0}, 3};
     const double T = steric->thickness, floor = fmin(steric->minimum_gap, T), h = nt_law_gap(gap, floor);
     if (h >= T)
         return (nt_law_value){0};
-    const double t = h > 0.5 * T ? -log1p((h - T) / T) : -log(h / T);
-    const double scale = 2.0 * NT_PI * steric->radius * pressure_scale(steric);
-    const nt_law_value value = {.U = 4.0 / 35.0 * scale * T * T * exponentials_at(&energy, t),
-                                .F = 4.0 / 35.0 * scale * T * exponentials_at(&force, t),
-                                .k = scale * exponentials_at(&pressure, t)};
+    const double x = h / T, rest = (T - h) / T, q2 = sqrt(x), q = sqrt(q2); /* x = q^4 */
+    const double less = rest / ((1.0 + q) * (1.0 + q2));                    /* 1 - q */
+    const double second = (7.0 + 14.0 * q + q2 * (21.0 + 28.0 * q)) +
+                          x * ((35.0 + 30.0 * q + q2 * (25.0 + 20.0 * q)) + x * (15.0 + 10.0 * q + 5.0 * q2));
+    const double third = (77.0 + 126.0 * q + q2 * (147.0 + 140.0 * q)) +
+                         x * ((105.0 + 75.0 * q + q2 * (50.0 + 30.0 * q)) + x * (15.0 + 5.0 * q));
+    const double scale = 2.0 * NT_PI * steric->radius * pressure_scale(steric), per_q = scale / q, per_x = 1.0 / x;
+    const nt_law_value value = {.U = 16.0 / 385.0 * T * T * per_q * less * less * less * third,
+                                .F = 4.0 / 35.0 * T * per_q * per_x * less * less * second,
+                                .k = per_q * per_x * per_x * rest * (1.0 + x + x * x)};
     return nt_law_hold(value, floor - gap);
 }
 

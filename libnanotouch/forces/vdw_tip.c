@@ -59,14 +59,25 @@ static nt_law_value frustum(double r1, double q, double z1, double L)
                           .k = span * (square_slope + square * sum) / 3.0};
 }
 
-nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap)
+nt_tip_angle nt_tip_angle_of(double half_angle)
 {
-    const double R = tip->radius, H = tip->hamaker_constant, sine = sin(tip->half_angle), cosine = cos(tip->half_angle);
-    const double s = nt_law_gap(gap, tip->minimum_gap) + 0.5 * tip->roughness, X = R * (1.0 - sine);
-    const nt_law_value apex = cap(R, X, s), cone = frustum(R * cosine, sine / cosine, s + X, tip->height);
+    return (nt_tip_angle){sin(half_angle), cos(half_angle), -log(tan(0.5 * half_angle))};
+}
+
+nt_law_value nt_vdw_tip_eval_with(const nt_vdw_tip *tip, const nt_tip_angle *angle, double gap)
+{
+    const double R = tip->radius, H = tip->hamaker_constant, slope = angle->sine / angle->cosine;
+    const double s = nt_law_gap(gap, tip->minimum_gap) + 0.5 * tip->roughness, X = R * (1.0 - angle->sine);
+    const nt_law_value apex = cap(R, X, s), cone = frustum(R * angle->cosine, slope, s + X, tip->height);
     const nt_law_value value = {
         .U = -H / 6.0 * (apex.U + cone.U), .F = -H / 2.0 * (apex.F + cone.F), .k = -H / 2.0 * (apex.k + cone.k)};
     return nt_law_hold(value, tip->minimum_gap - gap);
+}
+
+nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap)
+{
+    const nt_tip_angle angle = nt_tip_angle_of(tip->half_angle);
+    return nt_vdw_tip_eval_with(tip, &angle, gap);
 }
 
 NT_LAW_ARRAY(nt_vdw_tip, nt_vdw_tip_eval)

@@ -43,6 +43,8 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
     switch (form) {
     case NT_FORM_PARABOLOID:
         return nt_hertz_eval(&plan->contact, indentation);
+    case NT_FORM_SERIES:
+        return nt_sphere_series_eval(plan->shape.radius, plan->contact.effective_modulus, indentation);
     case NT_FORM_SHAPE:
         return nt_shape_eval(&plan->shape, plan->contact.effective_modulus, indentation);
     case NT_FORM_JKR:

@@ -22,6 +22,7 @@ static void vdw_of(nt_plan *plan, const nt_scene *scene)
     const double roughness = scene->sample.roughness + 2.0 * distance;
     const double hold = fmax(plan->capture_gap, 1e-12);
     plan->laws.vdw = (nt_vdw){scene->tip.radius, hamaker, roughness, hold};
+    plan->laws.angle = nt_tip_angle_of(scene->tip.half_angle);
     plan->laws.vdw_tip =
         (nt_vdw_tip){scene->tip.radius, hamaker, scene->tip.half_angle, scene->tip.height, roughness, hold};
 }
@@ -102,11 +103,11 @@ nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, doubl
         return none;
     switch (term) {
     case NT_PLAN_VDW:
-        return form == NT_FORM_TIP      ? nt_vdw_tip_eval(&laws->vdw_tip, gap)
+        return form == NT_FORM_TIP      ? nt_vdw_tip_eval_with(&laws->vdw_tip, &laws->angle, gap)
                : form == NT_FORM_SPHERE ? nt_vdw_eval(&laws->vdw, gap)
                                         : nt_vdw_derjaguin_eval(&laws->vdw, gap);
     case NT_PLAN_ELECTROSTATIC:
-        return form == NT_FORM_TIP ? nt_electrostatic_tip_eval(&laws->electrostatic_tip, gap)
+        return form == NT_FORM_TIP ? nt_electrostatic_tip_eval_with(&laws->electrostatic_tip, &laws->angle, gap)
                                    : nt_electrostatic_eval(&laws->electrostatic, gap);
     case NT_PLAN_CHARGE:
         return nt_point_charge_eval(&laws->charge, gap);

@@ -15,22 +15,23 @@
 #define COST_SHAPE 6.0
 #define COST_SPHERE 55.0
 #define COST_HERTZ 3.0
+#define COST_SERIES 4.0
 #define COST_JKR 11.0
 #define COST_TABLE 14.0
 #define COST_POLISHED 40.0
 #define COST_EXACT 280.0
 #define COST_LOCAL 55.0 /* with dU/dR */
 #define COST_LOCAL_HERTZ 6.0
-#define COST_LOCAL_EXACT 1000.0
+#define COST_LOCAL_EXACT 1100.0
 #define COST_HEIGHT 15.0 /* height and slopes of a surface */
 #define COST_PLACE 28.0  /* and its effective radius */
 static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
-    [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 8.0, [NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 28.0},
-    [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 9.0, [NT_FORM_TIP] = 33.0},
+    [NT_PLAN_VDW] = {[NT_FORM_DERJAGUIN] = 8.0, [NT_FORM_SPHERE] = 10.0, [NT_FORM_TIP] = 18.0},
+    [NT_PLAN_ELECTROSTATIC] = {[NT_FORM_SPHERE] = 9.0, [NT_FORM_TIP] = 20.0},
     [NT_PLAN_CHARGE] = {[NT_FORM_ON] = 7.0},
-    [NT_PLAN_DOUBLE_LAYER] = {[NT_FORM_ON] = 19.0},
-    [NT_PLAN_HYDRATION] = {[NT_FORM_ON] = 13.0},
-    [NT_PLAN_STERIC] = {[NT_FORM_ON] = 50.0},
+    [NT_PLAN_DOUBLE_LAYER] = {[NT_FORM_ON] = 17.0},
+    [NT_PLAN_HYDRATION] = {[NT_FORM_ON] = 6.0},
+    [NT_PLAN_STERIC] = {[NT_FORM_ON] = 10.0},
 };
 
 #define SAMPLED 1.05   /* a largest value that was sampled on a smooth curve may be this much short of the true one */
@@ -85,6 +86,11 @@ static double contact_distance(const nt_plan *plan, contact_law *truth_at, conta
 static nt_law_value hertz_at(const nt_plan *plan, double indentation)
 {
     return nt_hertz_eval(&plan->contact, indentation);
+}
+
+static nt_law_value series_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_contact_eval(plan, NT_FORM_SERIES, indentation);
 }
 
 static nt_law_value dmt_at(const nt_plan *plan, double indentation)
@@ -155,6 +161,12 @@ static void offer(nt_plan_options *options, int term, nt_form form, double error
     options->option[term][i].cost = cost;
 }
 
+/* Of contact, which other terms may hide; of what hides contact there is no less. */
+static double rounding(double more)
+{
+    return ROUNDING * fmax(more, 1.0);
+}
+
 static double share(double error, double scale)
 {
     return error == 0.0 ? 0.0 : error / scale;
@@ -195,7 +207,7 @@ static void offer_local(const nt_plan *plan, nt_plan_options *options, double mo
     if (!is_curved(plan))
         return;
     if (plan->source == NT_ADHESION_NONE) {
-        offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, more * ROUNDING, COST_LOCAL_HERTZ);
+        offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, rounding(more), COST_LOCAL_HERTZ);
         return;
     }
     if (plan->bank) {
@@ -227,13 +239,30 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
     offer_local(plan, options, more);
 }
 
-/* T: of what the terms beside contact come to, what can hide contact; `beside` all of it. */
-static double opposing(const nt_plan *plan, const nt_scene *scene, double beside)
+/* Contact without adhesion begins where the terms beside it are held: X = X_c + their sum there, 0 <= X_c <= P. Where
+ * that pushes, max(X_c, S)/max(X, S) is largest at either end of X_c. */
+static double more_without_adhesion(const nt_plan *plan, double maximum_load)
+{
+    double sum = 0.0;
+    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
+        sum += nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F;
+    if (sum < 0.0)
+        return 1.0 + share(-sum * nt_plan_largest_ratio(plan), plan->scale);
+    sum *= plan->radii ? fmin(1.0, plan->radii->minimum / plan->contact.radius) : 1.0;
+    const double load = fmax(maximum_load, plan->scale);
+    return fmax(plan->scale / fmax(sum, plan->scale), load / (load + sum));
+}
+
+/* How much larger the share of contact is than its own error, 1 + T/S; `beside`: all that the other terms come to. */
+static double more_than_contact(const nt_plan *plan, const nt_scene *scene, double beside)
 {
     double pull = 0.0;
+    if (plan->demand.quantity == NT_QUANTITY_FORCE && plan->source == NT_ADHESION_NONE)
+        return more_without_adhesion(plan, scene->range.maximum_load);
     for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
         pull += nt_plan_law_pull(plan, term, fmax(scene->range.minimum_gap, 0.0));
-    return nt_plan_largest_ratio(plan) * (plan->demand.quantity == NT_QUANTITY_FORCE ? pull : beside);
+    const double T = plan->demand.quantity == NT_QUANTITY_FORCE ? pull : beside;
+    return 1.0 + share(nt_plan_largest_ratio(plan) * T, plan->scale);
 }
 
 static double cost_of_shape(nt_shape_kind kind)
@@ -241,9 +270,31 @@ static double cost_of_shape(nt_shape_kind kind)
     return kind == NT_SHAPE_PARABOLOID ? COST_HERTZ : kind == NT_SHAPE_SPHERE ? COST_SPHERE : COST_SHAPE;
 }
 
+/* A form other than the fullest of a contact without adhesion, which has no folds. */
+static void offer_simpler(const nt_plan *plan, nt_plan_options *options, nt_form form, double more)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    contact_law *const law = form == NT_FORM_SERIES ? series_at : hertz_at;
+    const double error =
+        quantity == NT_QUANTITY_FOLDS ? 0.0 : contact_distance(plan, full_at, law, -INFINITY, quantity);
+    offer(options, NT_PLAN_CONTACT, form, more * SAMPLED * error + rounding(more),
+          form == NT_FORM_SERIES ? COST_SERIES : COST_HERTZ);
+}
+
+static void offer_shape(const nt_plan *plan, nt_plan_options *options, double more)
+{
+    const nt_shape_kind kind = plan->shape.kind;
+    if (kind == NT_SHAPE_SPHERE || kind == NT_SHAPE_BLUNTED)
+        offer_simpler(plan, options, NT_FORM_PARABOLOID, more);
+    if (kind == NT_SHAPE_SPHERE && plan->largest_indentation < plan->shape.radius)
+        offer_simpler(plan, options, NT_FORM_SERIES, more);
+    offer(options, NT_PLAN_CONTACT, NT_FORM_SHAPE, rounding(more) + plan->curvature_error, cost_of_shape(kind));
+    offer_local(plan, options, more);
+}
+
 static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
 {
-    const double more = 1.0 + share(opposing(plan, scene, beside), plan->scale);
+    const double more = more_than_contact(plan, scene, beside);
     const nt_form full = nt_plan_contact_form(plan);
     nt_plan_term *term = &plan->terms[NT_PLAN_CONTACT];
     if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
@@ -260,16 +311,8 @@ static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options 
         offer_maugis(plan, options, more);
     else if (full == NT_FORM_JKR)
         offer(options, NT_PLAN_CONTACT, full, ROUNDING, COST_JKR);
-    else {
-        const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-        const double error = quantity == NT_QUANTITY_FOLDS /* without adhesion there are none */
-                                 ? 0.0
-                                 : more * SAMPLED * contact_distance(plan, full_at, hertz_at, -INFINITY, quantity);
-        if (plan->shape.kind == NT_SHAPE_SPHERE || plan->shape.kind == NT_SHAPE_BLUNTED)
-            offer(options, NT_PLAN_CONTACT, NT_FORM_PARABOLOID, ROUNDING + error, COST_HERTZ);
-        offer(options, NT_PLAN_CONTACT, full, more * ROUNDING + plan->curvature_error, cost_of_shape(plan->shape.kind));
-        offer_local(plan, options, more);
-    }
+    else
+        offer_shape(plan, options, more);
 }
 
 /* The largest difference of a form to the fullest one, over the gaps of the range. */

@@ -36,8 +36,8 @@ nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem)
 
 const char *nt_form_name(nt_form form)
 {
-    static const char *const names[] = {"off", "on",    "derjaguin", "sphere", "tip",   "paraboloid", "shape",
-                                        "jkr", "table", "polished",  "exact",  "local", "local exact"};
+    static const char *const names[] = {"off",   "on",  "derjaguin", "sphere",   "tip",   "paraboloid", "series",
+                                        "shape", "jkr", "table",     "polished", "exact", "local",      "local exact"};
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
 }
 

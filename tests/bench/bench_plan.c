@@ -83,6 +83,7 @@ static void report_shapes(void)
         (void)snprintf(name, sizeof name, "shape: %s", nt_shape_name(kinds[i]));
         report(name, MEASURE(nt_plan_contact_eval(&plan, NT_FORM_SHAPE, -gap)));
     }
+    report("series: sphere", MEASURE(nt_plan_contact_eval(&plan, NT_FORM_SERIES, -gap)));
     plan.jkr = (nt_jkr_shape){{.kind = NT_SHAPE_CONE, .half_angle = 0.3}, plan.contact.effective_modulus, 0.1};
     report("jkr: cone", MEASURE(nt_plan_contact_eval(&plan, NT_FORM_JKR, -gap)));
     plan.shape = paraboloid;

@@ -56,7 +56,7 @@ def on_bumps(seed: int) -> Row:
     rng = np.random.default_rng(seed)
     scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
     scene.tip.shape = "paraboloid"
-    demand = 10.0 ** rng.uniform(-4.0, math.log10(0.3))
+    demand = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
     return row_of(seed, demand, random_scenes.compare_over(scene, cycles.bumpy(scene, seed), demand, rng))
 
 

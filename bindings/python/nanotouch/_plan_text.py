@@ -49,6 +49,8 @@ def contact_law_of(term: Term, facts: dict[str, Any]) -> str:
     shape = facts["shape"]
     if term.form == "paraboloid":
         return f"Hertz in place of the {shape}"
+    if term.form == "series":
+        return "law of the sphere as a series"
     return "Hertz" if shape == "paraboloid" else f"law of the {shape}"
 
 
@@ -58,7 +60,7 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
         felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
-        apart = term.form == "paraboloid" and facts["quantity"] != "folds"
+        apart = term.form in ("paraboloid", "series") and facts["quantity"] != "folds"
         within = f", within {_percent(term.bound)}" if apart else ""
         return f"contact: {law}{within}, no adhesion{felt}"
     text = f"contact: {law}"

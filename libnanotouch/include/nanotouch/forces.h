@@ -29,6 +29,13 @@ NT_API void nt_vdw_eval_n(const nt_vdw *vdw, const nt_strided *arrays);
 NT_API nt_law_value nt_vdw_derjaguin_eval(const nt_vdw *vdw, double gap);
 NT_API void nt_vdw_derjaguin_eval_n(const nt_vdw *vdw, const nt_strided *arrays);
 
+/* What the half-angle theta of a tip's cone comes to, once for many evaluations (`_eval_with`). */
+typedef struct nt_tip_angle {
+    double sine, cosine;
+    double log_cot; /* ln cot(theta/2); infinite for theta = 0 */
+} nt_tip_angle;
+NT_API nt_tip_angle nt_tip_angle_of(double half_angle);
+
 /* The same of a whole tip: a cone rounded by a sphere that touches it all around (Hamaker's sum, exact). */
 typedef struct nt_vdw_tip {
     double radius;           /* R of the apex [m] */
@@ -40,6 +47,7 @@ typedef struct nt_vdw_tip {
 } nt_vdw_tip;
 NT_API nt_status nt_vdw_tip_check(const nt_vdw_tip *tip, nt_problem *problem);
 NT_API nt_law_value nt_vdw_tip_eval(const nt_vdw_tip *tip, double gap);
+NT_API nt_law_value nt_vdw_tip_eval_with(const nt_vdw_tip *tip, const nt_tip_angle *angle, double gap);
 NT_API void nt_vdw_tip_eval_n(const nt_vdw_tip *tip, const nt_strided *arrays);
 
 /* --- Capillary meniscus of a water film --- */
@@ -103,6 +111,8 @@ typedef struct nt_electrostatic_tip {
 } nt_electrostatic_tip;
 NT_API nt_status nt_electrostatic_tip_check(const nt_electrostatic_tip *tip, nt_problem *problem);
 NT_API nt_law_value nt_electrostatic_tip_eval(const nt_electrostatic_tip *tip, double gap);
+NT_API nt_law_value nt_electrostatic_tip_eval_with(const nt_electrostatic_tip *tip, const nt_tip_angle *angle,
+                                                   double gap);
 NT_API void nt_electrostatic_tip_eval_n(const nt_electrostatic_tip *tip, const nt_strided *arrays);
 
 /* Lever, to be added: a tilted plate in the field of the wedge that it makes with the plane. At gap h of the apex, with

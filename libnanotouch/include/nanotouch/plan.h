@@ -43,6 +43,7 @@ typedef enum nt_form {
     NT_FORM_SPHERE,     /* of the apex sphere */
     NT_FORM_TIP,        /* of sphere and cone */
     NT_FORM_PARABOLOID, /* contact of a sphere or cap without adhesion, as Hertz' paraboloid */
+    NT_FORM_SERIES,     /* contact of a sphere without adhesion, in powers of delta/R */
     NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
     NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
     NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
@@ -92,6 +93,7 @@ typedef struct nt_plan_rivals {
 typedef struct nt_plan_laws {
     nt_vdw vdw;
     nt_vdw_tip vdw_tip;
+    nt_tip_angle angle; /* of both forms TIP */
     nt_electrostatic electrostatic;
     nt_electrostatic_tip electrostatic_tip;
     nt_point_charge charge;
