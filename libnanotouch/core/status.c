@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *nt_status_message(nt_status status)
 {
@@ -31,10 +32,15 @@ const char *nt_problem_print(const nt_problem *problem, char *text, unsigned siz
 {
     if (problem == NULL || text == NULL || size == 0)
         return text;
+    const char *field = problem->field == NULL ? "?" : problem->field;
     const char *unit = problem->unit == NULL ? "" : problem->unit;
+    if (strchr(unit, '|') != NULL) { /* a choice: its unit are the names */
+        (void)snprintf(text, size, "%s = %g: valid is %g .. %g (%s)", field, problem->value, problem->minimum,
+                       problem->maximum, unit);
+        return text;
+    }
     const char *space = unit[0] == '\0' ? "" : " ";
-    (void)snprintf(text, size, "%s = %g%s%s: valid is %g .. %g%s%s", problem->field == NULL ? "?" : problem->field,
-                   problem->value, space, unit, inside(problem->minimum, 1.0), inside(problem->maximum, -1.0), space,
-                   unit);
+    (void)snprintf(text, size, "%s = %g%s%s: valid is %g .. %g%s%s", field, problem->value, space, unit,
+                   inside(problem->minimum, 1.0), inside(problem->maximum, -1.0), space, unit);
     return text;
 }

@@ -54,10 +54,10 @@ static nt_status check(const nt_plan_inputs *inputs, const nt_demand *demand, nt
     nt_status status = nt_scene_check(inputs->scene, problem);
     if (status == NT_OK)
         status = nt_demand_check(demand, problem);
-    if (status == NT_OK && inputs->probe && !(inputs->probe->spring_constant > 0.0)) {
-        if (problem)
-            *problem = (nt_problem){"probe.spring_constant", "N/m", inputs->probe->spring_constant, 0.0, INFINITY};
-        status = NT_E_RANGE;
+    if (status == NT_OK && inputs->probe) {
+        nt_rig rig = nt_rig_defaults();
+        rig.probe = *inputs->probe;
+        status = nt_rig_check(&rig, problem);
     }
     if (status == NT_OK && inputs->radii && !is_of(inputs->radii, inputs->surface))
         status = NT_E_ARGUMENT;

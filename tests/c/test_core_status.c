@@ -43,6 +43,9 @@ static void problem_without_unit(void **state)
     char text[100];
     assert_string_equal(nt_problem_print(&problem, text, sizeof text), "quality = -1: valid is 0.05 .. 1e+06");
     assert_string_equal(nt_problem_print(&bare, text, sizeof text), "? = 1: valid is 0 .. 2");
+    const nt_problem choice = {"medium.kind", "air|vacuum|liquid", 3.0, 0.0, 2.0};
+    assert_string_equal(nt_problem_print(&choice, text, sizeof text),
+                        "medium.kind = 3: valid is 0 .. 2 (air|vacuum|liquid)");
 }
 
 /* What is said to be valid is, though it is said with six digits. */

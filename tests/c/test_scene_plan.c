@@ -242,6 +242,15 @@ static void what_cannot_be_is_refused_by_name(void **state)
     scene = nt_scene_defaults();
     demand.relative_accuracy = 1e-14; /* below rounding */
     expect_refusal(&scene, &demand, NT_E_RANGE, "demand.relative_accuracy");
+    nt_probe probe = nt_rig_defaults().probe;
+    probe.noise = NAN; /* must not pass for no noise */
+    const nt_plan_inputs noisy = {.scene = &scene, .probe = &probe};
+    assert_int_equal(nt_plan_make(&plan, &noisy, &problem), NT_E_NOT_FINITE);
+    assert_string_equal(problem.field, "probe.noise");
+    probe.noise = 0.0;
+    probe.spring_constant = 0.0;
+    assert_int_equal(nt_plan_make(&plan, &noisy, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "probe.spring_constant");
     demand.relative_accuracy = 1e-9;
     demand.budget = 5.0;
     expect_refusal(&scene, &demand, NT_E_RANGE, "demand.budget");

@@ -135,7 +135,7 @@ def _dominance() -> Statement:
         holds(_ratio(right, "cap", right, "vdw") > 1.0), "capillary over van der Waals at a0, corrected",
         _ratio(right, "cap", right, "vdw"), "",
         f"Hardly at contact (as printed {_ratio(printed, 'cap', printed, 'vdw'):.2g} times), and "
-        f"{_ratio(corrected(5e-9), 'cap', corrected(5e-9), 'vdw'):.2g} times at 5 nm.",
+        f"{_ratio(corrected(5e-9), 'cap', corrected(5e-9), 'vdw'):.0f} times at 5 nm.",
     )  # fmt: skip
 
 
