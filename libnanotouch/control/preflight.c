@@ -14,7 +14,7 @@
 #define MOVE_OSCILLATIONS 10.0
 #define MOVE_STEPS 20.0  /* of the stage's read-out */
 #define LEAST_MOVE 10e-9 /* [m] */
-#define TOLERANCE 0.5    /* of the move that the read-out must show */
+#define TOLERANCE 0.5    /* of the move that the read-out must show, and of what hysteresis leaves of it, 1 - 2 h */
 
 void nt_tare_apply(const nt_tare *tare, const nt_probe *probe, nt_sample *sample)
 {
@@ -98,11 +98,25 @@ static double drawn_back(const nt_preflight *preflight, uint32_t tick)
     return phase < 3.0 ? -0.5 * preflight->distance * (1.0 + cos(NT_PI * (phase - 2.0))) : 0.0;
 }
 
+/* How far the read-out must have gone back at least, and may have at most [m]. */
+static double least_move(const nt_preflight *preflight)
+{
+    return (1.0 - TOLERANCE) * (1.0 - 2.0 * preflight->rig.stage.hysteresis) * preflight->distance;
+}
+
+static double most_move(const nt_preflight *preflight)
+{
+    return (1.0 + TOLERANCE) * preflight->distance;
+}
+
 static nt_preflight_verdict judge_move(const nt_preflight *preflight, nt_preflight_state *state)
 {
     const double half = preflight->move / 2u; /* the last samples of the wait that were added up */
     const double moved = state->lifted / half - state->rest / (2.0 * preflight->ticks);
-    return judge(state, moved + preflight->distance, TOLERANCE * preflight->distance, NT_PREFLIGHT_STAGE);
+    if (-moved >= least_move(preflight) && -moved <= most_move(preflight))
+        return NT_PREFLIGHT_RUNNING;
+    state->measure = moved;
+    return NT_PREFLIGHT_STAGE;
 }
 
 nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflight_state *state,
@@ -131,7 +145,6 @@ nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflig
 nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_preflight_state *state)
 {
     const nt_limits *limits = &preflight->limits;
-    const double moved = state->measure - preflight->distance, least = TOLERANCE * preflight->distance;
     const double value = state->measure;
     switch (state->verdict) {
     case NT_PREFLIGHT_BAD_SAMPLE:
@@ -145,7 +158,7 @@ nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_prefligh
     case NT_PREFLIGHT_GAUGE_DRIFT:
         return (nt_problem){"gauge drift", "N/s", value, -limits->gauge_drift, limits->gauge_drift};
     case NT_PREFLIGHT_STAGE:
-        return (nt_problem){"stage sign test", "m", moved, -least - preflight->distance, least - preflight->distance};
+        return (nt_problem){"stage sign test", "m", value, -most_move(preflight), -least_move(preflight)};
     case NT_PREFLIGHT_RUNNING:
     case NT_PREFLIGHT_PASSED:
         break;

@@ -8,6 +8,9 @@
 
 #define FIELD(path, ...) NT_FIELD(nt_settings, path, __VA_ARGS__)
 
+#define STAGE_SPEED 20e-6   /* [m/s] */
+#define STAGE_INTEGRAL 60.0 /* [1/s] */
+
 static const nt_field settings_fields[] = {
     FIELD(gains.rate, "Hz", 10.0, 1e6, "rate of the force loop"),
     FIELD(gains.alpha_p, "m/m", 1e-12, 1e3, "position scale alpha_p, stage over master"),
@@ -51,6 +54,9 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
 {
     const nt_scaling scaling = nt_scaling_heuristic(rig, 0.4e-6, 0.6e-6); /* L = 0.1 um, delta_max = 0.3 um; Eq. 21 */
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
+    /* after a turn the ceramic goes by 1 - 2 h of its command, and the integral, through it, takes the rest away */
+    const double lost = 2.0 * rig->stage.hysteresis;
+    const double hysteresis = lost / (1.0 - lost) * STAGE_SPEED / STAGE_INTEGRAL;
     nt_settings settings = {
         .gains = {.rate = 10e3,
                   .alpha_p = scaling.alpha_p,
@@ -60,7 +66,7 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
                   .force_gain = 2.0,
                   .force_filter = 200.0,
                   .stage_damping = 0.7,
-                  .stage_integral = 60.0,
+                  .stage_integral = STAGE_INTEGRAL,
                   .stage_proportional = 0.5,
                   .ramp_time = 0.1,
                   .set_point = fmin(0.1e-6, 0.1 * saturation),
@@ -71,14 +77,14 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
                   .delay = 1.0},
         .limits = {.force = 0.85 * saturation,
                    .indentation = 0.3e-6,
-                   .stage_speed = 20e-6,
+                   .stage_speed = STAGE_SPEED,
                    .lateral_speed = 20e-6,
                    .motor_force = rig->master.max_force,
                    .motor_rate = 2000.0,
                    .motor_power = 2.0,
                    .retract_distance = 0.5e-6,
                    .retract_speed = 10e-6,
-                   .follow_error = 0.1e-6,
+                   .follow_error = 0.1e-6 + hysteresis,
                    .follow_time = 0.05,
                    .deflection_bias = 0.1 * nt_probe_deflection_range(&rig->probe),
                    .deflection_drift = 0.3 * nt_probe_deflection_range(&rig->probe),

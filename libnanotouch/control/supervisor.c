@@ -22,6 +22,7 @@
 #define FOLLOW_SHARE 0.75       /* of the way it was to go lately: room for hysteresis */
 #define FOLLOW_STEPS 20.0       /* of read-out or converter, which it may be off besides */
 #define LEAST_SLACK 20e-9       /* [m] */
+#define CREEP_DECADES 4.0       /* of time, 0.1 s to 1000 s, that creep goes on for */
 #define DRIFT 1e-9              /* that deflections may show during a lift, beside their noise [m] */
 
 const char *nt_reason_name(uint32_t reason)
@@ -62,12 +63,20 @@ static double stage_lag(const nt_rig *rig, const nt_gains *gains)
     return 2.0 * gains->stage_damping / (2.0 * NT_PI * rig->stage.resonance) + nt_sampled_dead_time(rig, gains);
 }
 
-/* How far off a stage at rest may be: steps, and what full speed makes of its lag and a period. A law without an
- * integral leaves hysteresis and creep: only follow_error is a fault there [m]. */
+/* How far off any stage may be: a law without an integral leaves the hysteresis, half its opening, and the creep that
+ * the rig declares [m]. */
+static double stage_most(const nt_rig *rig, const nt_limits *limits, const nt_gains *gains)
+{
+    const nt_stage *stage = &rig->stage;
+    const double left = 0.5 * stage->travel * (stage->hysteresis + CREEP_DECADES * stage->creep);
+    return limits->follow_error + (gains->stage_integral == 0.0 ? left : 0.0);
+}
+
+/* How far off a stage at rest may be: steps, and what full speed makes of its lag and a period [m]. */
 static double stage_slack(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
 {
     if (gains->stage_integral == 0.0)
-        return settings->limits.follow_error;
+        return stage_most(rig, &settings->limits, gains);
     const double bits = rig->converters.dac_bits;
     const double step = greater(rig->stage.resolution, bits > 0.0 ? rig->stage.travel / exp2(bits) : 0.0);
     const double way = settings->limits.stage_speed * (stage_lag(rig, gains) + 1.0 / gains->rate);
@@ -93,6 +102,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .stuck_distance = shows_noise ? travelled : 0.0,
                            .stage_share = period / (period + stage_lag(rig, &shape.gains)),
                            .stage_slack = stage_slack(rig, settings, &shape.gains),
+                           .stage_most = stage_most(rig, &settings->limits, &shape.gains),
                            .path_kept = exp(-period / settings->limits.follow_time),
                            .limits = settings->limits};
 }
@@ -232,7 +242,7 @@ static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, 
 static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const nt_limits *limits = &supervisor->limits;
-    const double slack = lesser(limits->follow_error, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
+    const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
     if (fabs(sample->stage_position - state->expected) <= slack) {
         state->off_run = 0;
         return NT_RUN;

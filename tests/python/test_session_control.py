@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nanotouch import Input, Recording, Rig, Session, Supervisor, Surface, record, surface
+from nanotouch import Faults, Input, Recording, Rig, Session, Supervisor, Surface, record, surface
 from nanotouch._core import Signals
 from nanotouch.errors import Error, InvalidValue
 
@@ -319,6 +319,23 @@ def test_the_guarantee_is_the_sum_of_its_terms() -> None:
         assert found.with_faults > found.force + 0.9 * 8.0 * session.settings.limits.retract_distance
         assert f"{found.with_faults * 1e9:.0f} nN whatever fails at once" in str(found)
     assert rough.guarantee().motion > 3.0 * flat.guarantee().motion  # the flank of the grating
+
+
+@pytest.mark.parametrize(("hysteresis", "integral"), [(0.15, 60.0), (0.3, 60.0), (0.15, 0.0), (0.3, 0.0)])
+def test_a_declared_hysteresis_is_no_fault(hysteresis: float, integral: float) -> None:
+    rig = Rig(stage={"hysteresis": hysteresis, "creep": 0.01})
+    gains = {"approach_speed": 20e-6, "curve_length": 3e-6, "stage_integral": integral}
+    session = Session(rig=rig, mode="curve", clearance=4e-6, gains=gains)
+    recording = session.run()
+    assert (recording.state == RUN).all()
+    if hysteresis == 0.15:
+        assert session.is_done  # what no integral takes away of 30 % is much of the way
+    # it is no room for a stage that turns: it stops, and the force keeps its bound
+    faults = Faults().add("gain", "stage", at=2.0, value=-1.0)
+    turned = Session(rig=rig, gains={"stage_integral": integral}, faults=faults)
+    recording = turned.run(operator=[Input(2.0, 0.0, 0.0, 0.5), Input(2.0, 0.0, 0.0, 2.0), Input(-0.5, 0.0, 0.0, 4.0)])
+    assert recording.state[-1] != RUN
+    assert recording.tip_force.max() < turned.guarantee().force
 
 
 def test_a_bias_is_tared_and_a_large_one_refused() -> None:

@@ -43,6 +43,7 @@ typedef struct nt_supervisor {
     double stuck_distance;   /* identical deflections over this travel are a dead sensor, 0: cannot be told [m] */
     double stage_share;      /* of the way to its reference that the stage should go in a period [-] */
     double stage_slack;      /* by which it may be off at rest, or three quarters of the way that it was to go [m] */
+    double stage_most;       /* never by more than this: follow_error, and hysteresis that no integral takes away [m] */
     double path_kept;        /* of that way, per period: it fades over follow_time [-] */
     nt_limits limits;
 } nt_supervisor;
