@@ -51,6 +51,7 @@ set(nanotouch_sources_contact
     contact/shape.c
     contact/sneddon.c
     contact/sphere.c
+    contact/sphere_series.c
     contact/stage_displacement.c
     contact/tabor.c
     contact/validity.c)
