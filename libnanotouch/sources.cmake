@@ -118,6 +118,7 @@ set(nanotouch_sources_fit
     fit/curve.cpp
     fit/custom_model.cpp
     fit/data.cpp
+    fit/flicker.cpp
     fit/guess.cpp
     fit/linear.cpp
     fit/model.cpp

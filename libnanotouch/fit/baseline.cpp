@@ -2,7 +2,7 @@
 // A line by Tukey-weighted least squares through the far half of the travel, then through all points beyond the
 // outermost one that this line cannot explain: hardly extrapolated to where it is needed. Light that the sample
 // reflects interferes with that of the cantilever and adds a wave over z, one period for half a wavelength of height;
-// it is fitted too where the residuals of the line prove it. The variances contain the correlation of the residuals.
+// it is fitted too where the residuals of the line prove it. The variances contain the flicker noise of the residuals.
 #include "baseline.hpp"
 
 #include <algorithm>
@@ -106,6 +106,18 @@ void weighted_line(const Points &points, const Values &weight, Baseline *line)
     line->force = force - line->slope * x;
 }
 
+// What the residuals say of the noise and of level and slope.
+void judge(const Points &points, const Values &rest, Baseline *line)
+{
+    const double count = double(rest.size());
+    line->correlation = correlation(rest, line->scatter);
+    line->noise = split_noise(rest, line->scatter);
+    const double worth = line->noise.white + count * line->noise.flicker;
+    const double spread = std::inner_product(points.x.begin(), points.x.end(), points.x.begin(), 0.0);
+    line->force_variance = worth / count;
+    line->slope_variance = worth / std::max(spread, smallest_spread);
+}
+
 Baseline robust_line(const Points &points)
 {
     const std::size_t count = points.x.size();
@@ -127,11 +139,7 @@ Baseline robust_line(const Points &points)
             weight[i] = inside * inside;
         }
     }
-    const double related = correlation(rest, line.scatter), worth = line.scatter * line.scatter * related;
-    const double spread = std::inner_product(points.x.begin(), points.x.end(), points.x.begin(), 0.0);
-    line.force_variance = worth / double(count);
-    line.slope_variance = worth / std::max(spread, smallest_spread);
-    line.correlation = related;
+    judge(points, rest, &line);
     return line;
 }
 
@@ -320,10 +328,7 @@ Baseline with_wave(const Points &points, const Baseline &line)
             break;
         weigh(rest, waved.scatter, &weight);
     }
-    waved.correlation = correlation(rest, waved.scatter);
-    const double worth = waved.scatter * waved.scatter * waved.correlation;
-    waved.force_variance = worth / double(count);
-    waved.slope_variance = worth / std::inner_product(points.x.begin(), points.x.end(), points.x.begin(), 0.0);
+    judge(points, rest, &waved);
     return is_evident(line, waved, points) ? waved : line;
 }
 

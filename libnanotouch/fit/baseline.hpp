@@ -6,6 +6,8 @@
 
 #include "nanotouch/fit.h"
 
+#include "flicker.hpp"
+
 namespace nanotouch
 {
 
@@ -23,6 +25,7 @@ struct Baseline {
     double force, slope, z_mean, scatter; // at z_mean [N], [N/m], [m], robust standard deviation about it [N]
     double force_variance, slope_variance;
     double correlation; // by how much that of the residuals raises the variance of their mean; 1 for white noise
+    Noise noise;        // of the free cantilever
     Wave wave;
     double at(double z) const;
     double sigma(double z) const; // of the baseline at z [N]

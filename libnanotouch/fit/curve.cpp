@@ -3,9 +3,9 @@
 //
 // Adhesive laws: from the deepest point to where the tip is torn off, which is one more datum; others: as far as the
 // force is repulsive. Sensitivity, level and tilt of the baseline are data of their own uncertainty. Fitted with the
-// noise from point to point, then once more with the scatter that is left, correlations included: so a law that does
-// not describe the curve gets wide sigmas instead of a bent calibration. A last fit with any sensitivity shows whether
-// the curve contradicts its calibration.
+// noise of the free cantilever, its 1/f part included, then once more with the scatter that is left where that is
+// more: so a law that does not describe the curve gets wide sigmas instead of a bent calibration. A last fit with any
+// sensitivity shows whether the curve contradicts its calibration.
 #include "curve.hpp"
 
 #include <algorithm>
@@ -98,6 +98,7 @@ class Curve
     nt_status contradicts_tear(bool *contradicts) const;
     nt_status solve();
     bool is_exact() const;
+    double correlated_noise() const;
     nt_status doubt_calibration();
     void judge();
 
@@ -119,7 +120,7 @@ void Curve::know(nt_fit_options *options, nt_fit_parameter parameter, double val
 // What is known to some uncertainty becomes a datum.
 void Curve::let_vary(nt_fit_options *options) const
 {
-    options->force_noise = branch_.noise;
+    options->force_noise = correlated_noise();
     options->tilt_position = -branch_.baseline.z_mean;
     know(options, NT_FIT_SENSITIVITY, 1.0, recipe_.sensitivity_uncertainty);
     if (recipe_.fit_offset)
@@ -143,7 +144,7 @@ nt_status Curve::run()
     found.points.resize(fitted_.position.size());
     status = nt_fit_model_n(&found.options, found.result.value, &data, found.points.data());
     if (status == NT_OK)
-        found.scatter = scatter_of(fitted_, found.points);
+        found.scatter = std::max(scatter_of(fitted_, found.points), correlated_noise());
     return status;
 }
 
@@ -161,6 +162,14 @@ nt_status Curve::contradicts_tear(bool *contradicts) const
     return status;
 }
 
+// Standard deviation of one point such that the mean of independent ones would scatter as that of these [N].
+double Curve::correlated_noise() const
+{
+    const Noise &free = branch_.baseline.noise;
+    return std::sqrt(std::max(branch_.noise * branch_.noise, free.white) +
+                     double(fitted_.position.size()) * free.flicker);
+}
+
 bool Curve::is_exact() const
 {
     return solution_.scatter < computed * fitted_.largest();
@@ -171,7 +180,7 @@ nt_status Curve::run_with_scatter()
 {
     const nt_status status = run();
     double *noise = &solution_.options.force_noise;
-    const bool as_known = std::fabs(solution_.scatter / branch_.noise - 1.0) <= as_given;
+    const bool as_known = std::fabs(solution_.scatter / correlated_noise() - 1.0) <= as_given;
     if (status != NT_OK || is_exact() || *noise == 0.0 || as_known)
         return status;
     *noise = solution_.scatter;
@@ -185,7 +194,7 @@ nt_status Curve::solve()
     options.spring_constant = spring_constant_;
     if (!(options.loss_scale > 0.0))
         options.loss_scale = std::max(loss_scale * outcome_.reading.noise, least_loss_scale);
-    if (branch_.noise > computed * fitted_.largest())
+    if (correlated_noise() > computed * fitted_.largest())
         let_vary(&options);
     nt_status status = run_with_scatter();
     bool contradicts = false;
@@ -194,7 +203,7 @@ nt_status Curve::solve()
     if (!contradicts)
         return status;
     options.tear_sigma = 0.0;
-    options.force_noise = branch_.noise;
+    options.force_noise = correlated_noise();
     return run_with_scatter();
 }
 

@@ -26,12 +26,16 @@ def curve_of(model: Any, **changes: Any) -> Any:
     return nt.curves.synthesise(contact, model, **({"spring_constant": STIFFNESS, "noise": 1e-12} | changes))
 
 
-@pytest.mark.parametrize("model", bench_coverage.MODELS)
-def test_intervals_hold_the_truth(model: str) -> None:
+WHITE = [(model, "white") for model in bench_coverage.MODELS]
+COLOURED = [(model, kind) for model in ("hertz", "maugis") for kind in ("smeared", "mixed", "flicker")]
+
+
+@pytest.mark.parametrize(("model", "kind"), WHITE + COLOURED)
+def test_intervals_hold_the_truth(model: str, kind: str) -> None:
     """60 curves with noise, offset, tilt, drift and errors of calibration: 57 expected inside, standard deviation 1.7.
     Below 51 (3.5 of them) by chance once in 1400 intervals. The run that can tell 93 from 95 %: bench_coverage.py."""
     curves = 60
-    for name, (inside, mean, width) in bench_coverage.coverage(model, curves, seed=5000).items():
+    for name, (inside, mean, width) in bench_coverage.coverage(model, curves, seed=5000, kind=kind).items():
         assert inside * curves >= 51, name
         assert abs(mean) < 0.6, name  # 4.6/sqrt(60)
         assert 0.65 < width < 1.4, name  # 1 +- 4/sqrt(120)

@@ -77,6 +77,21 @@ def test_every_curve_is_fitted_as_fit_curve_does(model: str) -> None:
         assert float(here.residual_rms) == pytest.approx(one.residual_rms, rel=1e-6, abs=0.0)
 
 
+def test_flicker_noise_widens_sigma_as_in_fit_curve() -> None:
+    """1/f noise is found in numpy and in C++; their sums differ in order."""
+    source = volume(2, points=900, noise=10e-12)
+    rng = np.random.default_rng(2)
+    for y, x in np.ndindex(2, 2):
+        source.values[y, x] += np.cumsum(rng.standard_normal(source.z.size)) * 3e-12 * np.array([0.0, 1.0])[x]
+    data = maps.fit(source, "dmt", radius=20e-9)
+    for y, x in np.ndindex(2, 2):
+        one = nt.fit.fit_curve(curve_of(source, y, x), "dmt", radius=20e-9)
+        assert (one.report.baselines["retract"].noise.flicker > 0.0) == (x == 1)
+        for name in one.free:
+            assert float(data[f"{name}_sigma"][y, x]) == pytest.approx(one.sigma[name], rel=1e-6, abs=0.0)
+    assert float(data.contact_point_sigma[0, 1]) > 3.0 * float(data.contact_point_sigma[0, 0])
+
+
 def test_the_pattern_is_found() -> None:
     modulus, work, height = pattern()
     data = maps.fit(volume(), "maugis", **SETTINGS)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidValue
+from .flicker import Noise, split_noise
 
 Floats = NDArray[np.float64]
 Kind = Literal["auto", "line", "wave", "constant"] | tuple[float, float]
@@ -76,7 +77,9 @@ class Baseline:
     scatter : float
         Robust standard deviation of those points about the baseline [N].
     variance : tuple of float
-        Variances of `force` [N^2] and `slope` [N^2/m^2], with the correlation of the residuals taken into account.
+        Variances of `force` [N^2] and `slope` [N^2/m^2], flicker noise included.
+    noise : Noise
+        White and flicker noise of those points [N^2].
     wave : Wave or None
         Of interference.
     """
@@ -86,6 +89,7 @@ class Baseline:
     z_mean: float
     scatter: float
     variance: tuple[float, float]
+    noise: Noise
     wave: Wave | None = None
 
     def at(self, z: Floats) -> Floats:
@@ -154,7 +158,8 @@ def _constant(z: Floats, force: Floats) -> Baseline:
     level = float(np.median(force))
     rest = force - level
     scatter = MAD * float(np.median(np.abs(rest)))
-    return Baseline(level, 0.0, float(z.mean()), scatter, (scatter**2 * _correlation(rest, scatter) / z.size, 0.0))
+    noise = split_noise(rest, scatter)
+    return Baseline(level, 0.0, float(z.mean()), scatter, (noise.white / z.size + noise.flicker, 0.0), noise)
 
 
 def _free_part(z: Floats, force: Floats, far: NDArray[np.bool_], line: Baseline) -> NDArray[np.bool_]:
@@ -180,9 +185,14 @@ def _line(z: Floats, force: Floats) -> Baseline:
         if scatter == 0.0 or abs(slope - before) * float(np.ptp(x)) < _SETTLED * scatter:
             break
         weight = np.clip(1 - (rest / (_TUKEY * scatter)) ** 2, 0.0, None) ** 2
-    worth = scatter**2 * _correlation(rest, scatter)
-    variance = (worth / x.size, worth / max(float(x @ x), 1e-300))
-    return Baseline(level - slope * centre, slope, float(z.mean()), scatter, variance)
+    noise = split_noise(rest, scatter)
+    return Baseline(level - slope * centre, slope, float(z.mean()), scatter, _variance(noise, x), noise)
+
+
+def _variance(noise: Noise, x: Floats) -> tuple[float, float]:
+    """Of level and slope of a line."""
+    worth = noise.white + x.size * noise.flicker
+    return worth / x.size, worth / max(float(x @ x), 1e-300)
 
 
 def _correlation(rest: Floats, scatter: float) -> float:
@@ -229,9 +239,8 @@ def _with_wave(z: Floats, force: Floats, line: Baseline) -> Baseline | None:
         if scatter == 0.0:
             break
         weight = np.clip(1 - (rest / (_TUKEY * scatter)) ** 2, 0.0, None) ** 2
-    worth = scatter**2 * _correlation(rest, scatter)
-    variance = (worth / x.size, worth / float(x @ x))
-    return Baseline(float(terms[0]), float(terms[1]), float(z.mean()), scatter, variance, wave)
+    noise = split_noise(rest, scatter)
+    return Baseline(float(terms[0]), float(terms[1]), float(z.mean()), scatter, _variance(noise, x), noise, wave)
 
 
 def _likely_period(z: Floats, rest: Floats) -> float | None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from nanotouch.curves import CurveReport
 from nanotouch.curves.events import Branch as Measured
+from nanotouch.curves.flicker import Noise
 from nanotouch.errors import InvalidValue
 
 from .models import Floats, Model
@@ -32,6 +33,8 @@ class Points:
         Height of the base [m], from the deepest point outwards; force with its baseline taken off [N].
     noise : float
         Standard deviation from point to point [N].
+    free : Noise
+        White and flicker noise of the free cantilever [N^2].
     tear : (float, float) or None
         z at which the tip was torn off, and its standard uncertainty [m].
     baseline_z : float
@@ -43,10 +46,16 @@ class Points:
     z: Floats
     force: Floats
     noise: float
+    free: Noise
     tear: tuple[float, float] | None
     baseline_z: float
     level_sigma: float
     tilt_sigma: float
+
+    @property
+    def correlated_noise(self) -> float:
+        """Standard deviation of one point such that the mean of independent ones would scatter as that of these [N]."""
+        return float(np.sqrt(max(self.noise**2, self.free.white) + self.z.size * self.free.flicker))
 
     def kept(self, mask: NDArray[np.bool_], name: str) -> Points:
         """Some of them."""
@@ -80,7 +89,7 @@ def points_of(report: CurveReport, branch: Branch, model: Model, window: Window 
         tear = (float(z[torn]) + 0.5 * step, _SPREAD_OF_STEP * step)
     baseline = measured.baseline
     level, tilt = np.sqrt(baseline.variance)
-    found = Points(z, force, measured.noise, tear, baseline.z_mean, float(level), float(tilt))
+    found = Points(z, force, measured.noise, baseline.noise, tear, baseline.z_mean, float(level), float(tilt))
     mask = np.arange(z.size) <= last
     if window is not None:
         mask &= (force >= window[0]) & (force <= window[1])

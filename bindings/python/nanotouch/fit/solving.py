@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from nanotouch.curves.flicker import Noise
+
 from .models import Floats, Model
 from .points import Points
 from .uncertainties import Uncertainties
@@ -82,7 +84,7 @@ def solve(extension: ModuleType, setup: Setup, points: Points, uncertainties: Un
     uncertainty of a point, they keep calibration and baseline from being bent to mend the model, and widen sigma.
     """
     options = setup.options(extension)
-    noise = points.noise
+    noise = points.correlated_noise
     if noise > _EXACT * float(np.max(np.abs(points.force))):
         _let_vary(options, setup, points, uncertainties, noise)
     solution = _run(extension, options, points)
@@ -144,7 +146,7 @@ def _let_vary(options: Any, setup: Setup, points: Points, uncertainties: Uncerta
 def _run(extension: ModuleType, options: Any, points: Points) -> Solution:
     found = extension.run(options, -points.z, points.force)
     fitted, indentation, held = extension.evaluate(options, found["value"], -points.z)
-    scatter = scatter_of(points.force - fitted)
+    scatter = max(scatter_of(points.force - fitted), points.correlated_noise)
     exact = scatter < _EXACT * float(np.max(np.abs(points.force)))
     return Solution(found, options, scatter, fitted, indentation, held, exact)
 
@@ -214,8 +216,8 @@ def _refit(
     options = setup.options(extension)
     noise = solution.options.force_noise
     scaled = Points(
-        points.z, points.force * scale, noise * scale, points.tear, points.baseline_z,
-        points.level_sigma * scale, points.tilt_sigma * scale,
+        points.z, points.force * scale, noise * scale, Noise(*(scale**2 * part for part in points.free)), points.tear,
+        points.baseline_z, points.level_sigma * scale, points.tilt_sigma * scale,
     )  # fmt: skip
     if noise > 0.0:
         _let_vary(options, setup, scaled, uncertainties, noise * scale)
