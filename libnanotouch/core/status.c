@@ -21,11 +21,9 @@ const char *nt_status_message(nt_status status)
 /* A limit that is still valid once %g has rounded it to six digits; `up` is 1 for a minimum, -1 for a maximum. */
 static double inside(double limit, double up)
 {
-    char digits[32];
-    double printed = limit;
-    (void)snprintf(digits, sizeof digits, "%g", limit);
-    (void)sscanf(digits, "%lf", &printed);
-    return up * (printed - limit) < 0.0 ? limit + up * 5.1e-6 * fabs(limit) : limit;
+    const double digits = limit / pow(10.0, floor(log10(fabs(limit))) - 5.0); /* the sixth is that of the units */
+    const double lost = up * (digits - rint(digits));                         /* NaN for 0 and infinity */
+    return lost > 1e-9 ? limit + up * 5.1e-6 * fabs(limit) : limit; /* less is the rounding of this division */
 }
 
 const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size)
