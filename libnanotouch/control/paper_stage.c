@@ -9,7 +9,7 @@
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
 
-enum { MOST_DELAY = 255, LEAST_TICKS = 4000, TICKS_PER_DELAY = 200 };
+enum { MOST_DELAY = 1000, LEAST_TICKS = 4000, TICKS_PER_DELAY = 200 };
 #define LARGEST_GAIN 1e4
 
 typedef struct stage_loop {

@@ -108,13 +108,13 @@ static void delay_is_exact(void **state)
     (void)state;
     nt_rig exact = rig;
     exact.master.resolution = exact.stage.resolution = exact.stage.command_resolution = 0.0;
-    for (int delay = 0; delay <= NT_SIM_DELAY_MAX; delay++) {
+    for (int delay = 0; delay <= NT_SIM_DELAY_MAX; delay += delay < 14 ? 1 : 16) { /* the last one is the largest */
         nt_sim_setup setup = setup_of(1, delay);
         setup.rig = &exact;
         nt_sim sim = sim_of(&setup);
         const uint64_t sent = 40;
         uint64_t master_moved = 0, stage_moved = 0, x_moved = 0;
-        for (uint64_t i = 0; i < 80; i++) {
+        for (uint64_t i = 0; i < sent + (uint64_t)delay + 20; i++) {
             nt_sample sample;
             nt_sim_read(&sim, &sample);
             assert_int_equal(sample.tick, i);

@@ -89,6 +89,11 @@ def test_every_kind_on_every_channel_leaves_numbers(name: str) -> None:
         ({"name": "stale", "at": math.nan}, "at = nan s"),
         ({"name": "stale", "duration": 0.0}, "duration = 0.0 s"),
         ({"name": "push", "value": math.inf}, "value = inf"),
+        ({"name": "push", "value": math.nan}, "value = nan"),
+        ({"name": "noise", "channel": "deflection", "value": -1.0}, "value = -1"),
+        ({"name": "late", "value": 1001.0}, "valid is 0 .. 1000"),
+        ({"name": "hysteresis", "value": 0.5}, "valid is 0 .. 0.4"),
+        ({"name": "limit", "value": -1e-9}, "value = -1e-09 m"),
     ],
 )
 def test_refusals(arguments: dict[str, Any], words: str) -> None:

@@ -217,7 +217,7 @@ def replay(
 ) -> dict[str, NDArray[Any]]: ...
 
 fault_channels: tuple[str, ...]
-fault_kinds: tuple[tuple[str, str, str, float, int, int], ...]
+fault_kinds: tuple[tuple[str, str, str, float, float, float, int, int], ...]
 faults_max: int
 
 class Session:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from nanotouch import _core
 from nanotouch.errors import InvalidValue
@@ -23,14 +23,18 @@ class FaultKind(NamedTuple):
     doc: str
     value: float
     """if none is given"""
+    minimum: float
+    """of the value"""
+    maximum: float
     row: int
     """of the fault table in docs/safety.md"""
     channels: tuple[str, ...]
     """where it may be; a fault of the whole rig has the channel ``"rig"``"""
 
 
-def _kind(name: str, unit: str, doc: str, value: float, row: int, mask: int) -> FaultKind:
-    return FaultKind(name, unit, doc, value, row, tuple(c for n, c in enumerate(CHANNELS) if mask >> n & 1))
+def _kind(*entry: Any) -> FaultKind:
+    *facts, mask = entry
+    return FaultKind(*facts, channels=tuple(c for n, c in enumerate(CHANNELS) if mask >> n & 1))
 
 
 #: every kind by its name
@@ -106,8 +110,10 @@ class Faults:
         if not duration > 0.0:
             raise InvalidValue(f"fault {name!r}: duration = {duration} s: it must be above 0 s")
         value = kind.value if value is None else value
-        if not math.isfinite(value):
-            raise InvalidValue(f"fault {name!r}: value = {value}: it must be finite")
+        if not kind.minimum <= value <= kind.maximum:
+            raise InvalidValue(
+                f"fault {name!r}: value = {value:g} {kind.unit}: valid is {kind.minimum:g} .. {kind.maximum:g}"
+            )
         if len(self._list) == _core.faults_max:
             raise InvalidValue(f"fault {name!r}: a schedule holds {_core.faults_max} faults")
         self._list.append(Fault(name, channel, at, duration, value))

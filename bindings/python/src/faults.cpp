@@ -28,7 +28,7 @@ void bind_faults(py::module_ &module)
     const nt_fault_description *descriptions = nt_fault_descriptions(&count);
     for (int kind = 0; kind < count; ++kind) {
         const nt_fault_description &d = descriptions[kind];
-        kinds.append(py::make_tuple(d.name, d.unit, d.doc, d.value, d.row, d.channels));
+        kinds.append(py::make_tuple(d.name, d.unit, d.doc, d.value, d.minimum, d.maximum, d.row, d.channels));
     }
     module.attr("fault_channels") = py::tuple(channels);
     module.attr("fault_kinds") = py::tuple(kinds);

@@ -12,30 +12,40 @@ enum { SENSORS = NT_CHANNEL_OPERATOR_FORCE + 1 };
 #define ON(channel) (1u << (channel))
 #define ON_SENSORS (ON(SENSORS) - 1u)
 
+/* Beyond these numbers nothing is simulated any more; a stage may creep and turn as the rig's own may (rig.c). */
+#define ANY -1e6, 1e6
+#define NO_VALUE 0.0, ANY
+
 static const nt_fault_description descriptions[] = {
-    [NT_FAULT_NAN] = {"nan", "", "the reading is not a number", 0.0, 1, ON_SENSORS},
-    [NT_FAULT_INFINITE] = {"infinite", "", "the reading is infinite, with the sign of the value", 1.0, 1, ON_SENSORS},
+    [NT_FAULT_NAN] = {"nan", "", "the reading is not a number", NO_VALUE, 1, ON_SENSORS},
+    [NT_FAULT_INFINITE] = {"infinite", "", "the reading is infinite, with the sign of the value", 1.0, ANY, 1,
+                           ON_SENSORS},
     [NT_FAULT_SATURATED] = {"saturated", "", "the reading is at the end of its range, with the sign of the value", 1.0,
-                            2, ON_SENSORS},
-    [NT_FAULT_STUCK] = {"stuck", "", "the reading stays as it was", 0.0, 3, ON_SENSORS},
-    [NT_FAULT_STALE] = {"stale", "", "the link repeats its last sample, which ages", 0.0, 4, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_DROPOUT] = {"dropout", "", "frames arrive marked bad, without numbers", 0.0, 4, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_NOISE] = {"noise", "", "more noise: this many times the sensor's noise or step", 100.0, 5, ON_SENSORS},
-    [NT_FAULT_JUMP] = {"jump", "m", "the surface rises by the value at once", 5e-9, 6, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_LATE] = {"late", "periods", "every tick is late by the value", 1.0, 11, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_CLOCK] = {"clock", "s", "the clock jumps: the sample is this old", -3600.0, 12, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_LIMIT] = {"limit", "m", "it goes no farther than the value beyond where it stands", 0.0, 13,
+                            ANY, 2, ON_SENSORS},
+    [NT_FAULT_STUCK] = {"stuck", "", "the reading stays as it was", NO_VALUE, 3, ON_SENSORS},
+    [NT_FAULT_STALE] = {"stale", "", "the link repeats its last sample, which ages", NO_VALUE, 4, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_DROPOUT] = {"dropout", "", "frames arrive marked bad, without numbers", NO_VALUE, 4, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_NOISE] = {"noise", "", "more noise: this many times the sensor's noise or step", 100.0, 0.0, 1e6, 5,
+                        ON_SENSORS},
+    [NT_FAULT_JUMP] = {"jump", "m", "the surface rises by the value at once", 5e-9, -1e-3, 1e-3, 6, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_LATE] = {"late", "periods", "every tick is late by the value", 1.0, 0.0, NT_SIM_LOST_MAX, 11,
+                       ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_CLOCK] = {"clock", "s", "the clock jumps: the sample is this old", -3600.0, -1e12, 1e12, 12,
+                        ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_LIMIT] = {"limit", "m", "it goes no farther than the value beyond where it stands", 0.0, 0.0, 1e-3, 13,
                         ON(NT_CHANNEL_STAGE)},
-    [NT_FAULT_GAIN] = {"gain", "", "reading, stage travel from here, or motor force times the value", -1.0, 14,
+    [NT_FAULT_GAIN] = {"gain", "", "reading, stage travel from here, or motor force times the value", -1.0, ANY, 14,
                        ON_SENSORS | ON(NT_CHANNEL_STAGE) | ON(NT_CHANNEL_MOTOR)},
-    [NT_FAULT_DRIFT] = {"drift", "", "drifts by the value per second, the stage unseen by its read-out", 1e-6, 15,
+    [NT_FAULT_DRIFT] = {"drift", "", "drifts by the value per second, the stage unseen by its read-out", 1e-6, ANY, 15,
                         ON_SENSORS | ON(NT_CHANNEL_STAGE)},
-    [NT_FAULT_HYSTERESIS] = {"hysteresis", "", "the stage's hysteresis becomes the value", 0.3, 15,
+    [NT_FAULT_HYSTERESIS] = {"hysteresis", "", "the stage's hysteresis becomes the value", 0.3, 0.0, 0.4, 15,
                              ON(NT_CHANNEL_STAGE)},
-    [NT_FAULT_PUSH] = {"push", "N", "the operator pushes with this besides", 5.0, 16, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_EMERGENCY_STOP] = {"emergency-stop", "", "pressed, or its line is lost", 0.0, 34, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_LIMIT_SWITCH] = {"limit-switch", "", "the stage stands at its end switch", 0.0, 13, ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_DEVICE_LOST] = {"device-lost", "", "a device is gone", 0.0, 9, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_PUSH] = {"push", "N", "the operator pushes with this besides", 5.0, ANY, 16, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_EMERGENCY_STOP] = {"emergency-stop", "", "pressed, or its line is lost", NO_VALUE, 34,
+                                 ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_LIMIT_SWITCH] = {"limit-switch", "", "the stage stands at its end switch", NO_VALUE, 13,
+                               ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_DEVICE_LOST] = {"device-lost", "", "a device is gone", NO_VALUE, 9, ON(NT_CHANNEL_RIG)},
 };
 enum { KINDS = (int)(sizeof descriptions / sizeof *descriptions) };
 
@@ -62,7 +72,8 @@ nt_status nt_faults_add(nt_faults *faults, const nt_fault *fault)
         return NT_E_ARGUMENT;
     if (!isfinite(fault->start) || !isfinite(fault->value) || isnan(fault->duration))
         return NT_E_NOT_FINITE;
-    if (fault->start < 0.0 || fault->duration <= 0.0)
+    const nt_fault_description *known = &descriptions[kind];
+    if (fault->start < 0.0 || fault->duration <= 0.0 || fault->value < known->minimum || fault->value > known->maximum)
         return NT_E_RANGE;
     if (faults->count >= NT_FAULTS_MAX)
         return NT_E_CAPACITY;
@@ -210,7 +221,7 @@ void nt_sim_spoil(nt_sim *sim, nt_sample *sample)
 
 int nt_sim_lost_periods(const nt_sim *sim)
 {
-    return (int)fmin(fmax(0.0, sum_of(sim, NT_FAULT_LATE)), NT_SIM_LOST_MAX);
+    return (int)fmin(sum_of(sim, NT_FAULT_LATE), NT_SIM_LOST_MAX); /* of several faults */
 }
 
 double nt_sim_spoil_stage(nt_sim *sim, double drive)

@@ -60,10 +60,12 @@ typedef struct nt_faults {
 
 /* One kind. */
 typedef struct nt_fault_description {
-    const char *name;  /* "nan", "stuck", ...; static storage */
-    const char *unit;  /* of the value, "" if it has none or takes that of the channel */
-    const char *doc;   /* what it does */
-    double value;      /* usual */
+    const char *name; /* "nan", "stuck", ...; static storage */
+    const char *unit; /* of the value, "" if it has none or takes that of the channel */
+    const char *doc;  /* what it does */
+    double value;     /* usual */
+    double minimum;   /* of the value */
+    double maximum;
     int row;           /* of the fault table in docs/safety.md */
     unsigned channels; /* bit 1 << nt_channel where it may be */
 } nt_fault_description;
@@ -73,7 +75,7 @@ NT_API const nt_fault_description *nt_fault_descriptions(int *count);
 /* "deflection", ...; "" for none. */
 NT_API const char *nt_channel_name(nt_channel channel);
 /* Adds one. NT_E_ARGUMENT (no such kind, or not on this channel), NT_E_NOT_FINITE (start, value; duration NaN),
- * NT_E_RANGE (start below 0, duration not above 0), NT_E_CAPACITY. */
+ * NT_E_RANGE (start below 0, duration not above 0, a value out of its range), NT_E_CAPACITY. */
 NT_API nt_status nt_faults_add(nt_faults *faults, const nt_fault *fault);
 
 #ifdef __cplusplus

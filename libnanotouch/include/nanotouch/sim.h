@@ -36,7 +36,7 @@ typedef struct nt_sim_setup {
     const nt_faults *faults; /* copied; NULL: none */
 } nt_sim_setup;
 
-enum { NT_SIM_DELAY_MAX = 15, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000 };
+enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000 };
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {

@@ -38,7 +38,7 @@ typedef struct nt_touch {
 /* Of a mode that ends: approach and curve. */
 typedef enum nt_phase { NT_PHASE_DOWN, NT_PHASE_UP, NT_PHASE_DONE } nt_phase;
 
-enum { NT_TOUCH_SENT = 32 };
+enum { NT_TOUCH_SENT = 256 };
 
 typedef struct nt_touch_state {
     nt_mode mode, wanted_mode; /* they differ while the force of the old one fades out */
