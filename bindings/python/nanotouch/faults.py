@@ -34,7 +34,7 @@ class FaultKind(NamedTuple):
 
 def _kind(*entry: Any) -> FaultKind:
     *facts, mask = entry
-    return FaultKind(*facts, channels=tuple(c for n, c in enumerate(CHANNELS) if mask >> n & 1))
+    return FaultKind(*facts, tuple(c for n, c in enumerate(CHANNELS) if mask >> n & 1))
 
 
 #: every kind by its name
