@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from nanotouch import _core
 from nanotouch.errors import InvalidValue
@@ -32,13 +32,14 @@ class FaultKind(NamedTuple):
     """where it may be; a fault of the whole rig has the channel ``"rig"``"""
 
 
-def _kind(*entry: Any) -> FaultKind:
-    *facts, mask = entry
-    return FaultKind(*facts, tuple(c for n, c in enumerate(CHANNELS) if mask >> n & 1))
+def _kind(entry: tuple[str, str, str, float, float, float, int, int]) -> FaultKind:
+    name, unit, doc, value, minimum, maximum, row, mask = entry
+    channels = tuple(c for n, c in enumerate(CHANNELS) if mask >> n & 1)
+    return FaultKind(name, unit, doc, value, minimum, maximum, row, channels)
 
 
 #: every kind by its name
-KINDS: dict[str, FaultKind] = {entry[0]: _kind(*entry) for entry in _core.fault_kinds}
+KINDS: dict[str, FaultKind] = {entry[0]: _kind(entry) for entry in _core.fault_kinds}
 _NUMBERS = {name: number for number, name in enumerate(KINDS)}
 
 
