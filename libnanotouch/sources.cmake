@@ -71,6 +71,7 @@ set(nanotouch_sources_scene
     scene/local.c
     scene/options.c
     scene/plan.c
+    scene/pull_off.c
     scene/scene.c
     scene/warnings.c)
 set(nanotouch_sources_hal hal/hal.c)

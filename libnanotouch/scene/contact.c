@@ -20,13 +20,11 @@ nt_form nt_plan_contact_form(const nt_plan *plan)
     return is_jkr_shape(plan) ? NT_FORM_JKR : NT_FORM_EXACT;
 }
 
-nt_status nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
 {
     plan->source = nt_scene_adhesion_source(scene);
     plan->shape = nt_scene_shape(scene);
-    const nt_status status = nt_scene_contact(scene, &plan->contact, problem);
-    if (status != NT_OK)
-        return status;
+    plan->contact = nt_scene_contact(scene, work_of_adhesion);
     const double range =
         plan->source == NT_ADHESION_NONE ? 0.0 : plan->contact.work_of_adhesion / plan->contact.cohesive_stress;
     plan->capture_gap = range; /* where attraction begins; a bridge, where the films touch */
@@ -34,7 +32,6 @@ nt_status nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, nt_problem *p
         plan->capture_gap = fmin(2.0 * scene->medium.film_thickness, range);
     if (is_jkr_shape(plan))
         plan->capture_gap = 0.0;
-    return NT_OK;
 }
 
 nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation)

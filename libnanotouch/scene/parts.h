@@ -8,7 +8,7 @@
 
 /* contact.c: source, shape, contact with all of w, capture; and, with what the tail leaves of w, the laws of contact.
  */
-nt_status nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adhesion);
 nt_status nt_plan_contact_laws(nt_plan *plan, const nt_scene *scene);
 /* The fullest form of the scene's contact. */
 nt_form nt_plan_contact_form(const nt_plan *plan);
@@ -52,6 +52,9 @@ nt_form nt_plan_full_form(const nt_plan *plan, int term);
 
 /* facts.c: pull-off, stiffness, energies of the jumps, with everything on. */
 nt_status nt_plan_facts(nt_plan *plan);
+
+/* pull_off.c: all of the above, with the w of a measured pull-off force where one is given. */
+nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 
 /* options.c: the forms of every term with error and cost. */
 enum { NT_OPTIONS_MAX = 6 };

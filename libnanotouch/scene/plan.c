@@ -96,13 +96,7 @@ nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *
     plan->bank = inputs->bank;
     if (inputs->probe)
         plan->demand.force_floor = fmax(demand.force_floor, nt_probe_force_noise(inputs->probe));
-    status = nt_plan_contact_of(plan, inputs->scene, problem);
-    if (status == NT_OK)
-        status = nt_plan_laws_of(plan, inputs->scene, problem);
-    if (status == NT_OK)
-        status = nt_plan_contact_laws(plan, inputs->scene);
-    if (status == NT_OK)
-        status = nt_plan_facts(plan);
+    status = nt_plan_adhere(plan, inputs->scene, problem);
     if (status != NT_OK)
         return status;
     nt_plan_options options;

@@ -294,6 +294,36 @@ static int warns_of(const char *word)
     return found;
 }
 
+/* With tail and potential, of contacts from JKR's to DMT's end; what no w makes is refused with what can be. */
+static void measured_pull_off_is_that_of_the_whole(void **state)
+{
+    (void)state;
+    nt_scene scene = dry_silicon();
+    nt_problem problem = {0};
+    scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
+    scene.adhesion.contact_potential = 0.5;
+    for (double modulus = 1e5; modulus < 1e12; modulus *= 100.0)
+        for (int shape = 0; shape < 4; ++shape) {
+            static const nt_shape_kind kinds[] = {NT_SHAPE_PARABOLOID, NT_SHAPE_SPHERE, NT_SHAPE_CONE, NT_SHAPE_PUNCH};
+            scene.tip.shape = kinds[shape];
+            scene.sample.youngs_modulus = modulus;
+            scene.adhesion.pull_off_force = 12e-9;
+            assert_int_equal(make(&plan, &scene, NULL), NT_OK);
+            assert_true(fabs(plan.pull_off_force / 12e-9 - 1.0) < 1e-9);
+        }
+    scene.tip.shape = NT_SHAPE_PARABOLOID;
+    scene.adhesion.pull_off_force = 0.1e-9; /* the potential alone pulls more */
+    const nt_plan_inputs inputs = {.scene = &scene};
+    assert_int_equal(nt_plan_make(&plan, &inputs, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "adhesion.pull_off_force");
+    scene.adhesion.pull_off_force = problem.minimum;
+    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
+    scene.adhesion.pull_off_force = 0.9; /* w beyond any solid's */
+    assert_int_equal(nt_plan_make(&plan, &inputs, &problem), NT_E_RANGE);
+    scene.adhesion.pull_off_force = problem.maximum;
+    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
+}
+
 /* Facts that what else the scene says leaves without effect are told, not passed over. */
 static void what_is_not_used_is_told(void **state)
 {
@@ -356,6 +386,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_is_refused_by_name),
         cmocka_unit_test(rivals_are_those_of_the_force),
         cmocka_unit_test(without_adhesion_there_are_no_folds),
+        cmocka_unit_test(measured_pull_off_is_that_of_the_whole),
         cmocka_unit_test(what_is_not_used_is_told),
         cmocka_unit_test(warnings_are_of_what_is_visited),
     };

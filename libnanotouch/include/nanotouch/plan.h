@@ -156,9 +156,9 @@ typedef struct nt_plan_inputs {
     const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */
 } nt_plan_inputs;
 
-/* Decides. Some 100 us. On failure *plan is not to be used and *problem (NULL allowed) names the field of scene, demand
- * or probe, or what the demand would have to be: NT_E_RANGE with "demand.relative_accuracy" and the best bound as its
- * minimum, or "demand.budget" and the smallest cost. */
+/* Decides. Some 100 us, some milliseconds where a pull-off force was measured. On failure *plan is not to be used and
+ * *problem (NULL allowed) names the field of scene, demand or probe, or what the demand would have to be: NT_E_RANGE
+ * with "demand.relative_accuracy" and the best bound as its minimum, or "demand.budget" and the smallest cost. */
 NT_API nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
 
 NT_API void nt_plan_copy(nt_plan *copy, const nt_plan *plan);

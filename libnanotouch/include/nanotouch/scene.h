@@ -63,7 +63,7 @@ typedef struct nt_medium {
 typedef enum nt_adhesion_given {
     NT_ADHESION_GIVEN_WORK,     /* w as given */
     NT_ADHESION_GIVEN_ENERGIES, /* w = 2 sqrt(gamma_t gamma_s) (nt_work_of_adhesion) */
-    NT_ADHESION_GIVEN_PULL_OFF  /* the w whose pull-off force was measured; a meniscus, too */
+    NT_ADHESION_GIVEN_PULL_OFF  /* the w with which the whole pulls off as was measured; a meniscus, too */
 } nt_adhesion_given;
 
 typedef struct nt_adhesion {
@@ -116,8 +116,9 @@ NT_API double nt_scene_meniscus_radius(const nt_scene *scene);
 NT_API double nt_scene_potential(const nt_scene *scene);
 /* The tip's shape, checked with the scene. */
 NT_API nt_shape nt_scene_shape(const nt_scene *scene);
-/* R, E*, w and sigma0 of the scene's adhesion source. NT_E_RANGE if no w gives the measured pull-off force. */
-NT_API nt_status nt_scene_contact(const nt_scene *scene, nt_contact *contact, nt_problem *problem);
+/* R, E*, w and sigma0 of the scene's adhesion source; work_of_adhesion [J/m^2] stands for the w of a scene that gives a
+ * measured pull-off force (a plan finds it) and is not read otherwise. */
+NT_API nt_contact nt_scene_contact(const nt_scene *scene, double work_of_adhesion);
 
 #ifdef __cplusplus
 }

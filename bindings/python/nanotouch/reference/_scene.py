@@ -48,8 +48,11 @@ def forces(scene: Scene, gap: ArrayLike, *, history: History = "approach", radiu
     if history not in get_args(History):
         raise InvalidValue(f"history {history!r}: valid are {', '.join(get_args(History))}")
     scene.check()
-    gaps = as_floats(gap, "gap")
-    whole = _contact(scene)
+    return _forces(scene, _work(scene), as_floats(gap, "gap"), history, radius)
+
+
+def _forces(scene: Scene, work: float, gaps: Floats, history: History, radius: float | None) -> SceneForces:
+    whole = _contact(scene, work)
     capture = _capture_gap(scene, whole)
     tail = functools.partial(_vdw, scene, hold=max(capture, 1e-12))
     pulled = -float(tail(0.0)) / (2.0 * np.pi * whole.radius) if whole.work_of_adhesion > 0.0 else 0.0
@@ -79,31 +82,61 @@ def _meniscus_radius(scene: Scene) -> float:
     )
 
 
-def _contact(scene: Scene) -> contacts.Contact:
+def _contact(scene: Scene, work: float) -> contacts.Contact:
     """R, E*, all of w, and its stress."""
     modulus = contacts.effective_modulus(
         scene.tip.youngs_modulus, scene.tip.poisson_ratio, scene.sample.youngs_modulus, scene.sample.poisson_ratio
     )
+    if work == 0.0:
+        return contacts.Contact(scene.tip.radius, modulus)
+    if _has_meniscus(scene):  # the stress is the Laplace pressure over 2 r1 (E12)
+        return contacts.Contact(scene.tip.radius, modulus, work, work / (2.0 * _meniscus_radius(scene)))
+    stress = contacts.cohesive_stress_atomic(work, scene.adhesion.equilibrium_distance)
+    return contacts.Contact(scene.tip.radius, modulus, work, stress)
+
+
+def _work(scene: Scene) -> float:
+    """All of w."""
     adhesion = scene.adhesion
-
-    def with_work(work: float) -> contacts.Contact:
-        if work == 0.0:
-            return contacts.Contact(scene.tip.radius, modulus)
-        if _has_meniscus(scene):  # the stress is the Laplace pressure over 2 r1 (E12)
-            return contacts.Contact(scene.tip.radius, modulus, work, work / (2.0 * _meniscus_radius(scene)))
-        stress = contacts.cohesive_stress_atomic(work, adhesion.equilibrium_distance)
-        return contacts.Contact(scene.tip.radius, modulus, work, stress)
-
-    if adhesion.given == "pull_off_force" and adhesion.pull_off_force > 0.0:
-        from scipy.optimize import brentq
-
-        root = brentq(lambda w: _pull_off(scene, with_work(w)) - adhesion.pull_off_force, 1e-12, 1e2, xtol=1e-18)
-        return with_work(float(root))
+    if adhesion.given == "pull_off_force":
+        if adhesion.pull_off_force == 0.0 and not _has_meniscus(scene):
+            return 0.0
+        return _work_by_pull_off(tuple((name, scene[name]) for name in scene.fields))
     if _has_meniscus(scene):
-        return with_work(2.0 * scene.medium.surface_tension)
+        return 2.0 * float(scene.medium.surface_tension)
     if adhesion.given == "surface_energies":
-        return with_work(2.0 * float(np.sqrt(adhesion.tip_surface_energy * adhesion.sample_surface_energy)))
-    return with_work(0.0 if adhesion.given == "pull_off_force" else adhesion.work_of_adhesion)
+        return 2.0 * float(np.sqrt(adhesion.tip_surface_energy * adhesion.sample_surface_energy))
+    return float(adhesion.work_of_adhesion)
+
+
+@functools.lru_cache(maxsize=16)
+def _work_by_pull_off(values: tuple[tuple[str, Any], ...]) -> float:
+    """The w with which the whole scene pulls off with the measured force, for the values of its fields."""
+    from scipy.optimize import brentq
+
+    scene = Scene()
+    for name, value in values:
+        scene[name] = value
+
+    def excess(log_work: float) -> float:
+        try:
+            return float(_pull_off(scene, float(np.exp(log_work))) / scene.adhesion.pull_off_force - 1.0)
+        except InvalidValue:  # the tail leaves nothing of w
+            return -1.0
+
+    return float(np.exp(brentq(excess, np.log(1e-12), np.log(1e2), xtol=1e-15, rtol=1e-15)))
+
+
+def _pull_off(scene: Scene, work: float) -> float:
+    """Largest attraction of the whole in contact: on a grid of gaps, then between the neighbours of its best."""
+    near = np.geomspace(1e-15, 0.1, 800)  # [m]
+    gaps = np.concatenate([-near[::-1], [0.0], near])
+    for _ in range(12):
+        parts = _forces(scene, work, gaps, "retract", None)
+        total = np.where(np.asarray(parts.contact) == 0.0, 0.0, np.sum(parts, axis=0))
+        best = int(np.argmin(total))
+        gaps = np.linspace(gaps[max(best - 1, 0)], gaps[min(best + 1, len(gaps) - 1)], 41)
+    return -float(total[best])
 
 
 def _shape(scene: Scene) -> geometry.Shape:
@@ -118,12 +151,6 @@ def _shape(scene: Scene) -> geometry.Shape:
 
 def _is_jkr(scene: Scene) -> bool:
     return scene.tip.shape in ("cone", "punch")
-
-
-def _pull_off(scene: Scene, contact: contacts.Contact) -> float:
-    if _is_jkr(scene):
-        return geometry.jkr_pull_off_force(_shape(scene), contact.effective_modulus, contact.work_of_adhesion)
-    return contacts.pull_off_force("maugis", contact)
 
 
 def _less(contact: contacts.Contact, pulled: float) -> contacts.Contact:

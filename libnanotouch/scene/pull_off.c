@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The laws of a scene at its work of adhesion; where a pull-off force was measured, at the w with which contact, tail
+ * and all else together pull off with it. */
+#include <math.h>
+#include <string.h>
+
+#include "core/roots.h"
+#include "scene/parts.h"
+
+#define WORK_MIN 1e-12 /* [J/m^2] */
+#define WORK_MAX 1e2
+#define STEP 4.0  /* of w, on the way to a bracket */
+#define MET 1e-9  /* of the measured force */
+#define JUST 1e-9 /* of w: beyond where the tail leaves nothing of it */
+
+static nt_status laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem)
+{
+    nt_plan_contact_of(plan, scene, work_of_adhesion);
+    nt_status status = nt_plan_laws_of(plan, scene, problem);
+    if (status == NT_OK)
+        status = nt_plan_contact_laws(plan, scene);
+    return status == NT_OK ? nt_plan_facts(plan) : status;
+}
+
+typedef struct sought {
+    nt_plan *plan;
+    const nt_scene *scene;
+} sought;
+
+/* Pull-off force of the whole less the measured one [N]. Where the tail leaves nothing of w, w is too small. */
+static double excess(double work_of_adhesion, const void *context)
+{
+    const sought *in = context;
+    const nt_status status = laws_at(in->plan, in->scene, work_of_adhesion, NULL);
+    const double measured = in->scene->adhesion.pull_off_force;
+    return status == NT_OK ? in->plan->pull_off_force - measured : status == NT_E_RANGE ? -measured : (double)NAN;
+}
+
+/* What can be measured goes from or up to `limit`. */
+static nt_status refuse(const sought *in, double limit, nt_problem *problem)
+{
+    int count = 0;
+    const nt_field *field = nt_scene_fields(&count);
+    while (strcmp(field->name, "adhesion.pull_off_force") != 0)
+        ++field;
+    const double measured = in->scene->adhesion.pull_off_force;
+    const int less = measured < limit;
+    if (problem)
+        *problem = (nt_problem){field->name, field->unit, measured, less ? limit * (1.0 + MET) : field->minimum,
+                                less ? field->maximum : limit * (1.0 - MET)};
+    return NT_E_RANGE;
+}
+
+static nt_status find(const sought *in, nt_problem *problem)
+{
+    const double measured = in->scene->adhesion.pull_off_force;
+    double w = fmin(fmax(measured / (2.0 * NT_PI * in->scene->tip.radius), WORK_MIN), WORK_MAX); /* rigid */
+    double bracket[2] = {w, w};
+    while (excess(bracket[1], in) < 0.0 && bracket[1] < WORK_MAX)
+        bracket[1] = fmin(bracket[1] * STEP, WORK_MAX);
+    while (excess(bracket[0], in) > 0.0 && bracket[0] > WORK_MIN)
+        bracket[0] = fmax(bracket[0] / STEP, WORK_MIN);
+    const double least = excess(bracket[0], in), most = excess(bracket[1], in);
+    if (least > 0.0 || most < 0.0)
+        return refuse(in, measured + (least > 0.0 ? least : most), problem);
+    const nt_status status = nt_root_find(excess, in, bracket, &w, NULL);
+    if (status != NT_OK)
+        return status;
+    double over = excess(w, in);
+    if (over < -MET * measured)
+        over = excess(w * (1.0 + JUST), in);
+    return fabs(over) <= MET * measured ? NT_OK : refuse(in, measured + over, problem);
+}
+
+nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    const sought in = {plan, scene};
+    if (scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF || nt_scene_adhesion_source(scene) == NT_ADHESION_NONE)
+        return laws_at(plan, scene, 0.0, problem);
+    return find(&in, problem);
+}
