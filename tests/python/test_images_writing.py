@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -125,3 +127,64 @@ def test_refusals(tmp_path: Path) -> None:
     with pytest.raises(Error, match="cannot write"):
         images.write(tmp_path / "no folder" / "out.h5", topography())
     assert list(tmp_path.iterdir()) == []  # nothing half written is left
+
+
+def text_at(data: bytes, at: int) -> tuple[str, int]:
+    end = data.index(0, at)
+    return data[at:end].decode("utf-8"), end + 1
+
+
+def object_at(data: bytes, at: int) -> tuple[str, dict[str, tuple[str, Any]], int]:
+    """An object as "Format of Gwyddion files" of Gwyddion's user guide describes it: its name, its size, its
+    components with type and value; and where it ends."""
+    name, at = text_at(data, at)
+    (size,) = struct.unpack_from("<I", data, at)
+    at, end = at + 4, at + 4 + size
+    parts: dict[str, tuple[str, Any]] = {}
+    while at < end:
+        key, at = text_at(data, at)
+        kind, at = chr(data[at]), at + 1
+        if kind == "s":
+            value, at = text_at(data, at)
+        elif kind == "o":
+            inner, content, at = object_at(data, at)
+            value = (inner, content)
+        elif kind == "D":
+            (count,) = struct.unpack_from("<I", data, at)
+            value, at = np.frombuffer(data, "<f8", count, at + 4), at + 4 + 8 * count
+        else:
+            form = {"b": "<B", "i": "<i", "d": "<d"}[kind]
+            (value,) = struct.unpack_from(form, data, at)
+            at += struct.calcsize(form)
+        assert key not in parts
+        parts[key] = (kind, value)
+    assert at == end
+    return name, parts, at
+
+
+def test_gwy_byte_by_byte(tmp_path: Path) -> None:
+    """Read by the description of the format alone: every object, its components, their types, nothing left over."""
+    pytest.importorskip("gwyfile")
+    original = topography(holes=3)
+    data = images.write(tmp_path / "out.gwy", original, title="Höhe", offset=OFFSET).read_bytes()
+    assert data[:4] == b"GWYP"
+    name, container, end = object_at(data, 4)
+    assert (name, end) == ("GwyContainer", len(data))
+    assert {key: kind for key, (kind, _) in container.items()} == {
+        "/0/data": "o", "/0/data/title": "s", "/0/data/visible": "b", "/0/mask": "o", "/0/meta": "o"}  # fmt: skip
+    assert (container["/0/data/title"][1], container["/0/data/visible"][1]) == ("Höhe", 1)
+    for key, unit, values in (("/0/data", "m", original.heights), ("/0/mask", "", original.mask)):
+        inner, field = container[key][1]
+        assert inner == "GwyDataField"
+        assert {part: kind for part, (kind, _) in field.items()} == {
+            "xres": "i", "yres": "i", "xreal": "d", "yreal": "d", "xoff": "d", "yoff": "d", "si_unit_xy": "o",
+            "si_unit_z": "o", "data": "D"}  # fmt: skip
+        assert field["si_unit_xy"][1] == ("GwySIUnit", {"unitstr": ("s", "m")})
+        assert field["si_unit_z"][1] == ("GwySIUnit", {"unitstr": ("s", unit)})
+        assert (field["yres"][1], field["xres"][1]) == values.shape
+        assert (field["yreal"][1], field["xreal"][1]) == pytest.approx(original.size)
+        assert (field["xoff"][1], field["yoff"][1]) == pytest.approx((OFFSET[1], -(OFFSET[0] + original.size[0])))
+        np.testing.assert_array_equal(field["data"][1].reshape(values.shape)[::-1], values)
+    inner, meta = container["/0/meta"][1]
+    assert inner == "GwyContainer"
+    assert meta == {"Name": ("s", "scan.ibw"), "Read by": ("s", "SurfaceTopography/ibw")}
