@@ -42,7 +42,7 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     print(summary)
     _tell_without(summary.rows)
     for name in summary.unused:
-        print(f"  note: the sidecar's {name!r} is none of these files")
+        print(f"  note: {name!r} of the sidecar or the calibration table is none of these files")
     drawn = len(sheets) * sheet.ACROSS * sheet.DOWN
     if drawn < len(summary.pictures):
         print(f"  note: the sheets show the first {drawn} of {len(summary.pictures)} fits")

@@ -162,10 +162,11 @@ def test_contact_sheets(folder: Path, tmp_path: Path) -> None:
 
 
 def test_the_calibration_table_reaches_every_file(folder: Path, tmp_path: Path) -> None:
-    table = write(tmp_path / "table.csv", "file,spring_constant,sensitivity\nb.*,2N/m,\n")
+    table = write(tmp_path / "table.csv", "file,spring_constant,sensitivity\nb.*,2N/m,\nmisspelt*,3N/m,\n")
     summary = batch.fit_files([folder], tmp_path / "r.csv", "jkr", reading={"calibration": table}, **RADIUS)
     assert summary.rows[0]["spring_constant [N/m]"] != 2.0
     assert summary.rows[1]["spring_constant [N/m]"] == 2.0
+    assert summary.unused == ["misspelt*"]
 
 
 def test_the_command(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

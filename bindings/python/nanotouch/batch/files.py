@@ -49,7 +49,7 @@ class Summary:
     reused : int
         Files whose results an earlier run had left.
     unused : list of str
-        Names in the sidecar that are those of no file.
+        Names in sidecar and calibration table that are those of no file.
     """
 
     rows: list[Row]
@@ -141,7 +141,12 @@ def fit_files(
         "sidecar": {name: asdict(decision) for name, decision in decided.decisions.items()},
         "files": {entry["file"]: entry["sha256"] for entry in entries},
     })  # fmt: skip
-    return Summary(rows, [p for entry in entries for p in entry["pictures"]], reused, decided.unused(files))
+    return Summary(
+        rows,
+        [p for entry in entries for p in entry["pictures"]],
+        reused,
+        decided.unused(files) + _unused(reading, files),
+    )
 
 
 def _without(files: list[Path], others: tuple[Path, ...]) -> list[Path]:
@@ -162,6 +167,11 @@ def _own(out: Path) -> tuple[Path, ...]:
 def _given(sidecar: str | os.PathLike[str] | None, reading: Mapping[str, Any]) -> list[Path]:
     """Tables that a run is given, which may lie among the curves."""
     return [Path(file) for file in (sidecar, reading.get("calibration")) if isinstance(file, str | os.PathLike)]
+
+
+def _unused(reading: Mapping[str, Any], files: list[Path]) -> list[str]:
+    table = reading.get("calibration")
+    return table.unused(files) if isinstance(table, CalibrationTable) else []
 
 
 def _beside(out: Path, ending: str) -> Path:

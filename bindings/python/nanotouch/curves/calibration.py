@@ -9,7 +9,7 @@ moves with s.
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from os import PathLike
@@ -101,11 +101,17 @@ class CalibrationTable:
 
     def of(self, file: str | PathLike[str]) -> Calibration:
         """What the table gives for a file; nothing if no pattern matches."""
-        path = Path(file).absolute()
-        for pattern, calibration in self.rows:
-            if fnmatchcase(path.as_posix(), f"*/{pattern}") if "/" in pattern else fnmatchcase(path.name, pattern):
-                return calibration
-        return Calibration()
+        return next((found for pattern, found in self.rows if _matches(pattern, Path(file))), Calibration())
+
+    def unused(self, files: Iterable[Path]) -> list[str]:
+        """Patterns that match no file: surely misspelt."""
+        listed = list(files)
+        return [pattern for pattern, _ in self.rows if not any(_matches(pattern, file) for file in listed)]
+
+
+def _matches(pattern: str, file: Path) -> bool:
+    path = file.absolute()
+    return fnmatchcase(path.as_posix(), f"*/{pattern}") if "/" in pattern else fnmatchcase(path.name, pattern)
 
 
 def _row_values(file: Path, number: int, row: Mapping[str, str | None]) -> Calibration:
