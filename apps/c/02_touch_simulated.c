@@ -67,7 +67,7 @@ int main(void)
     const nt_plan *plan = nt_session_plan(session);
     printf("form of the contact    %s, Maugis' lambda %.3g\n", nt_form_name(plan->terms[NT_PLAN_CONTACT].form),
            plan->lambda);
-    printf("stability margin       %.1f\n", nt_session_margins(session).margin);
+    printf("stability margin of R1 %.1f\n", nt_session_margins(session).margin);
     printf("largest force          %.1f nN\n", s.largest_force * 1e9);
     printf("largest attraction     %.2f nN (the plan's pull-off: %.2f nN)\n", -s.smallest_force * 1e9,
            plan->pull_off_force * 1e9);

@@ -14,7 +14,7 @@ felt = recording.scaled_slave_force
 rest = (recording.time > 5.0) & (recording.time < 6.0)
 error = (recording.operator_force - felt)[rest]
 print(f"contact law            {session.plan.contact_law}, lambda {session.plan.maugis_lambda:.3g}")
-print(f"stability margin       {session.margins().margin:.1f}")
+print(f"stability margin of R1 {session.margins().margin:.1f}")
 print(f"largest force          {recording.tip_force.max() * 1e9:.1f} nN")
 print(
     f"largest attraction     {-recording.tip_force.min() * 1e9:.2f} nN "

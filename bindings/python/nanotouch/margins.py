@@ -217,7 +217,8 @@ class Felt(NamedTuple):
     energy: Floats
     """[J], shape (n,): what the hand has put in so far"""
     dissipated: Floats
-    """[J], shape (n,): the part of it that did not go into the surface, integral of (f_m - alpha_f f_s) dx_m"""
+    """[J], shape (n,): the part of it that did not go into the surface, integral of (f_m - alpha_f f_s) dx_m; too much
+    by some half k_r delta^2 for every step delta of the master's sensor, which the force answers only afterwards"""
 
     @property
     def is_passive(self) -> bool:
