@@ -301,8 +301,9 @@ static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options 
         term->force = 0.0; /* never touched */
         plan->curvature_error = curved_laws(plan, beside);
         offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, plan->curvature_error, 0.0);
+        const int exact = plan->source != NT_ADHESION_NONE && !plan->bank;
         if (is_curved(plan)) /* for the radii that the other terms follow */
-            offer(options, NT_PLAN_CONTACT, plan->bank ? NT_FORM_LOCAL : NT_FORM_LOCAL_EXACT, ROUNDING, 0.0);
+            offer(options, NT_PLAN_CONTACT, exact ? NT_FORM_LOCAL_EXACT : NT_FORM_LOCAL, ROUNDING, 0.0);
         return;
     }
     term->force = scene->range.maximum_load;

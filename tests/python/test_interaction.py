@@ -112,13 +112,49 @@ def test_planned_forces_keep_the_bound_over_topography(seed: int) -> None:
         scene = random_scenes.near_preset(rng)
         scene.tip.shape = "paraboloid"
         scene.range.minimum_gap = min(scene.range.minimum_gap, 0.0)
-        rtol = 10.0 ** rng.uniform(-3.5, math.log10(0.3))
+        rtol = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
         outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed * 100 + index), rtol, rng)
         if isinstance(outcome, Error):
             continue
         forms.append(outcome.plan.terms[0].form)
         assert outcome.error <= outcome.plan.bound <= rtol, (index, repr(outcome.plan))
     assert "local" in forms
+
+
+@pytest.mark.parametrize("name", ["silicon_in_air", "polyester"])  # lambda 0.04 and 0.4
+def test_any_accuracy_over_topography(name: str) -> None:
+    """The bank, a finer bank, the exact law: each within its bound, that says what it is worth to a factor of 100."""
+    scene = scene_of(name)
+    body = cycles.bumpy(scene, 7)
+    costs = []
+    for rtol, form in ((1e-3, "local"), (1e-5, "local"), (1e-9, "local exact")):
+        outcome = random_scenes.compare_over(scene, body, rtol, np.random.default_rng(5))
+        assert isinstance(outcome, random_scenes.Outcome)
+        plan = outcome.plan
+        assert plan.terms[0].form == form
+        assert outcome.error <= plan.bound <= rtol
+        assert form == "local exact" or outcome.error > 0.01 * plan.bound
+        costs.append(plan.cost)
+    assert costs == sorted(costs)
+    assert costs[1] < 0.1 * costs[2]
+
+
+@pytest.mark.parametrize("name", ["silicon_in_air", "polyester"])
+def test_stiffness_and_radius_over_topography(name: str) -> None:
+    """Against the exact law of each place, away from the fold, where stiffness is infinite."""
+    scene, rng = scene_of(name), np.random.default_rng(6)
+    body = cycles.bumpy(scene, 3)
+    width = body.size[0]
+    x, y = rng.uniform(0.1 * width, 0.8 * width, (2, 500))
+    exact = Interaction(scene.plan(0.0, surface=body), "retract")
+    for quantity in ("stiffness", "radius"):
+        plan = scene.plan(1e-3, quantity=quantity, surface=body)
+        assert plan.terms[0].form == "local"
+        gap = rng.uniform(-plan.explain()["largest_indentation"], 0.5 * plan.explain()["release_gap"], 500)
+        poses = np.column_stack([x, y, body.height(x, y) + gap])
+        planned, truth = Interaction(plan, "retract").eval(poses), exact.eval(poses)
+        value, true = (planned.k, truth.k) if quantity == "stiffness" else (planned.a, truth.a)
+        assert np.max(np.abs(value - true) / np.maximum(np.abs(true), plan.scale)) <= plan.bound
 
 
 def test_what_leaving_the_curvature_out_costs_is_said() -> None:

@@ -41,7 +41,8 @@ class Plan:
         if not isinstance(probe, Rig | None):
             raise TypeError(f"probe must be a Rig, not {type(probe).__name__}")
         rig = None if probe is None else probe.copy()
-        core = _core.Plan(scene.core, wanted.core, None if rig is None else rig.core, terrain_of(scene, surface))
+        terrain = terrain_of(scene, surface, wanted.demand.relative_accuracy)
+        core = _core.Plan(scene.core, wanted.core, None if rig is None else rig.core, terrain)
         return cls(core, (scene.copy(), wanted.copy(), rig, surface))
 
     @property
@@ -173,9 +174,10 @@ def begins_attached(history: History) -> bool:
     return history == "retract"
 
 
-def terrain_of(scene: Scene, surface: Surface | None) -> _core.Terrain | None:
+def terrain_of(scene: Scene, surface: Surface | None, accuracy: float = 0.01) -> _core.Terrain | None:
     """A surface with what its curvature needs: the effective radius of each place, and a bank of tables that reaches as
-    far as this scene's contact goes there. A surface that no tip has dilated has no radii."""
+    far as this scene's contact goes there, finer for an accuracy that the coarser one would not keep. A surface that no
+    tip has dilated has no radii."""
     if surface is None:
         return None
     if surface.tip_radius is None:
@@ -187,14 +189,14 @@ def terrain_of(scene: Scene, surface: Surface | None) -> _core.Terrain | None:
     facts = _core.Plan(scene.core, Demand(demand={"relative_accuracy": 0.0}).core, None, None).as_dict()
     radii = surface.radius_map
     least, largest = (radius / facts["radius"] for radius in radii.bounds)
-    if not math.isfinite(facts["lambda"]):  # no adhesion: Hertz everywhere
-        bank = covering()
-    else:
+    bank = None  # without adhesion: Hertz everywhere
+    if math.isfinite(facts["lambda"]):
         maugis_lambda, stiffness = facts["lambda"], 4.0 / 3.0 * facts["effective_modulus"]
         unit = (math.pi**2 * facts["work_of_adhesion"] ** 2 * facts["radius"] / stiffness**2) ** (1 / 3)
         bank = covering(
             maugis_lambda * least ** (1 / 3),
             maugis_lambda * largest ** (1 / 3),
             facts["largest_indentation"] / unit * least ** (-2 / 3),
-        )
-    return _core.Terrain(surface.core, radii.core, bank.core)
+            per_octave=8 if 0.0 < accuracy < 1e-4 else 4,
+        ).core
+    return _core.Terrain(surface.core, radii.core, bank)

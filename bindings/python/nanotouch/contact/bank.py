@@ -100,18 +100,16 @@ class Bank:
         return plain(np.broadcast_to(self.core.grip_indentation(contacts), int(np.prod(shape))).reshape(shape).copy())
 
 
-def covering(lambda_min: float = 0.01, lambda_max: float = 100.0, largest_indentation: float = 100.0) -> Bank:
-    """A bank that covers a range with half an octave to spare; one for each range in decades is kept."""
-    return _kept(
-        max(min(-2, math.floor(math.log10(lambda_min / 1.5))), -15),
-        min(max(2, math.ceil(math.log10(1.5 * lambda_max))), 15),
-        min(max(2, math.ceil(math.log10(largest_indentation))), 5),
-    )
+def covering(lambda_min: float, lambda_max: float, largest_indentation: float, *, per_octave: int = 4) -> Bank:
+    """A bank that covers a range with half an octave to spare; those of a few ranges in decades are kept."""
+    first = min(max(math.floor(math.log10(lambda_min / 1.5)), -15), 14)
+    last = min(max(math.ceil(math.log10(1.5 * lambda_max)), first + 1), 15)
+    return _kept(first, last, min(max(2, math.ceil(math.log10(largest_indentation))), 5), per_octave)
 
 
-@functools.cache
-def _kept(first: int, last: int, deepest: int) -> Bank:
-    return Bank((10.0**first, 10.0**last), 10.0**deepest)
+@functools.lru_cache(maxsize=8)
+def _kept(first: int, last: int, deepest: int, per_octave: int) -> Bank:
+    return Bank((10.0**first, 10.0**last), 10.0**deepest, panels_per_octave=per_octave, cells_per_octave=per_octave)
 
 
 def _contacts(
