@@ -93,8 +93,8 @@ def _recorded(args: argparse.Namespace) -> int:
         f"drag in air    {felt.free_damping:.3g} N s/m measured, {felt.margins.free_damping:.3g} by the law\n"
         f"R1 contact     margin {felt.margins.margin:.3g}, exact limit {felt.margins.exact_limit:.4g} N/m over kappa "
         f"{felt.margins.loop_stiffness:.3g} N/m\n"
-        f"energy         {end[0] * 1e3:.3g} mJ from the hand, {end[1] * 1e3:.3g} mJ kept by the loop, as read: a step of "
-        "the master counts before the force answers it\n"
+        f"energy         {end[0] * 1e3:.3g} mJ from the hand, {end[1] * 1e3:.3g} mJ kept by the loop, as read: a step "
+        "of the master counts before the force answers it\n"
         f"verdict: {'passive' if felt.is_passive else 'NOT PASSIVE'}; least margin {felt.margins.least:.3g} "
         f"({felt.margins.rule}), 1 is the limit"
     )
