@@ -154,7 +154,7 @@ class Session:
             **plant_options(probe_model, substep, faults),
         }  # fmt: skip
         self.core = _core.Session(
-            self.scene.core, self.rig.core, self.settings.core, terrain_of(self.scene, surface), options
+            self.scene.core, self.rig.core, self.settings.core, terrain_of(self.scene, surface, rtol), options
         )
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
         self._faults: list[str] = []
