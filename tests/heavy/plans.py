@@ -81,7 +81,8 @@ def report(rows: list[Row]) -> int:
     ratios = np.array([row.error / row.bound for row in planned if row.bound > 0.0])
     quantiles = np.quantile(ratios, [0.1, 0.25, 0.5, 0.75, 0.9, 1.0])
     print("true error / bound, 10 25 50 75 90 100 %: " + " ".join(f"{q:.3g}" for q in quantiles))
-    print(f"largest cost: {max(row.cost for row in planned):.3g} Hertz evaluations")
+    coarse = max(row.cost for row in planned if row.demand >= 1e-4)
+    print(f"largest cost: {max(row.cost for row in planned):.3g} Hertz evaluations, for 1e-4 and above {coarse:.3g}")
     print(f"dearer than everything exact: {sum(row.cost > row.exact_cost for row in planned)}")
     return len(violations)
 
