@@ -22,29 +22,35 @@ static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
     return sum;
 }
 
-/* The strongest pull on the attached branch: sampled between the release gap and twice that depth, then refined. */
-static double strongest_pull(const nt_plan *plan)
+/* Gaps from `first` to `last`, in even steps or in even ratios. */
+typedef struct sweep {
+    double first, last;
+    int in_ratios;
+} sweep;
+
+/* The pull on the way out at t in 0..1 of a sweep: in contact as far as the release gap, then apart. */
+static double pull_at(const nt_plan *plan, const sweep *s, double t)
+{
+    const double gap = s->in_ratios ? s->first * pow(s->last / s->first, t) : s->first + t * (s->last - s->first);
+    return -full_eval(plan, gap <= plan->release_gap, gap).F;
+}
+
+/* The strongest pull of a sweep: sampled, then refined by golden sections around the strongest sample. */
+static double strongest_of(const nt_plan *plan, const sweep *s)
 {
     enum { SAMPLES = 96 };
-    const double reach = plan->source == NT_ADHESION_NONE ? plan->contact.radius : fmax(plan->release_gap, 1e-15);
-    double deepest = -3.0 * reach;
-    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
-        deepest = -fmax(reach, 3.0 * fabs(plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale));
-    const double step = (plan->release_gap - deepest) / SAMPLES;
-    double best = 0.0, where = plan->capture_gap;
-    const double corners[] = {0.0, plan->capture_gap, plan->release_gap};
-    for (int i = 0; i < SAMPLES + 3; ++i) {
-        const double gap = i < SAMPLES ? deepest + i * step : corners[i - SAMPLES];
-        const double pull = -full_eval(plan, 1, gap).F;
+    double best = 0.0, where = 0.0;
+    for (int i = 0; i <= SAMPLES; ++i) {
+        const double pull = pull_at(plan, s, (double)i / SAMPLES);
         if (pull > best) {
             best = pull;
-            where = gap;
+            where = (double)i / SAMPLES;
         }
     }
-    double low = where - step, high = fmin(where + step, plan->release_gap);
-    for (int i = 0; i < 48; ++i) { /* golden section */
+    double low = fmax(where - 1.0 / SAMPLES, 0.0), high = fmin(where + 1.0 / SAMPLES, 1.0);
+    for (int i = 0; i < 32 && best > 0.0; ++i) {
         const double left = high - 0.6180339887498949 * (high - low), right = low + 0.6180339887498949 * (high - low);
-        const double pull_left = -full_eval(plan, 1, left).F, pull_right = -full_eval(plan, 1, right).F;
+        const double pull_left = pull_at(plan, s, left), pull_right = pull_at(plan, s, right);
         best = fmax(best, fmax(pull_left, pull_right));
         if (pull_left > pull_right)
             high = right;
@@ -52,6 +58,34 @@ static double strongest_pull(const nt_plan *plan)
             low = left;
     }
     return best;
+}
+
+/* In contact, from the release gap to twice that depth; in ratios, too, for terms that change within a nanometre. */
+static double strongest_hold(const nt_plan *plan)
+{
+    const double release = plan->release_gap;
+    const double reach = plan->source == NT_ADHESION_NONE ? plan->contact.radius : fmax(release, 1e-15);
+    double deepest = -3.0 * reach;
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
+        deepest = -fmax(reach, 3.0 * fabs(plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale));
+    const sweep sweeps[] = {
+        {deepest, release, 0}, {fmin(1e-13, release), release, release > 1e-13}, {-1e-13, deepest, 1}};
+    const double corners[] = {0.0, fmin(plan->capture_gap, release), release, fmin(plan->laws.vdw.minimum_gap, release),
+                              fmin(plan->laws.electrostatic.minimum_gap, release)};
+    double best = 0.0;
+    for (int i = 0; i < 5; ++i)
+        best = fmax(best, -full_eval(plan, 1, corners[i]).F);
+    for (int i = 0; i < 3; ++i)
+        best = fmax(best, strongest_of(plan, &sweeps[i]));
+    return best;
+}
+
+/* Out of contact, where a barrier may leave a second minimum. */
+static double strongest_apart(const nt_plan *plan)
+{
+    const double nearest = fmax(plan->release_gap * (1.0 + 1e-12), 1e-13);
+    const sweep out = {nearest, 1e-2, 1};
+    return strongest_of(plan, &out);
 }
 
 /* The steepest growth of attraction on approach [N/m]; infinite where the force jumps by more than is demanded (the
@@ -77,7 +111,8 @@ static double steepest_pull(const nt_plan *plan)
 
 nt_status nt_plan_facts(nt_plan *plan)
 {
-    plan->pull_off_force = plan->largest_pull_off_force = strongest_pull(plan);
+    plan->contact_pull = strongest_hold(plan);
+    plan->pull_off_force = plan->largest_pull_off_force = fmax(plan->contact_pull, strongest_apart(plan));
     plan->minimum_spring = steepest_pull(plan);
     if (plan->source != NT_ADHESION_NONE) {
         const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;

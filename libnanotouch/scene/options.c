@@ -59,7 +59,7 @@ static double pull_of(const nt_plan *plan)
         alone = nt_maugis_pull_off_force(&plan->maugis);
     else if (nt_plan_contact_form(plan) == NT_FORM_JKR)
         alone = nt_jkr_shape_pull_off_force(&plan->jkr);
-    return fmax(plan->pull_off_force, alone);
+    return fmax(plan->contact_pull, alone);
 }
 
 /* The largest difference between two forms of contact over max(|truth|, scale), over all indentations from the release

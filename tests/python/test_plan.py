@@ -145,6 +145,53 @@ def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
     scene.plan(rtol=0.3)
 
 
+LIQUID = {"kind": "liquid", "ionic_strength": 33.0, "hydration_energy": 0.01}
+BARRIERS = {
+    "second minimum": Scene(
+        tip={"shape": "sphere", "radius": 5.6e-6, "surface_potential": 0.036},
+        sample={"youngs_modulus": 6e3, "surface_potential": -0.007},
+        medium=LIQUID,
+        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0},
+        range={"maximum_load": 3e-9},
+    ),
+    "second minimum of van der Waals": Scene(
+        tip={"radius": 100e-9, "surface_potential": 0.02},
+        sample={"surface_potential": 0.02},
+        medium=LIQUID,
+        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 5e-20},
+    ),
+    "short range under a wide contact": Scene(
+        tip={"shape": "sphere", "radius": 0.85e-3, "surface_potential": -0.001},
+        sample={"youngs_modulus": 42.5e3, "surface_potential": 0.03},
+        medium=LIQUID | {"ionic_strength": 0.39, "brush_thickness": 2.8e-9},
+        adhesion={"work_of_adhesion": 0.75e-3, "hamaker_constant": 0.0},
+        range={"maximum_load": 4.4e-6},
+    ),
+    "potential of 20 V": Scene(adhesion={"contact_potential": 20.0}),
+    "dry": Scene(medium={"relative_humidity": 0.0}),
+}
+
+
+@pytest.mark.parametrize("name", BARRIERS)
+def test_pull_off_is_the_strongest_pull_wherever_it_is(name: str) -> None:
+    """In contact or, behind a barrier, out of it: 60 000 gaps on the way out, an own search without refinement."""
+    plan = BARRIERS[name].plan(rtol=0.0)
+    facts = plan.explain()
+    outermost = max(facts["release_gap"], 1e-13)
+    gaps = np.concatenate(
+        [
+            np.linspace(-facts["largest_indentation"], facts["release_gap"], 20000)[:-1],
+            -np.geomspace(1e-13, facts["largest_indentation"], 20000),
+            np.geomspace(1e-13, 1e-6, 20000),
+            outermost * (1.0 + np.geomspace(1e-11, 1.0, 1000)),
+        ]
+    )
+    strongest = -plan.force(np.sort(gaps), "retract").min()
+    assert strongest > 1e-13
+    assert plan.pull_off_force >= strongest * (1.0 - 1e-12)
+    assert plan.pull_off_force <= strongest * (1.0 + 1e-3)  # between the gaps of this search
+
+
 def test_plan_without_adhesion_is_hertz() -> None:
     scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0})
     plan = scene.plan()

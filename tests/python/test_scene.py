@@ -298,7 +298,7 @@ def test_preset_plans(name: str) -> None:
     scene.check()
     rig.check()
     plan = scene.plan()
-    assert (plan.pull_off_force > 0.0) == (name != "cell_in_liquid")
+    assert (plan.pull_off_force > 1e-14) == (name != "cell_in_liquid")  # where 1 fN of tail reaches out of the brush
     # every one of the paper is loaded enough to leave small contacts at 2.2 uN
     texts = [warning.text for warning in plan.warnings]
     assert name == "cell_in_liquid" or "contact radius over tip radius at the largest load" in texts

@@ -24,6 +24,8 @@ _QUANTITIES = {"force": "force", "stiffness": "stiffness", "radius": "contact ra
 _UNITS = {"force": "N", "stiffness": "N/m", "radius": "m", "folds": "m"}
 #: below this a shift of a fold is no more than rounding [m]
 _IN_PLACE = 1e-15
+#: a pull-off below this share of the largest load is none to speak of
+_NO_PULL = 1e-6
 
 
 def text_of(facts: dict[str, Any]) -> str:
@@ -81,10 +83,9 @@ def _terms(facts: dict[str, Any]) -> list[Term]:
 
 
 def _term(term: Term, facts: dict[str, Any]) -> str:
-    pull_off_force = facts["pull_off_force"]
     size = f"at most {in_words(term.force, 'N')}"
-    if pull_off_force > 0.0:
-        size += f", {_share(term.force / pull_off_force)} the pull-off"
+    if _holds(facts):
+        size += f", {_share(term.force / facts['pull_off_force'])} the pull-off"
     if not term.included:
         unfelt = f"; no part of the {_QUANTITIES[facts['quantity']]}" if term.bound == 0.0 else ""
         return f"{_NAMES[term.name]}: left out, {size}{unfelt}"
@@ -128,7 +129,7 @@ def _folds(facts: dict[str, Any]) -> str:
 
 
 def _numbers(contact: Term, facts: dict[str, Any]) -> str:
-    pull_off = f"pull-off {in_words(facts['pull_off_force'], 'N')}" if facts["pull_off_force"] > 0.0 else "no pull-off"
+    pull_off = f"pull-off {in_words(facts['pull_off_force'], 'N')}" if _holds(facts) else "no pull-off"
     if not contact.included:
         return f"{pull_off}, in contact, which is not visited"
     spring = facts["minimum_spring"]
@@ -136,6 +137,11 @@ def _numbers(contact: Term, facts: dict[str, Any]) -> str:
     if math.isinf(spring):
         jump = "the force jumps in, whatever the spring"
     return f"{pull_off}; {jump}; stiffest contact {in_words(facts['maximum_stiffness'], 'N/m', 3)}"
+
+
+def _holds(facts: dict[str, Any]) -> bool:
+    """Whether there is a pull-off to speak of."""
+    return bool(facts["pull_off_force"] > _NO_PULL * _terms(facts)[0].force)
 
 
 def _share(share: float) -> str:

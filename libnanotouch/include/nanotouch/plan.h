@@ -132,7 +132,8 @@ typedef struct nt_plan {
     double release_gap;            /* on retraction under grips it lets go here [m] */
     double capture_energy;         /* that is lost when it takes hold, >= 0 [J] */
     double release_energy;         /* that is lost when it lets go, >= 0 [J] */
-    double pull_off_force;         /* of everything on, under load control, positive [N] */
+    double contact_pull;           /* the strongest pull in contact, everything on, positive [N] */
+    double pull_off_force;         /* and wherever it is: what a load must overcome to come free, positive [N] */
     double largest_pull_off_force; /* the same over the bluntest place of the surface [N] */
     double minimum_spring;         /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
     double maximum_stiffness;      /* k of the contact at the largest load [N/m] */
