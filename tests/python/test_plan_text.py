@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A plan in words and as data: every sentence is true, in units that suit; what a refusal says to be valid is."""
+
+from __future__ import annotations
+
+import re
+from typing import get_args
+
+import pytest
+import random_scenes
+from nanotouch import Plan, Scene, presets
+from nanotouch.errors import InvalidValue
+from nanotouch.scene import Quantity
+
+PRESETS = random_scenes.PRESETS
+
+
+def test_explanation_is_ones_own() -> None:
+    """What is done to it does not reach the plan."""
+    plan = Scene().plan()
+    said, facts = str(plan), plan.explain()
+    assert facts["terms"][0]["name"] == "contact"
+    assert facts["terms"][1] == plan.terms[1]._asdict()
+    facts["terms"].clear()
+    facts["rivals"]["jkr"] = 0.0
+    facts["warnings"].append("")
+    assert str(plan) == said
+    assert plan.explain()["rivals"]["jkr"] > 0.0
+
+
+def lines_of(plan: Plan) -> dict[str, str]:
+    return dict(line.split(": ", 1) for line in str(plan).splitlines() if ": " in line and "warning" not in line)
+
+
+def test_words_name_what_the_bound_is_measured_by() -> None:
+    """Scale and unit are those of the quantity; what the quantity does not know is told so."""
+    scene = presets.silicon_on_gold()[0]
+    force = str(scene.plan())
+    assert "force within 0.64 % of the larger of itself and 27.29 nN, the pull-off; folds in place" in force
+    floor = str(scene.plan(rtol=0.01, atol=2e-9))
+    assert "of the larger of itself and 200 nN;" in floor
+    stiffness = scene.plan(rtol=0.1, quantity="stiffness")
+    assert f"of the larger of itself and {stiffness.scale:.4g} N/m;" in str(stiffness)
+    radius = scene.plan(rtol=0.1, quantity="radius")
+    assert f"of the larger of itself and {radius.scale * 1e9:.4g} nm;" in str(radius)
+    assert lines_of(radius)["van der Waals"].endswith("no part of the contact radius")
+    folds = str(scene.plan(rtol=0.1, quantity="folds"))
+    assert "\nfolds in place; cost" in folds
+    hertz = force.split("Hertz would err by ")[1].split(" %")[0]
+    for plan in (stiffness, radius):  # of the force, whatever is demanded
+        assert f"in force Hertz would err by {hertz} %" in str(plan)
+
+
+def test_words_of_what_is_not_there() -> None:
+    far = str(Scene(range={"minimum_gap": 5e-9}).plan())
+    assert "no folds" in far
+    assert "in contact, which is not visited" in far
+    assert "jump" not in far
+    assert "warning" not in far
+    soft = str(presets.cell_in_liquid()[0].plan())
+    assert "no folds" in soft
+    assert "\nno pull-off; " in soft
+    dry = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0})
+    assert "100 % of the pull-off" in str(dry.plan())  # not 1e+02 %
+    dry.adhesion.hamaker_constant = 0.0
+    assert "no pull-off; no jump-in; stiffest contact 1.16 kN/m" in str(dry.plan())
+    unfelt = str(Scene().plan(atol=1e-6))
+    assert "no adhesion that could be felt" in unfelt
+    assert "folds within 1.1 nm" in unfelt
+
+
+def test_facts_without_effect_are_told() -> None:
+    scene = Scene(sample={"conducting": "no"}, adhesion={"contact_potential": 3.0, "pull_off_force": 12e-9})
+    said = str(scene.plan())
+    assert "warning: contact potential, which does not act between these bodies: 3 V\n" in said
+    assert "warning: measured pull-off force, not used: the adhesion is given otherwise: 12 nN" in said
+
+
+@pytest.mark.parametrize("quantity", get_args(Quantity))
+def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
+    """Least accuracy, least budget, largest Hamaker constant: taken as printed, they do."""
+    for name in PRESETS:
+        scene = getattr(presets, name)()[0]
+        for limit, ask in (
+            ("relative_accuracy", lambda value, scene=scene: scene.plan(rtol=value, quantity=quantity)),
+            ("budget", lambda value, scene=scene: scene.plan(rtol=1e-3, budget=value, quantity=quantity)),
+        ):
+            with pytest.raises(InvalidValue, match=limit) as refusal:
+                ask(1e-18 if limit == "relative_accuracy" else 0.5)
+            ask(float(re.findall(r"valid is (\S+) \.\.", str(refusal.value))[0]))
+    scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"hamaker_constant": 1e-17})
+    with pytest.raises(InvalidValue, match="hamaker_constant") as refusal:
+        scene.plan()
+    scene.adhesion.hamaker_constant = float(re.findall(r"\.\. (\S+) J", str(refusal.value))[0])
+    scene.plan(rtol=0.3)
