@@ -107,7 +107,7 @@ def covering(lambda_min: float, lambda_max: float, largest_indentation: float, *
     return _kept(first, last, min(max(2, math.ceil(math.log10(largest_indentation))), 5), per_octave)
 
 
-@functools.lru_cache(maxsize=8)
+@functools.lru_cache(maxsize=32)
 def _kept(first: int, last: int, deepest: int, per_octave: int) -> Bank:
     return Bank((10.0**first, 10.0**last), 10.0**deepest, panels_per_octave=per_octave, cells_per_octave=per_octave)
 
