@@ -22,37 +22,38 @@ static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
     return sum;
 }
 
+/* Something that is to be largest over gaps. */
+typedef double gap_law(const nt_plan *plan, double gap);
+
 /* Gaps from `first` to `last`, in even steps or in even ratios. */
 typedef struct sweep {
     double first, last;
     int in_ratios;
 } sweep;
 
-/* The pull on the way out at t in 0..1 of a sweep: in contact as far as the release gap, then apart. */
-static double pull_at(const nt_plan *plan, const sweep *s, double t)
+static double gap_of(const sweep *s, double t)
 {
-    const double gap = s->in_ratios ? s->first * pow(s->last / s->first, t) : s->first + t * (s->last - s->first);
-    return -full_eval(plan, gap <= plan->release_gap, gap).F;
+    return s->in_ratios ? s->first * pow(s->last / s->first, t) : s->first + t * (s->last - s->first);
 }
 
-/* The strongest pull of a sweep: sampled, then refined by golden sections around the strongest sample. */
-static double strongest_of(const nt_plan *plan, const sweep *s)
+/* The largest value above 0 in a sweep: sampled, then refined by golden sections around the largest sample. */
+static double largest_of(const nt_plan *plan, gap_law *law, sweep s)
 {
     enum { SAMPLES = 96 };
     double best = 0.0, where = 0.0;
     for (int i = 0; i <= SAMPLES; ++i) {
-        const double pull = pull_at(plan, s, (double)i / SAMPLES);
-        if (pull > best) {
-            best = pull;
+        const double value = law(plan, gap_of(&s, (double)i / SAMPLES));
+        if (value > best) {
+            best = value;
             where = (double)i / SAMPLES;
         }
     }
     double low = fmax(where - 1.0 / SAMPLES, 0.0), high = fmin(where + 1.0 / SAMPLES, 1.0);
     for (int i = 0; i < 32 && best > 0.0; ++i) {
         const double left = high - 0.6180339887498949 * (high - low), right = low + 0.6180339887498949 * (high - low);
-        const double pull_left = pull_at(plan, s, left), pull_right = pull_at(plan, s, right);
-        best = fmax(best, fmax(pull_left, pull_right));
-        if (pull_left > pull_right)
+        const double value_left = law(plan, gap_of(&s, left)), value_right = law(plan, gap_of(&s, right));
+        best = fmax(best, fmax(value_left, value_right));
+        if (value_left > value_right)
             high = right;
         else
             low = left;
@@ -60,7 +61,22 @@ static double strongest_of(const nt_plan *plan, const sweep *s)
     return best;
 }
 
-/* In contact, from the release gap to twice that depth; in ratios, too, for terms that change within a nanometre. */
+/* On the way out: in contact as far as the release gap, then apart. */
+static double pull_out(const nt_plan *plan, double gap)
+{
+    return -full_eval(plan, gap <= plan->release_gap, gap).F;
+}
+
+/* How steeply attraction grows on the way in: apart as far as the capture gap, then in contact. */
+static double growth_in(const nt_plan *plan, double gap)
+{
+    return -full_eval(plan, gap <= plan->capture_gap, gap).k;
+}
+
+#define NEAREST 1e-13 /* sweeps in ratios begin here [m] */
+
+/* The strongest pull in contact: from the release gap to twice that depth; in ratios, too, for terms that change within
+ * a nanometre. */
 static double strongest_hold(const nt_plan *plan)
 {
     const double release = plan->release_gap;
@@ -68,44 +84,41 @@ static double strongest_hold(const nt_plan *plan)
     double deepest = -3.0 * reach;
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         deepest = -fmax(reach, 3.0 * fabs(plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale));
-    const sweep sweeps[] = {
-        {deepest, release, 0}, {fmin(1e-13, release), release, release > 1e-13}, {-1e-13, deepest, 1}};
-    const double corners[] = {0.0, fmin(plan->capture_gap, release), release, fmin(plan->laws.vdw.minimum_gap, release),
-                              fmin(plan->laws.electrostatic.minimum_gap, release)};
-    double best = 0.0;
+    const double corners[] = {0.0, plan->capture_gap, release, plan->laws.vdw.minimum_gap,
+                              plan->laws.electrostatic.minimum_gap};
+    double best = fmax(largest_of(plan, pull_out, (sweep){deepest, release, 0}),
+                       largest_of(plan, pull_out, (sweep){-NEAREST, deepest, 1}));
+    if (release > NEAREST)
+        best = fmax(best, largest_of(plan, pull_out, (sweep){NEAREST, release, 1}));
     for (int i = 0; i < 5; ++i)
-        best = fmax(best, -full_eval(plan, 1, corners[i]).F);
-    for (int i = 0; i < 3; ++i)
-        best = fmax(best, strongest_of(plan, &sweeps[i]));
+        best = fmax(best, pull_out(plan, fmin(corners[i], release)));
     return best;
 }
 
 /* Out of contact, where a barrier may leave a second minimum. */
 static double strongest_apart(const nt_plan *plan)
 {
-    const double nearest = fmax(plan->release_gap * (1.0 + 1e-12), 1e-13);
-    const sweep out = {nearest, 1e-2, 1};
-    return strongest_of(plan, &out);
+    return largest_of(plan, pull_out, (sweep){fmax(plan->release_gap * (1.0 + 1e-12), NEAREST), 1e-2, 1});
 }
 
 /* The steepest growth of attraction on approach [N/m]; infinite where the force jumps by more than is demanded (the
  * range of a Dugdale stress always begins with a small fold, P = 128 lambda^3/(9 pi) pi w R). */
 static double steepest_pull(const nt_plan *plan)
 {
-    const double jump = full_eval(plan, 1, plan->capture_gap).F - full_eval(plan, 0, plan->capture_gap).F;
+    const double capture = plan->capture_gap, outside = 1.0 + 1e-12;
+    const double jump = full_eval(plan, 1, capture).F - full_eval(plan, 0, capture).F;
     if (fabs(jump) > fmax(plan->demand.relative_accuracy, 1e-6) * plan->pull_off_force)
         return INFINITY;
-    double steepest = 0.0;
-    for (double gap = 1e-2; gap > fmax(plan->capture_gap, 1e-13); gap *= 0.9)
-        steepest = fmax(steepest, -full_eval(plan, 0, gap).k);
-    for (int i = 0; i <= 64; ++i) { /* inside the range of adhesion, and a little into contact */
-        const double gap = plan->capture_gap * (1.0 - i / 32.0);
-        steepest = fmax(steepest, -full_eval(plan, 1, gap).k);
-    }
-    const double holds[] = {plan->laws.vdw.minimum_gap, plan->laws.electrostatic.minimum_gap};
-    for (int i = 0; i < 2; ++i) /* it is steepest just outside the gaps where terms are held */
-        if (holds[i] > plan->capture_gap)
-            steepest = fmax(steepest, -full_eval(plan, 0, holds[i] * (1.0 + 1e-12)).k);
+    /* apart; inside the range of adhesion, and as far into contact; it is steepest just outside the gaps where terms
+     * are held */
+    double steepest = largest_of(plan, growth_in, (sweep){fmax(capture * outside, NEAREST), 1e-2, 1});
+    if (capture > NEAREST)
+        steepest = fmax(fmax(steepest, largest_of(plan, growth_in, (sweep){-capture, capture, 0})),
+                        largest_of(plan, growth_in, (sweep){NEAREST, capture, 1}));
+    const double corners[] = {capture, 0.0, capture * outside, plan->laws.vdw.minimum_gap * outside,
+                              plan->laws.electrostatic.minimum_gap * outside};
+    for (int i = 0; i < 5; ++i)
+        steepest = fmax(steepest, growth_in(plan, corners[i]));
     return steepest;
 }
 

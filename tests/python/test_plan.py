@@ -109,6 +109,27 @@ def test_pull_off_is_the_strongest_pull_wherever_it_is(name: str) -> None:
     assert plan.pull_off_force <= strongest * (1.0 + 1e-3)  # between the gaps of this search
 
 
+@pytest.mark.parametrize("name", [*BARRIERS, "charge under a film"])
+def test_no_attraction_is_steeper_than_the_minimum_spring(name: str) -> None:
+    """On the way in, 60 000 gaps: also where a term is held inside the range of adhesion."""
+    charged = Scene(tip={"radius": 100e-9}, sample={"charge": 5e-17})
+    scene = BARRIERS.get(name, charged)
+    spring = scene.plan(rtol=0.1).minimum_spring
+    exact = scene.plan(rtol=0.0)
+    capture = max(exact.explain()["capture_gap"], 1e-13)
+    gaps = np.concatenate(
+        [
+            np.linspace(-capture, capture, 20000),
+            np.geomspace(1e-13, 1e-6, 20000),
+            *(edge * (1.0 + np.geomspace(1e-11, 1.0, 10000)) for edge in (capture, 2e-10)),
+        ]
+    )
+    steepest = -exact.run(np.sort(gaps)[::-1]).k.min()
+    assert steepest > 0.0
+    assert math.isinf(spring) or steepest * (1.0 - 1e-9) <= spring <= steepest * (1.0 + 1e-3)
+    assert math.isfinite(spring) == (name != "short range under a wide contact")
+
+
 def test_plan_without_adhesion_is_hertz() -> None:
     scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0})
     plan = scene.plan()
