@@ -139,7 +139,7 @@ static void setups_are_refused_by_name(void **state)
     bad.ring_capacity = 0;
     expect_refusal(&bad, NT_E_RANGE, "ring_capacity");
     bad = good;
-    bad.settings.gains.delay = 16.0;
+    bad.settings.gains.delay = NT_SIM_DELAY_MAX + 1.0;
     expect_refusal(&bad, NT_E_RANGE, "gains.delay");
     bad = good;
     bad.settings.limits.force = 1e-3;
