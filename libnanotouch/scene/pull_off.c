@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The laws of a scene at its work of adhesion; where a pull-off force was measured, at the w with which contact, tail
  * and all else together pull off with it. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -33,7 +34,9 @@ static double excess(double work_of_adhesion, const void *context)
     const sought *in = context;
     const nt_status status = laws_at(in->plan, in->scene, work_of_adhesion, NULL);
     const double measured = in->scene->adhesion.pull_off_force;
-    return status == NT_OK ? in->plan->pull_off_force - measured : status == NT_E_RANGE ? -measured : (double)NAN;
+    if (status == NT_E_RANGE) /* 0 would be a root */
+        return -fmax(measured, DBL_MIN);
+    return status == NT_OK ? in->plan->pull_off_force - measured : (double)NAN;
 }
 
 /* What can be measured goes from or up to `limit`. */

@@ -322,6 +322,17 @@ static void measured_pull_off_is_that_of_the_whole(void **state)
     assert_int_equal(nt_plan_make(&plan, &inputs, &problem), NT_E_RANGE);
     scene.adhesion.pull_off_force = problem.maximum;
     assert_int_equal(make(&plan, &scene, NULL), NT_OK);
+    for (int tail = 0; tail < 2; ++tail) { /* a bridge always pulls: none was measured is no answer */
+        scene = nt_scene_defaults();
+        scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
+        scene.adhesion.hamaker_constant *= tail;
+        assert_int_equal(nt_plan_make(&plan, &inputs, &problem), NT_E_RANGE);
+        assert_string_equal(problem.field, "adhesion.pull_off_force");
+        assert_true(problem.minimum > 0.0);
+        scene.adhesion.pull_off_force = problem.minimum;
+        assert_int_equal(make(&plan, &scene, NULL), NT_OK);
+        assert_true(plan.maximum_stiffness > 0.0);
+    }
 }
 
 /* Facts that what else the scene says leaves without effect are told, not passed over. */
