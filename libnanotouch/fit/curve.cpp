@@ -98,7 +98,7 @@ class Curve
     nt_status contradicts_tear(bool *contradicts) const;
     nt_status solve();
     bool is_exact() const;
-    double correlated_noise() const;
+    double noise() const; // of the free cantilever, as far as the fitted points are worth independent ones [N]
     nt_status doubt_calibration();
     void judge();
 
@@ -120,7 +120,7 @@ void Curve::know(nt_fit_options *options, nt_fit_parameter parameter, double val
 // What is known to some uncertainty becomes a datum.
 void Curve::let_vary(nt_fit_options *options) const
 {
-    options->force_noise = correlated_noise();
+    options->force_noise = noise();
     options->tilt_position = -branch_.baseline.z_mean;
     know(options, NT_FIT_SENSITIVITY, 1.0, recipe_.sensitivity_uncertainty);
     if (recipe_.fit_offset)
@@ -144,7 +144,7 @@ nt_status Curve::run()
     found.points.resize(fitted_.position.size());
     status = nt_fit_model_n(&found.options, found.result.value, &data, found.points.data());
     if (status == NT_OK)
-        found.scatter = std::max(scatter_of(fitted_, found.points), correlated_noise());
+        found.scatter = std::max(scatter_of(fitted_, found.points), branch_.correlated_noise(fitted_.position.size()));
     return status;
 }
 
@@ -162,12 +162,9 @@ nt_status Curve::contradicts_tear(bool *contradicts) const
     return status;
 }
 
-// Standard deviation of one point such that the mean of independent ones would scatter as that of these [N].
-double Curve::correlated_noise() const
+double Curve::noise() const
 {
-    const Noise &free = branch_.baseline.noise;
-    return std::sqrt(std::max(branch_.noise * branch_.noise, free.white) +
-                     double(fitted_.position.size()) * free.flicker);
+    return std::max(branch_.noise, branch_.correlated_noise(fitted_.position.size()));
 }
 
 bool Curve::is_exact() const
@@ -179,11 +176,11 @@ bool Curve::is_exact() const
 nt_status Curve::run_with_scatter()
 {
     const nt_status status = run();
-    double *noise = &solution_.options.force_noise;
-    const bool as_known = std::fabs(solution_.scatter / correlated_noise() - 1.0) <= as_given;
-    if (status != NT_OK || is_exact() || *noise == 0.0 || as_known)
+    double *used = &solution_.options.force_noise;
+    const bool as_known = std::fabs(solution_.scatter / noise() - 1.0) <= as_given;
+    if (status != NT_OK || is_exact() || *used == 0.0 || as_known)
         return status;
-    *noise = solution_.scatter;
+    *used = solution_.scatter;
     return run();
 }
 
@@ -194,7 +191,7 @@ nt_status Curve::solve()
     options.spring_constant = spring_constant_;
     if (!(options.loss_scale > 0.0))
         options.loss_scale = std::max(loss_scale * outcome_.reading.noise, least_loss_scale);
-    if (correlated_noise() > computed * fitted_.largest())
+    if (noise() > computed * fitted_.largest())
         let_vary(&options);
     nt_status status = run_with_scatter();
     bool contradicts = false;
@@ -203,7 +200,7 @@ nt_status Curve::solve()
     if (!contradicts)
         return status;
     options.tear_sigma = 0.0;
-    options.force_noise = correlated_noise();
+    options.force_noise = noise();
     return run_with_scatter();
 }
 

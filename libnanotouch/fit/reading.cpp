@@ -15,6 +15,7 @@ namespace
 
 constexpr double end_part = 0.1; // of the travel, beyond which no baseline is left to judge a point by
 constexpr std::size_t neighbours = 5;
+constexpr double correlated = 1.2; // variance of a mean over that of independent points; of white noise 1 +- 0.1 .. 0.2
 constexpr double before_tear = 0.5, after_tear = 0.25; // of the depth: a tear leads past both within two points
 constexpr double largest_value = 1.0;                  // m or N: beyond, the unit is surely not SI
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -46,6 +47,14 @@ double Branch::visible() const
 double Branch::sigma(double at) const
 {
     return std::hypot(noise, baseline.sigma(at));
+}
+
+double Branch::correlated_noise(std::size_t points) const
+{
+    const Noise &free = baseline.noise;
+    if (free.flicker == 0.0 && free.white < correlated * noise * noise)
+        return 0.0;
+    return std::sqrt(std::max(noise * noise, free.white) + double(points) * free.flicker);
 }
 
 std::size_t Branch::lowest() const

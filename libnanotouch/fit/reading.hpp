@@ -19,7 +19,10 @@ class Branch
 
     double visible() const;       // smallest force that can be told from the baseline [N]
     double sigma(double z) const; // of one force at z [N]
-    std::size_t lowest() const;   // the point of the smallest force, not at the far end
+    // Standard deviation of one of so many points such that the mean of independent ones would scatter as theirs [N]; 0
+    // where the free cantilever does not show that they are not independent.
+    double correlated_noise(std::size_t points) const;
+    std::size_t lowest() const; // the point of the smallest force, not at the far end
     // Whether that lies visibly below the baseline: alone, or together with its neighbours.
     bool dips() const;
     // The last point before the tip is torn off, found by the jump and not as the lowest point, which noise picks among

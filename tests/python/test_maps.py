@@ -92,6 +92,15 @@ def test_flicker_noise_widens_sigma_as_in_fit_curve() -> None:
     assert float(data.contact_point_sigma[0, 1]) > 3.0 * float(data.contact_point_sigma[0, 0])
 
 
+def test_moduli_scatter_by_sigma_in_white_noise() -> None:
+    """Few points on the contact, so that the scatter of their own counts: 576 curves know a standard deviation to 3 %.
+    (What correlated noise adds must not widen where there is none: by a sixth, once.)"""
+    source = volume(24, points=1000)
+    data = maps.fit(source, "maugis", **SETTINGS)
+    pull = (data.effective_modulus.values - pattern(24)[0]) / data.effective_modulus_sigma.values
+    assert np.std(pull) == pytest.approx(1.0, abs=0.1)
+
+
 def test_the_pattern_is_found() -> None:
     modulus, work, height = pattern()
     data = maps.fit(volume(), "maugis", **SETTINGS)

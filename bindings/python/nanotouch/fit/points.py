@@ -20,6 +20,7 @@ Branch = Literal["approach", "retract"]
 Window = tuple[float, float]
 
 _FEWEST = 16
+_CORRELATED = 1.2  # variance of a mean over that of independent points; of white noise 1 +- 0.1 .. 0.2
 _SPREAD_OF_STEP = 12.0**-0.5  # standard deviation of what is equally likely anywhere in a step of 1
 
 
@@ -54,8 +55,14 @@ class Points:
 
     @property
     def correlated_noise(self) -> float:
-        """Standard deviation of one point such that the mean of independent ones would scatter as that of these [N]."""
-        return float(np.sqrt(max(self.noise**2, self.free.white) + self.z.size * self.free.flicker))
+        """Standard deviation of one point such that the mean of independent ones would scatter as that of these [N].
+
+        0 where the free cantilever does not show that they are not independent.
+        """
+        white, flicker = self.free
+        if flicker == 0.0 and white < _CORRELATED * self.noise**2:
+            return 0.0
+        return float(np.sqrt(max(self.noise**2, white) + self.z.size * flicker))
 
     def kept(self, mask: NDArray[np.bool_], name: str) -> Points:
         """Some of them."""

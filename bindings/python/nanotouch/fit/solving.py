@@ -84,7 +84,7 @@ def solve(extension: ModuleType, setup: Setup, points: Points, uncertainties: Un
     uncertainty of a point, they keep calibration and baseline from being bent to mend the model, and widen sigma.
     """
     options = setup.options(extension)
-    noise = points.correlated_noise
+    noise = max(points.noise, points.correlated_noise)
     if noise > _EXACT * float(np.max(np.abs(points.force))):
         _let_vary(options, setup, points, uncertainties, noise)
     solution = _run(extension, options, points)
