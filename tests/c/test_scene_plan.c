@@ -4,7 +4,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 
 #include <cmocka.h>
 
@@ -286,14 +285,6 @@ static void without_adhesion_there_are_no_folds(void **state)
     assert_true(plan.bound.force_error <= 1e-11);
 }
 
-static int warns_of(const char *word)
-{
-    int found = 0;
-    for (int i = 0; i < plan.warning_count; ++i)
-        found += strstr(plan.warnings[i].text, word) != NULL;
-    return found;
-}
-
 /* With tail and potential, of contacts from JKR's to DMT's end; what no w makes is refused with what can be. */
 static void measured_pull_off_is_that_of_the_whole(void **state)
 {
@@ -335,54 +326,6 @@ static void measured_pull_off_is_that_of_the_whole(void **state)
     }
 }
 
-/* Facts that what else the scene says leaves without effect are told, not passed over. */
-static void what_is_not_used_is_told(void **state)
-{
-    (void)state;
-    nt_scene scene = dry_silicon();
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    assert_int_equal(warns_of("not used") + warns_of("does not act"), 0);
-    scene.sample.conducting = 0.0;
-    scene.adhesion.contact_potential = 1.0;
-    scene.adhesion.pull_off_force = 12e-9;
-    scene.medium.ionic_strength = 100.0;
-    scene.medium.ph = 7.0;
-    scene.medium.meniscus_radius = 1e-9;
-    scene.tip.surface_potential = 0.02;
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    const char *const told[] = {"contact potential", "pull-off force",   "ionic strength", "pH,",
-                                "meniscus radius",   "surface potential"};
-    for (int i = 0; i < 6; ++i)
-        assert_int_equal(warns_of(told[i]), 1);
-    scene.sample.conducting = 1.0;
-    scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
-    scene.medium.kind = NT_MEDIUM_LIQUID;
-    scene.tip.surface_potential = 0.0;
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    assert_int_equal(warns_of("contact potential"), 1); /* ions screen it */
-    assert_int_equal(warns_of("pull-off force") + warns_of("ionic strength") + warns_of("pH,"), 0);
-}
-
-/* What is never touched has no contact to warn of; what nothing pulls on is measured by its scale. */
-static void warnings_are_of_what_is_visited(void **state)
-{
-    (void)state;
-    nt_scene scene = dry_silicon();
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    assert_int_equal(warns_of("at the largest load"), 1);
-    scene.range.minimum_gap = 10e-9;
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    assert_int_equal(warns_of("at the largest load"), 0);
-    scene = dry_silicon();
-    scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
-    scene.range.speed = 1e-6; /* 6 pi eta R^2 v/z0 = 0.7 fN; 1 % of a thousandth of 2.2 uN is 22 pN */
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    assert_int_equal(warns_of("drag"), 0);
-    scene.range.speed = 1.0; /* 0.7 nN */
-    assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-    assert_int_equal(warns_of("drag"), 1);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -398,8 +341,6 @@ int main(void)
         cmocka_unit_test(rivals_are_those_of_the_force),
         cmocka_unit_test(without_adhesion_there_are_no_folds),
         cmocka_unit_test(measured_pull_off_is_that_of_the_whole),
-        cmocka_unit_test(what_is_not_used_is_told),
-        cmocka_unit_test(warnings_are_of_what_is_visited),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
