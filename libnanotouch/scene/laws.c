@@ -145,18 +145,6 @@ double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity 
     return fabs(quantity == NT_QUANTITY_FORCE ? value.F : value.k);
 }
 
-double nt_plan_law_pull(const nt_plan *plan, int term, double gap)
-{
-    if (term == NT_PLAN_STERIC || (term == NT_PLAN_HYDRATION && plan->laws.hydration.amplitude > 0.0))
-        return 0.0;
-    if (term != NT_PLAN_DOUBLE_LAYER)
-        return nt_plan_law_limit(plan, term, gap, NT_QUANTITY_FORCE);
-    nt_double_layer apart = plan->laws.double_layer; /* what the difference of the potentials attracts, alone */
-    apart.tip_potential = 0.5 * (apart.tip_potential - apart.sample_potential);
-    apart.sample_potential = -apart.tip_potential;
-    return fabs(nt_double_layer_potential_eval(&apart, fmax(gap, apart.minimum_gap)).F);
-}
-
 double nt_plan_tail_share(const nt_plan *plan)
 {
     if (plan->source == NT_ADHESION_NONE)

@@ -239,30 +239,39 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
     offer_local(plan, options, more);
 }
 
-/* Contact without adhesion begins where the terms beside it are held: X = X_c + their sum there, 0 <= X_c <= P. Where
- * that pushes, max(X_c, S)/max(X, S) is largest at either end of X_c. */
-static double more_without_adhesion(const nt_plan *plan, double maximum_load)
+/* All beside contact, in full. */
+static double beside_at(const nt_plan *plan, double gap)
 {
     double sum = 0.0;
     for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
-        sum += nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F;
-    if (sum < 0.0)
-        return 1.0 + share(-sum * nt_plan_largest_ratio(plan), plan->scale);
-    sum *= plan->radii ? fmin(1.0, plan->radii->minimum / plan->contact.radius) : 1.0;
-    const double load = fmax(maximum_load, plan->scale);
-    return fmax(plan->scale / fmax(sum, plan->scale), load / (load + sum));
+        sum += nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap).F;
+    return sum;
 }
 
-/* How much larger the share of contact is than its own error, 1 + T/S; `beside`: all that the other terms come to. */
+/* The largest attraction of all beside contact, at the gaps where there can be contact; all is held inside 0. */
+static double opposing(const nt_plan *plan)
+{
+    double reach = fmax(plan->capture_gap, plan->release_gap), pull = fmax(-beside_at(plan, 0.0), 0.0);
+    if (is_curved(plan))
+        reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum));
+    for (double gap = reach; gap > 1e-13; gap *= 0.9)
+        pull = fmax(pull, -SAMPLED * beside_at(plan, gap));
+    return pull * nt_plan_largest_ratio(plan);
+}
+
+/* How much larger the share of contact is than its own error, 1 + T/S; `beside`: all that the other terms come to.
+ * Where contact without adhesion begins the others are held: X = X_c + their sum, 0 <= X_c <= P. If that pushes,
+ * max(X_c, S)/max(X, S) is largest at either end of X_c. */
 static double more_than_contact(const nt_plan *plan, const nt_scene *scene, double beside)
 {
-    double pull = 0.0;
-    if (plan->demand.quantity == NT_QUANTITY_FORCE && plan->source == NT_ADHESION_NONE)
-        return more_without_adhesion(plan, scene->range.maximum_load);
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
-        pull += nt_plan_law_pull(plan, term, fmax(scene->range.minimum_gap, 0.0));
-    const double T = plan->demand.quantity == NT_QUANTITY_FORCE ? pull : beside;
-    return 1.0 + share(nt_plan_largest_ratio(plan) * T, plan->scale);
+    if (plan->demand.quantity != NT_QUANTITY_FORCE)
+        return 1.0 + share(nt_plan_largest_ratio(plan) * beside, plan->scale);
+    const double pull = opposing(plan), sharpest = plan->radii ? plan->radii->minimum / plan->contact.radius : 1.0;
+    const double push = beside_at(plan, 0.0) * fmin(sharpest, 1.0), S = plan->scale;
+    if (plan->source != NT_ADHESION_NONE || pull > 0.0)
+        return 1.0 + share(pull, S);
+    const double load = fmax(scene->range.maximum_load, S);
+    return fmax(S / fmax(push, S), load / (load + push));
 }
 
 static double cost_of_shape(nt_shape_kind kind)

@@ -45,8 +45,6 @@ nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, doubl
 double nt_plan_tail_share(const nt_plan *plan);
 /* The largest |F| or |k| of a term at all gaps from `gap` on; signs that could cancel are not trusted. */
 double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity quantity);
-/* The largest attraction of a term at all gaps from `gap` on, the same way [N]. */
-double nt_plan_law_pull(const nt_plan *plan, int term, double gap);
 /* The fullest form of a term that the scene has, NT_FORM_OFF if it has none. */
 nt_form nt_plan_full_form(const nt_plan *plan, int term);
 

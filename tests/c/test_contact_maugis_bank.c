@@ -80,29 +80,6 @@ static void errors_are_what_the_bank_says(void **state)
     }
 }
 
-/* Without panels the exact solver answers, its slope over the radius and its fold, too. */
-static void a_bank_of_zeros_is_exact(void **state)
-{
-    (void)state;
-    const nt_maugis_bank none = {.panels = NULL}, fine = bank_of(8, 8);
-    assert_true(nt_maugis_bank_error(&none, 0.01, 100.0).force == 0.0);
-    for (double lambda = 0.02; lambda < 90.0; lambda *= 1.7) {
-        const nt_contact contact = {1.0, 0.75, 1.0 / NT_PI, 0.5 * lambda}; /* units of 1 */
-        const nt_maugis maugis = prepared(lambda);
-        assert_within(nt_maugis_bank_grip_indentation(&none, &contact), maugis.folds.grip_indentation, 1e-14);
-        for (double step = 0.1; step < 20.0; step *= 1.4) {
-            const double d = maugis.folds.grip_indentation + step;
-            nt_bank_value exact, close;
-            assert_int_equal(nt_maugis_bank_eval_radius(&none, &contact, d, NT_BRANCH_STABLE, &exact), NT_OK);
-            assert_int_equal(nt_maugis_bank_eval_radius(&fine, &contact, d, NT_BRANCH_STABLE, &close), NT_OK);
-            const nt_law_value direct = eval(&maugis, d, NT_BRANCH_STABLE);
-            assert_within(exact.law.F, direct.F, 1e-12 * (fabs(direct.F) + 1.0));
-            assert_within(exact.law.U, direct.U, 1e-12 * (fabs(direct.U) + 1.0));
-            assert_within(close.dU_dR, exact.dU_dR, 2e-4 * (1.0 + fabs(exact.law.U))); /* docs/contact.md */
-        }
-    }
-}
-
 /* The attracted state is closed-form; apart is 0. */
 static void other_states(void **state)
 {
@@ -398,7 +375,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_what_the_bank_says),
-        cmocka_unit_test(a_bank_of_zeros_is_exact),
         cmocka_unit_test(other_states),
         cmocka_unit_test(a_potential_at_constant_lambda),
         cmocka_unit_test(elsewhere_the_exact_law),
