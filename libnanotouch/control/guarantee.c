@@ -27,8 +27,8 @@ static double ringing_amplitude(const nt_stage *stage, double zeta, double speed
 nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
 {
     const nt_limits *limits = &settings->limits;
-    const nt_probe *probe = &rig->probe;
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, hazard->stiffness);
+    const nt_probe *probe = &shape.rig.probe;
     const double k_eff = probe->spring_constant / (1.0 + probe->spring_constant / hazard->stiffness);
     const double integral = shape.gains.stage_integral * limits->follow_error; /* what the stage loop may add [m/s] */
     const double vertical = limits->stage_speed + integral;

@@ -87,8 +87,9 @@ static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double conta
 
 nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness)
 {
-    const nt_sampled_loop loop = nt_sampled_loop_make(rig, gains);
-    return compute(rig, gains, contact_stiffness, &loop);
+    const nt_rig real = nt_rig_with_steps(rig);
+    const nt_sampled_loop loop = nt_sampled_loop_make(&real, gains);
+    return compute(&real, gains, contact_stiffness, &loop);
 }
 
 /* In touch; rig and gains are those that the law amounts to. */
@@ -133,8 +134,9 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
     return stage.margin >= touch.margin ? touch : stage;
 }
 
-nt_resolution nt_resolution_compute(const nt_rig *rig, const nt_gains *gains, double slave_path)
+nt_resolution nt_resolution_compute(const nt_rig *own, const nt_gains *gains, double slave_path)
 {
+    const nt_rig real = nt_rig_with_steps(own), *rig = &real;
     const double k_c = rig->probe.spring_constant;
     const double range = 2.0 * k_c * nt_probe_deflection_range(&rig->probe); /* 20 k_c S in the paper */
     nt_resolution found = {

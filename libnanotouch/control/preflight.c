@@ -12,7 +12,7 @@
 #define LEAST_SAMPLES 25.0 /* of half a tare */
 #define MOVE_TIME 0.02     /* and at least ten periods of the resonance, which a smooth move then does not excite [s] */
 #define MOVE_OSCILLATIONS 10.0
-#define MOVE_STEPS 20.0  /* of the stage's read-out */
+#define MOVE_STEPS 20.0  /* of the stage's read-out or command, the coarser */
 #define LEAST_MOVE 10e-9 /* [m] */
 #define TOLERANCE 0.5    /* of the move that the read-out must show, and of what hysteresis leaves of it, 1 - 2 h */
 
@@ -29,8 +29,10 @@ nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings)
     const double rate = settings->gains.rate;
     const double move = greater(MOVE_TIME, MOVE_OSCILLATIONS / rig->stage.resonance);
     const double lag = settings->gains.delay + rig->converters.dac_latency * rate;
-    const double distance = greater(LEAST_MOVE, MOVE_STEPS * rig->stage.resolution);
-    return (nt_preflight){.rig = *rig,
+    const nt_rig real = nt_rig_with_steps(rig);
+    const double step = greater(real.stage.resolution, real.stage.command_resolution);
+    const double distance = greater(LEAST_MOVE, MOVE_STEPS * step);
+    return (nt_preflight){.rig = real,
                           .limits = settings->limits,
                           .period = 1.0 / rate,
                           .ticks = (uint32_t)ceil(greater(LEAST_SAMPLES, TARE_HALF * rate)),

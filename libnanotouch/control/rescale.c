@@ -18,8 +18,9 @@ nt_rescale nt_rescale_make(const nt_rig *rig, const nt_settings *settings)
 {
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
     const double T = 1.0 / settings->gains.rate;
-    const double noise = rig->probe.spring_constant * rig->probe.sensitivity *
-                         hypot(FREE_SIGMA * rig->probe.noise / 6.0, rig->probe.resolution);
+    const nt_probe *probe = &shape.rig.probe;
+    const double noise =
+        probe->spring_constant * probe->sensitivity * hypot(FREE_SIGMA * probe->noise / 6.0, probe->resolution);
     return (nt_rescale){.share = lesser(FASTEST_SHARE, T / greater(settings->gains.ramp_time, T)),
                         .threshold = noise,
                         .spring_constant = rig->probe.spring_constant,

@@ -77,7 +77,7 @@ static double softened(const nt_rig *rig, const nt_gains *gains, double contact_
 
 nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness)
 {
-    nt_servo_shape shape = {*rig, settings->gains, contact_stiffness};
+    nt_servo_shape shape = {nt_rig_with_steps(rig), settings->gains, contact_stiffness};
     const nt_law_choice choice = settings->control.choice;
     if (choice == NT_CONTROL_DEFAULT || choice == NT_CONTROL_IMPEDANCE)
         shape.rig.master.damping *= 1.0 - settings->gains.velocity_feedforward;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "nanotouch/material.h"
 #include "nanotouch/scaling.h"
 #include "nanotouch/settings.h"
 
@@ -10,6 +11,7 @@
 
 #define STAGE_SPEED 20e-6   /* [m/s] */
 #define STAGE_INTEGRAL 60.0 /* [1/s] */
+#define RINGING_STEPS 10.0  /* a hand keeps to such a speed for so many of them */
 
 static const nt_field settings_fields[] = {
     FIELD(gains.rate, "Hz", 10.0, 1e6, "rate of the force loop"),
@@ -54,6 +56,10 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
 {
     const nt_scaling scaling = nt_scaling_heuristic(rig, 0.4e-6, 0.6e-6); /* L = 0.1 um, delta_max = 0.3 um; Eq. 21 */
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
+    const nt_rig real = nt_rig_with_steps(rig);
+    /* steps that come once in a period of the resonance, past the notch, add up to Q/pi of one; not for long */
+    const double ringing = fmin(real.stage.quality / NT_PI, RINGING_STEPS) * real.stage.command_resolution;
+    const double steps = ringing + 2.0 * fmax(real.stage.resolution, real.stage.command_resolution);
     /* after a turn the ceramic goes by 1 - 2 h of its command, and the integral, through it, takes the rest away */
     const double lost = 2.0 * rig->stage.hysteresis;
     const double hysteresis = lost / (1.0 - lost) * STAGE_SPEED / STAGE_INTEGRAL;
@@ -84,7 +90,7 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
                    .motor_power = 2.0,
                    .retract_distance = 0.5e-6,
                    .retract_speed = 10e-6,
-                   .follow_error = 0.1e-6 + hysteresis,
+                   .follow_error = fmax(0.1e-6, steps) + hysteresis,
                    .follow_time = 0.05,
                    .deflection_bias = 0.1 * nt_probe_deflection_range(&rig->probe),
                    .deflection_drift = 0.3 * nt_probe_deflection_range(&rig->probe),

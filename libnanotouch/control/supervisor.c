@@ -49,14 +49,6 @@ const char *nt_reason_name(uint32_t reason)
     return "";
 }
 
-/* A step of the deflection's converter [m]. */
-static double deflection_step(const nt_rig *rig)
-{
-    const double bits = rig->converters.adc_bits;
-    const double step = bits > 0.0 ? 2.0 * rig->probe.range / exp2(bits) : 0.0;
-    return rig->probe.sensitivity * greater(rig->probe.resolution, step);
-}
-
 /* Time constant of the stage behind its reference: what the notch leaves of the resonance, and dead time [s]. */
 static double stage_lag(const nt_rig *rig, const nt_gains *gains)
 {
@@ -77,21 +69,21 @@ static double stage_slack(const nt_rig *rig, const nt_settings *settings, const 
 {
     if (gains->stage_integral == 0.0)
         return stage_most(rig, &settings->limits, gains);
-    const double bits = rig->converters.dac_bits;
-    const double step = greater(rig->stage.resolution, bits > 0.0 ? rig->stage.travel / exp2(bits) : 0.0);
+    const double step = greater(rig->stage.resolution, rig->stage.command_resolution);
     const double way = settings->limits.stage_speed * (stage_lag(rig, gains) + 1.0 / gains->rate);
     return greater(greater(LEAST_SLACK, way), FOLLOW_STEPS * step);
 }
 
 nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
 {
-    const nt_probe *probe = &rig->probe;
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
+    const nt_probe *probe = &shape.rig.probe;
+    const nt_stage *stage = &shape.rig.stage;
     const double period = 1.0 / settings->gains.rate;
     const double sigma = probe->sensitivity * probe->noise / 6.0; /* of the deflection [m] */
-    const double step = deflection_step(rig);
+    const double step = probe->sensitivity * probe->resolution;
     const int shows_noise = sigma > step; /* identical codes are normal where the noise is below one step */
-    const double travelled = STUCK_STEPS * greater(rig->stage.resolution, LEAST_STAGE_STEP);
+    const double travelled = STUCK_STEPS * greater(stage->resolution, LEAST_STAGE_STEP);
     return (nt_supervisor){.period = period,
                            .spring_constant = probe->spring_constant,
                            .deflection_range = nt_probe_deflection_range(probe),
@@ -101,7 +93,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .stage_range = rig->stage.travel,
                            .stuck_distance = shows_noise ? travelled : 0.0,
                            .stage_share = period / (period + stage_lag(rig, &shape.gains)),
-                           .stage_slack = stage_slack(rig, settings, &shape.gains),
+                           .stage_slack = stage_slack(&shape.rig, settings, &shape.gains),
                            .stage_most = stage_most(rig, &settings->limits, &shape.gains),
                            .path_kept = exp(-period / settings->limits.follow_time),
                            .limits = settings->limits};

@@ -66,7 +66,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
         return NT_E_ARGUMENT;
     const double period = 1.0 / settings->gains.rate;
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
-    nt_touch made = {.rig = *rig,
+    nt_touch made = {.rig = nt_rig_with_steps(rig),
                      .settings = *settings,
                      .mode = mode,
                      .period = period,
@@ -78,7 +78,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .stage_step = settings->limits.stage_speed * period,
                      .stage_end = 0.5 * rig->stage.travel,
                      .motor_step = settings->limits.motor_rate * period,
-                     .spike = spike_of(rig, settings),
+                     .spike = spike_of(&shape.rig, settings),
                      .passivity = nt_passivity_make(&shape.rig, &shape.gains),
                      .rescale = nt_rescale_make(rig, settings),
                      .supervisor = nt_supervisor_make(rig, settings)};

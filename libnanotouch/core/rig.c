@@ -2,6 +2,7 @@
  * The rig of the paper (Sec. II, IV and VI): default values, valid ranges, derived ranges of the probe. */
 #include "nanotouch/rig.h"
 
+#include <math.h>
 #include <stddef.h>
 
 #include "nanotouch/material.h"
@@ -105,6 +106,25 @@ const nt_field *nt_rig_fields(int *count)
     if (count != NULL)
         *count = RIG_FIELDS;
     return rig_fields;
+}
+
+/* Bits over +-range. */
+static double coarser(double own, double range, double bits)
+{
+    return bits > 0.0 ? fmax(own, range * exp2(1.0 - bits)) : own;
+}
+
+nt_rig nt_rig_with_steps(const nt_rig *rig)
+{
+    const double in = rig->converters.adc_bits, out = rig->converters.dac_bits;
+    const double half_stage = 0.5 * rig->stage.travel, half_master = 0.5 * rig->master.travel;
+    nt_rig made = *rig;
+    made.probe.resolution = coarser(made.probe.resolution, made.probe.range, in);
+    made.stage.resolution = coarser(made.stage.resolution, half_stage, in);
+    made.stage.command_resolution = coarser(made.stage.command_resolution, half_stage, out);
+    made.master.resolution = coarser(made.master.resolution, half_master, in);
+    made.master.gauge_resolution = coarser(made.master.gauge_resolution, made.master.gauge_range, in);
+    return made;
 }
 
 nt_stage nt_stage_open_loop(void)

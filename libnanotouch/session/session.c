@@ -63,7 +63,7 @@ static double master_start(const nt_session_setup *setup)
 static nt_status make_sim(nt_session *session, const nt_session_setup *setup)
 {
     const nt_sim_setup sim = {.plan = &session->plan,
-                              .rig = &session->touch.rig,
+                              .rig = &setup->rig,
                               .period = session->touch.period,
                               .x = setup->x,
                               .y = setup->y,

@@ -64,12 +64,30 @@ static void each_field_is_refused_by_name(void **state)
     assert_int_equal(nt_rig_check(&rig, NULL), NT_E_RANGE);
 }
 
+/* Bits over +-range, unless the part's own steps are coarser. */
+static void converters_have_steps(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    nt_rig real = nt_rig_with_steps(&rig);
+    assert_memory_equal(&real, &rig, sizeof rig);
+    rig.converters.adc_bits = 12.0;
+    rig.converters.dac_bits = 16.0;
+    real = nt_rig_with_steps(&rig);
+    assert_true(fabs(real.probe.resolution - 20.0 / 4096.0) < 1e-15);
+    assert_true(fabs(real.stage.resolution - 100e-6 / 4096.0) < 1e-20);
+    assert_true(fabs(real.stage.command_resolution - 100e-6 / 65536.0) < 1e-22);
+    assert_true(real.master.resolution == rig.master.resolution); /* 0.04 mm, a bit is 5 um */
+    assert_true(real.master.gauge_resolution == rig.master.gauge_resolution);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_are_the_papers),
         cmocka_unit_test(table_covers_every_number),
         cmocka_unit_test(each_field_is_refused_by_name),
+        cmocka_unit_test(converters_have_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

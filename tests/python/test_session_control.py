@@ -12,6 +12,8 @@ import pytest
 from nanotouch import Faults, Input, Recording, Rig, Session, Supervisor, Surface, record, surface
 from nanotouch._core import Signals
 from nanotouch.errors import Error, InvalidValue
+from nanotouch.margins import resolution
+from nanotouch.supervisor import REASONS
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
 RUN = record.STATES.index("RUN")
@@ -346,6 +348,25 @@ def test_a_declared_hysteresis_is_no_fault(hysteresis: float, integral: float) -
     recording = turned.run(operator=[Input(2.0, 0.0, 0.0, 0.5), Input(2.0, 0.0, 0.0, 2.0), Input(-0.5, 0.0, 0.0, 4.0)])
     assert recording.state[-1] != RUN
     assert recording.tip_force.max() < turned.guarantee().force
+
+
+def test_steps_of_converters_count() -> None:
+    coarse = Rig(converters={"adc_bits": 12.0, "dac_bits": 12.0})
+    step = 100e-6 / 4096
+    same = Rig(stage={"resolution": step, "command_resolution": step}, probe={"resolution": 20.0 / 4096})
+    sessions = [Session(rig=rig) for rig in (coarse, same)]  # drawn back by 20 of these steps, and seen to be
+    assert sessions[0].margins() == sessions[1].margins()
+    assert sessions[0].margins().quantisation_step > 100.0 * Session().margins().quantisation_step / 8.0
+    assert sessions[0].guarantee() == sessions[1].guarantee()
+    assert resolution(coarse, sessions[0].settings, 0.4e-6) == resolution(same, sessions[1].settings, 0.4e-6)
+
+
+@pytest.mark.parametrize("step", [1e-8, 1e-7])
+def test_a_stage_of_coarse_steps_follows(step: float) -> None:
+    rig = Rig(stage={"resolution": step, "command_resolution": step})
+    session = Session(rig=rig, mode="curve", clearance=1e-6, gains={"approach_speed": 20e-6})
+    recording = session.run()
+    assert not np.any(recording.reasons & 1 << REASONS.index("stage does not follow"))
 
 
 def test_a_bias_is_tared_and_a_large_one_refused() -> None:

@@ -11,25 +11,18 @@
 #define SUBSTEP 0.25              /* of the dynamic cantilever [rad] */
 
 /* The coarser of a sensor's own step and that of its converter, over +- range. */
-static double step_of(double own, double range, double bits)
+static void init_converters(nt_sim *sim)
 {
-    return fmax(own, bits > 0.0 ? range * exp2(1.0 - bits) : 0.0);
-}
-
-static void init_sensors(nt_sim *sim)
-{
-    const nt_probe *probe = &sim->rig.probe;
-    const nt_stage *stage = &sim->rig.stage;
-    const nt_master *master = &sim->rig.master;
-    const double bits = sim->rig.converters.adc_bits, metres_per_volt = probe->sensitivity;
-    const double half_stage = 0.5 * stage->travel, half_master = 0.5 * master->travel;
-    sim->deflection_sensor =
-        (nt_sensor){metres_per_volt * probe->noise / 6.0,
-                    metres_per_volt * step_of(probe->resolution, probe->range, bits), nt_probe_deflection_range(probe)};
-    sim->stage_sensor = (nt_sensor){stage->noise, step_of(stage->resolution, half_stage, bits), half_stage};
-    sim->master_sensor = (nt_sensor){0.0, step_of(master->resolution, half_master, bits), half_master};
-    sim->gauge = (nt_sensor){master->gauge_noise, step_of(master->gauge_resolution, master->gauge_range, bits),
-                             master->gauge_range};
+    const nt_rig real = nt_rig_with_steps(&sim->rig);
+    const nt_probe *probe = &real.probe;
+    const nt_master *master = &real.master;
+    const double metres_per_volt = probe->sensitivity;
+    sim->deflection_sensor = (nt_sensor){metres_per_volt * probe->noise / 6.0, metres_per_volt * probe->resolution,
+                                         nt_probe_deflection_range(probe)};
+    sim->stage_sensor = (nt_sensor){real.stage.noise, real.stage.resolution, 0.5 * real.stage.travel};
+    sim->master_sensor = (nt_sensor){0.0, master->resolution, 0.5 * master->travel};
+    sim->gauge = (nt_sensor){master->gauge_noise, master->gauge_resolution, master->gauge_range};
+    sim->command_step = real.stage.command_resolution;
 }
 
 /* A command acts after delay and latency; a part of a period splits the period in two. */
@@ -84,7 +77,7 @@ static nt_moment moment_now(const nt_sim *sim)
 
 static nt_status begin(nt_sim *sim, const nt_sim_setup *setup)
 {
-    init_sensors(sim);
+    init_converters(sim);
     sim->start_height = nt_sim_surface_height(sim) + setup->clearance;
     sim->cantilever = nt_cantilever_at(setup->clearance);
     sim->truth.gap = NAN; /* nothing is known yet */
@@ -196,14 +189,15 @@ static double drive_stage(nt_sim *sim, double command, double time)
     const double slew = stage->max_speed * time, half = 0.5 * stage->travel;
     const double reached = limit(command, sim->stage_drive - slew, sim->stage_drive + slew);
     sim->stage_drive = limit(reached, -half, half);
-    return in_steps(sim->stage_drive, step_of(stage->command_resolution, half, sim->rig.converters.dac_bits));
+    return in_steps(sim->stage_drive, sim->command_step);
 }
 
 static double drive_motor(const nt_sim *sim, double command)
 {
     const double most = sim->rig.master.max_force;
     const double force = nt_sim_spoil_motor(sim, command);
-    return in_steps(limit(force, -most, most), step_of(0.0, most, sim->rig.converters.dac_bits));
+    const double bits = sim->rig.converters.dac_bits, step = bits > 0.0 ? most * exp2(1.0 - bits) : 0.0;
+    return in_steps(limit(force, -most, most), step);
 }
 
 /* How the tip force grows as the stage goes on [N/m]; where it pulls the more, it is the probe that jumps. */

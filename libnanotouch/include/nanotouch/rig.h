@@ -88,6 +88,10 @@ NT_API nt_status nt_rig_check(const nt_rig *rig, nt_problem *problem);
 /* The table behind the check: every field of nt_rig with unit, range and meaning; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_rig_fields(int *count);
 
+/* The same rig with the steps that it really has: of every sensor, and of the stage's command, its own or that of a
+ * converter's bits over its range, the coarser. */
+NT_API nt_rig nt_rig_with_steps(const nt_rig *rig);
+
 /* The stage without its own servo: steps of 1 nm, hysteresis 15 %, creep 1 % per decade (usual for PZT, not in the
  * paper); and behind its servo: steps of 10 nm, neither (Sec. IV-C). */
 NT_API nt_stage nt_stage_open_loop(void);

@@ -77,6 +77,7 @@ typedef struct nt_sim {
     double fraction;             /* ... and the part of one [periods] */
     nt_sim_part parts[2];        /* before and after a command begins to act */
     nt_sensor deflection_sensor, stage_sensor, master_sensor, gauge;
+    double command_step; /* of the stage [m] */
     nt_cantilever_model cantilever_model;
     int dynamic; /* the cantilever is */
     /* state */
