@@ -126,6 +126,8 @@ void nt_interaction_change(const nt_plan *plan, const nt_plan *changed, nt_inter
                            const nt_pose *pose)
 {
     const double before = nt_interaction_eval(plan, state, pose).U + state->dissipated;
+    if (isnan(before))
+        return;
     nt_interaction_advance(changed, state, pose);
     state->port += nt_interaction_eval(changed, state, pose).U + state->dissipated - before;
 }

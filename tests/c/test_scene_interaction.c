@@ -235,6 +235,9 @@ static void what_is_not_a_number_stays_so(void **state)
                 assert_true(isnan(nt_interaction_eval(&plan, &history, &poses[i]).Fz));
             for (int i = 0; i < 3; i++)
                 nt_interaction_advance(&plan, &history, &poses[i]);
+            for (int i = 0; i < 3; i++)
+                nt_interaction_change(&plan, &plan, &history, &poses[i]);
+            assert_true(history.port == 0.0);
             assert_true(history.attached == attached && history.dissipated == 0.0);
         }
         assert_true(nt_interaction_eval_gap(&plan, &(nt_interaction_state){0, 0.0, 0.0}, NULL, HUGE_VAL).F == 0.0);

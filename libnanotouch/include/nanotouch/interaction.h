@@ -44,7 +44,7 @@ NT_API NT_REALTIME void nt_interaction_advance_gap(const nt_plan *plan, nt_inter
                                                    const nt_place *place, double gap);
 
 /* Slow changes of the scene itself (wear, charging, contact ageing): from `plan` to `changed` at a pose. The history is
- * carried over, what changes in U at this pose is booked in state->port. */
+ * carried over, what changes in U at this pose is booked in state->port; at a pose that is not a number, nothing. */
 NT_API void nt_interaction_change(const nt_plan *plan, const nt_plan *changed, nt_interaction_state *state,
                                   const nt_pose *pose);
 
