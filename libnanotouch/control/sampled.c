@@ -74,7 +74,10 @@ double nt_sampled_angle(const nt_sampled *part)
 
 double nt_sampled_dead_time(const nt_rig *rig, const nt_gains *gains)
 {
-    return gains->delay / gains->rate + rig->converters.adc_latency + rig->converters.dac_latency;
+    const nt_converters *converters = &rig->converters;
+    const double T = 1.0 / gains->rate;
+    const double repeats = converters->adc_rate > 0.0 ? fmax(0.0, 1.0 / converters->adc_rate - T) : 0.0;
+    return gains->delay * T + converters->adc_latency + repeats + converters->dac_latency;
 }
 
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)

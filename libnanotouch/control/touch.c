@@ -20,6 +20,13 @@ static double low_pass_factor(double bandwidth, double period)
     return -expm1(-2.0 * NT_PI * bandwidth * period);
 }
 
+/* The rate at which every sample would be stale: older than two periods [Hz]. */
+static double stale_rate(const nt_converters *converters)
+{
+    const double repeats = converters->adc_rate > 0.0 ? 1.0 / converters->adc_rate : 0.0;
+    return (repeats > 0.0 ? 3.0 : 2.0) / (converters->adc_latency + repeats); /* the last period of a repeat is fresh */
+}
+
 /* No limit may promise more than the rig can keep: beyond saturation no force would be seen. */
 static nt_status check_against_rig(const nt_settings *settings, const nt_rig *rig, nt_problem *problem)
 {
@@ -27,6 +34,7 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
     const int needs_gauge = settings->control.choice != NT_CONTROL_IMPEDANCE && settings->gains.force_gain > 0.0;
     const nt_problem promises[] = {
+        {"gains.rate", "Hz", settings->gains.rate, 0.0, stale_rate(&rig->converters)},
         {"limits.force", "N", limits->force, 0.0, saturation},
         {"gains.set_point", "N", settings->gains.set_point, 0.0, limits->force},
         {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},

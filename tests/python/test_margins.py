@@ -370,6 +370,16 @@ def test_energy_without_a_gauge() -> None:
     assert felt.energy[-1] == pytest.approx(truth.energy[-1], rel=0.1)
 
 
+def test_a_converter_slower_than_the_loop_costs_margin() -> None:
+    rig = nt.Rig(converters={"adc_rate": 4e3})
+    found = stability.simulated_limit(rig, nt.Settings.for_rig(rig), 10e3)
+    assert 0.8 * found.force_gain < found.exact < found.force_gain  # the age goes to and fro, its largest is reckoned
+    with pytest.raises(nt.Error, match=r"gains.rate = 10000 Hz: valid is 0 .. 6000 Hz"):
+        nt.Session(rig=nt.Rig(converters={"adc_rate": 2e3}))
+    with pytest.raises(nt.Error, match=r"gains.rate = 10000 Hz: valid is 0 .. 5000 Hz"):
+        nt.Session(rig=nt.Rig(converters={"adc_latency": 0.4e-3}))
+
+
 def test_force_range_sets_the_scale() -> None:
     rig, plan = nt.Rig(), nt.Scene().plan()
     span = margins.force_range(plan, 500e-9)
