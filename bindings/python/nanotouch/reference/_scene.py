@@ -128,12 +128,11 @@ def _work_by_pull_off(values: tuple[tuple[str, Any], ...]) -> float:
 
 
 def _pull_off(scene: Scene, work: float) -> float:
-    """Largest attraction of the whole in contact: on a grid of gaps, then between the neighbours of its best."""
+    """Largest attraction of the whole on the way out: on a grid of gaps, then between the neighbours of its best."""
     near = np.geomspace(1e-15, 0.1, 800)  # [m]
     gaps = np.concatenate([-near[::-1], [0.0], near])
     for _ in range(12):
-        parts = _forces(scene, work, gaps, "retract", None)
-        total = np.where(np.asarray(parts.contact) == 0.0, 0.0, np.sum(parts, axis=0))
+        total = np.sum(_forces(scene, work, gaps, "retract", None), axis=0)
         best = int(np.argmin(total))
         gaps = np.linspace(gaps[max(best - 1, 0)], gaps[min(best + 1, len(gaps) - 1)], 41)
     return -float(total[best])
