@@ -104,6 +104,8 @@ def test_a_law_that_cannot_be_judged_is_refused() -> None:
 
     with pytest.raises(InvalidValue, match="own law, of no kind that can be judged"):
         Session(control=damped)
+    with pytest.raises(InvalidValue, match="mode: own law, of no kind that can be judged"):
+        Session(control=damped, mode="curve").set_mode("point")
     Session(control=damped, minimum_margin=0.0).advance(0.01)
 
 

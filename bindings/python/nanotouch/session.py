@@ -173,10 +173,8 @@ class Session:
     def margins(self) -> Margins:
         """Margins at the stiffest contact of the plan, and why the session was to be refused, if it was; of a law of
         one's own by what it was seen to do before the first tick, NaN where that is not known (docs/control.md)."""
-        stiffness = self.plan.maximum_stiffness
-        if self.control == "own":
-            return margins.of_own_law(self.rig, self.settings, self._amounts, stiffness, self.mode)
-        return margins.compute(self.rig, self.settings, stiffness, self.mode)
+        amounts = self._amounts if self.control == "own" else self.settings
+        return margins.of_own_law(self.rig, self.settings, amounts, self.plan.maximum_stiffness, self.mode)
 
     @property
     def stability_margin(self) -> float:
@@ -333,13 +331,13 @@ class Session:
         self._scales = pair
 
     def _check_margin(self, what: str, mode: Mode, scales: list[float]) -> None:
-        """Refuse what the C library would, by the rule that it does not name; only it can try a law of one's own."""
-        asked = self.settings.copy()
+        """Refuse what the C library would, by the rule that it does not name; only it can try a law of one's own again,
+        with other scales."""
+        asked, stiffness = self.settings.copy(), self.plan.maximum_stiffness
         asked["gains.alpha_p"], asked["gains.alpha_f"] = scales
-        if self.control == "own":
-            return
-        found = margins.compute(self.rig, asked, self.plan.maximum_stiffness, mode)
-        if found.least < self.minimum_margin:
+        own = self.control == "own"
+        found = margins.of_own_law(self.rig, asked, self._amounts if own else asked, stiffness, mode)
+        if self.minimum_margin > 0.0 and not found.least >= self.minimum_margin:
             raise InvalidValue(
                 f"{what}: {found.rule}: margin {found.least:.3g}, at least {self.minimum_margin:g} is needed"
             )
