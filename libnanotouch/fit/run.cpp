@@ -34,10 +34,12 @@ void write_message(const nt_fit_options &options, nt_fit_result *result)
     }
 }
 
-// Where the range h0 is to be found too, there can be several minima about as good: all are looked at, the best is
-// returned, and a parameter in which another good one differs is not determined.
+// Where the range h0 is to be found too, there can be several minima about as good, or a valley in which one slides:
+// fits from all starts, and fits with the range held, are looked at. The best of the first is returned; what differs in
+// others about as good is known to no better than the difference.
 constexpr double transition_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0}; // Maugis' lambda to start from
-constexpr double as_good = 4.0;                                        // difference in chi^2, two standard deviations
+constexpr double held_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0, 12.0, 40.0};
+constexpr double as_good = 9.0; // difference in chi^2, three standard deviations
 
 // A fit of some of the points costs little and leaves a step or two for all of them.
 constexpr long some = 200;
@@ -65,6 +67,60 @@ nt_status run_from(const nt_fit_options &options, const nt_fit_data &data, doubl
     return fit.run(found);
 }
 
+// Fits with the range held at those of other transition parameters, lambda h0 being the same; of those that converge.
+void hold_ranges(const nt_fit_options &options, const nt_fit_data &data, const nt_fit_result &best,
+                 std::vector<Found> *all)
+{
+    nt_fit_options held = options;
+    nt_fit_start &range = held.parameter[NT_FIT_COHESIVE_RANGE];
+    for (const double lambda : held_parameters) {
+        range.initial = best.value[NT_FIT_COHESIVE_RANGE] * best.transition_parameter / lambda;
+        range.fixed = 1;
+        Found found;
+        if (range.initial >= range.minimum && range.initial <= range.maximum &&
+            run_from(held, data, std::nan(""), &found) == NT_OK)
+            all->push_back(found);
+    }
+}
+
+// The fit about as good as the best whose values lie farthest from its own, in standard deviations; null without any.
+const Found *farthest(const nt_fit_options &options, const std::vector<Found> &all, const Found &best)
+{
+    const Found *far = nullptr;
+    double largest = 0.0;
+    for (const Found &other : all) {
+        double distance = 0.0;
+        for (int p = 0; p < NT_FIT_PARAMETERS; p++) {
+            const double sigma = best.result.sigma[p];
+            if (is_free(options, p) && sigma > 0.0 && std::isfinite(sigma))
+                distance += std::pow((other.result.value[p] - best.result.value[p]) / sigma, 2);
+        }
+        if (other.cost - best.cost <= as_good * best.variance && distance > largest) {
+            largest = distance;
+            far = &other;
+        }
+    }
+    return far;
+}
+
+void widen(const nt_fit_options &options, const nt_fit_result &other, nt_fit_result *best)
+{
+    const auto off = [&](int p) { return is_free(options, p) ? other.value[p] - best->value[p] : 0.0; };
+    for (int p = 0; p < NT_FIT_PARAMETERS; p++)
+        for (int q = 0; q < NT_FIT_PARAMETERS; q++)
+            best->covariance[p][q] += off(p) * off(q);
+    for (int p = 0; p < NT_FIT_PARAMETERS; p++) {
+        if (!is_free(options, p))
+            continue;
+        const double before = best->sigma[p];
+        best->sigma[p] = std::sqrt(best->covariance[p][p]);
+        if (best->sigma[p] > before)
+            best->from_tear[p] *= std::pow(before / best->sigma[p], 2);
+        if (is_logarithmic(options, p) && !(best->sigma[p] < NT_FIT_IDENTIFIABLE * best->value[p]))
+            best->identifiable[p] = 0;
+    }
+}
+
 nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
 {
     std::vector<Found> all;
@@ -78,17 +134,13 @@ nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, n
     }
     if (all.empty())
         return NT_E_NO_CONVERGENCE;
-    Found best =
+    const Found best =
         *std::min_element(all.begin(), all.end(), [](const Found &a, const Found &b) { return a.cost < b.cost; });
-    for (const Found &other : all) {
-        if (other.cost - best.cost > as_good * best.variance)
-            continue;
-        for (int p = 0; p < NT_FIT_PARAMETERS; p++)
-            if (is_logarithmic(options, p) &&
-                std::fabs(std::log(other.result.value[p] / best.result.value[p])) > NT_FIT_IDENTIFIABLE)
-                best.result.identifiable[p] = 0;
-    }
+    hold_ranges(options, data, best.result, &all);
     *result = best.result;
+    const Found *far = farthest(options, all, best);
+    if (far)
+        widen(options, far->result, result);
     return NT_OK;
 }
 
