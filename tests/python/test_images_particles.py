@@ -92,6 +92,7 @@ def test_pits_are_particles_of_the_surface_turned_over() -> None:
     for name, column in up.columns().items():
         np.testing.assert_array_equal(column, down.columns()[name])
     assert up.base == -down.base
+    assert str(up).replace("particles above", "pits deeper than").replace("height", "depth") == str(down)
 
 
 def test_border_small_and_masked() -> None:

@@ -60,6 +60,8 @@ class GrainTable:
         Standard deviation of the flat, or of the lower class [m].
     warnings : tuple of str
         Why the particles may be none, in words.
+    pits : bool
+        True if they are pits.
     """
 
     x: Floats
@@ -76,6 +78,7 @@ class GrainTable:
     threshold: float
     noise: float
     warnings: tuple[str, ...] = ()
+    pits: bool = False
 
     def __len__(self) -> int:
         return len(self.x)
@@ -101,7 +104,8 @@ class GrainTable:
                 writer.writerow([number, *(f"{v:.6g}" if isinstance(v, np.floating) else int(v) for v in row)])
 
     def __str__(self) -> str:
-        found = f"{counted(len(self), 'particle')} above {self.threshold * 1e9:.3g} nm"
+        what, beyond = ("pit", "deeper than") if self.pits else ("particle", "above")
+        found = f"{counted(len(self), what)} {beyond} {self.threshold * 1e9:.3g} nm"
         if len(self):
             cut = int(self.border.sum())
             found += f" ({cut} cut by the border), {100 * self.coverage:.3g} % of the area"
@@ -112,10 +116,11 @@ class GrainTable:
     def _sizes(self) -> str:
         """Of those that the border does not cut."""
         height, diameter = self.height[~self.border] * 1e9, self.diameter[~self.border] * 1e9
+        size = "depth" if self.pits else "height"
         if height.size == 1:
-            return f"height {height[0]:.4g} nm, diameter {diameter[0]:.4g} nm"
+            return f"{size} {height[0]:.4g} nm, diameter {diameter[0]:.4g} nm"
         return (
-            f"height {np.median(height):.4g} nm ({height.min():.4g} .. {height.max():.4g}), "
+            f"{size} {np.median(height):.4g} nm ({height.min():.4g} .. {height.max():.4g}), "
             f"diameter {np.median(diameter):.4g} nm ({diameter.min():.4g} .. {diameter.max():.4g})"
         )
 
@@ -169,7 +174,9 @@ def grains(
     doubts = _doubts(labels, least / jitter if jitter > 0.0 else np.inf, pits)
     for text in doubts:
         warnings.warn(text, stacklevel=2)
-    return replace(_measured(topography, over, labels, (-base if pits else base, least, noise)), warnings=doubts)
+    return replace(
+        _measured(topography, over, labels, (-base if pits else base, least, noise)), warnings=doubts, pits=pits
+    )
 
 
 def _doubts(labels: NDArray[np.int32], over_noise: float, pits: bool) -> tuple[str, ...]:
