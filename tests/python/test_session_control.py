@@ -109,6 +109,23 @@ def test_a_law_that_cannot_be_judged_is_refused() -> None:
     Session(control=damped, minimum_margin=0.0).advance(0.01)
 
 
+def test_a_law_that_fails_while_it_is_tried_says_so_at_once() -> None:
+    broken = []
+
+    def law(signals: Signals) -> tuple[float, float]:
+        if broken:
+            raise ZeroDivisionError("my law")
+        return -signals.alpha_f * signals.felt_force, signals.target
+
+    session = Session(control=law)
+    broken.append(True)
+    with pytest.raises(ZeroDivisionError, match="my law"):
+        session.rescale(alpha_f=1e6)
+    broken.clear()
+    session.rescale(alpha_f=1e6)
+    session.advance(0.01)
+
+
 def test_refusals_name_the_rule() -> None:
     with pytest.raises(InvalidValue, match=r"stability margin \(R5 noise\) = .* valid is 1.5"):
         Session(gains={"force_gain": 500.0})

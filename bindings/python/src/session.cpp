@@ -152,13 +152,16 @@ static void bind_requests(py::class_<Session> &type)
     type.def("set_mode",
              [](Session &self, const std::string &name) {
                  const nt_mode mode = mode_of(name);
-                 raise_on(alone(self, [=](nt_session *handle) { return nt_session_set_mode(handle, mode); }), "mode");
+                 const nt_status status = alone(self, [=](nt_session *h) { return nt_session_set_mode(h, mode); });
+                 self.law.rethrow(); // it has been tried
+                 raise_on(status, "mode");
              })
         .def("rescale",
              [](Session &self, double alpha_p, double alpha_f) {
                  const nt_scaling scaling = {alpha_p, alpha_f};
-                 raise_on(alone(self, [&](nt_session *handle) { return nt_session_rescale(handle, &scaling); }),
-                          "rescale");
+                 const nt_status status = alone(self, [&](nt_session *h) { return nt_session_rescale(h, &scaling); });
+                 self.law.rethrow();
+                 raise_on(status, "rescale");
              })
         .def("clutch", [](Session &self,
                           bool open) { alone(self, [=](nt_session *handle) { nt_session_clutch(handle, open); }); })
