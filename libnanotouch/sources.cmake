@@ -65,6 +65,8 @@ set(nanotouch_sources_scene
     scene/adhesion.c
     scene/choice.c
     scene/contact.c
+    scene/demand.c
+    scene/distance.c
     scene/facts.c
     scene/interaction.c
     scene/laws.c

@@ -38,121 +38,6 @@ static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
 #define TABLED 2.0     /* the same for the error of a table, which oscillates within its cells */
 #define ROUNDING 1e-12 /* polished and exact tiers, away from folds (docs/contact.md) */
 
-static double pick(nt_law_value value, nt_quantity quantity)
-{
-    return quantity == NT_QUANTITY_STIFFNESS ? value.k : quantity == NT_QUANTITY_RADIUS ? value.a : value.F;
-}
-
-typedef nt_law_value contact_law(const nt_plan *plan, double indentation);
-
-static nt_law_value full_at(const nt_plan *plan, double indentation)
-{
-    const nt_form form = nt_plan_contact_form(plan);
-    return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
-}
-
-/* What pulls on small forces: everything on, or contact alone, which repulsion may hide; 0 where nothing does. */
-static double pull_of(const nt_plan *plan)
-{
-    double alone = 0.0;
-    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
-        alone = nt_maugis_pull_off_force(&plan->maugis);
-    else if (nt_plan_contact_form(plan) == NT_FORM_JKR)
-        alone = nt_jkr_shape_pull_off_force(&plan->jkr);
-    return fmax(plan->contact_pull, alone);
-}
-
-/* The largest difference between two forms of contact over max(|truth|, scale), over all indentations from the release
- * gap to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. S is
- * that of the demanded quantity; of a force that is not the one demanded, the pull-off force. */
-static double contact_distance(const nt_plan *plan, contact_law *truth_at, contact_law *other, double lowest,
-                               nt_quantity quantity)
-{
-    enum { SAMPLES = 96 };
-    const double fold = -plan->release_gap;
-    const double deepest = plan->largest_indentation;
-    const double scale = quantity == (nt_quantity)(int)plan->demand.quantity ? plan->scale : pull_of(plan);
-    double largest = 0.0;
-    for (int i = 1; i <= SAMPLES; ++i) {
-        const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
-        if (d < lowest)
-            continue;
-        const double truth = pick(truth_at(plan, d), quantity);
-        largest = fmax(largest, fabs(pick(other(plan, d), quantity) - truth) / fmax(fabs(truth), scale));
-    }
-    return largest;
-}
-
-static nt_law_value hertz_at(const nt_plan *plan, double indentation)
-{
-    return nt_hertz_eval(&plan->contact, indentation);
-}
-
-static nt_law_value series_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_contact_eval(plan, NT_FORM_SERIES, indentation);
-}
-
-static nt_law_value dmt_at(const nt_plan *plan, double indentation)
-{
-    return nt_dmt_eval(&plan->contact, indentation);
-}
-
-static nt_law_value jkr_at(const nt_plan *plan, double indentation)
-{
-    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
-    (void)nt_jkr_eval(&plan->contact, indentation, NT_BRANCH_STABLE, &value);
-    return value;
-}
-
-static nt_law_value sharpest_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->minimum, indentation).law;
-}
-
-static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum, indentation).law;
-}
-
-static nt_law_value table_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_contact_eval(plan, NT_FORM_TABLE, indentation);
-}
-
-/* On what load control can hold, away from its fold; Hertz and DMT know contact only from first touch on. */
-static void rivals_of(nt_plan *plan)
-{
-    const double last = 0.9 * plan->maugis.folds.pull_off_indentation * plan->maugis.indentation_scale;
-    plan->rivals.hertz = contact_distance(plan, full_at, hertz_at, 0.0, NT_QUANTITY_FORCE);
-    plan->rivals.dmt = contact_distance(plan, full_at, dmt_at, 0.0, NT_QUANTITY_FORCE);
-    plan->rivals.jkr = contact_distance(plan, full_at, jkr_at, last, NT_QUANTITY_FORCE);
-}
-
-/* What small forces are measured by where nothing pulls. */
-#define SMALL_LOAD 1e-3 /* of the largest load */
-
-/* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
-static double scale_of(const nt_plan *plan, double maximum_load)
-{
-    const double pull = pull_of(plan);
-    const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
-    const nt_maugis *m = &plan->maugis;
-    const double accuracy = plan->demand.relative_accuracy;
-    switch ((int)plan->demand.quantity) {
-    case NT_QUANTITY_STIFFNESS:
-        return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
-    case NT_QUANTITY_RADIUS:
-        return maugis ? m->folds.zero_load_radius * m->radius_scale
-                      : plan->contact.radius * plan->validity.radius_ratio;
-    case NT_QUANTITY_FOLDS:
-        return fmax(fabs(plan->release_gap), plan->length);
-    default:
-        return fmax(pull > 0.0 ? pull : SMALL_LOAD * maximum_load,
-                    accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
-    }
-}
-
 static void offer(nt_plan_options *options, int term, nt_form form, double error, double cost)
 {
     const int i = options->count[term]++;
@@ -192,14 +77,11 @@ static double curved_laws(const nt_plan *plan, double beside)
 /* And in contact: force grows with the radius, so that the smallest and the largest on the map are the worst. */
 static double curved_contact(const nt_plan *plan, double more)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     if (!is_curved(plan))
         return 0.0;
-    if (quantity == NT_QUANTITY_FOLDS)
+    if (plan->demand.quantity == NT_QUANTITY_FOLDS)
         return share(nt_plan_curvature_shift(plan), plan->scale);
-    return more * SAMPLED *
-           fmax(contact_distance(plan, sharpest_at, full_at, -INFINITY, quantity),
-                contact_distance(plan, bluntest_at, full_at, -INFINITY, quantity));
+    return more * SAMPLED * nt_plan_curvature_distance(plan);
 }
 
 static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
@@ -225,14 +107,13 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
     if (quantity == NT_QUANTITY_FOLDS)
         table = share(plan->table.accuracy[NT_TIER_TABLE].fold_shift, plan->scale);
     else if (quantity != NT_QUANTITY_FORCE)
-        table = TABLED * contact_distance(plan, full_at, table_at, -INFINITY, quantity);
+        table = TABLED * nt_plan_contact_distance(plan, NT_FORM_TABLE);
     else
         table *= fmax(1.0, share(nt_maugis_pull_off_force(&plan->maugis), plan->scale));
     const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
     if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
         offer(options, NT_PLAN_CONTACT, NT_FORM_SHAPE,
-              SAMPLED * more * contact_distance(plan, full_at, hertz_at, -INFINITY, quantity) + plan->curvature_error,
-              COST_HERTZ);
+              SAMPLED * more * nt_plan_contact_distance(plan, NT_FORM_PARABOLOID) + plan->curvature_error, COST_HERTZ);
     offer(options, NT_PLAN_CONTACT, NT_FORM_TABLE, more * table + ROUNDING + plan->curvature_error, COST_TABLE);
     offer(options, NT_PLAN_CONTACT, NT_FORM_POLISHED, more * 2.0 * ROUNDING + plan->curvature_error, COST_POLISHED);
     offer(options, NT_PLAN_CONTACT, NT_FORM_EXACT, more * ROUNDING + plan->curvature_error, COST_EXACT);
@@ -282,10 +163,7 @@ static double cost_of_shape(nt_shape_kind kind)
 /* A form other than the fullest of a contact without adhesion, which has no folds. */
 static void offer_simpler(const nt_plan *plan, nt_plan_options *options, nt_form form, double more)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    contact_law *const law = form == NT_FORM_SERIES ? series_at : hertz_at;
-    const double error =
-        quantity == NT_QUANTITY_FOLDS ? 0.0 : contact_distance(plan, full_at, law, -INFINITY, quantity);
+    const double error = plan->demand.quantity == NT_QUANTITY_FOLDS ? 0.0 : nt_plan_contact_distance(plan, form);
     offer(options, NT_PLAN_CONTACT, form, more * SAMPLED * error + rounding(more),
           form == NT_FORM_SERIES ? COST_SERIES : COST_HERTZ);
 }
@@ -334,10 +212,10 @@ static double form_distance(const nt_plan *plan, int term, nt_form form, double 
         return 0.0;
     double largest = 0.0;
     for (double gap = fmax(nearest, 1e-13); gap < 1e-1; gap *= 1.1)
-        largest = fmax(largest, fabs(pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
-                                     pick(nt_plan_law_eval(plan, term, full, gap), quantity)));
-    const double held = fabs(pick(nt_plan_law_eval(plan, term, form, nearest), quantity) -
-                             pick(nt_plan_law_eval(plan, term, full, nearest), quantity));
+        largest = fmax(largest, fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
+                                     nt_plan_pick(nt_plan_law_eval(plan, term, full, gap), quantity)));
+    const double held = fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, nearest), quantity) -
+                             nt_plan_pick(nt_plan_law_eval(plan, term, full, nearest), quantity));
     return SAMPLED * fmax(largest, held);
 }
 
@@ -368,14 +246,14 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     const double nearest = fmax(scene->range.minimum_gap, 0.0);
     double beside = 0.0;
     *options = none;
-    plan->scale = scale_of(plan, scene->range.maximum_load);
+    plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
     for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) {
         plan->terms[term].force = nt_plan_law_limit(plan, term, nearest, NT_QUANTITY_FORCE);
         beside += nt_plan_law_limit(plan, term, nearest, quantity);
         offer_law(plan, term, nearest, options);
     }
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
-        rivals_of(plan);
+        nt_plan_rivals_of(plan);
     offer_contact(plan, scene, options, beside);
     for (int i = 0; plan->surface && i < options->count[NT_PLAN_CONTACT]; ++i)
         options->option[NT_PLAN_CONTACT][i].cost +=

@@ -54,6 +54,18 @@ nt_status nt_plan_facts(nt_plan *plan);
 /* pull_off.c: all of the above, with the w of a measured pull-off force where one is given. */
 nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 
+/* distance.c: the quantity of a demand. */
+double nt_plan_pick(nt_law_value value, nt_quantity quantity);
+/* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
+double nt_plan_scale_of(const nt_plan *plan, double maximum_load);
+/* The largest difference, over max(|truth|, S), of a form of contact (paraboloid: Hertz) to the fullest one; of the
+ * tip's own radius to the radii of the surface. */
+double nt_plan_contact_distance(const nt_plan *plan, nt_form form);
+double nt_plan_curvature_distance(const nt_plan *plan);
+/* What Hertz, DMT and JKR would err by, on what load control can hold, away from its fold; Hertz and DMT know contact
+ * only from first touch on. */
+void nt_plan_rivals_of(nt_plan *plan);
+
 /* options.c: the forms of every term with error and cost. */
 enum { NT_OPTIONS_MAX = 6 };
 typedef struct nt_plan_options {

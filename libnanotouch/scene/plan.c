@@ -3,36 +3,8 @@
 #include "nanotouch/plan.h"
 
 #include <math.h>
-#include <stddef.h>
 
 #include "scene/parts.h"
-
-#define FIELD(member, unit, minimum, maximum, doc)                                                                     \
-    {"demand." #member, unit, minimum, maximum, (unsigned)offsetof(nt_demand, member), doc}
-
-static const nt_field demand_fields[] = {
-    FIELD(relative_accuracy, "", 0.0, 0.5, "largest error of the quantity over max(|it|, its scale); 0: exact"),
-    FIELD(force_floor, "N", 0.0, 1.0, "forces below this cannot be felt"),
-    FIELD(quantity, "force|stiffness|radius|folds", 0.0, 3.0, "what has to be that accurate"),
-    FIELD(budget, "", 0.0, 1e9, "what one evaluation may cost, in Hertz evaluations; 0: anything"),
-};
-
-nt_demand nt_demand_defaults(void)
-{
-    nt_demand demand = {.relative_accuracy = 0.01};
-    return demand;
-}
-
-const nt_field *nt_demand_fields(int *count)
-{
-    *count = (int)(sizeof demand_fields / sizeof demand_fields[0]);
-    return demand_fields;
-}
-
-nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem)
-{
-    return nt_field_check(demand_fields, (int)(sizeof demand_fields / sizeof demand_fields[0]), demand, problem);
-}
 
 const char *nt_form_name(nt_form form)
 {

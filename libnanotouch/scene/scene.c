@@ -3,11 +3,9 @@
 #include "nanotouch/scene.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
-#define FIELD(path, unit, minimum, maximum, doc)                                                                       \
-    {#path, unit, minimum, maximum, (unsigned)offsetof(nt_scene, path), doc}
+#define FIELD(path, ...) NT_FIELD(nt_scene, path, __VA_ARGS__)
 #define CHOICE(path, choices, last, doc) FIELD(path, choices, 0.0, last, doc)
 #define NO_YES "no|yes"
 

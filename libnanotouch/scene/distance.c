@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * How far apart two laws of contact are over a scene's range, and the scale S that a plan's errors are measured by. */
+#include <math.h>
+
+#include "scene/parts.h"
+
+double nt_plan_pick(nt_law_value value, nt_quantity quantity)
+{
+    return quantity == NT_QUANTITY_STIFFNESS ? value.k : quantity == NT_QUANTITY_RADIUS ? value.a : value.F;
+}
+
+/* What pulls on small forces: everything on, or contact alone, which repulsion may hide; 0 where nothing does. */
+static double pull_of(const nt_plan *plan)
+{
+    double alone = 0.0;
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
+        alone = nt_maugis_pull_off_force(&plan->maugis);
+    else if (nt_plan_contact_form(plan) == NT_FORM_JKR)
+        alone = nt_jkr_shape_pull_off_force(&plan->jkr);
+    return fmax(plan->contact_pull, alone);
+}
+
+/* What small forces are measured by where nothing pulls. */
+#define SMALL_LOAD 1e-3 /* of the largest load */
+
+double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
+{
+    const double pull = pull_of(plan);
+    const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
+    const nt_maugis *m = &plan->maugis;
+    const double accuracy = plan->demand.relative_accuracy;
+    switch ((int)plan->demand.quantity) {
+    case NT_QUANTITY_STIFFNESS:
+        return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
+    case NT_QUANTITY_RADIUS:
+        return maugis ? m->folds.zero_load_radius * m->radius_scale
+                      : plan->contact.radius * plan->validity.radius_ratio;
+    case NT_QUANTITY_FOLDS:
+        return fmax(fabs(plan->release_gap), plan->length);
+    default:
+        return fmax(pull > 0.0 ? pull : SMALL_LOAD * maximum_load,
+                    accuracy > 0.0 ? plan->demand.force_floor / accuracy : 0.0);
+    }
+}
+
+typedef nt_law_value contact_law(const nt_plan *plan, double indentation);
+
+static nt_law_value full_at(const nt_plan *plan, double indentation)
+{
+    const nt_form form = nt_plan_contact_form(plan);
+    return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
+}
+
+static nt_law_value hertz_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_contact_eval(plan, NT_FORM_PARABOLOID, indentation);
+}
+
+static nt_law_value series_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_contact_eval(plan, NT_FORM_SERIES, indentation);
+}
+
+static nt_law_value table_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_contact_eval(plan, NT_FORM_TABLE, indentation);
+}
+
+static nt_law_value dmt_at(const nt_plan *plan, double indentation)
+{
+    return nt_dmt_eval(&plan->contact, indentation);
+}
+
+static nt_law_value jkr_at(const nt_plan *plan, double indentation)
+{
+    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
+    (void)nt_jkr_eval(&plan->contact, indentation, NT_BRANCH_STABLE, &value);
+    return value;
+}
+
+static nt_law_value sharpest_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->minimum, indentation).law;
+}
+
+static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
+{
+    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum, indentation).law;
+}
+
+/* The largest difference between two laws of contact over max(|truth|, scale), over all indentations from the release
+ * gap to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. S is
+ * that of the demanded quantity; of a force that is not the one demanded, the pull-off force. */
+static double distance(const nt_plan *plan, contact_law *truth_at, contact_law *other, double lowest,
+                       nt_quantity quantity)
+{
+    enum { SAMPLES = 96 };
+    const double fold = -plan->release_gap;
+    const double deepest = plan->largest_indentation;
+    const double scale = quantity == (nt_quantity)(int)plan->demand.quantity ? plan->scale : pull_of(plan);
+    double largest = 0.0;
+    for (int i = 1; i <= SAMPLES; ++i) {
+        const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
+        if (d < lowest)
+            continue;
+        const double truth = nt_plan_pick(truth_at(plan, d), quantity);
+        largest = fmax(largest, fabs(nt_plan_pick(other(plan, d), quantity) - truth) / fmax(fabs(truth), scale));
+    }
+    return largest;
+}
+
+double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
+{
+    contact_law *const law = form == NT_FORM_SERIES ? series_at : form == NT_FORM_TABLE ? table_at : hertz_at;
+    return distance(plan, full_at, law, -INFINITY, (nt_quantity)(int)plan->demand.quantity);
+}
+
+double nt_plan_curvature_distance(const nt_plan *plan)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    return fmax(distance(plan, sharpest_at, full_at, -INFINITY, quantity),
+                distance(plan, bluntest_at, full_at, -INFINITY, quantity));
+}
+
+void nt_plan_rivals_of(nt_plan *plan)
+{
+    const double last = 0.9 * plan->maugis.folds.pull_off_indentation * plan->maugis.indentation_scale;
+    plan->rivals.hertz = distance(plan, full_at, hertz_at, 0.0, NT_QUANTITY_FORCE);
+    plan->rivals.dmt = distance(plan, full_at, dmt_at, 0.0, NT_QUANTITY_FORCE);
+    plan->rivals.jkr = distance(plan, full_at, jkr_at, last, NT_QUANTITY_FORCE);
+}
