@@ -34,9 +34,10 @@ static const double law_costs[NT_PLAN_TERMS][NT_FORM_LOCAL + 1] = {
     [NT_PLAN_STERIC] = {[NT_FORM_ON] = 10.0},
 };
 
-#define SAMPLED 1.05   /* a largest value that was sampled on a smooth curve may be this much short of the true one */
-#define TABLED 2.0     /* the same for the error of a table, which oscillates within its cells */
-#define ROUNDING 1e-12 /* polished and exact tiers, away from folds (docs/contact.md) */
+#define SAMPLED 1.05    /* a largest value that was sampled on a smooth curve may be this much short of the true one */
+#define TABLED 2.0      /* the same for the error of a table, which oscillates within its cells */
+#define ROUNDING 1e-12  /* polished and exact tiers, away from folds (docs/contact.md) */
+#define LAST_BITS 1e-15 /* of each term beside contact: large ones can cancel to a small sum */
 
 static void offer(nt_plan_options *options, int term, nt_form form, double error, double cost)
 {
@@ -255,7 +256,11 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         nt_plan_rivals_of(plan);
     offer_contact(plan, scene, options, beside);
-    for (int i = 0; plan->surface && i < options->count[NT_PLAN_CONTACT]; ++i)
-        options->option[NT_PLAN_CONTACT][i].cost +=
-            nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_PLACE : COST_HEIGHT;
+    for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) { /* whatever its form, contact bears what all share */
+        options->option[NT_PLAN_CONTACT][i].error +=
+            LAST_BITS * share(nt_plan_largest_ratio(plan) * beside, plan->scale);
+        if (plan->surface)
+            options->option[NT_PLAN_CONTACT][i].cost +=
+                nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_PLACE : COST_HEIGHT;
+    }
 }

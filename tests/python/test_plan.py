@@ -166,6 +166,14 @@ def test_planned_forces_keep_the_bound(seed: int) -> None:
         assert outcome.folds_hold, (index, repr(outcome.plan))
 
 
+def test_large_terms_that_cancel_lose_bits() -> None:
+    """A cell without adhesion: 77, 113 and 174 nN come to 1 pN, which rounding moves by 9e-12 of the scale of 2 pN."""
+    rng = np.random.default_rng(5033)
+    outcome = random_scenes.compare(random_scenes.near_preset(rng), 1e-6)
+    assert not isinstance(outcome, Error)
+    assert 1e-12 < outcome.error <= outcome.plan.bound < 1e-9
+
+
 @pytest.mark.parametrize("name", PRESETS)
 @pytest.mark.parametrize("atol", [1e-12, 1e-10, 1e-8, 1e-6])
 def test_what_cannot_be_felt_is_left_out(name: str, atol: float) -> None:
