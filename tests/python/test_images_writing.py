@@ -81,6 +81,14 @@ def test_gwy_in_gwyfile_and_surfacetopography(tmp_path: Path) -> None:
         np.testing.assert_array_equal(shown[measured], synthetic.asymmetric()[measured])
 
 
+def test_a_picture_of_no_known_place_is_at_the_origin(tmp_path: Path) -> None:
+    gwyfile, h5py = pytest.importorskip("gwyfile"), pytest.importorskip("h5py")
+    field = gwyfile.load(str(images.write(tmp_path / "out.gwy", topography())))["/0/data"]
+    assert (field.xoff, field.yoff) == (0.0, 0.0)
+    with h5py.File(images.write(tmp_path / "out.h5", topography())) as file:
+        np.testing.assert_array_equal(file.attrs["offset"], 0.0)
+
+
 def test_hdf5_in_h5py_and_surfacetopography(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     path = images.write(tmp_path / "out.h5", topography(holes=1), title="Height", offset=OFFSET)
@@ -120,6 +128,8 @@ def test_a_damaged_hdf5_image_is_refused(tmp_path: Path) -> None:
 def test_refusals(tmp_path: Path) -> None:
     with pytest.raises(InvalidValue, match=r"written as \.gwy, \.h5, \.hdf5"):
         images.write(tmp_path / "out.spm", topography())
+    with pytest.raises(InvalidValue, match="offset"):
+        images.write(tmp_path / "out.h5", topography(), offset=(0.0, 1.0, 2.0))  # type: ignore[arg-type]
     with pytest.raises(InvalidValue, match="offset"):
         images.write(tmp_path / "out.h5", topography(), offset=(0.0, float("nan")))
     with pytest.raises(InvalidValue, match="title"):

@@ -66,20 +66,21 @@ def read(file: Path, channel: str | None) -> Plane:
         return Plane(title, values, _text(heights, "units") or None, (dy, dx), NAME, mask=mask)
 
 
-def write(file: Path, topography: Topography, title: str, offset: tuple[float, float]) -> None:
-    """Write `topography` to `file`."""
+def write(file: Path, topography: Topography, title: str, offset: tuple[float, float] | None) -> None:
+    """Write `topography` to `file`; without `offset` its lower left corner is the origin."""
     h5py = require("h5py", "images")
     (ny, nx), (dy, dx) = topography.shape, topography.pixel_size
+    corner = (0.0, 0.0) if offset is None else offset
     with h5py.File(file, "w") as opened:
         facts = {"format": FORMAT, "title": title, "name": topography.name, "source": topography.source}
         for key, text in facts.items():
             _set_text(opened, key, text)
-        opened.attrs.update({"version": VERSION, "pixel_size": topography.pixel_size, "offset": offset})
+        opened.attrs.update({"version": VERSION, "pixel_size": topography.pixel_size, "offset": corner})
         heights = opened.create_dataset("height", data=topography.heights[::-1], **_STORAGE)
         _set_text(heights, "units", "m")
         _set_text(heights, "long_name", title)
         opened.create_dataset("mask", data=topography.mask[::-1].astype(np.uint8), **_STORAGE)
-        axes = {"y": offset[0] + (np.arange(ny)[::-1] + 0.5) * dy, "x": offset[1] + (np.arange(nx) + 0.5) * dx}
+        axes = {"y": corner[0] + (np.arange(ny)[::-1] + 0.5) * dy, "x": corner[1] + (np.arange(nx) + 0.5) * dx}
         for number, (axis, centres) in enumerate(axes.items()):
             scale = opened.create_dataset(axis, data=centres)
             _set_text(scale, "units", "m")

@@ -14,7 +14,8 @@ from ..errors import Error, InvalidValue, require
 from . import hdf5
 from .topography import Topography
 
-Writer = Callable[[Path, Topography, str, tuple[float, float]], None]
+Offset = tuple[float, float] | None
+Writer = Callable[[Path, Topography, str, Offset], None]
 
 
 def write(
@@ -22,7 +23,7 @@ def write(
     topography: Topography,
     *,
     title: str | None = None,
-    offset: tuple[float, float] = (0.0, 0.0),
+    offset: tuple[float, float] | None = None,
 ) -> Path:
     """Write an image as ``.gwy`` (Gwyddion; SurfaceTopography reads it too) or ``.h5`` (:mod:`.hdf5`).
 
@@ -37,8 +38,9 @@ def write(
         Heights (ny, nx) [m].
     title : str, optional
         Of the channel; without it the topography's channel, or its name.
-    offset : (float, float)
-        ``(y, x)`` of the picture's lower left corner in the scanner's range, y upwards [m].
+    offset : (float, float), optional
+        ``(y, x)`` of the picture's lower left corner in the scanner's range, y upwards [m]. Without it the picture
+        stands at the origin of whatever frame the format has.
 
     Returns
     -------
@@ -56,15 +58,14 @@ def write(
     writer = _WRITERS.get(file.suffix.lower())
     if writer is None:
         raise InvalidValue(f"{file}: images are written as {', '.join(_WRITERS)}")
-    place = tuple(float(value) for value in offset)
-    if len(place) != 2 or not np.isfinite(place).all():
+    if offset is not None and not (len(offset) == 2 and np.isfinite(offset).all()):
         raise InvalidValue(f"offset: {offset!r} m, expected two finite lengths (y, x)")
     shown = title or topography.channel or topography.name or "Height"
     if "\0" in shown:
         raise InvalidValue("title: must not contain a null character")
     part = file.with_name(f".{file.name}.part-{os.getpid()}")
     try:
-        writer(part, topography, shown, (place[0], place[1]))
+        writer(part, topography, shown, offset)
         part.replace(file)
     except OSError as error:
         raise Error(f"cannot write {file}: {error.strerror or error}") from error
@@ -73,11 +74,12 @@ def write(
     return file
 
 
-def _write_gwy(file: Path, topography: Topography, title: str, offset: tuple[float, float]) -> None:
+def _write_gwy(file: Path, topography: Topography, title: str, offset: Offset) -> None:
     """Gwyddion's first row is the top and its y grows downwards, so the corner it wants is (-(y + Ly), x)."""
     gwyfile = require("gwyfile", "images").objects
     height, width = topography.size
-    frame = {"xreal": width, "yreal": height, "xoff": offset[1], "yoff": -(offset[0] + height), "si_unit_xy": "m"}
+    top, left = (-(offset[0] + height), offset[1]) if offset is not None else (0.0, 0.0)
+    frame = {"xreal": width, "yreal": height, "xoff": left, "yoff": top, "si_unit_xy": "m"}
     heights = np.ascontiguousarray(topography.heights[::-1])
     container = gwyfile.GwyContainer()
     container["/0/data"] = gwyfile.GwyDataField(heights, si_unit_z="m", **frame)
