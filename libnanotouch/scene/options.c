@@ -240,6 +240,26 @@ static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_opt
     offer(options, term, full, 0.0, law_costs[term][full]);
 }
 
+/* What the sum loses where large terms cancel, over max(|X|, S). Contact adds no less than -S to B, what the others
+ * come to, so that |X| >= B/2 where B > 2 S. */
+static double lost_bits(const nt_plan *plan, double nearest, double beside)
+{
+    const double ratio = nt_plan_largest_ratio(plan);
+    double worst = 0.0;
+    if (plan->demand.quantity != NT_QUANTITY_FORCE)
+        return LAST_BITS * share(ratio * beside, plan->scale);
+    for (double gap = nearest; gap < 1e-1; gap = fmax(1.1 * gap, 1e-13)) {
+        double all = 0.0, sum = 0.0;
+        for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) {
+            const double F = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap).F;
+            all += fabs(F);
+            sum += F;
+        }
+        worst = fmax(worst, fmin(share(ratio * all, plan->scale), sum > 0.0 ? 2.0 * all / sum : (double)INFINITY));
+    }
+    return LAST_BITS * worst;
+}
+
 void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options)
 {
     static const nt_plan_options none = {0};
@@ -256,9 +276,9 @@ void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *o
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         nt_plan_rivals_of(plan);
     offer_contact(plan, scene, options, beside);
+    const double lost = lost_bits(plan, nearest, beside);
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) { /* whatever its form, contact bears what all share */
-        options->option[NT_PLAN_CONTACT][i].error +=
-            LAST_BITS * share(nt_plan_largest_ratio(plan) * beside, plan->scale);
+        options->option[NT_PLAN_CONTACT][i].error += lost;
         if (plan->surface)
             options->option[NT_PLAN_CONTACT][i].cost +=
                 nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_PLACE : COST_HEIGHT;
