@@ -12,7 +12,7 @@ enum { POINTS = 256, REPETITIONS = 7 };
 
 static double gaps[POINTS]; /* from 2 nm apart to 1 nm deep */
 static nt_law_value values[POINTS];
-static nt_plan plan, full;
+static nt_plan plan;
 static const nt_interaction_state held = {1, 0.0, 0.0};
 
 static double now(void)
@@ -22,15 +22,15 @@ static double now(void)
 
 /* Seconds per evaluation over all gaps: the least of several repetitions. */
 #define MEASURE(expression)                                                                                            \
-    ({                                                                                                                 \
+    __extension__({                                                                                                    \
         double best = INFINITY;                                                                                        \
         long rounds = 16;                                                                                              \
         for (int repetition = 0; repetition < REPETITIONS; ++repetition) {                                             \
             const double start = now();                                                                                \
             for (long r = 0; r < rounds; ++r) {                                                                        \
-                for (int i = 0; i < POINTS; ++i) {                                                                     \
-                    const double gap = gaps[i];                                                                        \
-                    values[i] = (expression);                                                                          \
+                for (int point = 0; point < POINTS; ++point) {                                                         \
+                    const double gap = gaps[point];                                                                    \
+                    values[point] = (expression);                                                                      \
                 }                                                                                                      \
                 __asm__ volatile("" ::"r"(values), "r"(gaps) : "memory");                                              \
             }                                                                                                          \
@@ -111,6 +111,13 @@ static void report_laws(void)
     }
 }
 
+static nt_law_value on_surface(double gap)
+{
+    const nt_pose pose = {1e3 * gap + 3e-7, 5e-7, gap};
+    const nt_interaction_value v = nt_interaction_eval(&plan, &held, &pose);
+    return (nt_law_value){v.U, v.Fz, v.k, v.Fx};
+}
+
 /* Bank, radius map and surface of a wavy map. */
 static nt_status report_local(const nt_scene *scene)
 {
@@ -146,11 +153,7 @@ static nt_status report_local(const nt_scene *scene)
     report("local, without adhesion",
            MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
     plan.source = source;
-    report("whole evaluation on a surface", MEASURE(({
-               const nt_pose pose = {1e3 * gap + 3e-7, 5e-7, gap};
-               const nt_interaction_value v = nt_interaction_eval(&plan, &held, &pose);
-               (nt_law_value){v.U, v.Fz, v.k, v.Fx};
-           })));
+    report("whole evaluation on a surface", MEASURE(on_surface(gap)));
     return NT_OK;
 }
 
