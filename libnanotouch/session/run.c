@@ -68,8 +68,27 @@ static void lose_device(nt_session *session, nt_sample *sample)
     *sample = lost;
 }
 
+/* The button is held, or has been pressed since the last tick: no press is lost to a quick release. */
+enum { STOP_HELD = 1, STOP_UNSEEN = 2 };
+
+static uint32_t take_stop(nt_session *session)
+{
+    if (!atomic_load_explicit(&session->stop, memory_order_acquire))
+        return 0u;
+    atomic_fetch_and(&session->stop, ~(unsigned)STOP_UNSEEN);
+    return NT_SAMPLE_EMERGENCY_STOP;
+}
+
+void nt_session_emergency_stop(nt_session *session, int pressed)
+{
+    if (pressed)
+        atomic_fetch_or(&session->stop, STOP_HELD | STOP_UNSEEN);
+    else
+        atomic_fetch_and(&session->stop, ~(unsigned)STOP_HELD);
+}
+
 /* A device that fails is the supervisor's matter; a simulation that fails is an error. */
-static nt_status read_sample(nt_session *session, nt_sample *sample)
+static nt_status read_device(nt_session *session, nt_sample *sample)
 {
     const nt_status status = nt_hal_read(&session->hal, sample);
     if (status == NT_E_DEVICE || (status == NT_OK && session->device_lost)) {
@@ -78,6 +97,14 @@ static nt_status read_sample(nt_session *session, nt_sample *sample)
     }
     if (status == NT_OK)
         nt_tare_apply(&session->tare, &session->touch.rig.probe, sample);
+    return status;
+}
+
+static nt_status read_sample(nt_session *session, nt_sample *sample)
+{
+    const nt_status status = read_device(session, sample);
+    if (status == NT_OK)
+        sample->flags |= take_stop(session);
     return status;
 }
 
@@ -156,14 +183,6 @@ nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling)
 void nt_session_clutch(nt_session *session, int open)
 {
     nt_touch_clutch(&session->touch_state, open);
-}
-
-void nt_session_emergency_stop(nt_session *session, int pressed)
-{
-    if (pressed)
-        session->sim.flags |= NT_SAMPLE_EMERGENCY_STOP;
-    else
-        session->sim.flags &= ~(uint32_t)NT_SAMPLE_EMERGENCY_STOP;
 }
 
 nt_status nt_session_inject(nt_session *session, const nt_fault *fault)

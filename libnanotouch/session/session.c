@@ -130,6 +130,7 @@ nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, n
     nt_session *made = calloc(1, sizeof *made);
     if (!made)
         return NT_E_NO_MEMORY;
+    atomic_init(&made->stop, 0u);
     made->records = calloc(capacity, sizeof *made->records);
     if (made->records)
         touch_pages(made->records, capacity * sizeof *made->records);

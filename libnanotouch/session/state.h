@@ -3,6 +3,8 @@
 #ifndef NANOTOUCH_SESSION_STATE_H
 #define NANOTOUCH_SESSION_STATE_H
 
+#include <stdatomic.h>
+
 #include "core/ring.h"
 #include "nanotouch/session.h"
 
@@ -17,6 +19,7 @@ struct nt_session {
     nt_tare tare;
     uint64_t first_tick; /* of the rig, after preflight */
     int device_lost;
+    atomic_uint stop; /* emergency stop: STOP_HELD, STOP_UNSEEN (run.c) */
     nt_sim sim;
     nt_hal hal;
     nt_mailbox mailbox;

@@ -8,14 +8,16 @@ import json
 import math
 import pickle
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
+from itertools import count, pairwise
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import Input, Recording, Rig, Scene, Session, Settings, Surface, record, surface
+from nanotouch._core import Signals
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.session import Columns, settings_for_path
 
@@ -237,6 +239,38 @@ def test_arming_while_pressed_latches_again() -> None:
 
 
 # ---- threads ----
+
+
+def test_emergency_stop_does_not_wait_for_advance() -> None:
+    """The law of control holds a long advance at tick 100 until another thread has pressed: only the next tick is
+    RUN."""
+    running, stopped, calls = Event(), Event(), count(1)
+
+    def law(signals: Signals) -> tuple[float, float]:
+        if next(calls) == 100:
+            running.set()
+            assert stopped.wait(20.0), "the stop waits for advance"
+        return 0.0, signals.stage_position
+
+    session = Session(control=law, minimum_margin=0.0, preflight=False)
+    with ThreadPoolExecutor(1) as pool:
+        advancing = pool.submit(session.core.advance, 60_000)
+        assert running.wait(20.0)
+        session.emergency_stop()
+        stopped.set()
+        advancing.result()
+    state = session.core.read(60_000)["state"]
+    assert (state[:100] == RUN).all()
+    assert (state[100:] == LATCHED).all()
+
+
+def test_a_press_is_not_lost_to_a_quick_release() -> None:
+    session = Session()
+    session.emergency_stop()
+    session.emergency_stop(False)
+    assert (session.advance(0.1)["state"] == LATCHED).all()
+    session.arm(confirmed=True)
+    assert (session.advance(0.1)["state"] == RUN).all()
 
 
 def test_sessions_in_threads_do_not_see_each_other() -> None:

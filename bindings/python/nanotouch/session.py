@@ -359,7 +359,7 @@ class Session:
         return "dynamic" if self.core.is_dynamic else "quasi-static"
 
     def emergency_stop(self, pressed: bool = True) -> None:
-        """Press or release the simulated emergency stop."""
+        """Press or release the simulated emergency stop; from any thread, also during :meth:`advance`."""
         self.core.emergency_stop(pressed)
 
 

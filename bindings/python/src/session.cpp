@@ -203,10 +203,8 @@ void bind_session(py::module_ &module)
              })
         .def_property_readonly("is_dynamic",
                                [](const Session &self) { return nt_session_is_dynamic(self.handle) != 0; })
-        .def("emergency_stop",
-             [](Session &self, bool pressed) {
-                 alone(self, [=](nt_session *handle) { nt_session_emergency_stop(handle, pressed); });
-             })
+        .def("emergency_stop", // never waits for another call
+             [](Session &self, bool pressed) { nt_session_emergency_stop(self.handle, pressed); })
         .def_property_readonly("plan", py::cpp_function(
                                            [](const Session &self) {
                                                auto copy = std::make_unique<nt_plan>();

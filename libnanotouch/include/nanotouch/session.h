@@ -95,8 +95,9 @@ NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
 NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode);
 NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling);
 NT_API void nt_session_clutch(nt_session *session, int open);
-/* Presses or releases the simulated emergency stop. */
-NT_API void nt_session_emergency_stop(nt_session *session, int pressed);
+/* Presses or releases the simulated emergency stop. Any thread may call it, a signal handler too, while another
+ * advances; it never waits. Each press shows in the next sample, even if the release comes before it. */
+NT_API NT_REALTIME void nt_session_emergency_stop(nt_session *session, int pressed);
 /* Adds a fault of the simulated rig; its start counts from the session's first tick (faults.h). */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
 /* Is the cantilever computed as dynamic (1) or quasi-static (0)? */
