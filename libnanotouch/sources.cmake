@@ -58,6 +58,7 @@ set(nanotouch_sources_contact
 set(nanotouch_sources_surface
     surface/dilation.c
     surface/dots.c
+    surface/extremes.c
     surface/grating.c
     surface/height_field.c
     surface/radius_map.c)
@@ -112,7 +113,8 @@ set(nanotouch_sources_sim hal/sim/faults.c hal/sim/probe.c hal/sim/sim.c)
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
-set(nanotouch_sources_session session/arming.c session/run.c session/session.c)
+set(nanotouch_sources_session session/arming.c session/run.c session/session.c session/terrain.c
+    session/terrain_reach.c)
 set(nanotouch_sources_fit
     fit/baseline.cpp
     fit/batch.cpp

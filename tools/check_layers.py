@@ -36,6 +36,7 @@ HEADERS = {
     **dict.fromkeys(["guarantee", "margins", "passivity", "preflight", "scaling", "servo"], "control"),
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     **dict.fromkeys(["plan", "interaction"], "scene"),
+    "terrain": "session",
     "sim": "hal/sim",
     "faults": "hal/sim",
     "hal_linux": "hal/linux",

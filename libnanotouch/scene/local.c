@@ -24,6 +24,30 @@ double nt_plan_curvature_shift(const nt_plan *plan)
     return fmax(fabs(sharpest - plan->release_gap), fabs(bluntest - plan->release_gap));
 }
 
+int nt_plan_is_curved(const nt_plan *plan)
+{
+    const double R = plan->contact.radius;
+    return plan->radii && nt_plan_has_local_form(plan) && (plan->radii->minimum != R || plan->radii->maximum != R);
+}
+
+int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options)
+{
+    if (!nt_plan_is_curved(plan) || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+        return 0;
+    const double R = plan->contact.radius, accuracy = plan->demand.relative_accuracy;
+    const double least = plan->radii->minimum / R, largest = plan->radii->maximum / R;
+    /* reduced by (pi^2 w^2 R/K^2)^(1/3) of the sharpest place, where the same load goes deeper */
+    const double deepest = plan->largest_indentation / plan->maugis.indentation_scale / cbrt(least * least);
+    const double first = fmin(fmax(floor(log10(plan->lambda * cbrt(least) / 1.5)), -15.0), 14.0);
+    const double last = fmin(fmax(ceil(log10(plan->lambda * cbrt(largest) * 1.5)), first + 1.0), 15.0);
+    *options = nt_maugis_bank_defaults();
+    options->lambda_min = pow(10.0, first);
+    options->lambda_max = pow(10.0, last);
+    options->largest_indentation = pow(10.0, fmin(fmax(ceil(log10(deepest)), 2.0), 5.0));
+    options->panels_per_octave = options->cells_per_octave = accuracy > 0.0 && accuracy < 1e-4 ? 8 : 4;
+    return 1;
+}
+
 /* Over the lambdas of the surface, lambda ~ R^(1/3). */
 static nt_bank_error bank_error(const nt_plan *plan)
 {

@@ -58,18 +58,11 @@ static double share(double error, double scale)
     return error == 0.0 ? 0.0 : error / scale;
 }
 
-/* Over a surface whose curvature the contact can follow. */
-static int is_curved(const nt_plan *plan)
-{
-    const double R = plan->contact.radius;
-    return plan->radii && nt_plan_has_local_form(plan) && (plan->radii->minimum != R || plan->radii->maximum != R);
-}
-
 /* What leaving out the curvature of the surface costs beside contact. */
 static double curved_laws(const nt_plan *plan, double beside)
 {
     const double R = plan->contact.radius;
-    if (!is_curved(plan))
+    if (!nt_plan_is_curved(plan))
         return 0.0;
     const double ratio = fmax(fabs(plan->radii->minimum / R - 1.0), fabs(plan->radii->maximum / R - 1.0));
     return share(ratio * beside, plan->scale);
@@ -78,7 +71,7 @@ static double curved_laws(const nt_plan *plan, double beside)
 /* And in contact: force grows with the radius, so that the smallest and the largest on the map are the worst. */
 static double curved_contact(const nt_plan *plan, double more)
 {
-    if (!is_curved(plan))
+    if (!nt_plan_is_curved(plan))
         return 0.0;
     if (plan->demand.quantity == NT_QUANTITY_FOLDS)
         return share(nt_plan_curvature_shift(plan), plan->scale);
@@ -87,7 +80,7 @@ static double curved_contact(const nt_plan *plan, double more)
 
 static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
 {
-    if (!is_curved(plan))
+    if (!nt_plan_is_curved(plan))
         return;
     if (plan->source == NT_ADHESION_NONE) {
         offer(options, NT_PLAN_CONTACT, NT_FORM_LOCAL, rounding(more), COST_LOCAL_HERTZ);
@@ -134,7 +127,7 @@ static double beside_at(const nt_plan *plan, double gap)
 static double opposing(const nt_plan *plan)
 {
     double reach = fmax(plan->capture_gap, plan->release_gap), pull = fmax(-beside_at(plan, 0.0), 0.0);
-    if (is_curved(plan))
+    if (nt_plan_is_curved(plan))
         reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum));
     for (double gap = reach; gap > 1e-13; gap *= 0.9)
         pull = fmax(pull, -SAMPLED * beside_at(plan, gap));
@@ -190,7 +183,7 @@ static void offer_contact(nt_plan *plan, const nt_scene *scene, nt_plan_options 
         plan->curvature_error = curved_laws(plan, beside);
         offer(options, NT_PLAN_CONTACT, NT_FORM_OFF, plan->curvature_error, 0.0);
         const int exact = plan->source != NT_ADHESION_NONE && !plan->bank;
-        if (is_curved(plan)) /* for the radii that the other terms follow */
+        if (nt_plan_is_curved(plan)) /* for the radii that the other terms follow */
             offer(options, NT_PLAN_CONTACT, exact ? NT_FORM_LOCAL_EXACT : NT_FORM_LOCAL, ROUNDING, 0.0);
         return;
     }

@@ -25,6 +25,8 @@ double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, double radiu
 
 /* local.c: where the contact lets go under grips, of the form that was chosen, at an effective radius [m]. */
 double nt_plan_release_gap(const nt_plan *plan, double radius);
+/* Whether the surface is curved where the contact can follow it. */
+int nt_plan_is_curved(const nt_plan *plan);
 /* The largest effective radius of the surface over the tip's own, at least 1. */
 double nt_plan_largest_ratio(const nt_plan *plan);
 /* How far the radii of the surface move the release gap from that of the tip's own [m]. */

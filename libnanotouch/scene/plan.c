@@ -54,31 +54,39 @@ static void finish(nt_plan *plan, double maximum_load)
     }
 }
 
-nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     static const nt_plan empty = {.surface = NULL};
     const nt_demand demand = inputs->demand ? *inputs->demand : nt_demand_defaults();
-    nt_status status = check(inputs, &demand, problem);
+    const nt_status status = check(inputs, &demand, problem);
     if (status != NT_OK)
         return status;
     *plan = empty;
     plan->demand = demand;
     plan->surface = inputs->surface;
     plan->radii = inputs->radii;
-    plan->bank = inputs->bank;
     if (inputs->probe)
         plan->demand.force_floor = fmax(demand.force_floor, nt_probe_force_noise(inputs->probe));
-    status = nt_plan_adhere(plan, inputs->scene, problem);
-    if (status != NT_OK)
-        return status;
+    return nt_plan_adhere(plan, inputs->scene, problem);
+}
+
+nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
     nt_plan_options options;
+    plan->bank = inputs->bank;
     nt_plan_options_of(plan, inputs->scene, &options);
-    status = nt_plan_choose(plan, &options, problem);
+    const nt_status status = nt_plan_choose(plan, &options, problem);
     if (status != NT_OK)
         return status;
     finish(plan, inputs->scene->range.maximum_load);
     nt_plan_warn(plan, inputs->scene);
     return NT_OK;
+}
+
+nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
+    const nt_status status = nt_plan_begin(plan, inputs, problem);
+    return status == NT_OK ? nt_plan_decide(plan, inputs, problem) : status;
 }
 
 void nt_plan_copy(nt_plan *copy, const nt_plan *plan)

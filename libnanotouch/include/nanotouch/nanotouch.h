@@ -23,6 +23,7 @@
 #include "nanotouch/sim.h"
 #include "nanotouch/status.h"
 #include "nanotouch/surface.h"
+#include "nanotouch/terrain.h"
 #include "nanotouch/types.h"
 #include "nanotouch/version.h"
 

@@ -162,6 +162,16 @@ typedef struct nt_plan_inputs {
  * with "demand.relative_accuracy" and the best bound as its minimum, or "demand.budget" and the smallest cost. */
 NT_API nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
 
+/* The same in two steps, from the same inputs, for a bank that is made between them: nt_plan_begin finds the contact
+ * and does not read inputs->bank, nt_plan_decide chooses. Each fails as nt_plan_make. */
+NT_API nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
+NT_API nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
+/* Of a plan that was begun: 1 and the options of the bank that serves its contact at every radius of the surface, 0 if
+ * none could be of use (a flat, or adhesion that is none or has no range). The range of lambda is that of the
+ * radii, lambda ~ R^(1/3), and the indentation that of the largest load at the sharpest place, in decades with a
+ * factor of 1.5 to spare; twice as fine below a demand of 1e-4. */
+NT_API int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options);
+
 NT_API void nt_plan_copy(nt_plan *copy, const nt_plan *plan);
 
 /* Beyond this gap |F| is at most `force` >= 0 [N] on any history [m]; +inf if there is no such gap. */

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Makes a terrain: what is needed is checked first, then surface, radii, bank and plan follow from each other. The heap
+ * is used in make only. */
+#include "nanotouch/terrain.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct nt_terrain {
+    nt_plan plan; /* borrows what follows */
+    const nt_surface *surface;
+    const nt_radius_map *radii;
+    struct {
+        nt_surface surface;
+        nt_radius_map radii;
+        nt_maugis_bank bank;
+        double *coefficients, *ratios;
+        nt_maugis_bank_memory tables;
+    } own; /* what was made here */
+};
+
+nt_terrain_setup nt_terrain_defaults(void)
+{
+    return (nt_terrain_setup){.scene = nt_scene_defaults(), .demand = nt_demand_defaults()};
+}
+
+static nt_status refuse(nt_problem *problem, nt_problem found, nt_status status)
+{
+    if (problem)
+        *problem = found;
+    return status;
+}
+
+/* Were these radii made of this surface, for this tip? */
+static nt_status check_radii(const nt_terrain_setup *setup, nt_problem *problem)
+{
+    const nt_surface *grid = &setup->radii->ratio, *surface = setup->surface;
+    const double tip = setup->scene.tip.radius, of = setup->radii->tip_radius;
+    if (!surface)
+        return refuse(problem, (nt_problem){"radii without a surface", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+    const struct {
+        const char *field, *unit;
+        double value, expected;
+    } same[] = {
+        {"radii.nx", "", (double)grid->nx, (double)surface->nx},
+        {"radii.ny", "", (double)grid->ny, (double)surface->ny},
+        {"radii.dx", "m", grid->dx, surface->dx},
+        {"radii.dy", "m", grid->dy, surface->dy},
+        {"tip.radius", "m", tip, of}, /* over a surface that another tip has dilated */
+    };
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++)
+        if (same[i].value != same[i].expected)
+            return refuse(problem,
+                          (nt_problem){same[i].field, same[i].unit, same[i].value, same[i].expected, same[i].expected},
+                          NT_E_RANGE);
+    return NT_OK;
+}
+
+static nt_status check(const nt_terrain_setup *setup, nt_problem *problem)
+{
+    const nt_status status = nt_scene_check(&setup->scene, problem);
+    if (status != NT_OK)
+        return status;
+    if (setup->map.heights && setup->surface)
+        return refuse(problem, (nt_problem){"surface beside a map", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+    if (setup->dilated != 0 && setup->dilated != 1)
+        return refuse(problem, (nt_problem){"dilated", "", setup->dilated, 0.0, 1.0}, NT_E_RANGE);
+    if (setup->radii && check_radii(setup, problem) != NT_OK)
+        return setup->surface ? NT_E_RANGE : NT_E_ARGUMENT;
+    if (setup->map.heights || setup->map.nx != 0 || setup->map.ny != 0)
+        return nt_height_map_check(&setup->map, problem);
+    return NT_OK;
+}
+
+/* Heights of the body become those of the apex, and both a spline in the same memory; its curvature gives the radii. */
+static nt_status make_surface(nt_terrain *terrain, const nt_terrain_setup *setup)
+{
+    const nt_tip_shape tip = {setup->scene.tip.radius, setup->scene.tip.half_angle};
+    const size_t pixels = (size_t)setup->map.nx * (size_t)setup->map.ny;
+    nt_height_map map = setup->map;
+    nt_status status = NT_OK;
+    terrain->own.coefficients = malloc(pixels * sizeof(double));
+    terrain->own.ratios = malloc(pixels * sizeof(double));
+    if (!terrain->own.coefficients || !terrain->own.ratios)
+        return NT_E_NO_MEMORY;
+    if (!setup->dilated) {
+        status = nt_surface_dilate(&setup->map, &tip, terrain->own.coefficients);
+        map.heights = terrain->own.coefficients;
+    }
+    if (status == NT_OK)
+        status = nt_surface_init(&terrain->own.surface, &map, terrain->own.coefficients);
+    if (status == NT_OK)
+        status = nt_radius_map_init(&terrain->own.radii, &terrain->own.surface, tip.radius, NULL, terrain->own.ratios);
+    terrain->surface = &terrain->own.surface;
+    terrain->radii = &terrain->own.radii;
+    return status;
+}
+
+static nt_status make_bank(nt_terrain *terrain, const nt_maugis_bank_options *options)
+{
+    nt_maugis_bank_memory *tables = &terrain->own.tables;
+    const nt_status status = nt_maugis_bank_size(options, tables);
+    if (status != NT_OK)
+        return status;
+    tables->panels = malloc((size_t)tables->panel_capacity * sizeof *tables->panels);
+    tables->cells = malloc((size_t)tables->cell_capacity * sizeof *tables->cells);
+    if (!tables->panels || !tables->cells)
+        return NT_E_NO_MEMORY;
+    return nt_maugis_bank_init(&terrain->own.bank, options, tables);
+}
+
+/* One plan: its contact says which bank is needed, and with the bank it chooses. */
+static nt_status make_plan(nt_terrain *terrain, const nt_terrain_setup *setup, nt_problem *problem)
+{
+    nt_plan_inputs inputs = {.scene = &setup->scene,
+                             .demand = &setup->demand,
+                             .probe = setup->probe,
+                             .surface = terrain->surface,
+                             .radii = terrain->radii};
+    nt_maugis_bank_options options;
+    nt_status status = nt_plan_begin(&terrain->plan, &inputs, problem);
+    if (status == NT_OK && nt_plan_wants_bank(&terrain->plan, &options)) {
+        status = make_bank(terrain, &options);
+        inputs.bank = &terrain->own.bank;
+    }
+    return status == NT_OK ? nt_plan_decide(&terrain->plan, &inputs, problem) : status;
+}
+
+nt_status nt_terrain_make(nt_terrain **terrain, const nt_terrain_setup *setup, nt_problem *problem)
+{
+    if (!terrain || !setup)
+        return NT_E_ARGUMENT;
+    nt_status status = check(setup, problem);
+    if (status != NT_OK)
+        return status;
+    nt_terrain *made = calloc(1, sizeof *made);
+    if (!made)
+        return NT_E_NO_MEMORY;
+    made->surface = setup->surface;
+    made->radii = setup->radii;
+    if (setup->map.heights)
+        status = make_surface(made, setup);
+    if (status == NT_OK)
+        status = make_plan(made, setup, problem);
+    if (status != NT_OK) {
+        nt_terrain_close(made);
+        return status;
+    }
+    *terrain = made;
+    return NT_OK;
+}
+
+void nt_terrain_close(nt_terrain *terrain)
+{
+    if (!terrain)
+        return;
+    free(terrain->own.coefficients);
+    free(terrain->own.ratios);
+    free(terrain->own.tables.panels);
+    free(terrain->own.tables.cells);
+    free(terrain);
+}
+
+const nt_surface *nt_terrain_surface(const nt_terrain *terrain)
+{
+    return terrain->surface;
+}
+const nt_radius_map *nt_terrain_radii(const nt_terrain *terrain)
+{
+    return terrain->radii;
+}
+const nt_maugis_bank *nt_terrain_bank(const nt_terrain *terrain)
+{
+    return terrain->plan.bank;
+}
+const nt_plan *nt_terrain_plan(const nt_terrain *terrain)
+{
+    return &terrain->plan;
+}
