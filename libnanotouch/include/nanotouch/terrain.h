@@ -28,7 +28,7 @@ NT_API nt_terrain_setup nt_terrain_defaults(void);
 
 /* Makes surface, radii (nt_radius_limits_defaults), bank and plan, in this order, each once: some 0.7 s at 1024 x 1024
  * pixels, most of it dilation. On failure *problem (NULL allowed) names the field of scene, demand, probe, map, surface
- * or radii with its valid range; NT_E_ARGUMENT for a map without heights of its own or beside a surface; as
+ * or radii with its valid range; NT_E_ARGUMENT for a map beside a surface, or radii without one; as
  * nt_plan_make for a demand that cannot be kept; NT_E_NO_MEMORY. The terrain belongs to the caller: nt_terrain_close.
  * Uses the heap; not real-time. Immutable afterwards, may be shared by threads. */
 NT_API nt_status nt_terrain_make(nt_terrain **terrain, const nt_terrain_setup *setup, nt_problem *problem);
