@@ -39,6 +39,7 @@ HEADERS = {
     "terrain": "session",
     "sim": "hal/sim",
     "faults": "hal/sim",
+    **dict.fromkeys(["commands", "frames", "observer"], "session"),
     "hal_linux": "hal/linux",
 }
 

@@ -3,6 +3,7 @@
 #ifndef NANOTOUCH_NANOTOUCH_H
 #define NANOTOUCH_NANOTOUCH_H
 
+#include "nanotouch/commands.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_control.h"
@@ -11,11 +12,13 @@
 #include "nanotouch/dynamics.h"
 #include "nanotouch/field.h"
 #include "nanotouch/forces.h"
+#include "nanotouch/frames.h"
 #include "nanotouch/geometry.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/material.h"
+#include "nanotouch/observer.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"

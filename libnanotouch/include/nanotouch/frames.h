@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a running session shows of itself: one frame per tick in a ring, and a description, in shared memory. Any number
+ * of observers (observer.h), in any process, read them; the writer never waits and never learns of them.
+ *
+ * Each slot of the ring has a sequence word, which is 0 while the slot is written, and relaxed atomic words (H. Boehm,
+ * "Can seqlocks get along with programming language memory models?", MSPC 2012). Linux; elsewhere nt_frames_create
+ * gives NT_E_UNSUPPORTED. */
+#ifndef NANOTOUCH_FRAMES_H
+#define NANOTOUCH_FRAMES_H
+
+#include <stdint.h>
+
+#include "nanotouch/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NT_FRAME_VERSION 1u
+#define NT_FRAME_SLOTS 4096u       /* frames that the ring keeps: 0.41 s at 10 kHz */
+#define NT_NAME_SIZE 65u           /* [byte] of a session's name with its ending 0 */
+#define NT_DESCRIPTION_SIZE 65536u /* [byte] of a description with its ending 0 */
+#define NT_FRAMES_SILENCE 1.0      /* without a sign of life for so long a writer counts as dead [s] */
+
+/* What an observer sees of one tick; NaN where it is not known. Axes and signs: docs/frames.md. 184 bytes. */
+typedef struct nt_frame {
+    uint32_t size, version;    /* sizeof(nt_frame), NT_FRAME_VERSION */
+    uint64_t sequence;         /* number of the tick */
+    double time;               /* [s] */
+    double tip_position[3];    /* of the apex [m] */
+    double tip_force[3];       /* on the tip [N] */
+    double base_height;        /* z_b of the cantilever [m] */
+    double deflection;         /* zeta [m] */
+    double master_position[3]; /* [m] */
+    double motor_force[3];     /* what the hand feels [N] */
+    double gap;                /* h [m] */
+    double contact_radius;     /* a [m] */
+    double cohesive_radius;    /* c, where the adhesive zone ends [m] */
+    double neck_radius;        /* of the meniscus [m] */
+    uint32_t state;            /* nt_state */
+    uint32_t reasons;          /* NT_REASON_* */
+    uint32_t phase;            /* nt_phase */
+    uint32_t changes;          /* change counter of the description that holds in this tick */
+} nt_frame;
+
+/* Size and version set, numbers NaN, counters and bits 0. */
+NT_API NT_REALTIME nt_frame nt_frame_unknown(void);
+
+/* The writer's end. One thread publishes, beats, takes and answers (commands.h); one at a time describes. */
+typedef struct nt_frames nt_frames;
+
+/* name: letters, digits, '.', '-' and '_', less than NT_NAME_SIZE bytes; then the frames lie in shared memory that
+ * this user alone may open (mode 0600). NULL: in private memory, for observers in this process. What a dead writer left
+ * under the name is removed. NT_E_STATE if a living writer, or another user, has the name; NT_E_RANGE for a bad name;
+ * NT_E_NO_MEMORY; NT_E_DEVICE if the system refuses otherwise. The result belongs to the caller: nt_frames_close. */
+NT_API nt_status nt_frames_create(nt_frames **frames, const char *name);
+/* Removes the name; observers keep what they have and see that the writer is gone. Accepts NULL. */
+NT_API void nt_frames_close(nt_frames *frames);
+
+/* Shows one frame. It overwrites the oldest one. */
+NT_API NT_REALTIME void nt_frames_publish(nt_frames *frames, const nt_frame *frame);
+/* Sign of life: reads the monotonic clock. To be called several times per NT_FRAMES_SILENCE, also during a pause. */
+NT_API void nt_frames_beat(nt_frames *frames);
+/* Replaces the description, a text (JSON, TOML, ...), and counts the change. NT_E_CAPACITY, and the old one stays, if
+ * it does not fit NT_DESCRIPTION_SIZE; NT_E_NO_MEMORY. From any one thread at a time. */
+NT_API nt_status nt_frames_describe(nt_frames *frames, const char *text);
+/* How often the description was set; for nt_frame.changes. */
+NT_API NT_REALTIME uint32_t nt_frames_changes(const nt_frames *frames);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

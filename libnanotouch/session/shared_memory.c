@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * POSIX shared memory, with the owner's lock by flock, which Linux offers on it and others do not. */
+#if defined(__linux__)
+#define _DEFAULT_SOURCE
+#endif
+
+#include "session/shared_memory.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+#if defined(__linux__) && ATOMIC_LLONG_LOCK_FREE == 2
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+static nt_status make_name(char *full, const char *kind, const char *name)
+{
+    static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+    const size_t length = strlen(name);
+    if (length == 0 || length >= NT_NAME_SIZE || strspn(name, allowed) != length)
+        return NT_E_RANGE;
+    snprintf(full, NT_SHARED_NAME_SIZE, "/nanotouch.%s.%s", kind, name);
+    return NT_OK;
+}
+
+static nt_status status_of(int error)
+{
+    switch (error) {
+    case ENOSPC:
+    case ENOMEM:
+        return NT_E_NO_MEMORY;
+    case EACCES: /* another user's */
+    case EPERM:
+    case EEXIST: /* somebody was faster */
+    case EWOULDBLOCK:
+        return NT_E_STATE;
+    default:
+        return NT_E_DEVICE;
+    }
+}
+
+/* Opens the object of that name and locks it. NT_E_STATE if its owner lives. */
+static nt_status open_locked(const char *full, int flags, int *file)
+{
+    struct stat found;
+    nt_status status = NT_OK;
+    const int opened = shm_open(full, O_RDWR | O_CREAT | flags, 0600);
+    if (opened < 0)
+        return status_of(errno);
+    if (flock(opened, LOCK_EX | LOCK_NB) != 0 || fstat(opened, &found) != 0 || fchmod(opened, 0600) != 0)
+        status = status_of(errno);
+    else if (found.st_uid != geteuid() || found.st_nlink == 0) /* removed between open and lock: somebody is faster */
+        status = NT_E_STATE;
+    if (status == NT_OK)
+        *file = opened;
+    else
+        close(opened);
+    return status;
+}
+
+/* A new, empty, locked object. What is left over is removed, never shortened: others may have it mapped. */
+static nt_status open_new(const char *full, int *file)
+{
+    struct stat found;
+    nt_status status = open_locked(full, 0, file);
+    if (status != NT_OK || (fstat(*file, &found) == 0 && found.st_size == 0))
+        return status;
+    const int left_over = *file;
+    shm_unlink(full);
+    status = open_locked(full, O_EXCL, file);
+    close(left_over);
+    return status;
+}
+
+/* file -1: private memory. Every page is there before the loop needs it. */
+static nt_status map(nt_shared *shared, int protection)
+{
+    const int flags = shared->file < 0 ? MAP_PRIVATE | MAP_ANONYMOUS : MAP_SHARED;
+    void *memory = mmap(NULL, shared->size, protection, flags | MAP_POPULATE, shared->file, 0);
+    if (memory == MAP_FAILED)
+        return status_of(errno);
+    shared->memory = memory;
+    return NT_OK;
+}
+
+static void remove_object(nt_shared *shared)
+{
+    if (shared->file < 0)
+        return;
+    shm_unlink(shared->name);
+    close(shared->file);
+    shared->file = -1;
+}
+
+nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size)
+{
+    *shared = (nt_shared){.size = size, .file = -1};
+    if (!name)
+        return map(shared, PROT_READ | PROT_WRITE);
+    nt_status status = make_name(shared->name, kind, name);
+    if (status == NT_OK)
+        status = open_new(shared->name, &shared->file);
+    if (status != NT_OK)
+        return status;
+    const int error = posix_fallocate(shared->file, 0, (off_t)size); /* a full system says so here, not in the loop */
+    status = error ? status_of(error) : map(shared, PROT_READ | PROT_WRITE);
+    if (status != NT_OK)
+        remove_object(shared);
+    return status;
+}
+
+nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name, size_t size, int writable)
+{
+    *shared = (nt_shared){.size = size, .file = -1};
+    struct stat found;
+    nt_status status = make_name(shared->name, kind, name);
+    if (status != NT_OK)
+        return status;
+    shared->file = shm_open(shared->name, writable ? O_RDWR : O_RDONLY, 0);
+    if (shared->file < 0)
+        return NT_E_DEVICE;
+    if (fstat(shared->file, &found) != 0 || found.st_size == 0)
+        status = NT_E_DEVICE;
+    else if (found.st_size != (off_t)size)
+        status = NT_E_UNSUPPORTED;
+    else
+        status = map(shared, writable ? PROT_READ | PROT_WRITE : PROT_READ);
+    close(shared->file);
+    shared->file = -1; /* not ours to remove */
+    return status;
+}
+
+void nt_shared_close(nt_shared *shared)
+{
+    if (shared->memory)
+        munmap(shared->memory, shared->size);
+    shared->memory = NULL;
+    remove_object(shared);
+}
+
+uint64_t nt_shared_clock(void)
+{
+    struct timespec now;
+    if (clock_gettime(CLOCK_MONOTONIC, &now) != 0)
+        return 0;
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+#else
+
+nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size)
+{
+    (void)shared, (void)kind, (void)name, (void)size;
+    return NT_E_UNSUPPORTED;
+}
+
+nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name, size_t size, int writable)
+{
+    (void)shared, (void)kind, (void)name, (void)size, (void)writable;
+    return NT_E_UNSUPPORTED;
+}
+
+void nt_shared_close(nt_shared *shared)
+{
+    (void)shared;
+}
+
+uint64_t nt_shared_clock(void)
+{
+    return 0;
+}
+
+#endif

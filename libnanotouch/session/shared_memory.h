@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Private: a block of memory that has a name and one owner. The owner holds a lock on it, which the system takes away
+ * when its process ends, however it ends: so a block without a lock is left over and may go. */
+#ifndef NANOTOUCH_SESSION_SHARED_MEMORY_H
+#define NANOTOUCH_SESSION_SHARED_MEMORY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "nanotouch/frames.h"
+
+enum { NT_SHARED_NAME_SIZE = 96 };
+
+typedef struct nt_shared {
+    void *memory; /* whole pages; NULL: none */
+    size_t size;  /* [byte] */
+    int file;     /* the owner's; -1: none */
+    char name[NT_SHARED_NAME_SIZE];
+} nt_shared;
+
+/* All 0 at first. kind: "frames" or "commands", part of the system's name for it. name NULL: private memory. Status as
+ * of nt_frames_create; after a failure nothing needs to be closed. */
+nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size);
+/* NT_E_DEVICE if it is not there, NT_E_UNSUPPORTED if it has another size. */
+nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name, size_t size, int writable);
+/* Gives the memory back; the owner's block is removed. May be repeated. */
+void nt_shared_close(nt_shared *shared);
+
+/* The monotonic clock, the same for all processes [ns]; 0 if it fails. */
+uint64_t nt_shared_clock(void);
+
+#endif
