@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Check what every file must keep to: licence line, length of files and functions, parameters of C functions.
+"""Check what every file must keep to: licence line, length of files and functions, parameters of C functions, in tests
+no maximum that loses a NaN.
 
 Prints each offence as file:line and exits with their number.
 """
@@ -51,6 +52,28 @@ def crowded_prototypes(text: str) -> Iterator[tuple[int, str]]:
             yield text.count("\n", 0, match.start()) + 1, match[1]
 
 
+def lost_nans(path: Path, text: str) -> Iterator[tuple[int, str]]:
+    """Yield line and reason of what loses a NaN in a test: fmax and the like, and the larger of two numbers by hand."""
+    if path.suffix == ".py":
+        for match in re.finditer(r"(?<![\w.])(\w+) = (?:float\()?(?:max|min)\((?:\1,|[^\n]*, \1\))", text):
+            yield text.count("\n", 0, match.start()) + 1, "max and min may lose a NaN: np.maximum, np.minimum"
+        return
+    for match in re.finditer(r"\bf(max|min)[fl]?\(", text):
+        yield text.count("\n", 0, match.start()) + 1, f"f{match[1]} loses a NaN: tests/c/extremes.h"
+    for match in re.finditer(r"\bif \(([^;]+?) [<>]=? ([^;]+?)\)\s+\{?\s*(\S+) = ([^;]+);", text):
+        if {match[1], match[2]} == {match[3], match[4]} and is_double(match[3], text):
+            yield text.count("\n", 0, match.start()) + 1, "a comparison loses a NaN: tests/c/extremes.h"
+    for match in re.finditer(r"(?:=|\breturn) ([^;=]+?) [<>]=? ([^;=]+?) \? ([^;]+?) : ([^;]+?);", text):
+        if {match[1], match[2]} == {match[3], match[4]} and (is_double(match[1], text) or is_double(match[2], text)):
+            yield text.count("\n", 0, match.start()) + 1, "a comparison loses a NaN: tests/c/extremes.h"
+
+
+def is_double(name: str, text: str) -> bool:
+    """Whether this C file declares the last part of such a name (worst, o->worst, *worst) as a double."""
+    last = re.split(r"\W+", name.strip("*&"))[-1]
+    return bool(last and re.search(rf"\bdouble [^;()]*\b{last}\b", text))
+
+
 def check(path: Path) -> Iterator[tuple[int, str]]:
     """Yield line and text of each offence of one file."""
     text = path.read_text()
@@ -61,6 +84,8 @@ def check(path: Path) -> Iterator[tuple[int, str]]:
         return
     if len(lines) > FILE_LINES:
         yield len(lines), f"{len(lines)} lines, {FILE_LINES} are allowed"
+    if path.is_relative_to(ROOT / "tests"):
+        yield from lost_nans(path, text)
     if path.suffix in C_SUFFIXES:
         yield from ((n, TOO_LONG.format(length, FUNCTION_LINES)) for n, length in long_c_functions(lines))
         yield from ((n, f"{name} takes more than {PARAMETERS} parameters") for n, name in crowded_prototypes(text))

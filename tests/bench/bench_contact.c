@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "../c/extremes.h"
 #include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/material.h"
@@ -178,7 +179,7 @@ static double least(void (*work)(void))
     for (int i = 0; i < RUNS; i++) {
         const double start = seconds();
         work();
-        best = fmin(best, seconds() - start);
+        best = smaller(best, seconds() - start);
     }
     sink = now.out[COUNT / 2];
     return best;

@@ -13,6 +13,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "../c/extremes.h"
 #include "nanotouch/nanotouch.h"
 
 enum { TICKS = 20000 };
@@ -113,7 +114,7 @@ static cost measure(period run, void *context, int counter)
         const double start = now();
         for (int i = 0; i < TICKS / 20; i++)
             run(context, block * (TICKS / 20) + i);
-        found.mean = fmin(found.mean, (now() - start) / (TICKS / 20));
+        found.mean = smaller(found.mean, (now() - start) / (TICKS / 20));
     }
     found.instructions = (read_counter(counter) - instructions) / (TICKS / 2);
     for (int i = TICKS / 2; i < TICKS; i++) {

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "../c/extremes.h"
 #include "nanotouch/nanotouch.h"
 
 enum { REPETITIONS = 9, POINTS = 64 };
@@ -62,7 +63,7 @@ static double measure(void (*run)(bench *, int), bench *b)
         for (int i = 0; i < calls; i++)
             run(b, i);
         const double seconds = now() - start;
-        best = fmin(best, seconds / calls);
+        best = smaller(best, seconds / calls);
         if (seconds < 0.02) { /* too short for the clock: more of them */
             calls *= 4;
             repetition = -1;

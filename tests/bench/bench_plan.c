@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "../c/extremes.h"
 #include "nanotouch/nanotouch.h"
 #include "scene/parts.h"
 
@@ -35,7 +36,7 @@ static double now(void)
                 __asm__ volatile("" ::"r"(values), "r"(gaps) : "memory");                                              \
             }                                                                                                          \
             const double seconds = now() - start;                                                                      \
-            best = fmin(best, seconds / ((double)rounds * POINTS));                                                    \
+            best = smaller(best, seconds / ((double)rounds * POINTS));                                                 \
             if (seconds < 0.01) {                                                                                      \
                 rounds *= 4;                                                                                           \
                 repetition = -1;                                                                                       \

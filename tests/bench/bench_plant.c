@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "../c/extremes.h"
 #include "../c/loop_fixture.h"
 
 enum { REPETITIONS = 7 };
@@ -54,7 +55,7 @@ static double measure(void (*run)(int), int calls)
         const double start = now();
         for (int i = 0; i < calls; i++)
             run(i);
-        best = fmin(best, (now() - start) / calls);
+        best = smaller(best, (now() - start) / calls);
     }
     return best * 1e9;
 }

@@ -61,4 +61,23 @@ static inline void loop_push(loop *l, double force, double duration)
     nt_sim_aim_hand(&l->sim, &target);
 }
 
+/* What nt_guarantee has in store for a surface of this slope. */
+static inline nt_guarantee promise(const loop *l, double slope)
+{
+    const nt_hazard hazard = {
+        .slope = slope, .snap_in_force = l->plan.largest_pull_off_force, .stiffness = l->plan.maximum_stiffness};
+    return nt_guarantee_compute(&l->touch.rig, &l->touch.settings, &hazard);
+}
+
+/* What a session of the same setup promises; NaN where it cannot be opened. */
+static inline nt_guarantee session_promise(const nt_session_setup *setup)
+{
+    nt_guarantee found = {.force = (double)NAN};
+    nt_session *session = NULL;
+    if (nt_session_open(&session, setup, NULL) == NT_OK)
+        found = nt_session_guarantee(session);
+    nt_session_close(session);
+    return found;
+}
+
 #endif

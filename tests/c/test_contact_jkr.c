@@ -11,6 +11,7 @@
 
 #include "../reference/jkr_table.h"
 #include "assertions.h"
+#include "extremes.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 
@@ -36,7 +37,7 @@ static void states_agree_with_the_oracle(void **state)
         const double d = jkr_states[i].d, P = jkr_states[i].P, k = jkr_states[i].k, a = jkr_states[i].a;
         const nt_law_value value = eval(&reduced, d, jkr_states[i].unstable ? NT_BRANCH_UNSTABLE : NT_BRANCH_STABLE);
         const double near = fabs(d) / (d - fold);
-        assert_within(value.F, P, bar * (fmax(fabs(P), 1.5) + fabs(k * d)));
+        assert_within(value.F, P, bar * (larger(fabs(P), 1.5) + fabs(k * d)));
         assert_within(value.k, k, bar * (fabs(k) * (1.0 + near) + 1.0));
         assert_within(value.a, a, bar * (a + fabs(d) / sqrt(d - fold)));
         assert_within(value.U, jkr_states[i].U, bar * (fabs(jkr_states[i].U) + fabs(P * d) + 1.0));
@@ -101,7 +102,7 @@ static void force_is_the_slope_of_the_energy(void **state)
     const double fold = nt_jkr_pull_off_indentation(&reduced);
     for (double step = 0.05; step < 50.0; step *= 1.3)
         for (int unstable = 0; unstable <= (step < 0.8); unstable++) {
-            const double h = 1e-3 * fmin(step, 0.9 - step > 0.0 ? 0.9 - step : step);
+            const double h = 1e-3 * smaller(step, 0.9 - step > 0.0 ? 0.9 - step : step);
             nt_law_value at[5];
             for (int i = 0; i < 5; i++)
                 at[i] = eval(&reduced, fold + step + (i - 2) * h, unstable ? NT_BRANCH_UNSTABLE : NT_BRANCH_STABLE);

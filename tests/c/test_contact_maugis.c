@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "maugis_fixture.h"
 
 static void no_work_of_adhesion_is_hertz_exactly(void **state)
@@ -198,7 +199,7 @@ static void lambda_from_1e_15_to_1e15(void **state)
 {
     (void)state;
     for (double lambda = 1e-15; lambda < 1.0000001e15; lambda *= 10.0) {
-        const nt_maugis maugis = reduced(fmin(lambda, NT_MAUGIS_LAMBDA_MAX));
+        const nt_maugis maugis = reduced(smaller(lambda, NT_MAUGIS_LAMBDA_MAX));
         for (double step = 1e-14; step < 1e30; step *= 10.0)
             for (int branch = NT_BRANCH_STABLE; branch <= NT_BRANCH_UNSTABLE; branch++) {
                 const double d = maugis.folds.grip_indentation + step;

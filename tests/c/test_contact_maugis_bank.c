@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "maugis_fixture.h"
 #include "nanotouch/contact_bank.h"
 
@@ -69,11 +70,11 @@ static void errors_are_what_the_bank_says(void **state)
             for (double step = 1.1e-4; start + step < 99.0; step *= 1.17) {
                 const double d = start + step;
                 const nt_law_value exact = eval(&maugis, d, NT_BRANCH_STABLE), value = at(&bank, lambda, d);
-                const double scale = fmax(fabs(exact.F), nt_maugis_pull_off_force(&maugis));
+                const double scale = larger(fabs(exact.F), nt_maugis_pull_off_force(&maugis));
                 /* rounding of the exact law: 1e-13 */
                 assert_within(value.F, exact.F, (error.force + 1e-13) * scale);
-                assert_within(value.k, exact.k, (error.stiffness + 1e-11) * fmax(fabs(exact.k), 1.0));
-                assert_within(value.a, exact.a, (error.radius + 1e-13) * fmax(exact.a, 1.0));
+                assert_within(value.k, exact.k, (error.stiffness + 1e-11) * larger(fabs(exact.k), 1.0));
+                assert_within(value.a, exact.a, (error.radius + 1e-13) * larger(exact.a, 1.0));
                 assert_within(value.U, exact.U, 2.0 * bank.accuracy.force_error * (fabs(exact.U) + scale));
             }
         }
@@ -162,7 +163,7 @@ static void arrays_and_si(void **state)
         assert_int_equal(nt_maugis_init(&maugis, &contact), NT_OK);
         assert_int_equal(nt_maugis_bank_eval_contact(&bank, &contact, 1e-9, NT_BRANCH_STABLE, &value), NT_OK);
         assert_within(value.F, eval(&maugis, 1e-9, NT_BRANCH_STABLE).F,
-                      3e-5 * fmax(value.F, nt_maugis_pull_off_force(&maugis)));
+                      3e-5 * larger(value.F, nt_maugis_pull_off_force(&maugis)));
     }
     d[7] = NAN;
     assert_int_equal(nt_maugis_bank_load_n(&bank, lambda, d, load, 50), NT_E_NOT_FINITE);
@@ -190,14 +191,14 @@ static void one_potential_of_indentation_and_radius(void **state)
             const double d = grip + above, h = 1e-6;
             nt_bank_value at, up, down;
             assert_int_equal(nt_maugis_bank_eval_radius(&bank, &contact, d, NT_BRANCH_STABLE, &at), NT_OK);
-            nt_contact larger = contact, smaller = contact;
-            larger.radius += h;
-            smaller.radius -= h;
-            assert_int_equal(nt_maugis_bank_eval_radius(&bank, &larger, d, NT_BRANCH_STABLE, &up), NT_OK);
-            assert_int_equal(nt_maugis_bank_eval_radius(&bank, &smaller, d, NT_BRANCH_STABLE, &down), NT_OK);
+            nt_contact blunter = contact, sharper = contact;
+            blunter.radius += h;
+            sharper.radius -= h;
+            assert_int_equal(nt_maugis_bank_eval_radius(&bank, &blunter, d, NT_BRANCH_STABLE, &up), NT_OK);
+            assert_int_equal(nt_maugis_bank_eval_radius(&bank, &sharper, d, NT_BRANCH_STABLE, &down), NT_OK);
             const double scale = 1.0 + fabs(at.law.U);
             assert_within((up.law.U - down.law.U) / (2.0 * h), at.dU_dR, 1e-6 * scale);
-            const double step = 1e-6 * fmin(above, 1.0);
+            const double step = 1e-6 * smaller(above, 1.0);
             const nt_law_value more = at_contact(&bank, &contact, d + step);
             const nt_law_value less = at_contact(&bank, &contact, d - step);
             assert_within((more.U - less.U) / (2.0 * step), at.law.F, 1e-5 * scale);

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "maugis_fixture.h"
 
 /* Where the displacement fold leaves the contact, lambda* = (9/(16 (1 - 1/pi)))^(1/3) = 0.937947... */
@@ -122,8 +123,8 @@ static void model_errors(const nt_maugis *maugis, int dmt, double *radius_error,
             assert_int_equal(nt_jkr_eval(&maugis->contact, model_d, NT_BRANCH_STABLE, &at_F), NT_OK);
         }
         const double a = eval(maugis, d, NT_BRANCH_STABLE).a;
-        *radius_error = fmax(*radius_error, fabs(at_F.a / a - 1.0));
-        *force_error = fmax(*force_error, fabs(at_d.F - F) / fmax(F, pull_off));
+        *radius_error = larger(*radius_error, fabs(at_F.a / a - 1.0));
+        *force_error = larger(*force_error, fabs(at_d.F - F) / larger(F, pull_off));
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "maugis_fixture.h"
 
 /* other = load or indentation, the one that is not given; rate, radius_rate: its slope and that of a. */
@@ -51,9 +52,9 @@ static void forces_at_indentations(void **state)
         if (maugis.lambda != r->lambda)
             maugis = prepared(r->lambda);
         const nt_law_value value = eval(&maugis, r->given, branch_of(r->unstable));
-        const double force = fmax(fabs(r->other), nt_maugis_pull_off_force(&maugis));
-        worst = fmax(worst, ulps(value.F - r->other, force, r->rate, r->given));
-        worst_radius = fmax(worst_radius, ulps(value.a - r->a, r->a, r->radius_rate, r->given));
+        const double force = larger(fabs(r->other), nt_maugis_pull_off_force(&maugis));
+        worst = larger(worst, ulps(value.F - r->other, force, r->rate, r->given));
+        worst_radius = larger(worst_radius, ulps(value.a - r->a, r->a, r->radius_rate, r->given));
         if (fabs(r->rate * r->given) < force)
             assert_within(value.F, r->other, 1e-13 * force);
     }
@@ -75,7 +76,7 @@ static void indentations_at_loads(void **state)
         double value;
         assert_int_equal(nt_maugis_indentation(&maugis, r->given, branch_of(r->unstable), &value, NULL), NT_OK);
         const double scale = fabs(r->other) + fabs(maugis.folds.pull_off_indentation);
-        worst = fmax(worst, ulps(value - r->other, scale, r->rate, r->given));
+        worst = larger(worst, ulps(value - r->other, scale, r->rate, r->given));
     }
     print_message("delta: %.1f\n", worst);
     assert_true(worst <= 32.0);

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "../reference/maugis_table.h"
+#include "extremes.h"
 #include "maugis_fixture.h"
 
 /* The error in units of 2^-53 (1 + what one rounding of the indentation does to the result). Measured: force 12,
@@ -24,7 +25,7 @@ static void states_agree_with_the_oracle(void **state)
         if (maugis.lambda != maugis_states[i].lambda)
             maugis = reduced(maugis_states[i].lambda);
         const nt_law_value value = eval(&maugis, d, branch_of(maugis_states[i].unstable));
-        const double force = fmax(fabs(P), nt_maugis_pull_off_force(&maugis));
+        const double force = larger(fabs(P), nt_maugis_pull_off_force(&maugis));
         const double energy = fabs(maugis_states[i].U) + fabs(P * d) + force;
         assert_within(value.F, P, bar * (force + fabs(k * d)));
         assert_within(value.U, maugis_states[i].U, bar * energy);
@@ -65,7 +66,7 @@ static void indentations_agree_with_the_oracle(void **state)
         const nt_branch branch = branch_of(maugis_loads[i].unstable);
         assert_int_equal(nt_maugis_indentation(&maugis, P, branch, &value, &info), NT_OK);
         assert_in_range(info.iterations, 0, 20);
-        const double force = fmax(fabs(P), nt_maugis_pull_off_force(&maugis));
+        const double force = larger(fabs(P), nt_maugis_pull_off_force(&maugis));
         const double scale = fabs(d) + fabs(maugis.folds.pull_off_indentation) + fabs(force / maugis_loads[i].k);
         assert_within(value, d, 32.0 * UNIT_ROUNDING * scale);
     }

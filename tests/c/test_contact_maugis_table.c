@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "maugis_fixture.h"
 #include "nanotouch/contact_table.h"
 
@@ -61,7 +62,7 @@ static void errors_are_what_the_table_says(void **state)
             assert_true(rough <= claims[c].error && fine <= claims[c].polished);
             for (double step = 1.3e-4; step < 900.0; step *= 1.0 + 0.31 / claims[c].cells_per_octave) {
                 const double d = table.start + step, exact = eval(&table.maugis, d, NT_BRANCH_STABLE).F;
-                const double scale = fmax(fabs(exact), pull_off);
+                const double scale = larger(fabs(exact), pull_off);
                 assert_within(nt_maugis_table_force(&table, d), exact, (1.05 * rough + 1e-14) * scale);
                 assert_within(nt_maugis_table_polish(&table, d), exact, (2.0 * fine + 2e-14) * scale);
             }
@@ -81,7 +82,7 @@ static void the_fold_is_no_exception(void **state)
             /* what the roundings of d do there; and of a cubic that is right at Z = 0 the error is 16 (Z/h)^2 of the
              * largest one in its cell, of width h */
             const double rounding = 4.0 * DBL_EPSILON / sqrt(step) + 2e-14, h = 0.125 / table.rate;
-            const double cubic = 20.0 * table.accuracy[0].force_error * fmin(1.0, step / (h * h));
+            const double cubic = 20.0 * table.accuracy[0].force_error * smaller(1.0, step / (h * h));
             assert_within(nt_maugis_table_force(&table, d), exact, rounding + cubic);
             assert_within(nt_maugis_table_polish(&table, d), exact, rounding);
         }

@@ -10,6 +10,7 @@
 
 #include "../reference/geometry_table.h"
 #include "assertions.h"
+#include "extremes.h"
 #include "nanotouch/geometry.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -37,7 +38,7 @@ static void agrees_with_the_oracle(void **state)
         const double errors[4] = {fabs(value.a / a - 1.0), fabs(value.F / F - 1.0), fabs(value.U / U - 1.0),
                                   fabs(nt_shape_indentation(shape, 1.0, F) / d - 1.0)};
         for (int j = 0; j < 4; j++)
-            worst[j] = fmax(worst[j], errors[j] / (0.5 * DBL_EPSILON));
+            worst[j] = larger(worst[j], errors[j] / (0.5 * DBL_EPSILON));
         assert_within(value.k, 2.0 * a, 1e-14 * value.k);
     }
     print_message("roundings: a %.1f, F %.1f, U %.1f, indentation %.1f\n", worst[0], worst[1], worst[2], worst[3]);

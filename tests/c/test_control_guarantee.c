@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "core/lti.h"
+#include "extremes.h"
 #include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
@@ -85,10 +86,10 @@ static void the_stage_rings_no_farther(void **state)
             v = step.a[1][0] * x + step.a[1][1] * v + step.b[1] * u;
             x = moved;
             if (k > 20000)
-                low = fmin(low, x), high = fmax(high, x);
+                low = smaller(low, x), high = larger(high, x);
         }
         if (frequency >= 300.0) /* slower, it follows the command and does not ring */
-            largest = fmax(largest, 0.5 * (high - low));
+            largest = larger(largest, 0.5 * (high - low));
     }
     print_message("rings by %.1f nm, promised %.1f nm\n", 1e9 * largest, 1e9 * bound);
     assert_true(largest < bound && largest > 0.9 * bound);

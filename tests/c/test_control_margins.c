@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/control.h"
 #include "nanotouch/random.h"
 
@@ -102,7 +103,7 @@ static void loop_delay_counts_holds_delays_and_stage(void **state)
         double supremum = 0.0;
         for (double u = 1e-4; u < 10.0; u += 1e-4) {
             const double real = 1.0 - u * u, imaginary = 2.0 * zeta * u;
-            supremum = fmax(supremum, imaginary / (real * real + imaginary * imaginary) / (u * wn));
+            supremum = larger(supremum, imaginary / (real * real + imaginary * imaginary) / (u * wn));
         }
         const double expected = 2.0 * (0.5 + gains.delay) / gains.rate + supremum;
         const nt_margins margins = nt_margins_compute(&rig, &gains, 1e3);
@@ -138,7 +139,7 @@ static void steps_and_noise_at_the_motor(void **state)
     nt_rig rig = nt_rig_defaults();
     nt_gains gains = nt_settings_defaults(&rig).gains;
     gains.force_gain = 10.0;
-    const double step = fmax(rig.stage.command_resolution, gains.alpha_p * rig.master.resolution);
+    const double step = larger(rig.stage.command_resolution, gains.alpha_p * rig.master.resolution);
     const double force = 11.0 * gains.alpha_f * step * 8.0;
     assert_true(fabs(nt_margins_compute(&rig, &gains, (double)INFINITY).quantisation_step / force - 1.0) < 1e-14);
 

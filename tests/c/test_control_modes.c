@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "touch_fixture.h"
 
 static nt_settings settings_of(const nt_rig *rig)
@@ -99,7 +100,7 @@ static void a_curve_goes_down_and_up_once(void **state)
         bench_tick(&b);
         const double step = b.state.reference - last;
         last = b.state.reference;
-        deepest = fmax(deepest, b.state.reference);
+        deepest = larger(deepest, b.state.reference);
         if (step * direction < 0.0)
             direction = -direction, turns++;
         assert_true(fabs(step) <= settings.gains.approach_speed * b.touch.period * (1.0 + 1e-9));
@@ -147,8 +148,8 @@ static double ripple(bench *b)
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int i = 0; i < 2000; i++) {
         bench_tick(b);
-        low = fmin(low, bench_force(b));
-        high = fmax(high, bench_force(b));
+        low = smaller(low, bench_force(b));
+        high = larger(high, bench_force(b));
     }
     return (high - low) * b->touch.settings.gains.alpha_f;
 }

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/servo.h"
 
@@ -27,7 +28,7 @@ static nt_effort own(void *context, const nt_gains *gains, const nt_signals *s)
     const double force = -law->reflection * f - law->cubic * f * f * f + law->raw * s->operator_force +
                          law->smooth * s->smooth_force + law->share * s->master_damping * s->smooth_speed -
                          law->spring * s->master_position + law->raw_speed * s->master_speed -
-                         law->bend * fmax(0.0, f - 0.25 * 5.0);
+                         law->bend * larger(0.0, f - 0.25 * 5.0);
     return (nt_effort){force, s->target + law->follows * s->stage_position};
 }
 
@@ -52,7 +53,7 @@ static void a_law_is_judged_by_its_own_gains(void **state)
         mine law = laws[i];
         const nt_settings settings = with(&rig, &law);
         nt_settings same = nt_settings_defaults(&rig);
-        same.gains.force_gain = fmax(law.raw, law.smooth);
+        same.gains.force_gain = larger(law.raw, law.smooth);
         same.gains.alpha_f *= law.reflection / (1.0 + same.gains.force_gain);
         same.gains.velocity_feedforward = law.share;
         if (law.raw > 0.0)

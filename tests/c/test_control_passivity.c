@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/control.h"
 #include "nanotouch/random.h"
 
@@ -61,7 +62,7 @@ static outcome run(const loop *p, double time)
     const long ticks = lround(time / p->T);
     for (long k = 0; k < ticks; k++) {
         const double t = (double)k * p->T, surface = 1e-3 + p->relief * sin(6.2831853 * p->relief_rate * t);
-        const double f_s = p->k_r * fmax(0.0, x - surface);
+        const double f_s = p->k_r * larger(0.0, x - surface);
         const double push = t < 0.2 ? 5.0 * hand_force * t : hand_force;
         const double acting = tau[(k + 3 - p->d) % 3]; /* what the motor does now */
         f_m = push - p->finger / M * (acting + push - b * v);
@@ -72,15 +73,15 @@ static outcome run(const loop *p, double time)
         const double factor = nt_passivity_step(&passivity, &state, &hand, &tip);
         gain = p->watched ? factor : 1.0;
         const double wanted = p->blind ? -gain * s_read : -s_read - gain * p->K_f * (s_read - f_read);
-        tau[k % 3] = fmin(fmax(wanted, -100.0), 100.0);
+        tau[k % 3] = smaller(larger(wanted, -100.0), 100.0);
         const double force = tau[(k + 3 - p->d) % 3] + push;
         x += P * v + Q * force;
         v = a * v + (1.0 - a) / b * force;
         energy += 0.5 * (f_read + last_f) * (x_read - last_x);
-        found.hand_energy_low = fmin(found.hand_energy_low, energy);
+        found.hand_energy_low = smaller(found.hand_energy_low, energy);
         last_x = x_read, last_f = f_read;
         if (4 * k > 3 * ticks)
-            low = fmin(low, x), high = fmax(high, x);
+            low = smaller(low, x), high = larger(high, x);
     }
     found.ripple = high - low;
     found.gain = state.gain;
@@ -146,7 +147,7 @@ static void always_trips_on_the_unstable_set_and_calms_it(void **state)
                       1e3 * watched.T, watched.K_f, watched.k_r, watched.d, watched.finger, 1e3 * alone.ripple,
                       1e3 * calmed.ripple, calmed.gain);
         assert_true(alone.trips > 0 && calmed.trips > 0);
-        assert_true(calmed.ripple < fmax(0.2 * alone.ripple, 4.0 * 4e-5) && calmed.ripple < 0.6 * alone.ripple);
+        assert_true(calmed.ripple < larger(0.2 * alone.ripple, 4.0 * 4e-5) && calmed.ripple < 0.6 * alone.ripple);
         assert_true(calmed.gain < 1.0 && calmed.gain > 0.0);
     }
 }

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/preflight.h"
 #include "nanotouch/random.h"
 
@@ -33,7 +34,7 @@ static nt_preflight_state fly(const nt_preflight *preflight, const trouble *wron
                                   .stage_position = 1e-9 * round(wrong->gain * command.stage_position / 1e-9),
                                   .flags = wrong->flags};
         nt_preflight_step(preflight, &state, &sample, &command);
-        *highest = fmax(*highest, command.stage_position);
+        *highest = larger(*highest, command.stage_position);
         assert_true(fabs(command.stage_position) <= preflight->distance * (1.0 + 1e-12));
     }
     return state;

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/random.h"
 #include "nanotouch/servo.h"
 
@@ -127,7 +128,7 @@ static void a_thousand_gain_sets_come_to_rest_at_the_scaled_force(void **state)
         const double push = 0.1 + 4.9 * nt_random_uniform(&random);
         const double slowest = 100.0 / ((1.0 + K_f) * l.k_r); /* b over kappa [s] */
         advance(&l, push, (int)(l.gains.rate * (20.0 * slowest + 0.3)));
-        worst = fmax(worst, fabs(l.k_r * l.x - push) / push);
+        worst = larger(worst, fabs(l.k_r * l.x - push) / push);
     }
     print_message("f_m = alpha_f f_s within %.1e of f_m\n", worst);
     assert_true(worst < 1e-6);

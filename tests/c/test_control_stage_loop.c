@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/control.h"
 
 #define PI 3.14159265358979323846
@@ -34,7 +35,7 @@ static void run_plant(plant *p, double u, double T)
         slope(p, u, p->x + h * c[0], p->v + h * c[1], &d[0], &d[1]);
         p->x += h / 6.0 * (a[0] + 2.0 * b[0] + 2.0 * c[0] + d[0]);
         p->v += h / 6.0 * (a[1] + 2.0 * b[1] + 2.0 * c[1] + d[1]);
-        p->highest = fmax(p->highest, p->x);
+        p->highest = larger(p->highest, p->x);
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/touch.h"
 
 static nt_touch touch;
@@ -59,7 +60,7 @@ static void indentation_counts_from_first_touch(void **unused)
         nt_supervisor_state state = nt_supervisor_start();
         double indentation = 0.0;
         for (double z = 0.0; state.state == NT_RUN && z < 5e-6; z += 1e-9) {
-            indentation = fmax(0.0, z - surface) / (1.0 + softness);
+            indentation = larger(0.0, z - surface) / (1.0 + softness);
             const nt_sample sample = {.stage_position = z,
                                       .deflection = softness * indentation + 1e-12 * fmod(z, 2e-9)};
             const nt_situation situation = {.reference = z};

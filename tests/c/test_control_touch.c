@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/control.h"
 #include "nanotouch/random.h"
 
@@ -42,8 +43,8 @@ static void tick(rig *r)
     r->sample.deflection += 1e-9 * nt_random_normal(&r->random);
     nt_touch_step(&r->touch, &r->state, &r->sample, &r->command);
     r->sample.deflection = deflection;
-    r->fastest_force = fmax(r->fastest_force, fabs(r->command.motor_force - r->last_force));
-    r->fastest_stage = fmax(r->fastest_stage, fabs(r->command.stage_position - r->last_stage));
+    r->fastest_force = larger(r->fastest_force, fabs(r->command.motor_force - r->last_force));
+    r->fastest_stage = larger(r->fastest_stage, fabs(r->command.stage_position - r->last_stage));
     r->last_force = r->command.motor_force;
     r->last_stage = r->command.stage_position;
     r->sample.tick++;
@@ -86,7 +87,7 @@ static void the_force_fades_in(void **state)
     r.sample.deflection = 1.0 / r.touch.settings.gains.alpha_f / r.touch.rig.probe.spring_constant;
     for (int i = 1; i <= 1500; i++) { /* 0.1 s by default: in proportion */
         tick(&r);
-        const double share = fmin(1.0, i * ONE_TICK / 0.1);
+        const double share = smaller(1.0, i * ONE_TICK / 0.1);
         assert_true(fabs(r.command.motor_force + 3.0 * share) < 5 * 0.075);
     }
 }
@@ -281,7 +282,7 @@ static void lateral_motion_is_straight_and_limited(void **state)
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, 3e-6, 4e-6, 1.0), NT_OK); /* 5 um/s */
     for (int i = 1; i <= 12000; i++) {
         tick(&r);
-        const double share = fmin(1.0, i * ONE_TICK);
+        const double share = smaller(1.0, i * ONE_TICK);
         assert_true(fabs(r.command.x - 3e-6 * share) < 1e-15 && fabs(r.command.y - 4e-6 * share) < 1e-15);
     }
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, 27e-6, 36e-6, 0.0), NT_OK); /* at once: no, 20 um/s */
@@ -335,9 +336,9 @@ static void topography_holds_the_set_force(void **state)
     double surface = 50e-9; /* in stage travel */
     for (int i = 0; i < 40000; i++) {
         if (i > 20000)
-            surface = 50e-9 - 30e-9 * fmin(1.0, (i - 20000) * ONE_TICK);
+            surface = 50e-9 - 30e-9 * smaller(1.0, (i - 20000) * ONE_TICK);
         /* probe 8 N/m in series with the sample's 4 N/m: deflection is a third of the approach */
-        r.sample.deflection = fmax(0.0, r.command.stage_position - surface) / 3.0;
+        r.sample.deflection = larger(0.0, r.command.stage_position - surface) / 3.0;
         tick(&r);
         if ((i > 15000 && i < 20000) || i > 38000)
             assert_true(fabs(r.touch.rig.probe.spring_constant * r.sample.deflection - gains->set_point) <
@@ -345,7 +346,7 @@ static void topography_holds_the_set_force(void **state)
     }
     assert_int_equal(r.command.state, NT_RUN);
     const double height = r.state.reference / gains->alpha_p;
-    assert_true(fabs(r.command.motor_force - fmin(5.0, 3000.0 * (height - r.sample.master_position))) < 0.01);
+    assert_true(fabs(r.command.motor_force - smaller(5.0, 3000.0 * (height - r.sample.master_position))) < 0.01);
 }
 
 static void what_the_rig_cannot_keep_is_refused(void **state)

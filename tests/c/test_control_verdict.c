@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/margins.h"
 
 static const double stiffness = 1e3;
@@ -36,7 +37,7 @@ static void the_smallest_counts_in_touch(void **state)
             rig.master.max_force / margins.quantisation_step, rig.master.max_force / (3.0 * margins.force_noise)};
         double least = INFINITY;
         for (int k = 0; k < 5; k++)
-            least = fmin(least, others[k]);
+            least = smaller(least, others[k]);
         assert_true(verdict.margin > 0.0 && verdict.margin == least);
     }
 }

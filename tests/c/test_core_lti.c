@@ -8,11 +8,7 @@
 #include <cmocka.h>
 
 #include "core/lti.h"
-
-static double worst(double a, double b)
-{
-    return fabs(a) > b ? fabs(a) : b;
-}
+#include "extremes.h"
 
 /* Chain of four integrators: phi and gamma are the powers T^k / k!, to a few roundings. */
 static void integrators_give_taylor_powers(void **state)
@@ -25,9 +21,9 @@ static void integrators_give_taylor_powers(void **state)
         double error = 0.0, power = 1.0;
         for (int k = 1; k <= 4; k++) {
             power *= period / k;
-            error = worst(d.b[4 - k] / power - 1.0, error);
+            error = larger(error, fabs(d.b[4 - k] / power - 1.0));
             if (k < 4)
-                error = worst(d.a[0][k] / power - 1.0, error);
+                error = larger(error, fabs(d.a[0][k] / power - 1.0));
         }
         assert_true(error < 2e-14);
     }
@@ -44,14 +40,14 @@ static void rotation_keeps_its_phase(void **state)
         nt_lti d;
         assert_int_equal(nt_lti_discretise(&rotation, period, &d), NT_OK);
         const double size = exp(-decay * period), c = size * cos(period), s = size * sin(period);
-        double error = worst(d.a[0][0] - c, 0.0);
-        error = worst(d.a[0][1] - s, error);
-        error = worst(d.a[1][0] + s, error);
-        error = worst(d.a[1][1] - c, error);
+        double error = fabs(d.a[0][0] - c);
+        error = larger(error, fabs(d.a[0][1] - s));
+        error = larger(error, fabs(d.a[1][0] + s));
+        error = larger(error, fabs(d.a[1][1] - c));
         /* gamma = A^-1 (phi - 1) B; A^-1 = (-decay, -1; 1, -decay) / (1 + decay^2). */
         const double p = (c - 1.0) * decay + s, q = -s * decay + (c - 1.0);
-        error = worst(d.b[0] - (-decay * p - q) / (1.0 + decay * decay), error);
-        error = worst(d.b[1] - (p - decay * q) / (1.0 + decay * decay), error);
+        error = larger(error, fabs(d.b[0] - (-decay * p - q) / (1.0 + decay * decay)));
+        error = larger(error, fabs(d.b[1] - (p - decay * q) / (1.0 + decay * decay)));
         assert_true(error < 4e-15 * (1.0 + period));
     }
 }

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/dynamics.h"
 
 static const nt_hand still; /* a pure force */
@@ -75,7 +76,7 @@ static void adversary_may_do_anything(void **state)
         nt_hand_step(&now, &hand, 0.0, 1e-4, &random);
         changes += now.random_force != last;
         squares += now.random_force * now.random_force;
-        largest = fmax(largest, fabs(now.random_force));
+        largest = larger(largest, fabs(now.random_force));
     }
     assert_true(abs(changes - 3000) < 5 * 55);                    /* 5 sigma of a Poisson count */
     assert_true(fabs(squares / 1e6 / (25.0 / 3.0) - 1.0) < 0.15); /* of 3000 draws: sigma 1.6 % of sqrt */

@@ -10,11 +10,7 @@
 
 #include "core/lti.h"
 #include "dynamics/oscillator.h"
-
-static double worst(double a, double b)
-{
-    return fabs(a) > b ? fabs(a) : b;
-}
+#include "extremes.h"
 
 /* m = 1, w0 = 1 s^-1; damping from none through critical to 1e6, steps from 1e-9 to 100 rad. Relative to the size of
  * each entry; the exponential itself is good to its norm times 2^-52, the phase to w t. */
@@ -29,11 +25,11 @@ static void agrees_with_the_matrix_exponential(void **state)
             const nt_lti continuous = {.order = 2, .a = {{0.0, 1.0}, {-1.0, -dampings[i]}}, .b = {0.0, 1.0}};
             nt_lti d;
             assert_int_equal(nt_lti_discretise(&continuous, t, &d), NT_OK);
-            double error = worst((o.xv - d.a[0][1]) / fmin(t, 1.0), 0.0);
-            error = worst((o.vf - d.b[1]) / fmin(t, 1.0), error);
-            error = worst((o.xf - d.b[0]) / fmin(t * t, 1.0), error);
-            error = worst(o.vv - d.a[1][1], error);
-            error = worst(1.0 - o.k * o.xf - d.a[0][0], error);
+            double error = fabs((o.xv - d.a[0][1]) / smaller(t, 1.0));
+            error = larger(error, fabs((o.vf - d.b[1]) / smaller(t, 1.0)));
+            error = larger(error, fabs((o.xf - d.b[0]) / smaller(t * t, 1.0)));
+            error = larger(error, fabs(o.vv - d.a[1][1]));
+            error = larger(error, fabs(1.0 - o.k * o.xf - d.a[0][0]));
             assert_true(error < 1e-14 * (1.0 + t) * (1.0 + dampings[i]));
         }
 }
@@ -66,7 +62,7 @@ static void turns_when_the_speed_is_zero(void **state)
                 for (double speed = -2.0; speed < 3.0; speed += 4.0) {
                     const double until = nt_oscillator_turns_after(&c, pulls[j], speed);
                     assert_true(until > 0.0);
-                    const double last = fmin(until, 50.0);
+                    const double last = smaller(until, 50.0);
                     for (double share = 0.05; share < 0.96; share += 0.1) {
                         const nt_oscillator o = nt_oscillator_over(&c, share * last);
                         assert_true((o.vv * speed + o.vf * pulls[j]) * speed > 0.0 ||

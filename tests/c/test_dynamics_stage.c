@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/dynamics.h"
 
 static const double periods[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}; /* 100 Hz .. 1 MHz */
@@ -109,7 +110,7 @@ static void a_stiff_load_does_not_feed_the_resonance(void **state)
         for (int k = 0; k < 200000; k++) {
             const nt_stage_load load = {stiffness * now.position, stiffness};
             nt_stage_step(&model, &now, 0.0, &load);
-            largest = fmax(largest, fabs(now.position));
+            largest = larger(largest, fabs(now.position));
         }
         assert_true(largest < 1.0000001e-9);
     }
@@ -149,7 +150,7 @@ static loop go_around(const nt_stage_model *model, double amplitude, int steps)
         if (k < 2 * steps)
             up[k] = now.position;
         else if (k > 2 * steps)
-            l.opening = fmax(l.opening, up[4 * steps - k < 2 * steps ? 4 * steps - k : 0] - now.position);
+            l.opening = larger(l.opening, up[4 * steps - k < 2 * steps ? 4 * steps - k : 0] - now.position);
     }
     l.end = now.position;
     return l;

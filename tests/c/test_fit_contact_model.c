@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/fit.h"
 #include "nanotouch/geometry.h"
 
@@ -115,7 +116,7 @@ static void follows_the_unstable_branch_to_the_tear(void **state)
             for (int i = 1; i < 200000; i++) {
                 nt_law_value value;
                 assert_int_equal(nt_contact_law_eval(&law, grip + i * 1e-13, NT_BRANCH_STABLE, &value), NT_OK);
-                smallest = fmin(smallest, grip + i * 1e-13 + value.F / springs[spring]);
+                smallest = smaller(smallest, grip + i * 1e-13 + value.F / springs[spring]);
             }
             double tear;
             assert_int_equal(nt_fit_tear_position(&options, soft, &tear), NT_OK);
@@ -184,7 +185,7 @@ static void check_gradient(const nt_fit_options *options, const double *value, d
         const double size = natural[i] > 0.0 ? natural[i] : fabs(value[i]), h = 1e-3 * size;
         const double fine = difference(options, value, position, i, h / 2.0);
         const double numeric = fine + (fine - difference(options, value, position, i, h)) / 3.0;
-        const double tolerance = 1e-7 * fmax(fabs(point.force), 1e-9) / size;
+        const double tolerance = 1e-7 * larger(fabs(point.force), 1e-9) / size;
         if (fabs(numeric - point.gradient[i]) > tolerance)
             fail_msg("model %d, k_c %g, X %g, %s: %.12g, difference %.12g", options->model, options->spring_constant,
                      position, name, point.gradient[i], numeric);

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/fit.h"
 #include "nanotouch/random.h"
 
@@ -83,7 +84,7 @@ static void equals_the_built_in(void **state)
             for (int p = 0; p < NT_FIT_PARAMETERS; p++) /* central differences: 1e-8; at first touch k is not smooth */
                 if (fabs(theirs[i].indentation) > 1e-11)
                     assert_true(fabs(mine[i].gradient[p] - theirs[i].gradient[p]) <=
-                                1e-7 * fmax(fabs(theirs[i].gradient[p]), fabs(theirs[0].gradient[p])));
+                                1e-7 * larger(fabs(theirs[i].gradient[p]), fabs(theirs[0].gradient[p])));
         }
         nt_fit_result a, b;
         assert_int_equal(nt_fit_run(&own, &data, &a, NULL), NT_OK);

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "force_laws.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
@@ -83,7 +84,7 @@ static void exponential_approximation(void **state)
     double worst = 0.0;
     for (double y = 0.2; y <= 0.9001; y += 0.01) {
         const double ratio = nt_steric_exponential_eval(&brush, y * 20e-9).k / nt_steric_eval(&brush, y * 20e-9).k;
-        worst = fmax(worst, fabs(ratio - 1.0));
+        worst = larger(worst, fabs(ratio - 1.0));
     }
     assert_within(worst, 0.233, 0.002);
 }

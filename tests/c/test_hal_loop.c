@@ -13,6 +13,7 @@
 #include <sys/time.h>
 #include <time.h>
 
+#include "extremes.h"
 #include "nanotouch/hal.h"
 
 typedef struct witness {
@@ -32,8 +33,8 @@ static double now(void)
 static int step(void *context, uint64_t tick, double lateness)
 {
     witness *w = context;
-    w->latest = fmax(w->latest, lateness);
-    w->earliest = fmin(w->earliest, lateness);
+    w->latest = larger(w->latest, lateness);
+    w->earliest = smaller(w->earliest, lateness);
     if (w->count && tick <= w->last)
         w->rising = 0;
     w->last = tick;

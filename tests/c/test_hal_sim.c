@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/sim.h"
 
 #define T 1e-4
@@ -151,7 +152,7 @@ static void hand_gauge_and_master(void **state)
     nt_sim_aim_hand(&sim, &push);
     for (int i = 0; i < 2500; i++) {
         nt_sim_read(&sim, &sample);
-        const double force = 4.0 * fmin(1.0, i * T / 0.2);
+        const double force = 4.0 * smaller(1.0, i * T / 0.2);
         assert_true(is_multiple(sample.operator_force, 0.02) &&
                     fabs(sample.operator_force - force) < 0.01 + 6 * 0.0034);
         assert_true(is_multiple(sample.master_position, 4e-5));
@@ -183,7 +184,7 @@ static void actuators_have_their_limits(void **state)
     for (int i = 0; i < 1000; i++) {
         const double before = sim.stage_drive;
         assert_int_equal(nt_sim_write(&sim, &wild), NT_OK);
-        fastest = fmax(fastest, before - sim.stage_drive);
+        fastest = larger(fastest, before - sim.stage_drive);
         assert_true(sim.master.speed >= -5.0 / 100.0 * (1.0 + 1e-12));
     }
     assert_true(fabs(fastest - small.stage.max_speed * T) < 1e-18);
@@ -247,7 +248,7 @@ static void a_cycle_of_touch_dissipates(void **state)
         const double base = sim.stage.position, force = sim.truth.tip_force;
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
         work += 0.5 * (force + sim.truth.tip_force) * (sim.stage.position - base); /* done by the stage on the probe */
-        strongest_pull = fmax(strongest_pull, -sim.truth.tip_force);
+        strongest_pull = larger(strongest_pull, -sim.truth.tip_force);
     }
     assert_true(fabs(strongest_pull / plan.pull_off_force - 1.0) <
                 0.02); /* a spring of 8 N/m is nearly a dead weight */

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/sim.h"
 
 #define T 1e-4
@@ -208,7 +209,7 @@ static void both_models_tell_the_same(void **state)
         const double error =
             rig.probe.spring_constant * fabs(still.cantilever.deflection - moving.cantilever.deflection);
         apart += error > bound;
-        deepest = fmax(deepest, still.truth.tip_force);
+        deepest = larger(deepest, still.truth.tip_force);
     }
     print_message("bound %.2g N, passed in %d of 2000 ticks\n", bound, apart);
     assert_true(deepest > 50e-9 && apart <= 10);

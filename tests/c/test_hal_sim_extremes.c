@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/sim.h"
 
 static nt_plan plan;
@@ -41,12 +42,12 @@ static void shake(const nt_rig *rig, nt_probe_model model, double period, int ti
         nt_sample sample;
         assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
         const double wave = sin(0.05 * i);
-        const nt_command command = {.motor_force = 3.0 * wave, .stage_position = fmin(half, 20e-9) * wave};
+        const nt_command command = {.motor_force = 3.0 * wave, .stage_position = smaller(half, 20e-9) * wave};
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
         assert_true(isfinite(sample.deflection) && isfinite(sample.stage_position) && isfinite(sample.master_position));
         assert_true(isfinite(sim.truth.tip_force) && isfinite(sim.cantilever.speed) && isfinite(sim.stage.speed));
         assert_true(fabs(sim.stage.position) <= 2.0 * rig->stage.travel);
-        reach = fmax(reach, fabs(sim.stage.position));
+        reach = larger(reach, fabs(sim.stage.position));
         const double pull = 2.0 * plan.pull_off_force / rig->probe.spring_constant;
         assert_true(fabs(sim.cantilever.deflection) < 3.0 * (reach + pull + 10e-9));
     }

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/random.h"
 #include "nanotouch/scene.h"
@@ -150,7 +151,7 @@ static void hysteresis_only_dissipates(void **state)
         }
         assert_int_equal(history.attached, 0);
         assert_true(work < 2e-3 * scale); /* a jump may be off by one step: 0.5 pm of some 100 pm of range */
-        most_dissipated = fmax(most_dissipated, -work / scale);
+        most_dissipated = larger(most_dissipated, -work / scale);
     }
     assert_true(most_dissipated > 0.05); /* and dissipate it does */
 }
@@ -207,7 +208,7 @@ static void tail_and_contact_join(void **state)
     assert_true(plan.terms[NT_PLAN_VDW].form != NT_FORM_OFF);
     double strongest = 0.0;
     for (double gap = -0.1e-9; gap < plan.release_gap; gap += 1e-14)
-        strongest = fmin(strongest, nt_interaction_eval_gap(&plan, &apart, NULL, gap).F);
+        strongest = smaller(strongest, nt_interaction_eval_gap(&plan, &apart, NULL, gap).F);
     /* under displacement control the rigid sphere pulls its most at a = 0: P0 = -2 + O(lambda^1.5) of pi w R */
     assert_true(fabs(-strongest / pull - 1.0) < 2.0 * pow(lambda, 1.5));
     const double outside = nt_interaction_eval_gap(&plan, &apart, NULL, nextafter(plan.capture_gap, 1.0)).F;

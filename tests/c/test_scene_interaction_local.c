@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/random.h"
 
@@ -91,7 +92,7 @@ static void force_is_minus_the_gradient(void **state)
             assert_true(fabs(v.Fx + dx / (2 * h)) < tolerance);
             assert_true(fabs(v.Fy + dy / (2 * h)) < tolerance);
             assert_true(fabs(v.Fz + dz / (2 * h)) < tolerance);
-            by_radius = fmax(by_radius, fabs(v.Fx + v.Fz * place.surface.zx));
+            by_radius = larger(by_radius, fabs(v.Fx + v.Fz * place.surface.zx));
         }
         assert_true(by_radius > 1e-9); /* what a sum of F z_x alone would have missed */
     }
@@ -115,7 +116,7 @@ static void letting_go_costs_the_energy_of_the_fold(void **state)
         assert_int_equal(history.attached, 0);
         assert_int_equal(nt_maugis_bank_eval_radius(&bank, &contact, -fold * (1.0 - 1e-9), NT_BRANCH_STABLE, &held),
                          NT_OK);
-        assert_true(fabs(history.dissipated - fmax(0.0, held.law.U)) < 1e-6 * plan.pull_off_force * fold);
+        assert_true(fabs(history.dissipated - larger(0.0, held.law.U)) < 1e-6 * plan.pull_off_force * fold);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/random.h"
@@ -113,7 +114,7 @@ static void bounds_of_what_is_left_out_are_true_maxima(void **state)
                                  : term == NT_PLAN_ELECTROSTATIC
                                      ? nt_electrostatic_eval(&plan.laws.electrostatic, gap).F
                                      : nt_point_charge_eval(&plan.laws.charge, gap).F;
-                largest = fmax(largest, fabs(F));
+                largest = larger(largest, fabs(F));
             }
             assert_true(largest > 0.0 && fabs(plan.terms[term].force / largest - 1.0) < 1e-9);
             assert_true(fabs(plan.terms[term].error * plan.scale / largest - 1.0) < 1e-9);
@@ -146,7 +147,7 @@ static void a_plan_keeps_its_bound(void **state)
                 const double F = nt_interaction_eval_gap(&full, &history, NULL, gap).F;
                 const double error = fabs(nt_interaction_eval_gap(&plan, &history, NULL, gap).F - F);
                 if (fabs(gap - full.release_gap) > 1e-6 * full.release_gap)
-                    assert_true(error <= plan.bound.force_error * fmax(fabs(F), full.pull_off_force));
+                    assert_true(error <= plan.bound.force_error * larger(fabs(F), full.pull_off_force));
             }
         assert_true(plan.bound.force_error <= demand.relative_accuracy && plan.cost <= full.cost);
     }
@@ -206,7 +207,7 @@ static void numbers_for_integrators_are_bounds(void **state)
     nt_scene bare = scene;
     bare.adhesion.hamaker_constant = 0.0; /* Dugdale's stress has a range: beyond it there is nothing */
     assert_int_equal(make(&plan, &bare, NULL), NT_OK);
-    assert_true(nt_plan_cutoff_gap(&plan, 0.0) == fmax(plan.release_gap, plan.capture_gap));
+    assert_true(nt_plan_cutoff_gap(&plan, 0.0) == larger(plan.release_gap, plan.capture_gap));
     const double mass = 1e-12;
     assert_true(fabs(nt_plan_stable_step(&plan, mass) / (2.0 * sqrt(mass / plan.maximum_stiffness)) - 1.0) < 1e-12);
 }

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/nanotouch.h"
 
 enum { MOST = 65536 };
@@ -23,6 +24,14 @@ static nt_session *open_session(const nt_session_setup *setup)
     return session;
 }
 
+/* Neither force nor indentation leaves what was promised. */
+static void check_promise(const nt_session *session, long count)
+{
+    const nt_guarantee promised = nt_session_guarantee(session);
+    for (long k = 0; k < count; k++)
+        assert_true(fabs(records[k].tip_force) < promised.force && -records[k].gap < promised.indentation);
+}
+
 /* The hand goes to `force` in `duration`; returns the records of the `time` from then on. */
 static long feel(nt_session *session, double force, double duration, double time)
 {
@@ -31,6 +40,7 @@ static long feel(nt_session *session, double force, double duration, double time
     const long ticks = lround(time / nt_session_touch(session)->period);
     assert_int_equal(nt_session_advance(session, ticks), NT_OK);
     assert_int_equal(nt_session_read(session, records, MOST), ticks);
+    check_promise(session, ticks);
     return ticks;
 }
 
@@ -56,9 +66,9 @@ static void a_touch_from_approach_to_pull_off(void **state)
             if (touching && r->contact_radius == 0.0)
                 releases++;
             touching = r->contact_radius > 0.0;
-            strongest_push = fmax(strongest_push, r->tip_force);
-            strongest_pull = fmax(strongest_pull, -r->tip_force);
-            read_pull = fmax(read_pull, -r->slave_force);
+            strongest_push = larger(strongest_push, r->tip_force);
+            strongest_pull = larger(strongest_pull, -r->tip_force);
+            read_pull = larger(read_pull, -r->slave_force);
             last_force = r->tip_force;
         }
     }
@@ -118,8 +128,8 @@ static void the_loop_is_quiet_at_its_defaults(void **state)
     const long count = feel(session, 1.0, 0.0, 2.0);
     double low = HUGE_VAL, high = -HUGE_VAL, mean = 0.0, square = 0.0;
     for (long k = 0; k < count; k++) {
-        low = fmin(low, records[k].master_position);
-        high = fmax(high, records[k].master_position);
+        low = smaller(low, records[k].master_position);
+        high = larger(high, records[k].master_position);
         mean += records[k].motor_force / (double)count;
     }
     for (long k = 0; k < count; k++)

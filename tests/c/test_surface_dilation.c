@@ -9,6 +9,7 @@
 
 #include <time.h>
 
+#include "extremes.h"
 #include "nanotouch/random.h"
 #include "nanotouch/surface.h"
 
@@ -87,10 +88,10 @@ static void agrees_with_brute_force(void **state)
                         const double away = hypot((p - i) * DX, (q - j) * DY);
                         const double lift = heights[q * NX + p] - nt_tip_shape_height(&shapes[n], away);
                         if (lift > apex) {
-                            apex = lift;
                             touching[0] = p;
                             touching[1] = q;
                         }
+                        apex = larger(apex, lift);
                     }
                 const long at[2] = {i, j};
                 const double peak =
@@ -120,9 +121,9 @@ static void smooth_bodies_are_touched_between_the_pixels(void **state)
             for (int q = -100; q <= 100; q++)
                 for (int p = -100; p <= 100; p++) {
                     const double x = 0.1 * p * DX, y = 0.1 * q * DY;
-                    apex = fmax(apex, hills(i * DX + x, j * DY + y) - shape_height(&tip, hypot(x, y)));
+                    apex = larger(apex, hills(i * DX + x, j * DY + y) - shape_height(&tip, hypot(x, y)));
                 }
-            worst = fmax(worst, fabs(dilated[j * NX + i] - apex));
+            worst = larger(worst, fabs(dilated[j * NX + i] - apex));
         }
     assert_true(worst < 10e-12);
 }
@@ -154,7 +155,7 @@ static void step_gives_the_profile_of_the_tip(void **state)
     dilate(heights, &tip, dilated);
     for (int j = 0; j < NY; j++)
         for (int i = 0; i < NX; i++) {
-            const double profile = i >= 80 ? 40e-9 : fmax(0.0, 40e-9 - shape_height(&tip, (80 - i) * DX));
+            const double profile = i >= 80 ? 40e-9 : larger(0.0, 40e-9 - shape_height(&tip, (80 - i) * DX));
             assert_true(fabs(dilated[j * NX + i] - profile) < 1e-21);
         }
 }
@@ -217,8 +218,8 @@ static void large_maps_keep_floor_and_ridge(void **state)
     print_message("512 x 512, grating: %.3f s\n", seconds);
     double lowest = out[0], highest = out[0];
     for (int p = 0; p < N * N; p++) {
-        lowest = out[p] < lowest ? out[p] : lowest;
-        highest = out[p] > highest ? out[p] : highest;
+        lowest = smaller(lowest, out[p]);
+        highest = larger(highest, out[p]);
     }
     assert_true(lowest == 0.0);
     assert_true(highest == grating.height);

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "extremes.h"
 #include "nanotouch/random.h"
 #include "nanotouch/surface.h"
 
@@ -40,21 +41,21 @@ static nt_radius_map map_of(double (*height)(double x, double y), nt_surface *su
 static double ball(double x, double y)
 {
     const double r2 = (x - X0) * (x - X0) + (y - Y0) * (y - Y0);
-    return sqrt(fmax(60e-9 * 60e-9 - r2, 40e-9 * 40e-9));
+    return sqrt(larger(60e-9 * 60e-9 - r2, 40e-9 * 40e-9));
 }
 
 /* A bowl of 80 nm: 1/R_eff = 1/R - 1/80 nm. */
 static double bowl(double x, double y)
 {
     const double r2 = (x - X0) * (x - X0) + (y - Y0) * (y - Y0);
-    return -sqrt(fmax(80e-9 * 80e-9 - r2, 30e-9 * 30e-9));
+    return -sqrt(larger(80e-9 * 80e-9 - r2, 30e-9 * 30e-9));
 }
 
 /* A cylinder of 50 nm along y: R_eff = R sqrt(50/(50 + 20)). */
 static double cylinder(double x, double y)
 {
     (void)y;
-    return sqrt(fmax(50e-9 * 50e-9 - (x - X0) * (x - X0), 20e-9 * 20e-9));
+    return sqrt(larger(50e-9 * 50e-9 - (x - X0) * (x - X0), 20e-9 * 20e-9));
 }
 
 /* Where the body is analytic under the tip: 1 %, left by the parabola between the pixels, at every place; without it
@@ -72,7 +73,7 @@ static void spheres_on_spheres(void **state)
         double worst = 0.0;
         for (double x = -15e-9; x <= 15e-9; x += 0.37e-9)
             for (double y = -15e-9; y <= 15e-9; y += 0.41e-9)
-                worst = fmax(worst, fabs(nt_radius_map_eval(&map, X0 + x, Y0 + y).radius / bodies[b].expected - 1.0));
+                worst = larger(worst, fabs(nt_radius_map_eval(&map, X0 + x, Y0 + y).radius / bodies[b].expected - 1.0));
         if (!(worst < 0.01))
             fail_msg("body %d: %g", (int)b, worst);
     }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "extremes.h"
 #include "nanotouch/touch.h"
 
 typedef struct bench {
@@ -44,7 +45,7 @@ static inline nt_status bench_open(bench *b, const nt_rig *rig, const nt_setting
 static inline double bench_force(const bench *b)
 {
     const double k_c = b->touch.rig.probe.spring_constant;
-    return fmax(0.0, b->sample.stage_position - b->surface) * k_c * b->stiffness / (k_c + b->stiffness);
+    return larger(0.0, b->sample.stage_position - b->surface) * k_c * b->stiffness / (k_c + b->stiffness);
 }
 
 static inline void bench_advance_master(bench *b, double force)
@@ -66,9 +67,9 @@ static inline void bench_tick(bench *b)
     b->sample.operator_force = b->push;
     nt_touch_step(&b->touch, &b->state, &b->sample, &b->command);
     bench_advance_master(b, b->push + b->command.motor_force);
-    b->largest_force = fmax(b->largest_force, bench_force(b));
-    b->fastest_motor = fmax(b->fastest_motor, fabs(b->command.motor_force - last.motor_force));
-    b->fastest_stage = fmax(b->fastest_stage, fabs(b->command.stage_position - last.stage_position));
+    b->largest_force = larger(b->largest_force, bench_force(b));
+    b->fastest_motor = larger(b->fastest_motor, fabs(b->command.motor_force - last.motor_force));
+    b->fastest_stage = larger(b->fastest_stage, fabs(b->command.stage_position - last.stage_position));
     ++b->sample.tick;
 }
 

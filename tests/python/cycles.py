@@ -226,6 +226,6 @@ def largest_step(plan: Plan, rng: np.random.Generator, count: int, move: float =
         change = np.abs(there.Fz - here.Fz)
         stiff = np.maximum(np.abs(here.k), np.abs(there.k)) * move
         rounding = 1e-15 * max(np.abs(here.Fz).max(), plan.pull_off_force)
-        steps = max(steps, float(change.max()))
-        ratio = max(ratio, float((change / (stiff + rounding)).max()))
+        steps = float(np.maximum(steps, change.max()))  # max() may lose a NaN
+        ratio = float(np.maximum(ratio, (change / (stiff + rounding)).max()))
     return steps, ratio

@@ -109,7 +109,8 @@ def compare(scene: Scene, rtol: float, count: int = 40) -> Outcome | Error:
         scale = np.maximum(np.abs(truth), plan.scale)
         if not np.isfinite(planned).all():
             return Outcome(plan, np.inf, False)
-        worst = max(worst, float(np.max(np.divide(error, scale, out=np.zeros_like(error), where=error > 0), initial=0)))
+        share = np.divide(error, scale, out=np.zeros_like(error), where=error != 0)
+        worst = float(np.maximum(worst, share.max(initial=0.0)))  # max() may lose a NaN
     return Outcome(plan, worst, _folds_hold(plan, scene))
 
 
@@ -134,7 +135,7 @@ def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Genera
             value = Interaction(plan, history).eval(poses)  # type: ignore[arg-type]
             truth = np.asarray(reference.force(scene, value.gap, history=history, radius=radius))  # type: ignore[arg-type]
             error = np.abs(value.Fz - truth) / np.maximum(np.maximum(np.abs(truth), plan.scale), 1e-300)
-            worst = max(worst, float(error[away].max(initial=0.0)))
+            worst = float(np.maximum(worst, error[away].max(initial=0.0)))
     return Outcome(plan, worst, True)
 
 

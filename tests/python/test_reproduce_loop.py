@@ -29,7 +29,7 @@ def test_script_is_a_sinusoid() -> None:
     script = touching.sinusoid(1.0, 0.5, 4.0, 1.0)
     assert sum(step.duration for step in script) == pytest.approx(4.0)
     forces = [step.operator_force for step in script]
-    assert (min(forces), max(forces), forces[-1]) == pytest.approx((0.5, 1.5, 0.5))
+    assert (np.min(forces), np.max(forces), forces[-1]) == pytest.approx((0.5, 1.5, 0.5))
 
 
 def test_literal_scale_leaves_the_hand_alone(statements: dict[int, list[Statement]]) -> None:

@@ -200,7 +200,7 @@ def test_plans_keep_what_they_are_asked_for(planned: list[plans.Row]) -> None:
     assert all(row.bound > row.rtol for row in refused)
     # bounds above rounding are no more than 10 times too cautious, in the median of all steps hardly at all
     tight = [step[0].error / step[0].bound for step in plans.steps(kept) if step[0].error > plans.ROUNDING]
-    assert min(tight) > 0.1
+    assert np.min(tight) > 0.1
     assert np.median(tight) > 0.5
 
 
@@ -233,7 +233,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     headers, rows = read(tmp_path / "plant.csv")
     assert all(header.endswith(("]", "(name)")) for header in headers)
     cost = {(float(row[0]), row[1], float(row[2])): float(row[3]) for row in rows}
-    assert max(float(row[4]) for row in rows) < 1e-3  # pressed at rest: no sub-step and no model matters
+    assert all(float(row[4]) < 1e-3 for row in rows)  # pressed at rest: no sub-step and no model matters
     for rate in (1e3, 1e4):  # measured 300 and 8: sub-steps are what the dynamic probe costs
         at_rest = next(value for (at, probe, _), value in cost.items() if at == rate and probe == "quasi-static")
         assert cost[rate, "dynamic", 0.25] > 10.0 * at_rest
