@@ -14,13 +14,12 @@ target_compile_options(
             -Wshadow
             -Wconversion
             $<$<C_COMPILER_ID:GNU>:-Wdouble-promotion> # clang takes NAN and INFINITY for floats
+            # An enumerator is an int, which a double holds exactly.
+            $<$<C_COMPILER_ID:Clang,AppleClang>:-Wno-enum-float-conversion>
+            $<$<BOOL:${NANOTOUCH_WERROR}>:-Werror>
             $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
             # isnan() and its like in mingw-w64's math.h are macros that cast to float.
             $<$<PLATFORM_ID:Windows>:-Wno-float-conversion>>)
-# Newer compilers than the ones this was written with invent warnings that must not stop anybody.
-if(NANOTOUCH_WERROR AND CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_C_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(nanotouch_flags INTERFACE -Werror)
-endif()
 
 # What every target of ours shares: flags, hidden symbols, code that a shared library or a Python extension can contain.
 function(nanotouch_target target)

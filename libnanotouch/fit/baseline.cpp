@@ -10,6 +10,7 @@
 #include <complex>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -214,8 +215,8 @@ Values even_residuals(const Points &points, const Values &rest)
 {
     std::vector<std::size_t> order(rest.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return points.x[a] < points.x[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return std::pair(points.x[a], a) < std::pair(points.x[b], b); });
     const double first = points.x[order.front()], travel = points.x[order.back()] - first;
     Values even(grid);
     for (std::size_t i = 0, next = 1; i < grid; i++) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace nanotouch
 {
@@ -29,8 +30,8 @@ Branch::Branch(const nt_fit_segment &segment, bool waves)
     const auto count = static_cast<std::size_t>(segment.count);
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return segment.z[a] < segment.z[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return std::pair(segment.z[a], a) < std::pair(segment.z[b], b); });
     z.reserve(count);
     force.reserve(count);
     for (const std::size_t i : order) {

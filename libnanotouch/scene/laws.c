@@ -33,7 +33,7 @@ static void charges_of(nt_plan *plan, const nt_scene *scene)
     const double potential = nt_scene_potential(scene);
     plan->laws.electrostatic = (nt_electrostatic){R, potential, hold};
     plan->laws.electrostatic_tip = (nt_electrostatic_tip){R, scene->tip.half_angle, scene->tip.height, potential, hold};
-    const int felt = scene->tip.conducting && scene->medium.kind != NT_MEDIUM_LIQUID;
+    const int felt = scene->tip.conducting != 0.0 && scene->medium.kind != NT_MEDIUM_LIQUID;
     plan->laws.charge = (nt_point_charge){R, felt ? scene->sample.charge : 0.0, hold};
 }
 

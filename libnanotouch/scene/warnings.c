@@ -74,7 +74,8 @@ static void check_unused(nt_plan *plan, const nt_scene *scene)
     const nt_medium *medium = &scene->medium;
     const nt_adhesion *adhesion = &scene->adhesion;
     const int liquid = medium->kind == NT_MEDIUM_LIQUID, ions = liquid && medium->ionic_strength > 0.0;
-    const int connected = !liquid && tip->conducting && sample->conducting && sample->grounded;
+    const int conducting = tip->conducting != 0.0;
+    const int connected = !liquid && conducting && sample->conducting != 0.0 && sample->grounded != 0.0;
     const int both_known = tip->work_function > 0.0 && sample->work_function > 0.0;
     const double potential = fmax(fabs(tip->surface_potential), fabs(sample->surface_potential));
     const int meniscus = nt_scene_adhesion_source(scene) == NT_ADHESION_MENISCUS;
@@ -86,7 +87,7 @@ static void check_unused(nt_plan *plan, const nt_scene *scene)
     } facts[] = {
         {connected, "contact potential, which does not act between these bodies", "V", adhesion->contact_potential},
         {both_known, "work function of one body alone, not used", "V", fmax(tip->work_function, sample->work_function)},
-        {!liquid && tip->conducting, "trapped charge, which does not act on this tip here", "C", sample->charge},
+        {!liquid && conducting, "trapped charge, which does not act on this tip here", "C", sample->charge},
         {adhesion->given == NT_ADHESION_GIVEN_PULL_OFF,
          "measured pull-off force, not used: the adhesion is given otherwise", "N", adhesion->pull_off_force},
         {!(meniscus && by_energies), "surface energy of the tip, not used: water holds", "J/m^2",
