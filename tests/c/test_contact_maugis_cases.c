@@ -35,10 +35,11 @@ static nt_maugis prepared(double lambda)
     return maugis;
 }
 
-/* Error in units of 2^-53 of what one rounding of the result and one of the input amount to. */
+/* Error in units of 2^-53 of what one rounding of the result and one of the input amount to; none of a radius of 0
+ * whose rate is 0, too. */
 static double ulps(double error, double scale, double rate, double given)
 {
-    return fabs(error) / (UNIT_ROUNDING * (scale + fabs(rate * given)));
+    return error == 0.0 ? 0.0 : fabs(error) / (UNIT_ROUNDING * (scale + fabs(rate * given)));
 }
 
 /* Measured: force 17, radius 7. Raw: where k d is not above the force, 1e-13. */
