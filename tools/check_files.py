@@ -59,13 +59,13 @@ def lost_nans(path: Path, text: str) -> Iterator[tuple[int, str]]:
             yield text.count("\n", 0, match.start()) + 1, "max and min may lose a NaN: np.maximum, np.minimum"
         return
     for match in re.finditer(r"\bf(max|min)[fl]?\(", text):
-        yield text.count("\n", 0, match.start()) + 1, f"f{match[1]} loses a NaN: tests/c/extremes.h"
+        yield text.count("\n", 0, match.start()) + 1, f"f{match[1]} loses a NaN: tests/c/larger.h"
     for match in re.finditer(r"\bif \(([^;]+?) [<>]=? ([^;]+?)\)\s+\{?\s*(\S+) = ([^;]+);", text):
         if {match[1], match[2]} == {match[3], match[4]} and is_double(match[3], text):
-            yield text.count("\n", 0, match.start()) + 1, "a comparison loses a NaN: tests/c/extremes.h"
+            yield text.count("\n", 0, match.start()) + 1, "a comparison loses a NaN: tests/c/larger.h"
     for match in re.finditer(r"(?:=|\breturn) ([^;=]+?) [<>]=? ([^;=]+?) \? ([^;]+?) : ([^;]+?);", text):
         if {match[1], match[2]} == {match[3], match[4]} and (is_double(match[1], text) or is_double(match[2], text)):
-            yield text.count("\n", 0, match.start()) + 1, "a comparison loses a NaN: tests/c/extremes.h"
+            yield text.count("\n", 0, match.start()) + 1, "a comparison loses a NaN: tests/c/larger.h"
 
 
 def is_double(name: str, text: str) -> bool:

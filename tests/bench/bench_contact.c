@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "../c/extremes.h"
+#include "../c/larger.h"
 #include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/material.h"

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "../c/extremes.h"
+#include "../c/larger.h"
 #include "nanotouch/nanotouch.h"
 
 enum { TICKS = 20000 };

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "../c/extremes.h"
+#include "../c/larger.h"
 #include "nanotouch/nanotouch.h"
 
 enum { REPETITIONS = 9, POINTS = 64 };

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "../c/extremes.h"
+#include "../c/larger.h"
 #include "../c/loop_fixture.h"
 
 enum { REPETITIONS = 7 };

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "loop_fixture.h"
 
 #define FOREVER HUGE_VAL

@@ -11,7 +11,7 @@
 
 #include "../reference/jkr_table.h"
 #include "assertions.h"
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/material.h"
 

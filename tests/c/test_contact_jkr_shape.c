@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/geometry.h"
 
 static const nt_jkr_shape cone = {{NT_SHAPE_CONE, 0, 0.0, 0.6, 0.0}, 1e6, 0.05};

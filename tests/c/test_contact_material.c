@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/material.h"
 
 /* The paper's silicon pair, E = 135 GPa, nu = 0.35 twice: E* = 135/(2 (1 - 0.35^2)) = 76.92 GPa. */

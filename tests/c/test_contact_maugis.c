@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "maugis_fixture.h"
 
 static void no_work_of_adhesion_is_hertz_exactly(void **state)

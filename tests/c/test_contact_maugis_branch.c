@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "maugis_fixture.h"
 
 /* Where the displacement fold leaves the contact, lambda* = (9/(16 (1 - 1/pi)))^(1/3) = 0.937947... */

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "maugis_fixture.h"
 
 /* other = load or indentation, the one that is not given; rate, radius_rate: its slope and that of a. */

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "../reference/maugis_table.h"
-#include "extremes.h"
+#include "larger.h"
 #include "maugis_fixture.h"
 
 /* The error in units of 2^-53 (1 + what one rounding of the indentation does to the result). Measured: force 12,

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "maugis_fixture.h"
 #include "nanotouch/contact_table.h"
 

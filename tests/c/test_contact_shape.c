@@ -10,7 +10,7 @@
 
 #include "../reference/geometry_table.h"
 #include "assertions.h"
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/geometry.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "core/lti.h"
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "touch_fixture.h"
 
 static nt_settings settings_of(const nt_rig *rig)

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/servo.h"
 

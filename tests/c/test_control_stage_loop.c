@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/control.h"
 
 #define PI 3.14159265358979323846

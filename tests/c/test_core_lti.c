@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "core/lti.h"
-#include "extremes.h"
+#include "larger.h"
 
 /* Chain of four integrators: phi and gamma are the powers T^k / k!, to a few roundings. */
 static void integrators_give_taylor_powers(void **state)

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "cantilever_fields.h"
-#include "extremes.h"
+#include "larger.h"
 
 #define PI 3.14159265358979323846
 #define BOLTZMANN 1.380649e-23

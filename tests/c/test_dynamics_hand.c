@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/dynamics.h"
 
 static const nt_hand still; /* a pure force */

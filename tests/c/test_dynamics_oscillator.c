@@ -10,7 +10,7 @@
 
 #include "core/lti.h"
 #include "dynamics/oscillator.h"
-#include "extremes.h"
+#include "larger.h"
 
 /* m = 1, w0 = 1 s^-1; damping from none through critical to 1e6, steps from 1e-9 to 100 rad. Relative to the size of
  * each entry; the exponential itself is good to its norm times 2^-52, the phase to w t. */

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/dynamics.h"
 
 static const double periods[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}; /* 100 Hz .. 1 MHz */

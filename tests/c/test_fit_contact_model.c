@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/fit.h"
 #include "nanotouch/geometry.h"
 

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
 #include "force_laws.h"
+#include "larger.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/material.h"
 

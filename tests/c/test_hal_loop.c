@@ -13,7 +13,7 @@
 #include <sys/time.h>
 #include <time.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/hal.h"
 
 typedef struct witness {

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/sim.h"
 
 #define T 1e-4

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/random.h"
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/random.h"

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/nanotouch.h"
 #include "nanotouch/random.h"
 

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
 #include "fault_cases.h"
+#include "larger.h"
 #include "nanotouch/random.h"
 
 /* bound: of the force [N]. */

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
 #include "fault_cases.h"
+#include "larger.h"
 
 /* Beside those two that blind it, any two that take both of its readings. */
 static int takes(const nt_fault *fault, nt_channel channel)

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "loop_fixture.h"
 #include "nanotouch/random.h"
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/nanotouch.h"
 
 enum { MOST = 65536 };

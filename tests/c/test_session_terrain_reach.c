@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "larger.h"
 #include "nanotouch/terrain.h"
 
 enum { N = 161 };
@@ -31,7 +32,7 @@ static double wave(double x, double y)
 static double ball(double x, double y)
 {
     const double r2 = (x - X0) * (x - X0) + (y - X0) * (y - X0);
-    return sqrt(fmax(BALL * BALL - r2, 0.0)) - BALL;
+    return sqrt(larger(BALL * BALL - r2, 0.0)) - BALL;
 }
 
 static nt_terrain *terrain_of(double (*height)(double x, double y), int dilated)

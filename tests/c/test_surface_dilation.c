@@ -9,7 +9,7 @@
 
 #include <time.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/random.h"
 #include "nanotouch/surface.h"
 

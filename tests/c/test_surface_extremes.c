@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
+#include "larger.h"
 #include "nanotouch/random.h"
 #include "surface/extremes.h"
 
@@ -77,7 +78,7 @@ static void waves_along_a_path(void **state)
     const double leg = hypot(1.0 / KX, 1.0 / KY);
     assert_within(turned.highest, A + B, 1e-5 * A);
     assert_within(turned.lowest, (A + B) * cos(2.0), 1e-5 * A);
-    assert_within(turned.steepest, fmax((A + B) / leg, A * KX), 1.2e-3 * A * KX);
+    assert_within(turned.steepest, larger((A + B) / leg, A * KX), 1.2e-3 * A * KX);
 }
 
 /* A trough in the middle of a piece, where the slope is 0: what its ends rise by is the remainder alone. */
@@ -100,7 +101,7 @@ static void a_trough_in_the_middle(void **state)
 static double ball(double x, double y)
 {
     const double u = x - 0.5 * WIDTH, v = y - 0.5 * HEIGHT;
-    return sqrt(fmax(BALL * BALL - u * u - v * v, 0.01 * BALL * BALL));
+    return sqrt(larger(BALL * BALL - u * u - v * v, 0.01 * BALL * BALL));
 }
 
 /* Of a ball: z = (R^2 - r^2)^(1/2), slope r/z; a square about its middle is steepest in its corners. */
@@ -139,9 +140,9 @@ static void noise_is_never_above_its_bounds(void **state)
             const double t = x[0] + (x[1] - x[0]) * i / (DENSE * (SMALL_X - 1.0));
             const nt_height_value at =
                 nt_surface_height(&surface, t, y[0] + (y[1] - y[0]) * j / (DENSE * (SMALL_Y - 1.0)));
-            highest = at.z > highest ? at.z : highest;
-            lowest = at.z < lowest ? at.z : lowest;
-            steepest = hypot(at.zx, at.zy) > steepest ? hypot(at.zx, at.zy) : steepest;
+            highest = larger(highest, at.z);
+            lowest = smaller(lowest, at.z);
+            steepest = larger(steepest, hypot(at.zx, at.zy));
         }
     assert_true(found.highest >= highest && found.highest <= highest + 1e-3 * 3e-9);
     assert_true(found.lowest <= lowest && found.lowest >= lowest - 1e-3 * 3e-9);
@@ -163,9 +164,9 @@ static void paths_over_noise(void **state)
             const double u = p[2] - p[0], v = p[3] - p[1];
             const nt_height_value at = nt_surface_height(&surface, p[0] + t * u, p[1] + t * v);
             const double slope = fabs(at.zx * u + at.zy * v) / hypot(u, v);
-            highest = at.z > highest ? at.z : highest;
-            lowest = at.z < lowest ? at.z : lowest;
-            steepest = slope > steepest ? slope : steepest;
+            highest = larger(highest, at.z);
+            lowest = smaller(lowest, at.z);
+            steepest = larger(steepest, slope);
         }
         const nt_extremes found = nt_extremes_on_path(&surface, NULL, xy, 4);
         assert_true(found.highest >= highest - 1e-24 && found.highest <= highest + 1e-3 * 3e-9);

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "extremes.h"
+#include "larger.h"
 #include "nanotouch/touch.h"
 
 typedef struct bench {
