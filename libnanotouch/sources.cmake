@@ -76,6 +76,15 @@ set(nanotouch_sources_scene
     scene/plan.c
     scene/pull_off.c
     scene/scene.c
+    scene/terms/capillary.c
+    scene/terms/charge.c
+    scene/terms/contact.c
+    scene/terms/double_layer.c
+    scene/terms/electrostatic.c
+    scene/terms/hydration.c
+    scene/terms/rows.c
+    scene/terms/steric.c
+    scene/terms/vdw.c
     scene/warnings.c)
 set(nanotouch_sources_hal hal/hal.c)
 set(nanotouch_sources_dynamics

@@ -3,7 +3,7 @@
  * hundred at most. No plan can then cost more than everything-on; where two cost the same, the truer one is taken. */
 #include <string.h>
 
-#include "scene/parts.h"
+#include "scene/terms/term.h"
 
 typedef struct combination {
     int index[NT_PLAN_TERMS];
@@ -43,13 +43,17 @@ static nt_status refuse(nt_problem *problem, const char *name, double value, dou
 
 static void take(nt_plan *plan, const nt_plan_options *options, const combination *best)
 {
-    static const char *const names[NT_PLAN_TERMS] = {"contact",      "vdw",       "electrostatic", "charge",
-                                                     "double_layer", "hydration", "steric"};
+    plan->on_count = 0;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
-        plan->terms[term].name = names[term];
-        plan->terms[term].form = options->option[term][best->index[term]].form;
+        const nt_form form = options->option[term][best->index[term]].form;
+        plan->terms[term].name = nt_term_rows[term]->words.name;
+        plan->terms[term].title = nt_term_rows[term]->words.title;
+        plan->terms[term].words = nt_term_form_of(plan, term, form)->words;
+        plan->terms[term].form = form;
         plan->terms[term].error = options->option[term][best->index[term]].error;
         plan->terms[term].cost = options->option[term][best->index[term]].cost;
+        if (term != NT_PLAN_CONTACT && form != NT_FORM_OFF)
+            plan->on[plan->on_count++] = term;
     }
     plan->bound.force_error = best->error;
     plan->cost = best->cost;

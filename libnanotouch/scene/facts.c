@@ -13,7 +13,7 @@ static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
         const nt_form form = nt_plan_contact_form(plan);
         sum = nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, -gap);
     }
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) {
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
         sum.U += value.U;
         sum.F += value.F;
@@ -84,14 +84,15 @@ static double strongest_hold(const nt_plan *plan)
     double deepest = -3.0 * reach;
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         deepest = -fmax(reach, 3.0 * fabs(plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale));
-    const double corners[] = {0.0, plan->capture_gap, release, plan->laws.vdw.minimum_gap,
-                              plan->laws.electrostatic.minimum_gap};
+    const double corners[] = {0.0, plan->capture_gap, release};
     double best = fmax(largest_of(plan, pull_out, (sweep){deepest, release, 0}),
                        largest_of(plan, pull_out, (sweep){-NEAREST, deepest, 1}));
     if (release > NEAREST)
         best = fmax(best, largest_of(plan, pull_out, (sweep){NEAREST, release, 1}));
-    for (int i = 0; i < 5; ++i)
+    for (int i = 0; i < 3; ++i)
         best = fmax(best, pull_out(plan, fmin(corners[i], release)));
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        best = fmax(best, pull_out(plan, fmin(nt_plan_hold_gap(plan, term), release)));
     return best;
 }
 
@@ -115,10 +116,11 @@ static double steepest_pull(const nt_plan *plan)
     if (capture > NEAREST)
         steepest = fmax(fmax(steepest, largest_of(plan, growth_in, (sweep){-capture, capture, 0})),
                         largest_of(plan, growth_in, (sweep){NEAREST, capture, 1}));
-    const double corners[] = {capture, 0.0, capture * outside, plan->laws.vdw.minimum_gap * outside,
-                              plan->laws.electrostatic.minimum_gap * outside};
-    for (int i = 0; i < 5; ++i)
+    const double corners[] = {capture, 0.0, capture * outside};
+    for (int i = 0; i < 3; ++i)
         steepest = fmax(steepest, growth_in(plan, corners[i]));
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        steepest = fmax(steepest, growth_in(plan, nt_plan_hold_gap(plan, term) * outside));
     return steepest;
 }
 
@@ -145,7 +147,7 @@ static double largest_ratio(const nt_plan *plan)
 static double force_limit(const nt_plan *plan, double gap)
 {
     double sum = 0.0;
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (plan->terms[term].form != NT_FORM_OFF)
             sum += fmax(nt_plan_law_limit(plan, term, gap, NT_QUANTITY_FORCE),
                         fabs(nt_plan_law_eval(plan, term, plan->terms[term].form, gap).F));
@@ -179,7 +181,7 @@ double nt_plan_cutoff_gap(const nt_plan *plan, double force)
 double nt_plan_stable_step(const nt_plan *plan, double mass)
 {
     double stiffest = plan->maximum_stiffness;
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (plan->terms[term].form != NT_FORM_OFF)
             stiffest += largest_ratio(plan) * nt_plan_law_limit(plan, term, 0.0, NT_QUANTITY_STIFFNESS);
     return 2.0 * sqrt(mass / stiffest);

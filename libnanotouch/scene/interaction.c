@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "nanotouch/interaction.h"
-#include "scene/parts.h"
+#include "scene/terms/term.h"
 
 static void add(nt_law_value *sum, nt_law_value term)
 {
@@ -30,29 +30,23 @@ nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
     return place;
 }
 
-static double radius_at(const nt_plan *plan, const nt_place *place)
+double nt_plan_radius_at(const nt_plan *plan, const nt_place *place)
 {
     return place ? place->radius.radius : plan->contact.radius;
 }
 
-static double release_gap(const nt_plan *plan, const nt_place *place)
-{
-    return nt_plan_release_gap(plan, radius_at(plan, place));
-}
-
-/* Captured by contact or meniscus: already, or because the gap is inside the capture range. */
-static int is_attached(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+int nt_plan_is_attached(const nt_plan *plan, int attached, const nt_place *place, double gap)
 {
     if (gap <= plan->capture_gap)
         return 1;
-    return state->attached && gap <= release_gap(plan, place);
+    return attached && gap <= nt_plan_release_gap(plan, nt_plan_radius_at(plan, place));
 }
 
-static nt_bank_value contact_at(const nt_plan *plan, const nt_place *place, double gap)
+nt_bank_value nt_plan_contact_at(const nt_plan *plan, const nt_place *place, double gap)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     if (nt_form_is_local(form))
-        return nt_plan_local_eval(plan, form, radius_at(plan, place), -gap);
+        return nt_plan_local_eval(plan, form, nt_plan_radius_at(plan, place), -gap);
     return (nt_bank_value){nt_plan_contact_eval(plan, form, -gap), 0.0};
 }
 
@@ -60,19 +54,20 @@ static nt_bank_value contact_at(const nt_plan *plan, const nt_place *place, doub
 static nt_bank_value eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
 {
     nt_bank_value sum = {{0.0, 0.0, 0.0, 0.0}, 0.0};
-    for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term)
-        if (plan->terms[term].form != NT_FORM_OFF)
-            add(&sum.law, nt_plan_law_eval(plan, term, plan->terms[term].form, gap));
+    for (int i = 0; i < plan->on_count; ++i) {
+        const int term = plan->on[i];
+        add(&sum.law, nt_term_rows[term]->eval(nt_term_law(plan, term), plan->terms[term].form, gap));
+    }
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     if (nt_form_is_local(form)) { /* beside contact all is proportional to the effective radius */
-        const double ratio = radius_at(plan, place) / plan->contact.radius;
+        const double ratio = nt_plan_radius_at(plan, place) / plan->contact.radius;
         sum.dU_dR = sum.law.U / plan->contact.radius;
         sum.law.U *= ratio;
         sum.law.F *= ratio;
         sum.law.k *= ratio;
     }
-    if (form != NT_FORM_OFF && (isnan(gap) || is_attached(plan, state, place, gap))) {
-        const nt_bank_value contact = contact_at(plan, place, gap);
+    if (form != NT_FORM_OFF && (isnan(gap) || nt_plan_is_attached(plan, state->attached, place, gap))) {
+        const nt_bank_value contact = nt_plan_contact_at(plan, place, gap);
         add(&sum.law, contact.law);
         sum.dU_dR += contact.dU_dR;
     }
@@ -107,13 +102,8 @@ void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state
 {
     if (isnan(gap))
         return;
-    const int attached = is_attached(plan, state, place, gap);
-    if (attached != state->attached && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF) {
-        const double where = attached ? plan->capture_gap : nt_plan_last_hold(release_gap(plan, place));
-        const double U = contact_at(plan, place, where).law.U;
-        state->dissipated += fmax(0.0, attached ? -U : U);
-    }
-    state->attached = attached;
+    const nt_term_row *contact = nt_term_rows[NT_PLAN_CONTACT]; /* the one law with a history */
+    state->dissipated += contact->advance(plan, &state->attached, place, gap, 0.0).dissipated;
 }
 
 void nt_interaction_advance(const nt_plan *plan, nt_interaction_state *state, const nt_pose *pose)

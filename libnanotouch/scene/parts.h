@@ -39,14 +39,17 @@ double nt_plan_last_hold(double release_gap);
 /* Pull-off, stiffness, jump-in and folds of a local contact: the worst of the surface. */
 void nt_plan_local_facts(nt_plan *plan, double maximum_load);
 
-/* laws.c: everything beside contact. */
+/* laws.c: everything beside contact, by the rows of terms/. */
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
-/* One of the terms beside contact, in a form, at a gap. */
+/* One of these terms in a form at a gap; the sum of all of them in full [N]. */
 nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, double gap);
-/* What is taken out of w, because the tail pulls it already (E5b) [J/m^2]. */
+double nt_plan_beside_at(const nt_plan *plan, double gap);
+/* What is taken out of w, because a tail pulls it already (E5b) [J/m^2]. */
 double nt_plan_tail_share(const nt_plan *plan);
 /* The largest |F| or |k| of a term at all gaps from `gap` on; signs that could cancel are not trusted. */
 double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity quantity);
+/* The gap below which a term keeps its value [m]; 0 for contact. */
+double nt_plan_hold_gap(const nt_plan *plan, int term);
 /* The fullest form of a term that the scene has, NT_FORM_OFF if it has none. */
 nt_form nt_plan_full_form(const nt_plan *plan, int term);
 
@@ -70,6 +73,9 @@ void nt_plan_rivals_of(nt_plan *plan);
 
 /* options.c: the forms of every term with error and cost. */
 enum { NT_OPTIONS_MAX = 6 };
+#define NT_SAMPLED                                                                                                     \
+    1.05 /* a largest value that was sampled on a smooth curve may be this much short of the true one                  \
+          */
 typedef struct nt_plan_options {
     struct {
         nt_form form;
@@ -78,11 +84,22 @@ typedef struct nt_plan_options {
     int count[NT_PLAN_TERMS];
 } nt_plan_options;
 void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options);
+/* Adds a form; its cost is that of its row. */
+void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_form form, double error);
+/* An error in the demanded quantity as a share of its scale. */
+double nt_plan_share(const nt_plan *plan, double error);
 
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
 
 /* warnings.c: what the bound does not cover. */
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene);
+void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning);
+
+/* interaction.c: the effective radius at a place (NULL: the tip's own) [m]; the contact there, with dU/dR; whether it
+ * is captured by contact or meniscus: already, or because the gap is inside the capture range. */
+double nt_plan_radius_at(const nt_plan *plan, const nt_place *place);
+nt_bank_value nt_plan_contact_at(const nt_plan *plan, const nt_place *place, double gap);
+int nt_plan_is_attached(const nt_plan *plan, int attached, const nt_place *place, double gap);
 
 #endif

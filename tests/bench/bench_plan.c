@@ -170,9 +170,9 @@ int main(void)
         return 1;
     const nt_plan_laws *l = &plan.laws;
     plan.laws.charge.charge = 1e-18;
-    plan.laws.double_layer = (nt_double_layer){l->vdw.radius, 1e-9, 78.4, 0.02, 0.01, 2e-10};
-    plan.laws.hydration = (nt_hydration){l->vdw.radius, 1e-3, 3e-10, 0.0, 3e-10, 2e-10};
-    plan.laws.steric = (nt_steric){l->vdw.radius, 20e-9, 10e-9, 300.0, 2e-10};
+    plan.laws.double_layer = (nt_double_layer){l->vdw.sphere.radius, 1e-9, 78.4, 0.02, 0.01, 2e-10};
+    plan.laws.hydration = (nt_hydration){l->vdw.sphere.radius, 1e-3, 3e-10, 0.0, 3e-10, 2e-10};
+    plan.laws.steric = (nt_steric){l->vdw.sphere.radius, 20e-9, 10e-9, 300.0, 2e-10};
     const double R = plan.contact.radius, E = plan.contact.effective_modulus;
     hertz_time = MEASURE(hertz(-gap, R, E));
     printf("{\n  \"hertz\": {\"ns\": %.2f, \"hertz\": 1.0}", 1e9 * hertz_time);

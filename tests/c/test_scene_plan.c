@@ -110,9 +110,9 @@ static void bounds_of_what_is_left_out_are_true_maxima(void **state)
             double largest = 0.0;
             assert_int_equal(plan.terms[term].form, NT_FORM_OFF);
             for (double gap = -5e-9; gap < 100e-9; gap += 1e-12) {
-                const double F = term == NT_PLAN_VDW ? nt_vdw_eval(&plan.laws.vdw, gap).F
+                const double F = term == NT_PLAN_VDW ? nt_vdw_eval(&plan.laws.vdw.sphere, gap).F
                                  : term == NT_PLAN_ELECTROSTATIC
-                                     ? nt_electrostatic_eval(&plan.laws.electrostatic, gap).F
+                                     ? nt_electrostatic_eval(&plan.laws.electrostatic.sphere, gap).F
                                      : nt_point_charge_eval(&plan.laws.charge, gap).F;
                 largest = larger(largest, fabs(F));
             }

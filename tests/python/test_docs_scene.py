@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from nanotouch import Demand, Rig, Scene, presets
 from nanotouch.interaction import STATE_SIZE
+from nanotouch.plan import ROWS
 from nanotouch.scene import Quantity
 from nanotouch_app.main import main
 from nanotouch_app.plan import PRESETS
@@ -67,15 +68,14 @@ def test_refusals_are_those_of_the_page(capsys: pytest.CaptureFixture[str]) -> N
         assert capsys.readouterr().err.strip() == answer
 
 
-def test_costs_are_those_of_the_page() -> None:
-    """Every term of a plan has the cost of its row; all forms that presets and their neighbours come to are asked."""
-    rows = re.findall(r"^\| (contact|vdw|electrostatic|charge|double layer|hydration|steric) \| (.*?) \| ([\d, ]+) \|$",
-                      page("plan"), re.MULTILINE)  # fmt: skip
-    told = {}
-    for term, forms, costs in rows:
-        names = [forms] if ":" in forms or "in place" in forms else forms.split(", ")
-        for form, cost in zip(names, costs.split(", "), strict=True):
-            told[term, form] = float(cost)
+def test_laws_are_up_to_date() -> None:
+    written = runpy.run_path(str(ROOT / "tools" / "terms.py"))["page"]()
+    assert page("terms") == written, "run .venv/bin/python tools/terms.py > docs/terms.md"
+
+
+def test_costs_are_those_of_the_rows() -> None:
+    """Every term of a plan has a cost of its row; all forms that presets and their neighbours come to are asked."""
+    told = {(row.name, form.words): (form.name, form.cost) for row in ROWS for form in row.forms}
     scenes = [getattr(presets, name)()[0] for name in PRESETS]
     scenes += [Scene(tip={"height": 1e-5}, adhesion={"contact_potential": 1.0}, sample={"charge": 1e-18})]
     scenes += [Scene(medium={"kind": "liquid", "ionic_strength": 10.0, "hydration_energy": 0.01},
@@ -88,12 +88,8 @@ def test_costs_are_those_of_the_page() -> None:
             except ValueError:  # refused: nothing to compare
                 continue
             for term in plan.terms:
-                name = term.name.replace("_", " ")
-                form = next(f for t, f in told if t == name and f.split(",")[0].split(":")[0] == term.form)
-                if form.startswith("shape"):
-                    form = "shape: of a sphere" if scene.tip.shape == "sphere" else "shape: of a paraboloid, Hertz"
-                assert told[name, form] == term.cost, (name, form)
-                seen.add((name, form))
+                assert told[term.name, term.words] == (term.form, term.cost)
+                seen.add((term.name, term.words))
     assert len(seen) >= 13
 
 

@@ -6,19 +6,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from nanotouch._plan_terms import Term, Warning
+from nanotouch._plan_terms import ROWS, Term, Warning
 from nanotouch.units import in_words
 
-_NAMES = {
-    "vdw": "van der Waals", "electrostatic": "electrostatic", "charge": "trapped charge",
-    "double_layer": "double layer", "hydration": "hydration", "steric": "polymer brush",
-}  # fmt: skip
-_CONTACT = {
-    "table": "Maugis-Dugdale table", "polished": "Maugis-Dugdale, polished table", "exact": "Maugis-Dugdale, exact",
-    "local": "Maugis-Dugdale with the radius of each place", "jkr": "JKR",
-    "local exact": "Maugis-Dugdale, exact, with the radius of each place",
-}  # fmt: skip
-_FORMS = {"derjaguin": "in Derjaguin's form", "sphere": "of the sphere", "tip": "of the whole tip", "on": "computed"}
+_TAILS = {row.name for row in ROWS if row.tail}
 _SOURCES = {"solid": "of the solids", "meniscus": "by a water meniscus"}
 _QUANTITIES = {"force": "force", "stiffness": "stiffness", "radius": "contact radius", "folds": "folds"}
 _UNITS = {"force": "N", "stiffness": "N/m", "radius": "m", "folds": "m"}
@@ -40,24 +31,13 @@ def text_of(facts: dict[str, Any]) -> str:
     return "\n".join(lines + [f"warning: {Warning(*warning)}" for warning in facts["warnings"]])
 
 
-def contact_law_of(term: Term, facts: dict[str, Any]) -> str:
+def contact_law_of(term: Term) -> str:
     """The law of contact in words."""
-    if not term.included:
-        return "none"
-    if facts["adhesion_source"] != "none":
-        return _CONTACT[term.form]
-    if term.form == "local":
-        return "Hertz with the radius of each place"
-    shape = facts["shape"]
-    if term.form == "paraboloid":
-        return f"Hertz in place of the {shape}"
-    if term.form == "series":
-        return "law of the sphere as a series"
-    return "Hertz" if shape == "paraboloid" else f"law of the {shape}"
+    return term.words if term.included else "none"
 
 
 def _contact(term: Term, facts: dict[str, Any]) -> str:
-    law = contact_law_of(term, facts)
+    law = contact_law_of(term)
     if not term.included:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
@@ -69,8 +49,8 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
     if math.isfinite(facts["lambda"]):
         text += f", lambda {facts['lambda']:.3g}"
     text += f"; adhesion {_SOURCES[facts['adhesion_source']]}, w = {facts['work_of_adhesion'] * 1e3:.4g} mJ/m2"
-    if any(other.name == "vdw" and other.force > 0.0 for other in _terms(facts)):
-        text += " beside van der Waals"
+    tails = [other.title for other in _terms(facts) if other.name in _TAILS and other.force > 0.0]
+    text += f" beside {' and '.join(tails)}" if tails else ""
     rivals = {name.upper() if name != "hertz" else "Hertz": error for name, error in facts["rivals"].items()}
     if math.isfinite(facts["lambda"]):
         text += "; " if facts["quantity"] == "force" else "; in force "
@@ -88,9 +68,9 @@ def _term(term: Term, facts: dict[str, Any]) -> str:
         size += f", {_share(term.force / facts['pull_off_force'])} the pull-off"
     if not term.included:
         unfelt = f"; no part of the {_QUANTITIES[facts['quantity']]}" if term.bound == 0.0 else ""
-        return f"{_NAMES[term.name]}: left out, {size}{unfelt}"
+        return f"{term.title}: {term.words}, {size}{unfelt}"
     error = f"; this form errs by {_percent(term.bound)}" if term.bound > 0.0 else ""
-    return f"{_NAMES[term.name]}: {_FORMS[term.form]}, {size}{error}"
+    return f"{term.title}: {term.words}, {size}{error}"
 
 
 def _surface(contact: Term, facts: dict[str, Any]) -> str:

@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Law, as_floats, as_law
+from nanotouch._arrays import Law, as_floats, as_law, plain
+from nanotouch._plan_terms import ROWS as ROWS
+from nanotouch._plan_terms import Pressure as Pressure
+from nanotouch._plan_terms import Row as Row
 from nanotouch._plan_terms import Term as Term
 from nanotouch._plan_terms import Warning as Warning
 from nanotouch._plan_text import contact_law_of, text_of
@@ -92,7 +95,7 @@ class Plan:
     @property
     def contact_law(self) -> str:
         """The law of contact in words, such as ``"Maugis-Dugdale table"``; ``"none"`` where there is no contact."""
-        return contact_law_of(self._all_terms()[0], self._facts)
+        return contact_law_of(self._all_terms()[0])
 
     @property
     def maugis_lambda(self) -> float:
@@ -118,6 +121,23 @@ class Plan:
     def warnings(self) -> list[Warning]:
         """What the bound does not cover: laws outside their validity, descriptions that disagree, losses."""
         return [Warning(*warning) for warning in self._facts["warnings"]]
+
+    def law(self, term: str, gap: ArrayLike) -> Law:
+        """One law of the scene alone, in full, whether the plan has it or not, at gaps [m]; of contact what holds on
+        the way out, NaN beyond its fold."""
+        return as_law(self.core.term_eval(self._number_of(term), as_floats(gap, "gap")))
+
+    def pressure(self, term: str, gap: ArrayLike) -> Pressure:
+        """Two flats at gaps above 0 [m] under one law of the scene; NaN for contact and for laws that flats do not
+        have."""
+        gaps = as_floats(gap, "gap")
+        return Pressure(*(plain(column) for column in self.core.term_pressure(self._number_of(term), gaps)))
+
+    def _number_of(self, term: str) -> int:
+        names = [known.name for known in self._all_terms()]
+        if term not in names:
+            raise InvalidValue(f"term {term!r}: there are {', '.join(names)}")
+        return names.index(term)
 
     def cutoff_gap(self, force: float = 0.0) -> float:
         """Beyond this gap \\|F\\| is at most ``force`` [N], whatever the history [m]; infinite if there is none."""

@@ -32,7 +32,8 @@ static py::list terms_of(const nt_plan &plan)
 {
     py::list terms;
     for (const nt_plan_term &term : plan.terms)
-        terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.error, term.cost));
+        terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.error, term.cost, term.title,
+                                    term.words));
     return terms;
 }
 
@@ -92,12 +93,46 @@ static py::dict as_dict(const nt_plan &plan)
     return out;
 }
 
+// What the library says of each of its laws: name, title, what it is, the field of the scene that scales its part of w
+// (or None), its forms with cost and words, whether it has a pressure.
+static py::tuple term_rows()
+{
+    py::list rows;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term) {
+        const nt_term_words &words = *nt_term_words_of(term);
+        py::list forms;
+        for (int i = 0; i < words.form_count; ++i)
+            forms.append(py::make_tuple(nt_form_name(words.forms[i].form), words.forms[i].cost, words.forms[i].words));
+        rows.append(
+            py::make_tuple(words.name, words.title, words.doc, words.tail, py::tuple(forms), words.has_pressure != 0));
+    }
+    return py::tuple(rows);
+}
+
+// One law alone, in full; and two flats under it: {W, p, dp/dh}.
+static py::tuple term_eval(const nt_plan &plan, int term, const Array &gaps)
+{
+    return map_law(gaps, [&plan, term](double gap) { return nt_plan_term_eval(&plan, term, gap); });
+}
+
+static py::tuple term_pressure(const nt_plan &plan, int term, const Array &gaps)
+{
+    const py::tuple columns = map_law(gaps, [&plan, term](double gap) {
+        const nt_pressure flats = nt_plan_term_pressure(&plan, term, gap);
+        return nt_law_value{flats.energy, flats.pressure, flats.slope, 0.0};
+    });
+    return py::make_tuple(columns[0], columns[1], columns[2]);
+}
+
 void bind_plan(py::module_ &module)
 {
+    module.def("term_rows", &term_rows);
     py::class_<nt_plan>(module, "Plan")
         .def(py::init(&plan_of), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("terrain"),
              py::keep_alive<1, 5>())
         .def("as_dict", &as_dict)
+        .def("term_eval", &term_eval)
+        .def("term_pressure", &term_pressure)
         .def("cutoff_gap", &nt_plan_cutoff_gap)
         .def("stable_step", &nt_plan_stable_step);
 }

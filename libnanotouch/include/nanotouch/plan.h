@@ -7,10 +7,10 @@
 
 #include "nanotouch/contact_bank.h"
 #include "nanotouch/contact_table.h"
-#include "nanotouch/forces.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
+#include "nanotouch/terms.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,40 +35,11 @@ NT_API nt_demand nt_demand_defaults(void);
 NT_API const nt_field *nt_demand_fields(int *count);
 NT_API nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem);
 
-/* How a term is computed. */
-typedef enum nt_form {
-    NT_FORM_OFF,        /* left out */
-    NT_FORM_ON,         /* the law as it is */
-    NT_FORM_DERJAGUIN,  /* van der Waals: the paper's form for gaps << R */
-    NT_FORM_SPHERE,     /* of the apex sphere */
-    NT_FORM_TIP,        /* of sphere and cone */
-    NT_FORM_PARABOLOID, /* contact of a sphere or cap without adhesion, as Hertz' paraboloid */
-    NT_FORM_SERIES,     /* contact of a sphere without adhesion, in powers of delta/R */
-    NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
-    NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
-    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
-    NT_FORM_POLISHED,
-    NT_FORM_EXACT,
-    NT_FORM_LOCAL,      /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */
-    NT_FORM_LOCAL_EXACT /* the same by the exact solver */
-} nt_form;
-/* "off", "on", "derjaguin", ... */
-NT_API const char *nt_form_name(nt_form form);
-
-enum {
-    NT_PLAN_CONTACT,
-    NT_PLAN_VDW,
-    NT_PLAN_ELECTROSTATIC,
-    NT_PLAN_CHARGE,
-    NT_PLAN_DOUBLE_LAYER,
-    NT_PLAN_HYDRATION,
-    NT_PLAN_STERIC,
-    NT_PLAN_TERMS
-};
-
 /* One term of the plan, in or out. */
 typedef struct nt_plan_term {
-    const char *name; /* "contact", "vdw", "electrostatic", ...; static storage */
+    const char *name;  /* "contact", "vdw", "electrostatic", ...; static storage, as the words */
+    const char *title; /* "van der Waals" */
+    const char *words; /* how it is computed: "Maugis-Dugdale table", "in Derjaguin's form"; "left out" */
     nt_form form;
     double force; /* the largest force it has in the scene's range; 0: the scene has no such term [N] */
     double error; /* bound of what this form errs by, in the norm of the demand [-] */
@@ -88,19 +59,6 @@ enum { NT_PLAN_WARNINGS_MAX = 24 };
 typedef struct nt_plan_rivals {
     double hertz, dmt, jkr; /* [-] */
 } nt_plan_rivals;
-
-/* The laws of the scene beside contact. */
-typedef struct nt_plan_laws {
-    nt_vdw vdw;
-    nt_vdw_tip vdw_tip;
-    nt_tip_angle angle; /* of both forms TIP */
-    nt_electrostatic electrostatic;
-    nt_electrostatic_tip electrostatic_tip;
-    nt_point_charge charge;
-    nt_double_layer double_layer;
-    nt_hydration hydration;
-    nt_steric steric;
-} nt_plan_laws;
 
 enum { NT_PLAN_CELLS = 256 };
 
@@ -126,7 +84,9 @@ typedef struct nt_plan {
     nt_maugis maugis;
     nt_maugis_table table;
     nt_maugis_cell cells[NT_PLAN_CELLS];
-    nt_plan_laws laws;
+    nt_plan_laws laws;     /* beside contact */
+    int on[NT_PLAN_TERMS]; /* those of them that are computed, ... */
+    int on_count;          /* ... and how many */
 
     double capture_gap;            /* on approach adhesion takes hold here [m] */
     double release_gap;            /* on retraction under grips it lets go here [m] */
@@ -173,6 +133,13 @@ NT_API nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_
 NT_API int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options);
 
 NT_API void nt_plan_copy(nt_plan *copy, const nt_plan *plan);
+
+/* One law of the scene in its fullest form, in the plan or not, at a gap [m]; of contact what holds on retraction. Zero
+ * where the scene has no such law, NaN for a term that is none. */
+NT_API nt_law_value nt_plan_term_eval(const nt_plan *plan, int term, double gap);
+/* Two flats at a gap > 0 [m] under one law of the scene, by Derjaguin's relation F = 2 pi R W where the law is one of
+ * spheres; without the hold inside minimum gaps. NaN for contact and for laws that flats do not have (a charge). */
+NT_API nt_pressure nt_plan_term_pressure(const nt_plan *plan, int term, double gap);
 
 /* Beyond this gap |F| is at most `force` >= 0 [N] on any history [m]; +inf if there is no such gap. */
 NT_API double nt_plan_cutoff_gap(const nt_plan *plan, double force);

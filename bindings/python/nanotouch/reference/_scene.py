@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The force of a scene with every term on and exact, composed in Python from the laws of :mod:`nanotouch.contact`,
 :mod:`nanotouch.geometry` and :mod:`nanotouch.forces` by the rules of docs/interaction.md; it
-shares no code with plans."""
+shares no code with plans, but for laws that are in no other place."""
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import Any, Literal, NamedTuple, get_args
+from collections import namedtuple
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,21 +18,14 @@ from nanotouch import forces as laws
 from nanotouch import geometry
 from nanotouch._arrays import Floats, as_floats, plain
 from nanotouch.errors import InvalidValue
+from nanotouch.plan import ROWS, Plan
 from nanotouch.scene import Scene
 
 History = Literal["approach", "retract"]
 
 
-class SceneForces(NamedTuple):
-    """The terms of a scene at gaps; each an array [N], 0 where the scene has no such term."""
-
-    contact: Floats
-    vdw: Floats
-    electrostatic: Floats
-    charge: Floats
-    double_layer: Floats
-    hydration: Floats
-    steric: Floats
+#: The terms of a scene at gaps, by the names of the library's laws; each an array [N], 0 where the scene has none such.
+SceneForces: Any = namedtuple("SceneForces", [row.name for row in ROWS])  # type: ignore[misc]
 
 
 def force(scene: Scene, gap: ArrayLike, *, history: History = "approach", radius: float | None = None) -> Any:
@@ -59,9 +53,12 @@ def _forces(scene: Scene, work: float, gaps: Floats, history: History, radius: f
     left = _less(whole, pulled)
     if radius is not None:
         left = _on_curved(scene, left, radius)
-    beside = (tail, *(functools.partial(law, scene) for law in _BESIDE))
     ratio = left.radius / whole.radius
-    return SceneForces(_touch(scene, gaps, left, capture, history), *(ratio * np.asarray(law(gaps)) for law in beside))
+    terms = {"contact": _touch(scene, gaps, left, capture, history), "vdw": ratio * np.asarray(tail(gaps))}
+    for row in ROWS[len(terms) :]:
+        law = _BESIDE.get(row.name) or functools.partial(_planned, row.name)
+        terms[row.name] = ratio * np.asarray(law(scene, gaps))
+    return SceneForces(**terms)
 
 
 # ---- contact ----
@@ -114,9 +111,7 @@ def _work_by_pull_off(values: tuple[tuple[str, Any], ...]) -> float:
     """The w with which the whole scene pulls off with the measured force, for the values of its fields."""
     from scipy.optimize import brentq
 
-    scene = Scene()
-    for name, value in values:
-        scene[name] = value
+    scene = _scene_of(values)
 
     def excess(log_work: float) -> float:
         try:
@@ -293,4 +288,27 @@ def _steric(scene: Scene, gaps: Floats) -> Any:
     ).F
 
 
-_BESIDE = (_electrostatic, _charge, _double_layer, _hydration, _steric)
+_BESIDE = {
+    "electrostatic": _electrostatic,
+    "charge": _charge,
+    "double_layer": _double_layer,
+    "hydration": _hydration,
+    "steric": _steric,
+}
+
+
+def _planned(name: str, scene: Scene, gaps: Floats) -> Any:
+    """A law that has no second source here: the library's own, in full; its own test has the second source."""
+    return _full_plan(tuple((field, scene[field]) for field in scene.fields)).law(name, gaps).F
+
+
+@functools.lru_cache(maxsize=16)
+def _full_plan(values: tuple[tuple[str, Any], ...]) -> Plan:
+    return _scene_of(values).plan(rtol=0.0)
+
+
+def _scene_of(values: tuple[tuple[str, Any], ...]) -> Scene:
+    scene = Scene()
+    for name, value in values:
+        scene[name] = value
+    return scene

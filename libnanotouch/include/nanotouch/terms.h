@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The laws of a scene, each once. One line of NT_TERMS_BESIDE and one file in scene/terms/ make a law: what plans,
+ * warnings, bindings and documentation know of it, they read from its row. */
+#ifndef NANOTOUCH_TERMS_H
+#define NANOTOUCH_TERMS_H
+
+#include "nanotouch/forces.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Van der Waals and electrostatic forces of the apex sphere, and of the sphere with the cone above it. */
+typedef struct nt_vdw_term {
+    nt_vdw sphere;
+    nt_vdw_tip tip;
+    nt_tip_angle angle;
+} nt_vdw_term;
+
+typedef struct nt_electrostatic_term {
+    nt_electrostatic sphere;
+    nt_electrostatic_tip tip;
+    nt_tip_angle angle;
+} nt_electrostatic_term;
+
+/* Every law beside contact: its number NT_PLAN_x, its name, and the type of its parameters in a plan. */
+#define NT_TERMS_BESIDE(ROW)                                                                                           \
+    ROW(VDW, vdw, nt_vdw_term)                                                                                         \
+    ROW(ELECTROSTATIC, electrostatic, nt_electrostatic_term)                                                           \
+    ROW(CHARGE, charge, nt_point_charge)                                                                               \
+    ROW(DOUBLE_LAYER, double_layer, nt_double_layer)                                                                   \
+    ROW(HYDRATION, hydration, nt_hydration)                                                                            \
+    ROW(STERIC, steric, nt_steric)
+
+#define NT_TERM_NUMBER(ID, name, type) NT_PLAN_##ID,
+enum { NT_PLAN_CONTACT, NT_TERMS_BESIDE(NT_TERM_NUMBER) NT_PLAN_TERMS };
+#undef NT_TERM_NUMBER
+
+#define NT_TERM_MEMBER(ID, name, type) type name;
+typedef struct nt_plan_laws {
+    NT_TERMS_BESIDE(NT_TERM_MEMBER)
+} nt_plan_laws;
+#undef NT_TERM_MEMBER
+
+/* How a term is computed. */
+typedef enum nt_form {
+    NT_FORM_OFF,        /* left out */
+    NT_FORM_ON,         /* the law as it is */
+    NT_FORM_DERJAGUIN,  /* van der Waals: the paper's form for gaps << R */
+    NT_FORM_SPHERE,     /* of the apex sphere */
+    NT_FORM_TIP,        /* of sphere and cone */
+    NT_FORM_PARABOLOID, /* contact of a sphere or cap without adhesion, as Hertz' paraboloid */
+    NT_FORM_SERIES,     /* contact of a sphere without adhesion, in powers of delta/R */
+    NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
+    NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
+    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
+    NT_FORM_POLISHED,
+    NT_FORM_EXACT,
+    NT_FORM_LOCAL,      /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */
+    NT_FORM_LOCAL_EXACT /* the same by the exact solver */
+} nt_form;
+/* "off", "on", "derjaguin", ... */
+NT_API const char *nt_form_name(nt_form form);
+
+/* One way to compute a law. */
+typedef struct nt_term_form {
+    nt_form form;
+    double cost;       /* of one evaluation, measured (tests/bench/bench_plan.c) [Hertz evaluations] */
+    const char *words; /* "in Derjaguin's form" */
+} nt_term_form;
+
+/* What is said of a law. */
+typedef struct nt_term_words {
+    const char *name;          /* in plans and in Python: "double_layer" */
+    const char *title;         /* in sentences: "double layer" */
+    const char *doc;           /* what it is, and by whom */
+    const char *tail;          /* the field of the scene that scales it, if what it pulls in contact is a part of w
+                                  (erratum E5b); NULL: it is none */
+    const nt_term_form *forms; /* of rising cost; the last that a scene has is its fullest */
+    int form_count;
+    int has_pressure; /* 1: nt_plan_term_pressure has it */
+} nt_term_words;
+/* Those of a term, 0 .. NT_PLAN_TERMS - 1; static storage. NULL for other numbers. */
+NT_API const nt_term_words *nt_term_words_of(int term);
+
+/* Two flats at a gap under one law. */
+typedef struct nt_pressure {
+    double energy;   /* W, 0 at infinite gap [J/m^2] */
+    double pressure; /* p = -dW/dh, + repulsive [Pa] */
+    double slope;    /* dp/dh [Pa/m] */
+} nt_pressure;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

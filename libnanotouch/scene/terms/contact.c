@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Contact as a row: its forms with cost and error, what it says, its history. The laws themselves are
+ * scene/contact.c's.
+ *
+ * Contact is off by at most e max(|X_c|, S), X_c its part of the demanded quantity X. With T the largest that the terms
+ * beside contact come to, |X_c| <= |X| + T, so that its share is e (1 + T/S); of a force T need only be their largest
+ * attraction, since X_c <= |X| + T then, and X_c >= -S. */
+#include <math.h>
+#include <stddef.h>
+
+#include "scene/terms/term.h"
+
+#define TABLED 2.0     /* the error of a table oscillates within its cells: what was sampled may be half of it */
+#define ROUNDING 1e-12 /* polished and exact tiers, away from folds (docs/contact.md) */
+
+/* The rows of `forms` whose words and cost depend on more than the form; before them those of nt_shape_kind. */
+enum { IN_PLACE_OF_SPHERE = 6, IN_PLACE_OF_BLUNTED, LOCAL_HERTZ, LOCAL_MAUGIS, OTHERS };
+static const nt_term_form forms[] = {
+    {NT_FORM_SHAPE, 3.0, "Hertz"},
+    {NT_FORM_SHAPE, 55.0, "law of the sphere"},
+    {NT_FORM_SHAPE, 6.0, "law of the cone"},
+    {NT_FORM_SHAPE, 6.0, "law of the punch"},
+    {NT_FORM_SHAPE, 6.0, "law of the blunted"},
+    {NT_FORM_SHAPE, 6.0, "law of the truncated"},
+    [IN_PLACE_OF_SPHERE] = {NT_FORM_PARABOLOID, 3.0, "Hertz in place of the sphere"},
+    [IN_PLACE_OF_BLUNTED] = {NT_FORM_PARABOLOID, 3.0, "Hertz in place of the blunted"},
+    [LOCAL_HERTZ] = {NT_FORM_LOCAL, 6.0, "Hertz with the radius of each place"},
+    [LOCAL_MAUGIS] = {NT_FORM_LOCAL, 55.0, "Maugis-Dugdale with the radius of each place"}, /* with dU/dR */
+    [OTHERS] = {NT_FORM_SERIES, 4.0, "law of the sphere as a series"},
+    {NT_FORM_JKR, 11.0, "JKR"},
+    {NT_FORM_TABLE, 14.0, "Maugis-Dugdale table"},
+    {NT_FORM_POLISHED, 40.0, "Maugis-Dugdale, polished table"},
+    {NT_FORM_EXACT, 280.0, "Maugis-Dugdale, exact"},
+    {NT_FORM_LOCAL_EXACT, 1100.0, "Maugis-Dugdale, exact, with the radius of each place"},
+};
+enum { FORMS = sizeof forms / sizeof forms[0] };
+
+/* Adhesion that cannot be felt is none: then the shape is Hertz' paraboloid. */
+static const nt_term_form *form_of(const void *law, nt_form form)
+{
+    const nt_plan *plan = law;
+    int i = OTHERS;
+    if (form == NT_FORM_SHAPE)
+        i = (int)plan->shape.kind;
+    else if (form == NT_FORM_PARABOLOID)
+        i = plan->shape.kind == NT_SHAPE_BLUNTED ? IN_PLACE_OF_BLUNTED : IN_PLACE_OF_SPHERE;
+    else if (form == NT_FORM_LOCAL)
+        i = plan->source == NT_ADHESION_NONE ? LOCAL_HERTZ : LOCAL_MAUGIS;
+    else
+        while (i < FORMS - 1 && forms[i].form != form)
+            ++i;
+    return &forms[i];
+}
+
+static void offer(const nt_plan *plan, nt_plan_options *options, nt_form form, double error)
+{
+    nt_plan_offer(plan, options, NT_PLAN_CONTACT, form, error);
+}
+
+/* Of contact, which other terms may hide; of what hides contact there is no less. */
+static double rounding(double more)
+{
+    return ROUNDING * fmax(more, 1.0);
+}
+
+/* What leaving out the curvature of the surface costs beside contact. */
+static double curved_laws(const nt_plan *plan, double beside)
+{
+    const double R = plan->contact.radius;
+    if (!nt_plan_is_curved(plan))
+        return 0.0;
+    const double ratio = fmax(fabs(plan->radii->minimum / R - 1.0), fabs(plan->radii->maximum / R - 1.0));
+    return nt_plan_share(plan, ratio * beside);
+}
+
+/* And in contact: force grows with the radius, so that the smallest and the largest on the map are the worst. */
+static double curved_contact(const nt_plan *plan, double more)
+{
+    if (!nt_plan_is_curved(plan))
+        return 0.0;
+    if (plan->demand.quantity == NT_QUANTITY_FOLDS)
+        return nt_plan_share(plan, nt_plan_curvature_shift(plan));
+    return more * NT_SAMPLED * nt_plan_curvature_distance(plan);
+}
+
+static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
+{
+    if (!nt_plan_is_curved(plan))
+        return;
+    if (plan->source == NT_ADHESION_NONE) {
+        offer(plan, options, NT_FORM_LOCAL, rounding(more));
+        return;
+    }
+    if (plan->bank) {
+        const double error = nt_plan_bank_error(plan, (nt_quantity)(int)plan->demand.quantity);
+        offer(plan, options, NT_FORM_LOCAL, more * (error + ROUNDING));
+    }
+    offer(plan, options, NT_FORM_LOCAL_EXACT, more * ROUNDING);
+}
+
+/* Contact of tips that adhesion makes Maugis-Dugdale's. */
+static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    double table = TABLED * plan->table.accuracy[NT_TIER_TABLE].force_error;
+    if (quantity == NT_QUANTITY_FOLDS)
+        table = nt_plan_share(plan, plan->table.accuracy[NT_TIER_TABLE].fold_shift);
+    else if (quantity != NT_QUANTITY_FORCE)
+        table = TABLED * nt_plan_contact_distance(plan, NT_FORM_TABLE);
+    else
+        table *= fmax(1.0, nt_plan_share(plan, nt_maugis_pull_off_force(&plan->maugis)));
+    const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
+    if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
+        offer(plan, options, NT_FORM_SHAPE,
+              NT_SAMPLED * more * nt_plan_contact_distance(plan, NT_FORM_PARABOLOID) + plan->curvature_error);
+    offer(plan, options, NT_FORM_TABLE, more * table + ROUNDING + plan->curvature_error);
+    offer(plan, options, NT_FORM_POLISHED, more * 2.0 * ROUNDING + plan->curvature_error);
+    offer(plan, options, NT_FORM_EXACT, more * ROUNDING + plan->curvature_error);
+    offer_local(plan, options, more);
+}
+
+/* The largest attraction of all beside contact, at the gaps where there can be contact; all is held inside 0. */
+static double opposing(const nt_plan *plan)
+{
+    double reach = fmax(plan->capture_gap, plan->release_gap), pull = fmax(-nt_plan_beside_at(plan, 0.0), 0.0);
+    if (nt_plan_is_curved(plan))
+        reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum));
+    for (double gap = reach; gap > 1e-13; gap *= 0.9)
+        pull = fmax(pull, -NT_SAMPLED * nt_plan_beside_at(plan, gap));
+    return pull * nt_plan_largest_ratio(plan);
+}
+
+/* How much larger the share of contact is than its own error, 1 + T/S; `beside`: all that the other terms come to.
+ * Where contact without adhesion begins the others are held: X = X_c + their sum, 0 <= X_c <= P. If that pushes,
+ * max(X_c, S)/max(X, S) is largest at either end of X_c. */
+static double more_than_contact(const nt_plan *plan, const nt_scene *scene, double beside)
+{
+    if (plan->demand.quantity != NT_QUANTITY_FORCE)
+        return 1.0 + nt_plan_share(plan, nt_plan_largest_ratio(plan) * beside);
+    const double pull = opposing(plan), sharpest = plan->radii ? plan->radii->minimum / plan->contact.radius : 1.0;
+    const double push = nt_plan_beside_at(plan, 0.0) * fmin(sharpest, 1.0), S = plan->scale;
+    if (plan->source != NT_ADHESION_NONE || pull > 0.0)
+        return 1.0 + nt_plan_share(plan, pull);
+    const double load = fmax(scene->range.maximum_load, S);
+    return fmax(S / fmax(push, S), load / (load + push));
+}
+
+/* A form other than the fullest of a contact without adhesion, which has no folds. */
+static void offer_simpler(const nt_plan *plan, nt_plan_options *options, nt_form form, double more)
+{
+    const double error = plan->demand.quantity == NT_QUANTITY_FOLDS ? 0.0 : nt_plan_contact_distance(plan, form);
+    offer(plan, options, form, more * NT_SAMPLED * error + rounding(more));
+}
+
+static void offer_shape(const nt_plan *plan, nt_plan_options *options, double more)
+{
+    const nt_shape_kind kind = plan->shape.kind;
+    if (kind == NT_SHAPE_SPHERE || kind == NT_SHAPE_BLUNTED)
+        offer_simpler(plan, options, NT_FORM_PARABOLOID, more);
+    if (kind == NT_SHAPE_SPHERE && plan->largest_indentation < plan->shape.radius)
+        offer_simpler(plan, options, NT_FORM_SERIES, more);
+    offer(plan, options, NT_FORM_SHAPE, rounding(more) + plan->curvature_error);
+    offer_local(plan, options, more);
+}
+
+/* Never touched: nothing is computed; the radii of places are for the other terms, which follow them. */
+static void offer_none(nt_plan *plan, nt_plan_options *options, double beside)
+{
+    const int exact = plan->source != NT_ADHESION_NONE && !plan->bank;
+    plan->terms[NT_PLAN_CONTACT].force = 0.0;
+    plan->curvature_error = curved_laws(plan, beside);
+    offer(plan, options, NT_FORM_OFF, plan->curvature_error);
+    if (nt_plan_is_curved(plan))
+        offer(plan, options, exact ? NT_FORM_LOCAL_EXACT : NT_FORM_LOCAL, ROUNDING);
+    for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i)
+        options->option[NT_PLAN_CONTACT][i].cost = 0.0;
+}
+
+static void offer_all(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
+{
+    const double more = more_than_contact(plan, scene, beside);
+    const nt_form full = nt_plan_contact_form(plan);
+    if (full == NT_FORM_EXACT)
+        nt_plan_rivals_of(plan);
+    if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
+        offer_none(plan, options, beside);
+        return;
+    }
+    plan->terms[NT_PLAN_CONTACT].force = scene->range.maximum_load;
+    plan->curvature_error = curved_contact(plan, more) + curved_laws(plan, beside);
+    if (full == NT_FORM_EXACT)
+        offer_maugis(plan, options, more);
+    else if (full == NT_FORM_JKR)
+        offer(plan, options, full, ROUNDING);
+    else
+        offer_shape(plan, options, more);
+}
+
+static nt_form full_form(const void *law)
+{
+    return nt_plan_contact_form(law);
+}
+
+static nt_law_value eval(const void *law, nt_form form, double gap)
+{
+    return nt_plan_contact_eval(law, form, -gap);
+}
+
+static void warn(nt_plan *plan, const nt_scene *scene)
+{
+    const nt_contact_validity *v = &plan->validity;
+    const struct {
+        unsigned outside;
+        nt_plan_warning warning;
+    } limits[] = {
+        {NT_OUTSIDE_RADIUS_RATIO,
+         {"contact radius over tip radius at the largest load", "", v->radius_ratio, NT_VALID_RADIUS_RATIO}},
+        {NT_OUTSIDE_SLOPE,
+         {"slope of the tip at the edge of contact at the largest load", "", v->slope, NT_VALID_SLOPE}},
+        {NT_OUTSIDE_STRAIN, {"strain at the largest load", "", v->strain, NT_VALID_STRAIN}},
+        {NT_OUTSIDE_THICKNESS,
+         {"contact radius over thickness of the sample at the largest load", "", v->thickness_ratio,
+          NT_VALID_THICKNESS_RATIO}},
+    };
+    for (int i = 0; i < 4 && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF; ++i)
+        if (v->outside & limits[i].outside)
+            nt_plan_add_warning(plan, limits[i].warning);
+    nt_capillary_warn(plan, scene);
+}
+
+static int facts(const nt_scene *scene, nt_term_fact *out)
+{
+    const nt_adhesion *adhesion = &scene->adhesion;
+    const int meniscus = nt_scene_adhesion_source(scene) == NT_ADHESION_MENISCUS;
+    const int by_energies = adhesion->given == NT_ADHESION_GIVEN_ENERGIES;
+    out[0] = (nt_term_fact){adhesion->given == NT_ADHESION_GIVEN_PULL_OFF,
+                            "measured pull-off force, not used: the adhesion is given otherwise", "N",
+                            adhesion->pull_off_force};
+    out[1] = (nt_term_fact){!(meniscus && by_energies), "surface energy of the tip, not used: water holds", "J/m^2",
+                            adhesion->tip_surface_energy};
+    out[2] =
+        (nt_term_fact){meniscus, "meniscus radius, not used: there is no meniscus", "m", scene->medium.meniscus_radius};
+    return 3;
+}
+
+/* Captured inside the capture gap, let go beyond the release gap; what is lost at either is dissipated. The state is
+ * whether it is attached. */
+static nt_term_step advance(const void *law, void *state, const nt_place *place, double gap, double dt)
+{
+    (void)dt; /* it has no speed */
+    const nt_plan *plan = law;
+    int *attached = state;
+    const int before = *attached;
+    nt_term_step step = {0.0, 0.0};
+    *attached = nt_plan_is_attached(plan, before, place, gap);
+    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF)
+        return step;
+    if (*attached != before) {
+        const double where = *attached ? plan->capture_gap
+                                       : nt_plan_last_hold(nt_plan_release_gap(plan, nt_plan_radius_at(plan, place)));
+        const double U = nt_plan_contact_at(plan, place, where).law.U;
+        step.dissipated = fmax(0.0, *attached ? -U : U);
+    }
+    return step;
+}
+
+const nt_term_row nt_term_contact = {
+    .words = {"contact", "contact", "Maugis-Dugdale, JKR, or the law of the shape without adhesion", NULL, forms, FORMS,
+              0},
+    .full_form = full_form,
+    .eval = eval,
+    .offer = offer_all,
+    .form_of = form_of,
+    .warn = warn,
+    .facts = facts,
+    .state_size = sizeof(int),
+    .advance = advance,
+};

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Every row of scene/terms/: it is whole, its law is a potential that falls beyond any gap, its flats are those of its
+ * sphere by Derjaguin's relation. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/terms/term.h"
+
+#define PI 3.14159265358979323846
+
+static nt_plan plan;
+
+/* A blunt tip with all the forces that its medium lets it have. */
+static void make(nt_medium_kind kind)
+{
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = 1e-4;
+    scene.tip.surface_potential = 0.02;
+    scene.sample.surface_potential = 0.013;
+    scene.sample.charge = 1e-18;
+    scene.medium.kind = kind;
+    scene.medium.relative_humidity = 0.0;
+    scene.medium.ionic_strength = 10.0;
+    scene.medium.hydration_energy = 3e-3;
+    scene.medium.brush_thickness = 12e-9;
+    scene.adhesion.hamaker_constant = 2e-21;
+    scene.adhesion.contact_potential = 0.3;
+    const nt_plan_inputs inputs = {.scene = &scene};
+    assert_int_equal(nt_plan_make(&plan, &inputs, NULL), NT_OK);
+}
+
+static int is_said(const char *text)
+{
+    return text && text[0] != '\0';
+}
+
+static void every_row_is_whole(void **state)
+{
+    (void)state;
+    for (int term = 0; term < NT_PLAN_TERMS; term++) {
+        const nt_term_row *row = nt_term_rows[term];
+        const nt_term_words *words = nt_term_words_of(term);
+        assert_true(is_said(words->name) && is_said(words->title) && is_said(words->doc));
+        assert_true(words->form_count > 0 && words->form_count <= 16);
+        for (int i = 0; i < words->form_count; i++)
+            assert_true(words->forms[i].cost > 0.0 && is_said(words->forms[i].words));
+        assert_true(row->full_form && row->eval);
+        assert_true(!words->has_pressure == !row->pressure);
+        assert_true(row->offer ? term == NT_PLAN_CONTACT : row->prepare && row->hold);
+        assert_true(!row->advance == (row->state_size == 0));
+        for (int other = 0; other < term; other++)
+            assert_string_not_equal(words->name, nt_term_words_of(other)->name);
+    }
+    assert_null(nt_term_words_of(-1));
+    assert_null(nt_term_words_of(NT_PLAN_TERMS));
+}
+
+/* F = -dU/dh and k = -dF/dh by differences; no larger gap exceeds the limit; held inside. */
+static void every_law_is_a_potential_within_its_limit(void **state)
+{
+    (void)state;
+    int seen = 0;
+    for (int kind = NT_MEDIUM_VACUUM; kind <= NT_MEDIUM_LIQUID; kind++) {
+        make((nt_medium_kind)kind);
+        for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; term++) {
+            if (nt_plan_full_form(&plan, term) == NT_FORM_OFF)
+                continue;
+            const double hold = nt_plan_hold_gap(&plan, term);
+            seen |= 1 << term;
+            for (double gap = 1.1 * hold; gap < 10e-9; gap *= 1.3) {
+                const double step = 1e-4 * gap;
+                const nt_law_value less = nt_plan_term_eval(&plan, term, gap - step);
+                const nt_law_value here = nt_plan_term_eval(&plan, term, gap);
+                const nt_law_value more = nt_plan_term_eval(&plan, term, gap + step);
+                assert_true(fabs((less.U - more.U) / (2.0 * step) - here.F) < 1e-5 * fabs(here.F));
+                assert_true(fabs((less.F - more.F) / (2.0 * step) - here.k) < 1e-5 * fabs(here.k));
+                assert_true(fabs(here.F) <= nt_plan_law_limit(&plan, term, 0.9 * gap, NT_QUANTITY_FORCE));
+                assert_true(fabs(here.k) <= nt_plan_law_limit(&plan, term, 0.9 * gap, NT_QUANTITY_STIFFNESS));
+            }
+            assert_true(nt_plan_term_eval(&plan, term, 0.1 * hold).F == nt_plan_term_eval(&plan, term, hold).F);
+        }
+    }
+    assert_int_equal(seen, (1 << NT_PLAN_TERMS) - 2); /* all but contact */
+}
+
+/* W = F/(2 pi R) of a sphere much larger than the gap, p = -dW/dh, and the slope of p. */
+static void flats_are_those_of_the_sphere(void **state)
+{
+    (void)state;
+    int seen = 0;
+    for (int kind = NT_MEDIUM_VACUUM; kind <= NT_MEDIUM_LIQUID; kind++) {
+        make((nt_medium_kind)kind);
+        for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; term++) {
+            if (nt_plan_full_form(&plan, term) == NT_FORM_OFF || !nt_term_words_of(term)->has_pressure)
+                continue;
+            ++seen;
+            for (double gap = 1e-9; gap < 8e-9; gap *= 1.2) {
+                const double step = 1e-4 * gap, W = nt_plan_term_eval(&plan, term, gap).F / (2.0 * PI * 1e-4);
+                const nt_pressure less = nt_plan_term_pressure(&plan, term, gap - step);
+                const nt_pressure here = nt_plan_term_pressure(&plan, term, gap);
+                const nt_pressure more = nt_plan_term_pressure(&plan, term, gap + step);
+                assert_true(fabs(here.energy / W - 1.0) < 1e-3); /* gap/R */
+                assert_true(fabs((less.energy - more.energy) / (2.0 * step) / here.pressure - 1.0) < 1e-5);
+                assert_true(fabs((more.pressure - less.pressure) / (2.0 * step) / here.slope - 1.0) < 1e-5);
+            }
+        }
+    }
+    assert_true(seen >= 5);
+    assert_true(isnan(nt_plan_term_pressure(&plan, NT_PLAN_CONTACT, 1e-9).pressure));
+    assert_true(isnan(nt_plan_term_pressure(&plan, NT_PLAN_CHARGE, 1e-9).pressure));
+    assert_true(nt_plan_term_pressure(&plan, NT_PLAN_ELECTROSTATIC, 1e-9).pressure == 0.0); /* not in a liquid */
+}
+
+/* A term alone, whether the plan has it or not. */
+static void one_term_alone(void **state)
+{
+    (void)state;
+    make(NT_MEDIUM_VACUUM);
+    assert_true(nt_plan_term_eval(&plan, NT_PLAN_VDW, 2e-9).F == nt_vdw_eval(&plan.laws.vdw.sphere, 2e-9).F);
+    assert_true(nt_plan_term_eval(&plan, NT_PLAN_HYDRATION, 2e-9).F == 0.0);
+    assert_true(isnan(nt_plan_term_eval(&plan, NT_PLAN_TERMS, 2e-9).F));
+    assert_true(nt_plan_term_eval(&plan, NT_PLAN_CONTACT, -1e-6).F > 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_row_is_whole),
+        cmocka_unit_test(every_law_is_a_potential_within_its_limit),
+        cmocka_unit_test(flats_are_those_of_the_sphere),
+        cmocka_unit_test(one_term_alone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
