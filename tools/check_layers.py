@@ -58,7 +58,7 @@ PYTHON_LAYERS = {
     "what all need": "_core errors columns formats units _arrays _digest _files _words _writing _drawing",
     "readers": "_transfer _worker _readers",
     "laws": "contact forces geometry materials",
-    "devices": "faults hal _plant",
+    "devices": "faults frames commands hal _plant",
     "descriptions": "description scene presets",
     "measured": "images surface curves",
     "what is computed": "_plan_terms _plan_text plan interaction reference",

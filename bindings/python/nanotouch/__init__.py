@@ -29,9 +29,9 @@ _HOMES = {
     "Surface": "surface",
 }
 _MODULES = (
-    "batch", "contact", "curves", "errors", "faults", "fit", "forces", "geometry", "hal", "images", "interaction",
-    "maps", "margins", "materials", "operator", "plan", "plots", "presets", "record", "reference", "scene", "session",
-    "surface", "units",
+    "batch", "commands", "contact", "curves", "errors", "faults", "fit", "forces", "frames", "geometry", "hal",
+    "images", "interaction", "maps", "margins", "materials", "operator", "plan", "plots", "presets", "record",
+    "reference", "scene", "session", "surface", "units",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]

@@ -26,6 +26,8 @@ void bind_interaction(py::module_ &module);
 void bind_control(py::module_ &module);
 void bind_faults(py::module_ &module);
 void bind_session(py::module_ &module);
+void bind_frames(py::module_ &module);
+void bind_commands(py::module_ &module);
 void bind_linux(py::module_ &module);
 
 // Raises the Python exception of a status; `what` says what was attempted. Returns only for NT_OK.

@@ -21,6 +21,8 @@ PYBIND11_MODULE(_core, module)
     bind_control(module);
     bind_faults(module);
     bind_session(module);
+    bind_frames(module);
+    bind_commands(module);
 #ifdef NANOTOUCH_HAS_LINUX
     bind_linux(module);
 #endif
