@@ -130,18 +130,13 @@ def _topography(args: argparse.Namespace) -> nt.Topography:
 def _session(args: argparse.Namespace, topography: nt.Topography) -> nt.Session:
     tables = read_tables(args.scene) if args.scene else {}
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
-    surface = nt.Surface(topography, scene.tip.radius, scene.tip.half_angle)
     what: dict[str, Any] = {
-        "surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed, "control": args.control,
-        "probe_model": args.probe_model,
+        "surface": nt.Surface.touched_by(scene, topography), "mode": args.mode, "path": _path(args), "seed": args.seed,
+        "control": args.control, "probe_model": args.probe_model,
     }  # fmt: skip
-    scaled = nt.Session(scene, rig, minimum_margin=0.0, **what)  # for the relief on the path
-    settings = scaled.settings.copy()
-    loop.scale_force(args.force_range, scaled.plan, rig, settings)
-    settings.update_from_tables(tables)
     session = nt.Session(
-        scene, rig, settings=settings, rate=loop.rate_of(args.rate), delay=loop.delay_of(args.delay),
-        minimum_margin=0.0, **what,
+        scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),
+        delay=loop.delay_of(args.delay), minimum_margin=0.0, **what,
     )  # fmt: skip
     found = session.margins()
     if not found.least >= args.minimum_margin:
@@ -150,6 +145,19 @@ def _session(args: argparse.Namespace, topography: nt.Topography) -> nt.Session:
             "; nanotouch margins shows all of them, --minimum-margin overrides"
         )
     return session
+
+
+def _settings(
+    args: argparse.Namespace, tables: dict[str, Any], scene: nt.Scene, rig: nt.Rig, what: dict[str, Any]
+) -> nt.Settings | None:
+    """What file and options say of the loop, beside what follows from the relief on the path; None: nothing."""
+    if args.force_range is None and not tables.keys() & set(nt.Settings.sections()):
+        return None
+    scaled = nt.Session(scene, rig, minimum_margin=0.0, **what)
+    settings = scaled.settings.copy()
+    loop.scale_force(args.force_range, scaled.plan, rig, settings)
+    settings.update_from_tables(tables)
+    return settings
 
 
 def _path(args: argparse.Namespace) -> list[tuple[float, float]] | None:

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import copy
-import math
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
@@ -17,7 +18,6 @@ from nanotouch._plan_terms import Row as Row
 from nanotouch._plan_terms import Term as Term
 from nanotouch._plan_terms import Warning as Warning
 from nanotouch._plan_text import contact_law_of, text_of
-from nanotouch.contact.bank import covering
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Demand, Rig, Scene
 
@@ -44,9 +44,7 @@ class Plan:
         if not isinstance(probe, Rig | None):
             raise TypeError(f"probe must be a Rig, not {type(probe).__name__}")
         rig = None if probe is None else probe.copy()
-        terrain = terrain_of(scene, surface, wanted.demand.relative_accuracy)
-        core = _core.Plan(scene.core, wanted.core, None if rig is None else rig.core, terrain)
-        return cls(core, (scene.copy(), wanted.copy(), rig, surface))
+        return cls(make_terrain(scene, wanted, rig, surface).plan, (scene.copy(), wanted.copy(), rig, surface))
 
     @property
     def terms(self) -> list[Term]:
@@ -195,28 +193,50 @@ def begins_attached(history: History) -> bool:
 
 
 def terrain_of(scene: Scene, surface: Surface | None, accuracy: float = 0.01) -> _core.Terrain | None:
-    """A surface with what its curvature needs: the effective radius of each place, and a bank of tables that reaches as
-    far as this scene's contact goes there, finer for an accuracy that the coarser one would not keep. A surface that no
+    """The terrain of a surface for an accuracy of the force; None for a flat."""
+    demand = Demand(demand={"relative_accuracy": accuracy})
+    return None if surface is None else make_terrain(scene, demand, None, surface)
+
+
+def make_terrain(scene: Scene, demand: Demand, probe: Rig | None, surface: Surface | None) -> _core.Terrain:
+    """Surface, effective radii, bank of tables and plan of a scene, each made once (docs/surface.md). A surface that no
     tip has dilated has no radii."""
-    if surface is None:
-        return None
-    if surface.tip_radius is None:
-        return _core.Terrain(surface.core, None, None)
-    if surface.tip_radius != scene.tip.radius:
-        raise InvalidValue(
-            f"tip.radius = {scene.tip.radius:g} m, over a surface that was dilated by a tip of {surface.tip_radius:g} m"
-        )
-    facts = _core.Plan(scene.core, Demand(demand={"relative_accuracy": 0.0}).core, None, None).as_dict()
-    radii = surface.radius_map
-    least, largest = (radius / facts["radius"] for radius in radii.bounds)
-    bank = None  # without adhesion: Hertz everywhere
-    if math.isfinite(facts["lambda"]):
-        maugis_lambda, stiffness = facts["lambda"], 4.0 / 3.0 * facts["effective_modulus"]
-        unit = (math.pi**2 * facts["work_of_adhesion"] ** 2 * facts["radius"] / stiffness**2) ** (1 / 3)
-        bank = covering(
-            maugis_lambda * least ** (1 / 3),
-            maugis_lambda * largest ** (1 / 3),
-            facts["largest_indentation"] / unit * least ** (-2 / 3),
-            per_octave=8 if 0.0 < accuracy < 1e-4 else 4,
-        ).core
-    return _core.Terrain(surface.core, radii.core, bank)
+    dilated = surface is not None and surface.tip_radius is not None
+    return _core.Terrain(
+        scene.core,
+        demand.core,
+        None if probe is None else probe.core,
+        None if surface is None else surface.core,
+        surface.radius_map.core if surface is not None and dilated else None,
+    )
+
+
+class Reach(NamedTuple):
+    """What of a terrain can be reached: bounds between the pixels, too (docs/surface.md)."""
+
+    rise: float
+    """highest place above the start [m]"""
+    relief: float
+    """highest less lowest place [m]"""
+    slope: float
+    """steepest: along a path in its direction, in an area in any direction"""
+    least_radius: float
+    """bound of the effective radius of the contact [m]"""
+    largest_radius: float
+    """[m]"""
+
+    @classmethod
+    def along(cls, terrain: _core.Terrain, path: Sequence[tuple[float, float]]) -> Reach:
+        """Straight from point to point (x, y) [m], the start first."""
+        return cls(*terrain.reach_path(np.asarray(path, dtype=float)))
+
+    @classmethod
+    def within(
+        cls,
+        terrain: _core.Terrain,
+        start: tuple[float, float],
+        rectangle: tuple[float, float, float, float] | None = None,
+    ) -> Reach:
+        """Wherever a tip may go from a start (x, y) [m] in a rectangle (x_min, x_max, y_min, y_max) [m], by default all
+        of the surface."""
+        return cls(*terrain.reach_area(*start, rectangle))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,9 @@ from nanotouch import _core
 from nanotouch._arrays import as_floats, check_between, plain
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
+
+if TYPE_CHECKING:
+    from nanotouch.scene import Scene
 
 
 class Surface:
@@ -36,6 +39,11 @@ class Surface:
         self.tip_radius = tip_radius
         self.tip_half_angle = tip_half_angle
         self.core = _core.Surface(heights, dy, dx, overwrite=True)  # `heights` is nobody else's
+
+    @classmethod
+    def touched_by(cls, scene: Scene, topography: Topography) -> Surface:
+        """Dilated by the tip of a scene, as a session or a plan of that scene needs it."""
+        return cls(topography, scene.tip.radius, scene.tip.half_angle)
 
     def __reduce__(self) -> Any:
         return type(self), (self.topography, self.tip_radius, self.tip_half_angle)

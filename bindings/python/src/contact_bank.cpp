@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // contact_bank.h: many contacts, each its own.
-#include "contact_bank.h"
-
 #include <memory>
+#include <vector>
+
+#include "chapters.h"
+
+// A bank and the memory it was made in.
+struct Bank {
+    std::vector<nt_maugis_panel> panels;
+    std::vector<nt_maugis_bank_cell> cells;
+    nt_maugis_bank bank;
+};
 
 static_assert(sizeof(nt_contact) == 4 * sizeof(double), "a row of numbers is a contact");
 

@@ -1,32 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // plan.h: the plan as data
-#include <memory>
-
-#include "descriptions.h"
-#include "surface.h"
-
-static std::unique_ptr<nt_plan> plan_of(const Described<nt_scene> &scene, const Described<nt_demand> &demand,
-                                        const Described<nt_rig> *rig, const Terrain *terrain)
-{
-    nt_plan_inputs inputs{};
-    inputs.scene = &scene.value;
-    inputs.demand = &demand.value;
-    inputs.probe = rig ? &rig->value.probe : nullptr;
-    if (terrain) {
-        inputs.surface = &terrain->surface->surface;
-        inputs.radii = terrain->radii ? &terrain->radii->map : nullptr;
-        inputs.bank = terrain->bank ? &terrain->bank->bank : nullptr;
-    }
-    auto plan = std::make_unique<nt_plan>();
-    nt_problem problem{};
-    nt_status status;
-    {
-        py::gil_scoped_release release;
-        status = nt_plan_make(plan.get(), &inputs, &problem);
-    }
-    raise_on(status, problem, "plan");
-    return plan;
-}
+#include "chapters.h"
 
 static py::list terms_of(const nt_plan &plan)
 {
@@ -128,8 +102,6 @@ void bind_plan(py::module_ &module)
 {
     module.def("term_rows", &term_rows);
     py::class_<nt_plan>(module, "Plan")
-        .def(py::init(&plan_of), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("terrain"),
-             py::keep_alive<1, 5>())
         .def("as_dict", &as_dict)
         .def("term_eval", &term_eval)
         .def("term_pressure", &term_pressure)

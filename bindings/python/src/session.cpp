@@ -55,9 +55,9 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     auto made = std::make_unique<Session>();
     if (terrain) {
         made->terrain = *terrain;
-        setup.surface = &terrain->surface->surface;
-        setup.radii = terrain->radii ? &terrain->radii->map : nullptr;
-        setup.bank = terrain->bank ? &terrain->bank->bank : nullptr;
+        setup.surface = nt_terrain_surface(terrain->made.get());
+        setup.radii = nt_terrain_radii(terrain->made.get());
+        setup.bank = nt_terrain_bank(terrain->made.get());
     }
     setup.x = options["x"].cast<double>();
     setup.y = options["y"].cast<double>();

@@ -121,9 +121,6 @@ void bind_surface(py::module_ &module)
         .def_property_readonly("minimum", [](const RadiusMap &self) { return self.map.minimum; })
         .def_property_readonly("maximum", [](const RadiusMap &self) { return self.map.maximum; })
         .def_property_readonly("limited", [](const RadiusMap &self) { return self.map.limited; });
-    py::class_<Terrain>(module, "Terrain")
-        .def(py::init<std::shared_ptr<Surface>, std::shared_ptr<RadiusMap>, std::shared_ptr<Bank>>(),
-             py::arg("surface"), py::arg("radii"), py::arg("bank"));
     module.def("dilate", &dilate);
     module.def("grating",
                [](long ny, long nx, double dy, double dx, double period, double height, double duty, double offset) {

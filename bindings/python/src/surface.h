@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "contact_bank.h"
+#include "chapters.h"
 
 // A surface and the array that holds its coefficients.
 struct Surface {
@@ -16,9 +16,9 @@ struct RadiusMap {
     nt_radius_map map;
 };
 
-// A surface with what its curvature needs; both may be missing.
+// A terrain, and the surface and radii that it borrows; both may be missing.
 struct Terrain {
     std::shared_ptr<Surface> surface;
     std::shared_ptr<RadiusMap> radii;
-    std::shared_ptr<Bank> bank;
+    std::shared_ptr<nt_terrain> made;
 };

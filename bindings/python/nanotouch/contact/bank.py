@@ -8,8 +8,6 @@ force, stiffness and dU/dR are its exact derivatives.
 
 from __future__ import annotations
 
-import functools
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -98,18 +96,6 @@ class Bank:
         """Where the stable branch ends under grips [m]."""
         contacts, shape = _contacts(0.0, radius, effective_modulus, work_of_adhesion, cohesive_stress)
         return plain(np.broadcast_to(self.core.grip_indentation(contacts), int(np.prod(shape))).reshape(shape).copy())
-
-
-def covering(lambda_min: float, lambda_max: float, largest_indentation: float, *, per_octave: int = 4) -> Bank:
-    """A bank that covers a range with half an octave to spare; those of a few ranges in decades are kept."""
-    first = min(max(math.floor(math.log10(lambda_min / 1.5)), -15), 14)
-    last = min(max(math.ceil(math.log10(1.5 * lambda_max)), first + 1), 15)
-    return _kept(first, last, min(max(2, math.ceil(math.log10(largest_indentation))), 5), per_octave)
-
-
-@functools.lru_cache(maxsize=32)
-def _kept(first: int, last: int, deepest: int, per_octave: int) -> Bank:
-    return Bank((10.0**first, 10.0**last), 10.0**deepest, panels_per_octave=per_octave, cells_per_octave=per_octave)
 
 
 def _contacts(
