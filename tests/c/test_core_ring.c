@@ -65,7 +65,9 @@ static void order_is_kept_round_and_round(void **state)
     assert_true(next_out > 100);
 }
 
-enum { MESSAGES = 200000, WORDS = 8 };
+/* A ring that holds many: where the threads share a processor, each fills or empties it before the other has its turn.
+ */
+enum { MESSAGES = 200000, WORDS = 8, HELD = 1024 };
 
 /* A message that shows when it has been torn: all words alike. */
 typedef struct message {
@@ -101,16 +103,16 @@ static void *fill_ring(void *context)
 static void two_threads_lose_and_tear_nothing(void **state)
 {
     (void)state;
-    static message memory[16];
+    static message memory[HELD];
     nt_ring ring;
     pthread_t producer;
     uint64_t expected = 0;
     int whole = 1, in_order = 1, bounded = 1;
-    assert_int_equal(nt_ring_init(&ring, memory, sizeof(message), 16), NT_OK);
+    assert_int_equal(nt_ring_init(&ring, memory, sizeof(message), HELD), NT_OK);
     assert_int_equal(pthread_create(&producer, NULL, fill_ring, &ring), 0);
     while (expected < MESSAGES) {
         message got[5];
-        bounded &= nt_ring_count(&ring) <= 16;
+        bounded &= nt_ring_count(&ring) <= HELD;
         const size_t count = nt_ring_pop(&ring, got, 5);
         if (count == 0)
             sched_yield();

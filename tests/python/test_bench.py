@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
 import json
-import math
 from pathlib import Path
 
 import numpy as np
@@ -41,18 +41,22 @@ def test_every_call_fills_an_array_with_numbers() -> None:
         assert np.ptp(found[0]) > 0.0
 
 
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a clock whose readings are the squares: call j of the first turn seems to take 4 j + 1 ns, later ones more."""
+    readings = itertools.count()
+    monkeypatch.setattr(timing, "perf_counter_ns", lambda: next(readings) ** 2)
     out = tmp_path / "bench.json"
     assert main(["bench", "--quick", "--out", str(out)]) == 0
     written = json.loads(out.read_text(encoding="utf-8"))
-    laws = {(law["computes"], law["law"]): law for law in written["laws"]}
     assert {"elements", "machine", "numpy", "python", "runs", "unit", "version"} < set(written)
-    assert all(math.isfinite(law["nanoseconds"]) and law["nanoseconds"] > 0.0 for law in laws.values())
-    for computes, yardstick in bench.YARDSTICKS.items():
-        assert laws[computes, yardstick]["hertz"] == 1.0
-    # measured 200 and 13: a busy machine does not hide it
-    assert laws["F", "MD exact"]["hertz"] > 10.0 * laws["F", "MD table"]["hertz"]
-    assert laws["U, F, k, a", "maugis exact"]["hertz"] > 2.0 * laws["U, F, k, a", "maugis table"]["hertz"]
+    laws = {(law["computes"], law["law"]): law for law in written["laws"]}
+    assert next(readings) == 2 * written["runs"] * len(laws)
+    called = [*(("F", name) for name in bench.force_calls()), *(("U, F, k, a", name) for name in bench.law_calls())]
+    assert list(laws) == called
+    for j, (computes, name) in enumerate(called):
+        yardstick = 4 * called.index((computes, bench.YARDSTICKS[computes])) + 1
+        assert laws[computes, name]["nanoseconds"] == (4 * j + 1) / timing.ELEMENTS
+        assert laws[computes, name]["hertz"] == pytest.approx((4 * j + 1) / yardstick, rel=1e-15)
     said = capsys.readouterr().out
     assert all(law in said for _, law in laws)
 
