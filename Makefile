@@ -30,10 +30,13 @@ damage:  ## 2000 damaged files through the readers of images and curves; some mi
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/mutations.py
 
-heavy:  ## plans of 10 000 random scenes against the reference, energy of 1.5 million closed paths; half an hour
+heavy:  ## plans of 10 000 random scenes against the reference, energy of 1.5 million closed paths, fits without memory; half an hour
 	@tools/setup.sh test
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/energy.py
+	@cmake --preset dev --log-level WARNING
+	@cmake --build --preset dev --target test_fit_memory
+	@build/dev/tests/c/test_fit_memory every
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test

@@ -148,6 +148,7 @@ set(nanotouch_sources_fit
     fit/points.cpp
     fit/problem.cpp
     fit/reading.cpp
+    fit/reserve.cpp
     fit/run.cpp
     fit/solve.cpp
     fit/uncertainty.cpp)

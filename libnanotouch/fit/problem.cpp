@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "data.hpp"
+#include "reserve.hpp"
 
 namespace nanotouch
 {
@@ -67,6 +68,8 @@ Residuals::Residuals(const nt_fit_options &options, const nt_fit_data &data, con
 
 void Residuals::PrepareForEvaluation(bool, bool new_evaluation_point)
 {
+    if (Reserve::is_used()) // it would not last
+        throw std::bad_alloc();
     if (new_evaluation_point)
         valid_ = evaluate();
 }

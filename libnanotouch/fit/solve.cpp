@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "reserve.hpp"
 #include "uncertainty.hpp"
 
 namespace nanotouch
@@ -68,6 +69,8 @@ bool Fit::solve(ceres::Problem *problem, ceres::Solver::Summary *summary)
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-12;
     ceres::Solve(solver, problem, summary);
+    if (Reserve::is_used())
+        throw std::bad_alloc();
     residuals_.PrepareForEvaluation(true, true); // at the result, not at the last trial
     return summary->IsSolutionUsable() && residuals_.valid();
 }
@@ -112,12 +115,15 @@ nt_status Fit::run(Found *found)
     residuals_.PrepareForEvaluation(true, true);
     if (!residuals_.valid())
         return NT_E_NO_CONVERGENCE;
+    const Reserve reserve;
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.evaluation_callback = &residuals_;
     ceres::Problem problem(ownership);
     build(&problem);
+    if (Reserve::is_used())
+        throw std::bad_alloc();
     ceres::Solver::Summary summary;
     if (!solve(&problem, &summary))
         return NT_E_NO_CONVERGENCE;

@@ -16,7 +16,8 @@
  * it is C1 in delta and in every parameter: what lies on it (nt_fit_point.held = 0) is not to be fitted. Without a
  * spring constant, and for DMT, the force stays at that of the load fold.
  *
- * All functions: thread-safe, no state between calls, nothing printed, no exception escapes. Not real-time (heap). */
+ * All functions: thread-safe, no state between calls, nothing printed, no exception escapes. Not real-time (heap).
+ * While a fit runs, the new handler of C++ is the library's; it hands on to the one that was set before. */
 #ifndef NANOTOUCH_FIT_H
 #define NANOTOUCH_FIT_H
 
