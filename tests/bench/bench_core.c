@@ -20,6 +20,7 @@ typedef struct bench {
     nt_plan plan;
     nt_surface surface;
     nt_session *session;
+    nt_frames *frames;
 } bench;
 
 static void run_law(bench *b, int i)
@@ -46,6 +47,13 @@ static void run_tick(bench *b, int i)
     (void)i;
     sink = nt_session_advance(b->session, 1);
     sink = (double)nt_session_read(b->session, records, POINTS);
+}
+
+static void run_frame(bench *b, int i)
+{
+    static nt_frame frame;
+    frame.sequence = (uint64_t)i;
+    nt_frames_publish(b->frames, &frame);
 }
 
 static double now(void)
@@ -92,6 +100,8 @@ static nt_status prepare(bench *b)
     nt_status status = nt_plan_make(&b->plan, &inputs, NULL);
     if (status == NT_OK)
         status = nt_surface_init(&b->surface, &map, heights);
+    if (status == NT_OK)
+        status = nt_frames_create(&b->frames, NULL);
     return status == NT_OK ? nt_session_open(&b->session, &setup, NULL) : status;
 }
 
@@ -111,7 +121,9 @@ int main(void)
     report("interaction", measure(run_interaction, &b), hertz);
     report("surface", measure(run_surface, &b), hertz);
     report("tick of a simulated session", measure(run_tick, &b), hertz);
+    report("frame shown to observers", measure(run_frame, &b), hertz);
     printf("\n}\n");
+    nt_frames_close(b.frames);
     nt_session_close(b.session);
     return status == NT_OK ? 0 : 1;
 }

@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <time.h>
 
+#include "session/frames_memory.h" /* one slot of the ring */
+
 typedef struct ends {
     nt_frames *frames;
     nt_observer *observer;
@@ -171,6 +173,37 @@ static void threads_read_no_torn_frame(void **state)
     nt_frames_close(frames);
 }
 
+static nt_frame_slot slot;
+static atomic_int enough;
+
+static void *write_one_slot(void *context)
+{
+    for (uint64_t tick = 1; !atomic_load(&enough); ++tick) {
+        const nt_frame frame = frame_of(tick);
+        nt_slot_write(&slot.stamp, slot.words, tick, &frame, FRAME_WORDS);
+    }
+    return context;
+}
+
+/* Writer and reader meet in one slot again and again, as they hardly ever do in the ring. */
+static void a_slot_is_never_torn(void **state)
+{
+    (void)state;
+    pthread_t writer;
+    nt_frame frame;
+    int wrong = 0;
+    atomic_store(&enough, 0);
+    assert_int_equal(pthread_create(&writer, NULL, write_one_slot, NULL), 0);
+    for (int seen = 0; seen < 4 * ROUNDS;) {
+        const uint64_t stamp = nt_slot_read(&slot.stamp, slot.words, &frame, FRAME_WORDS);
+        wrong += stamp != 0 && (!is_whole(&frame) || frame.sequence != stamp);
+        seen += stamp != 0;
+    }
+    atomic_store(&enough, 1);
+    pthread_join(writer, NULL);
+    assert_int_equal(wrong, 0);
+}
+
 static void *describe_often(void *context)
 {
     static char text[2048];
@@ -287,6 +320,7 @@ int main(void)
         cmocka_unit_test(what_was_overwritten_is_counted),
         cmocka_unit_test(sixty_looks_a_second_miss_nothing_at_10_kHz),
         cmocka_unit_test(threads_read_no_torn_frame),
+        cmocka_unit_test(a_slot_is_never_torn),
         cmocka_unit_test(descriptions_are_never_torn),
         cmocka_unit_test(processes_read_no_torn_frame),
         cmocka_unit_test(a_dead_writer_is_seen),
