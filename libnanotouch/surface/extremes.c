@@ -87,8 +87,8 @@ static void range_of(const nt_surface *s, const cells *c, double range[2])
     window_of(s, c, window, size);
     for (int j = 0; j < size[1]; j++)
         for (int i = 0; i < size[0]; i++) {
-            range[0] = fmin(range[0], window[j][i]);
-            range[1] = fmax(range[1], window[j][i]);
+            range[0] = window[j][i] < range[0] ? window[j][i] : range[0];
+            range[1] = window[j][i] > range[1] ? window[j][i] : range[1];
         }
 }
 
@@ -112,7 +112,7 @@ static double largest(double window[WINDOW][WINDOW], const int size[2])
     double most = 0.0;
     for (int j = 0; j < size[1]; j++)
         for (int i = 0; i < size[0]; i++)
-            most = fmax(most, fabs(window[j][i]));
+            most = fabs(window[j][i]) > most ? fabs(window[j][i]) : most;
     return most;
 }
 
@@ -228,14 +228,25 @@ static void halve(search *s, int what, const derivatives *d, piece p, int halvin
     }
 }
 
+/* No slope is above those of the coefficients, nor these above what the range of heights lets them be, which is seen
+ * at once and enough for most cells. */
+static double steepest_of(const search *s, const cells *c, const double range[2])
+{
+    const double span = range[1] - range[0], roughly = hypot(span / s->surface->dx, span / s->surface->dy);
+    derivatives d;
+    if (roughly <= enough(s, STEEPEST))
+        return roughly;
+    derivatives_of(s->surface, c, 1, &d);
+    return hypot(d.of[1][0], d.of[0][1]);
+}
+
 /* The largest in a piece of some cells, if it may be larger than what has been found. */
 static void search_piece(search *s, const cells *c, const piece *p)
 {
     double range[2] = {HUGE_VAL, -HUGE_VAL};
     derivatives d;
     range_of(s->surface, c, range);
-    derivatives_of(s->surface, c, 1, &d);
-    const double most[SOUGHT] = {range[1], -range[0], hypot(d.of[1][0], d.of[0][1])};
+    const double most[SOUGHT] = {range[1], -range[0], steepest_of(s, c, range)};
     int known = 0;
     for (int what = 0; what < SOUGHT; what++) {
         if (most[what] <= enough(s, what)) {

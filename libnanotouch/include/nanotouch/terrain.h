@@ -26,7 +26,7 @@ typedef struct nt_terrain_setup {
 /* The paper's scene, 1 % of the force, no probe, a flat at z = 0. */
 NT_API nt_terrain_setup nt_terrain_defaults(void);
 
-/* Makes surface, radii (nt_radius_limits_defaults), bank and plan, in this order, each once: some 0.7 s at 1024 x 1024
+/* Makes surface, radii (nt_radius_limits_defaults), bank and plan, in this order, each once: 0.5 to 1 s at 1024 x 1024
  * pixels, most of it dilation. On failure *problem (NULL allowed) names the field of scene, demand, probe, map, surface
  * or radii with its valid range; NT_E_ARGUMENT for a map beside a surface, or radii without one; as
  * nt_plan_make for a demand that cannot be kept; NT_E_NO_MEMORY. The terrain belongs to the caller: nt_terrain_close.
@@ -69,7 +69,7 @@ NT_API nt_area nt_terrain_whole(const nt_terrain *terrain, double x, double y);
 NT_API nt_status nt_terrain_reach_path(const nt_terrain *terrain, const double *xy, long count, nt_reach *reach,
                                        nt_problem *problem);
 /* Over an area, by the same bounds in two dimensions. NT_E_NOT_FINITE or NT_E_RANGE with "area.x", .. for a rectangle
- * that is not on the surface or a start outside it. Some 0.1 s at 1024 x 1024 pixels. Not real-time. */
+ * that is not on the surface or a start outside it. Some 0.2 s at 1024 x 1024 pixels. Not real-time. */
 NT_API nt_status nt_terrain_reach_area(const nt_terrain *terrain, const nt_area *area, nt_reach *reach,
                                        nt_problem *problem);
 
