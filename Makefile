@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The two commands: `make demo` and `make test`. Each does all the set-up it needs (tools/setup.sh).
 
-OUT ?= nanotouch-out
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
@@ -10,9 +9,9 @@ VENV := .venv/bin
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
-demo:  ## touch the built-in grating, or a file: make demo IMAGE=path
+demo:  ## touch the built-in grating, or a file: make demo IMAGE=path OUT=folder
 	@tools/setup.sh demo
-	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") --out "$(OUT)"
+	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") $(if $(OUT),--out "$(OUT)")
 
 test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@tools/setup.sh test
@@ -30,10 +29,11 @@ damage:  ## 2000 damaged files through the readers of images and curves; some mi
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/mutations.py
 
-heavy:  ## plans of 10 000 random scenes against the reference, energy of 1.5 million closed paths, fits without memory; half an hour
+heavy:  ## 10 000 random scenes, energy of 1.5 million closed paths, recordings under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/energy.py
+	@$(VENV)/python tests/heavy/kills.py
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every

@@ -47,6 +47,7 @@ def add_parser(subparsers: Any) -> None:
         "bench", help="measure the cost of every law in ns and in Hertz", description=__doc__
     )
     parser.add_argument("--out", type=Path, metavar="FILE.json", help="also write the figures as JSON")
+    output.add_overwrite(parser)
     parser.add_argument("--quick", action="store_true", help="few repetitions: rough figures")
 
 
@@ -56,6 +57,8 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValue(f"--out {args.out}: the ending must be .json")
     if args.out and not args.out.parent.is_dir():
         raise Error(f"cannot write {args.out}: {args.out.parent} is not a folder")
+    if args.out:
+        output.check_free(args.out, args)
     runs = QUICK_RUNS if args.quick else RUNS
     with output.progress_bar("timing") as progress:
         costs = measure(runs, progress)

@@ -19,6 +19,7 @@ from nanotouch_app import output
 
 TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale"}
 POINTS = 2001
+FILES = ("curve.csv", "curve.png")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -27,9 +28,7 @@ def add_parser(subparsers: Any) -> None:
         "curve", help="compute a force-distance curve", description=__doc__
     )
     parser.add_argument("--scene", metavar="FILE", help="TOML file with the scene (default: silicon in humid air)")
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for results (default: %(default)s)"
-    )
+    output.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -46,11 +45,11 @@ def run(args: argparse.Namespace) -> int:
     curves = {TITLES[model]: (gap, evaluate(model, -gap, contact).F) for model in MODELS}
     for model in MODELS:
         print(f"{TITLES[model]:15} pull-off {pull_off_force(model, contact) * 1e9:.3f} nN")
-    out = output.folder(args.out)
-    columns = {"gap [m]": gap} | {f"{model} force [N]": curves[TITLES[model]][1] for model in MODELS}
-    write_csv(out / "curve.csv", columns, {"scene": str(scene)})
-    plots.force_curves(curves, save=out / "curve.png")
-    print(f"written to {out}/: curve.csv, curve.png")
+    with output.folder(args, FILES) as out:
+        columns = {"gap [m]": gap} | {f"{model} force [N]": curves[TITLES[model]][1] for model in MODELS}
+        write_csv(out / "curve.csv", columns, {"scene": str(scene)})
+        plots.force_curves(curves, save=out / "curve.png")
+        print(f"written to {out}/: curve.csv, curve.png")
     return 0
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from nanotouch import curves, record
 from nanotouch.errors import InvalidValue, require
 
-from nanotouch_app.output import progress_bar
+from nanotouch_app import output
 
 HDF5_ENDINGS = (".h5", ".hdf5")
 CHANNELS = {"time": "s", "z": "m", "deflection": "m", "force": "N"}
@@ -30,6 +30,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("file", type=Path, metavar="RECORDING|CURVE", help="recording.mcap, or a force curve file")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="table to write: .csv, .h5 or .hdf5")
+    output.add_overwrite(parser)
     parser.add_argument(
         "--untrusted", action="store_true", help="open CURVE in a worker with limits on memory, time and open files"
     )
@@ -41,7 +42,8 @@ def run(args: argparse.Namespace) -> int:
     ending = args.out.suffix.lower()
     if ending not in (".csv", *HDF5_ENDINGS):
         raise InvalidValue(f"--out {args.out}: the ending must be .csv, .h5 or .hdf5")
-    with progress_bar("exporting") as progress:
+    output.check_free(args.out, args)
+    with output.progress_bar("exporting") as progress:
         if record.is_recording(args.file):
             what = _export_recording(args.file, args.out, ending == ".csv", progress)
         else:

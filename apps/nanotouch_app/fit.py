@@ -15,6 +15,8 @@ from nanotouch.errors import InvalidValue
 from nanotouch_app import fit_many, output
 from nanotouch_app.quantity import parse_quantity
 
+FILES = ("fit.json", "fit.png", "stability.png")
+
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
@@ -38,10 +40,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand, for a table"
     )
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR|FILE.csv",
-        help="folder for the results, or a table with a row for each curve (default: %(default)s)",
-    )  # fmt: skip
+    output.add_options(parser, "DIR|FILE.csv", "folder for the results, or a table with a row for each curve")
 
 
 def add_knowledge(parser: argparse.ArgumentParser) -> None:
@@ -83,19 +82,17 @@ def run(args: argparse.Namespace) -> int:
     curve = found[args.index]
     known = knowledge(args)
     result = fitting.fit_curve(curve, args.model, branch=args.branch, **known)
-    out = output.folder(args.out)
-    written = ["fit.json", "fit.png"]
-    output.write_json(out / "fit.json", as_json(result))
-    fitting.draw(curve, result, save=out / "fit.png")
-    if args.stability:
-        fitting.stability(curve, args.model, branch=args.branch, **known).draw(save=out / "stability.png")
-        written.append("stability.png")
-    if len(found) > 1:
-        print(f"curve {args.index} of {len(found)}; --index N picks another")
-    print(result)
-    if args.compare:
-        print(fitting.choose_model(curve, _rivals(args.model), branch=result.branch, **known))
-    print(f"written to {out}/: {', '.join(written)}")
+    with output.folder(args, FILES) as out:
+        output.write_json(out / "fit.json", as_json(result))
+        fitting.draw(curve, result, save=out / "fit.png")
+        if args.stability:
+            fitting.stability(curve, args.model, branch=args.branch, **known).draw(save=out / "stability.png")
+        if len(found) > 1:
+            print(f"curve {args.index} of {len(found)}; --index N picks another")
+        print(result)
+        if args.compare:
+            print(fitting.choose_model(curve, _rivals(args.model), branch=result.branch, **known))
+        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0
 
 

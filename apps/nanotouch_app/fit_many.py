@@ -19,26 +19,29 @@ def is_meant(args: argparse.Namespace) -> bool:
     """Whether the names stand for more than one file, or a table is asked for."""
     name = args.curve[0]
     pattern = glob.has_magic(name) and not Path(name).exists()
-    return len(args.curve) > 1 or Path(args.out).suffix == ".csv" or Path(name).is_dir() or pattern
+    return len(args.curve) > 1 or Path(args.out or "").suffix == ".csv" or Path(name).is_dir() or pattern
 
 
 def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, Any]) -> int:
-    """Fit all, write table and sheets; the status is 1 where not a single curve was fitted.
+    """Fit all, write table and sheets; the status is 1 where not a single curve was fitted. A table with a journal is
+    gone on with (:func:`nanotouch.batch.fit_files`).
 
     `reading` and `knowledge` are the arguments of :func:`nanotouch.curves.read` and :func:`nanotouch.fit.fit_curve`.
     """
-    if Path(args.out).suffix != ".csv":
-        raise InvalidValue(f"--out {args.out}: for many curves give a table, as results.csv")
+    if Path(args.out or "").suffix != ".csv":
+        raise InvalidValue("for many curves --out names a table, as --out results.csv")
     if args.index:
         raise InvalidValue("--index picks a curve of one file; a table has them all")
     out = Path(args.out)
-    folder = output.folder(out.parent)
-    with output.progress_bar("fit") as progress:
-        summary = batch.fit_files(
-            args.curve, out, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
-            branch=args.branch, **knowledge,
-        )  # fmt: skip
-    sheets = sheet.draw(summary.pictures, folder, out.stem)
+    if not out.with_name(f"{out.name}.journal").exists():
+        output.check_free(out, args)
+    with output.made(out.parent) as folder:
+        with output.progress_bar("fit") as progress:
+            summary = batch.fit_files(
+                args.curve, out, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
+                branch=args.branch, **knowledge,
+            )  # fmt: skip
+        sheets = sheet.draw(summary.pictures, folder, out.stem)
     print(summary)
     _tell_without(summary.rows)
     for name in summary.unused:

@@ -55,9 +55,7 @@ def add_parser(subparsers: Any) -> None:
         help="find particles: higher than this, as 2nm; flat, otsu or auto (default: auto)",
     )  # fmt: skip
     steps.add_argument("--pits", action="store_true", help="with --grains: find pits instead")
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for results (default: %(default)s)"
-    )
+    output.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -69,25 +67,24 @@ def run(args: argparse.Namespace) -> int:
     threshold = args.grains if args.grains in (None, "auto", "flat", "otsu") else parse_quantity(args.grains, "m")
     raw = _read(args)
     print(_described(raw))
-    out = output.folder(args.out)
-    output.clear(out, FILES)
-    facts: dict[str, Any] = {"file": str(args.image), "channel": raw.channel, "reader": raw.source}
-    clean = _repaired(raw, args, facts)
-    if smooth is not None:
-        clean = images.gaussian(clean, smooth)
-        print(f"smoothed by a Gaussian of {smooth * 1e9:.4g} nm")
-    if args.tip is not None:
-        clean = _without_tip(clean, tip, out, facts)
-    rough = images.roughness(clean)
-    facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
-    print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
-    table = None if threshold is None else _grains(clean, threshold, args.pits)
-    if table is not None:
-        _tell(table, out, facts)
-    output.write_json(out / "image.json", facts)
-    images.write(out / "image.gwy", clean)
-    images.draw({"as read": raw, "processed": clean}, grains=table, save=out / "image.png")
-    print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+    with output.folder(args, FILES) as out:
+        facts: dict[str, Any] = {"file": str(args.image), "channel": raw.channel, "reader": raw.source}
+        clean = _repaired(raw, args, facts)
+        if smooth is not None:
+            clean = images.gaussian(clean, smooth)
+            print(f"smoothed by a Gaussian of {smooth * 1e9:.4g} nm")
+        if args.tip is not None:
+            clean = _without_tip(clean, tip, out, facts)
+        rough = images.roughness(clean)
+        facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
+        print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
+        table = None if threshold is None else _grains(clean, threshold, args.pits)
+        if table is not None:
+            _tell(table, out, facts)
+        output.write_json(out / "image.json", facts)
+        images.write(out / "image.gwy", clean)
+        images.draw({"as read": raw, "processed": clean}, grains=table, save=out / "image.png")
+        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0
 
 

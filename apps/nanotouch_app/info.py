@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch info FILE``: what an image or a force curve file holds."""
+"""``nanotouch info FILE``: what an image, a force curve file or a recording holds."""
 
 from __future__ import annotations
 
 import argparse
+import warnings
 from pathlib import Path
 from typing import Any
 
-from nanotouch import curves, images
+from nanotouch import curves, images, record
 from nanotouch.errors import MissingExtra, ReadError
 
 _META = (("instrument", ""), ("date", ""), ("spring constant", "N/m"), ("sensitivity", "m/V"), ("setpoint", "N"))
@@ -19,9 +20,9 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "info",
         help="what a file holds: channels, size, units; segments, points, spring constant",
-        description="Say what an AFM image or a force curve file holds.",
+        description="Say what an AFM image, a force curve file or a recording holds.",
     )
-    parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image or a force curve file")
+    parser.add_argument("file", type=Path, metavar="FILE", help="an AFM image, a force curve file or a recording")
     parser.add_argument(
         "--untrusted", action="store_true", help="open FILE in a worker with limits on memory, time and open files"
     )
@@ -29,13 +30,15 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is neither image nor curve."""
+    """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is none of them."""
     print("\n".join(describe(args.file, args.untrusted)))
     return 0
 
 
 def describe(file: Path, untrusted: bool = False) -> list[str]:
     """The lines of the answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
+    if record.is_recording(file):
+        return _describe_recording(file)
     problems: list[ReadError | MissingExtra] = []
     for kind in (_describe_curves, _describe_image):
         try:
@@ -49,6 +52,20 @@ def describe(file: Path, untrusted: bool = False) -> list[str]:
     if reasons[0] == reasons[1]:
         raise problems[0]
     raise ReadError(f"{file}: as a force curve: {reasons[0]}; as an image: {reasons[1]}")
+
+
+def _describe_recording(file: Path) -> list[str]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of damage: it is told as what the recording lacks
+        recording = record.read(file)
+    span = f"{recording.time[0]:.6g} .. {recording.time[-1]:.6g} s" if len(recording) else "none"
+    facts = {name: recording.metadata.get(name, "not stated") for name in ("mode", "control", "probe_model", "seed")}
+    lines = [
+        f"{file.name}: recording, {len(recording)} rows, time {span}",
+        "  " + ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in facts.items()),
+        f"  columns: {', '.join(recording.columns)}",
+    ]
+    return lines if recording.incomplete is None else [*lines, f"  INCOMPLETE: {recording.incomplete}"]
 
 
 def _describe_image(file: Path, untrusted: bool) -> list[str]:

@@ -7,13 +7,16 @@ import argparse
 import importlib
 import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 
 import nanotouch as nt
 
+from nanotouch_app import stop
+
 COMMANDS = (
-    "touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "reproduce", "tradeoff",
+    "touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "recover", "reproduce", "tradeoff",
     "bench", "doctor",
 )  # fmt: skip
 
@@ -37,18 +40,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="backslashreplace")  # names of files may hold what the terminal's coding lacks
     args = build_parser().parse_args(arguments)
     try:
-        status = int(importlib.import_module(f"nanotouch_app.{args.command}").run(args))
-        sys.stdout.flush()
-        return status
+        with stop.on_signals():
+            status = int(importlib.import_module(f"nanotouch_app.{args.command}").run(args))
+            sys.stdout.flush()
+            return status
     except nt.Error as error:
         print(f"nanotouch {args.command}: {error}", file=sys.stderr)
         return 2
     except BrokenPipeError:  # the reader has gone; nor may the flush at exit complain
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    except KeyboardInterrupt:
-        print("nanotouch: stopped", file=sys.stderr)
-        return 130
+    except KeyboardInterrupt as error:
+        print(f"nanotouch {args.command}: {error or 'stopped'}", file=sys.stderr)
+        return 128 + getattr(error, "number", signal.SIGINT)
 
 
 if __name__ == "__main__":

@@ -14,8 +14,9 @@ from nanotouch import maps
 from nanotouch.errors import Error, InvalidValue, require
 from nanotouch.fit.result import with_sigma
 
-from nanotouch_app import fit, output
+from nanotouch_app import fit, output, stop
 
+FILES = ("map.nc", "map.png", "map.json")
 SHOWN = ("effective_modulus", "youngs_modulus", "work_of_adhesion", "pull_off_force", "adhesion_work", "contact_point")
 
 
@@ -31,9 +32,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--restart", action="store_true", help="drop what a run that was stopped has left, instead of going on from it"
     )
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
-    )
+    output.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -42,23 +41,30 @@ def run(args: argparse.Namespace) -> int:
         require(module, "maps")
     if args.threads < 0:
         raise InvalidValue(f"--threads {args.threads}: expected 0 or more")
-    out = output.folder(args.out)
-    blocks = out / "map.blocks"
-    if args.restart:
+    with output.folder(args, FILES) as out:
+        blocks = out / "map.blocks"
+        if args.restart:
+            _remove(blocks)
+        data = _fitted(args, blocks)
+        maps.write(data, out / "map.nc")
+        maps.draw(data, save=out / "map.png")
+        summary = summarise(data)
+        output.write_json(out / "map.json", summary)
         _remove(blocks)
-    with output.progress_bar("map") as progress:
-        data = maps.fit(
-            args.file, args.model, cluster=args.cluster, resume=blocks, threads=args.threads, progress=progress,
-            branch=args.branch, **fit.reading(args), **fit.knowledge(args),
-        )  # fmt: skip
-    maps.write(data, out / "map.nc")
-    maps.draw(data, save=out / "map.png")
-    summary = summarise(data)
-    output.write_json(out / "map.json", summary)
-    _remove(blocks)
-    print(_text(data, summary))
-    print(f"written to {out}/: map.nc, map.png, map.json")
+        print(_text(data, summary))
+        print(f"written to {out}/: map.nc, map.png, map.json")
     return 0
+
+
+def _fitted(args: argparse.Namespace, blocks: Path) -> Any:
+    try:
+        with output.progress_bar("map") as progress:
+            return maps.fit(
+                args.file, args.model, cluster=args.cluster, resume=blocks, threads=args.threads, progress=progress,
+                branch=args.branch, **fit.reading(args), **fit.knowledge(args),
+            )  # fmt: skip
+    except stop.Stopped as stopped:
+        raise stop.Stopped(stopped.number, f"--out {blocks.parent} goes on from what is finished") from None
 
 
 def summarise(data: Any) -> dict[str, Any]:

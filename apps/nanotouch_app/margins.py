@@ -44,9 +44,7 @@ def add_parser(subparsers: Any) -> None:
     loop.add_options(parser)
     parser.add_argument("--mode", choices=MODES, default="point", help="(default: %(default)s)")
     parser.add_argument("--path", metavar="LENGTH", help="of the stage, as 0.4um, for the resolution budget")
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
-    )
+    output.add_options(parser)
     parser.add_argument("--no-map", action="store_true", help="numbers only")
 
 
@@ -66,14 +64,13 @@ def run(args: argparse.Namespace) -> int:
     found, budget = margins.compute(rig, settings, stiffness, args.mode), margins.resolution(rig, settings, path)
     if not args.no_map:
         require("matplotlib", "app")
-    out = output.folder(args.out)
-    output.clear(out, FILES)
-    print(words(found, budget, settings, rig))
-    facts = {"contact_stiffness": stiffness, **found._asdict(), "refusal": found.refusal, **budget._asdict()}
-    output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
-    if not args.no_map:
-        _map(rig, settings, out)
-    print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+    with output.folder(args, FILES) as out:
+        print(words(found, budget, settings, rig))
+        facts = {"contact_stiffness": stiffness, **found._asdict(), "refusal": found.refusal, **budget._asdict()}
+        output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
+        if not args.no_map:
+            _map(rig, settings, out)
+        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0 if found.refusal is None else 1
 
 
@@ -84,28 +81,34 @@ def _recorded(args: argparse.Namespace) -> int:
         raise InvalidValue(f"{args.scene}: a recording holds its own rate, law, mode, delay and scales")
     recording = record.read(args.scene)
     felt = margins.of_recording(recording)
-    out = output.folder(args.out)
-    output.clear(out, FILES)
-    end = float(felt.energy[-1]), float(felt.dissipated[-1])
-    print(
+    with output.folder(args, FILES) as out:
+        print(_felt(felt))
+        facts = {
+            "contact_stiffness": felt.contact_stiffness, "felt_stiffness": felt.felt_stiffness,
+            "drag": felt.free_damping, "energy": float(felt.energy[-1]), "dissipated": float(felt.dissipated[-1]),
+            "is_passive": felt.is_passive, **felt.margins._asdict(),
+        }  # fmt: skip
+        output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
+        if not args.no_map:
+            plots.z_width(recording, save=out / "z_width.png")
+        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+    return 0 if felt.is_passive else 1
+
+
+def _felt(felt: margins.Felt) -> str:
+    """What a recording has met, for a reader."""
+    energy, kept = float(felt.energy[-1]), float(felt.dissipated[-1])
+    return (
         f"met            contact of {felt.contact_stiffness:.3g} N/m (inf: stiffer than can be told), "
         f"{felt.felt_stiffness:.3g} N/m at the hand\n"
         f"drag in air    {felt.free_damping:.3g} N s/m measured, {felt.margins.free_damping:.3g} by the law\n"
         f"R1 contact     margin {felt.margins.margin:.3g}, exact limit {felt.margins.exact_limit:.4g} N/m over kappa "
         f"{felt.margins.loop_stiffness:.3g} N/m\n"
-        f"energy         {end[0] * 1e3:.3g} mJ from the hand, {end[1] * 1e3:.3g} mJ kept by the loop, as read: a step "
+        f"energy         {energy * 1e3:.3g} mJ from the hand, {kept * 1e3:.3g} mJ kept by the loop, as read: a step "
         "of the master counts before the force answers it\n"
         f"verdict: {'passive' if felt.is_passive else 'NOT PASSIVE'}; least margin {felt.margins.least:.3g} "
         f"({felt.margins.rule}), 1 is the limit"
     )
-    facts = {"contact_stiffness": felt.contact_stiffness, "felt_stiffness": felt.felt_stiffness,
-             "drag": felt.free_damping, "energy": end[0], "dissipated": end[1], "is_passive": felt.is_passive,
-             **felt.margins._asdict()}  # fmt: skip
-    output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
-    if not args.no_map:
-        plots.z_width(recording, save=out / "z_width.png")
-    print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
-    return 0 if felt.is_passive else 1
 
 
 def words(found: Margins, budget: Resolution, settings: nt.Settings, rig: nt.Rig) -> str:

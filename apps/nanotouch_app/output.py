@@ -7,33 +7,117 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from nanotouch.errors import Error, require
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
-def folder(path: str | os.PathLike[str]) -> Path:
-    """The folder, made if need be and known to be writable."""
-    made = Path(path)
+
+DEFAULT = "nanotouch-out"
+
+
+def add_options(group: Any, metavar: str = "DIR", what: str = "folder for the results") -> None:
+    """Where the results go."""
+    group.add_argument("--out", metavar=metavar, help=f"{what} (default: a new folder, {DEFAULT}, {DEFAULT}-2, ...)")
+    add_overwrite(group)
+
+
+def add_overwrite(group: Any) -> None:
+    """The option without which nothing is replaced."""
+    group.add_argument("--overwrite", action="store_true", help="replace the results that --out holds already")
+
+
+def check_free(file: Path, args: Any) -> None:
+    """Refuse to replace a file, unless ``--overwrite`` asks for it."""
+    if os.path.lexists(file) and not args.overwrite:
+        raise Error(f"{file} exists already: name another --out, or add --overwrite")
+
+
+@contextmanager
+def folder(args: Any, names: Iterable[str]) -> Iterator[Path]:
+    """The folder of this run, and of no other at the same time.
+
+    Without ``--out`` it is new. One that holds results by these names is refused, or with ``--overwrite`` cleared of
+    them, so that no old result stands beside new ones. If it stays empty it is removed again.
+    """
+    with made(args.out) as out, _alone(out):
+        held = [name for name in names if os.path.lexists(out / name)]
+        if held and not args.overwrite:
+            raise Error(f"{out} holds results already ({', '.join(held)}): name another --out, or add --overwrite")
+        for name in held:
+            try:
+                (out / name).unlink()
+            except OSError as error:
+                raise Error(f"cannot replace {out / name}: {error.strerror}") from error
+        yield out
+
+
+@contextmanager
+def made(path: str | os.PathLike[str] | None) -> Iterator[Path]:
+    """The folder, known to be writable; without a path a new one. What this makes and nothing fills is removed."""
+    new: list[Path] = []
     try:
-        made.mkdir(parents=True, exist_ok=True)
-        probe = made / f".nanotouch-{os.getpid()}"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise Error(f"cannot write into {made}: {error.strerror}") from error
-    return made
-
-
-def clear(folder: Path, names: Iterable[str]) -> None:
-    """Remove what an earlier run left under these names, so that no old result stands beside new ones."""
-    for name in names:
         try:
-            (folder / name).unlink(missing_ok=True)
+            out = _fresh(new) if path is None else _grown(Path(path), new)
+            probe = out / f".nanotouch-{os.getpid()}"
+            probe.touch()
+            probe.unlink()
         except OSError as error:
-            raise Error(f"cannot replace {folder / name}: {error.strerror}") from error
+            raise Error(f"cannot write into {path or DEFAULT}: {error.strerror}") from error
+        yield out
+    finally:
+        for folder in reversed(new):
+            with suppress(OSError):  # it holds something
+                folder.rmdir()
+
+
+def _fresh(new: list[Path]) -> Path:
+    """A folder that no other run has: making it fails where it exists."""
+    for number in count(1):
+        path = Path(DEFAULT if number == 1 else f"{DEFAULT}-{number}")
+        with suppress(FileExistsError):
+            path.mkdir()
+            new.append(path)
+            return path
+    raise AssertionError
+
+
+def _grown(path: Path, new: list[Path]) -> Path:
+    """The folder with those above it; what had to be made goes to `new`."""
+    for folder in (*reversed([above for above in path.parents if not above.exists()]), path):
+        try:
+            folder.mkdir()
+            new.append(folder)
+        except FileExistsError:
+            if not folder.is_dir():
+                raise
+    return path
+
+
+@contextmanager
+def _alone(out: Path) -> Iterator[None]:
+    """Refuse a folder that another run writes into now. The system lets go of it when the process ends, however."""
+    if fcntl is None:
+        yield
+        return
+    descriptor = os.open(out, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Error(f"another run writes into {out} at this moment: name another --out") from None
+        except OSError:  # a file system without locks
+            pass
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> None:

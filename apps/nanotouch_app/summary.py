@@ -18,7 +18,8 @@ SERVOED = ("approach", "curve")
 
 
 def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
-    """The numbers, SI; null where there is none (no snap-in above the noise, no retraction)."""
+    """The numbers, SI; null where there is none (no snap-in above the noise, no retraction); ``incomplete`` is why the
+    recording ended before it was to."""
     seen = adhesion(recording)
     alpha_f = session.settings.gains.alpha_f
     pull_off = _number(seen.pull_off_force)
@@ -39,6 +40,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "loop_rate_Hz": session.rate,
         "steps": len(recording),
         "duration_s": len(recording) / session.rate,
+        "incomplete": recording.incomplete,
         "stability_margin": _finite(session.stability_margin),
         "force_limit_N": session.settings.limits.force,
         "force_overshoot_N": session.force_overshoot,
@@ -71,6 +73,8 @@ def words(summary: dict[str, Any]) -> str:
     """The summary for a reader."""
     time = f"{summary['duration_s']:.1f} s, {summary['steps']} steps at {summary['loop_rate_Hz'] / 1e3:g} kHz"
     lines = [f"{summary['mode']} on {summary['surface']}: {time}"]
+    if summary["incomplete"] is not None:
+        lines.append(f"  INCOMPLETE        {summary['incomplete']}")
     lines += [f"  {line}" for line in summary["models"]]
     lines += [
         f"  scaling           alpha_p {summary['alpha_p']:.3g}, alpha_f {summary['alpha_f']:.3g}",

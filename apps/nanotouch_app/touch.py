@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, get_args
 
@@ -17,7 +18,7 @@ from nanotouch.operator import script_for
 from nanotouch.scene import read_tables
 from nanotouch.session import MODES, ProbeModel
 
-from nanotouch_app import loop, output, summary, view
+from nanotouch_app import loop, output, stop, summary, view
 from nanotouch_app.quantity import parse_points, parse_quantity
 
 SURFACES: dict[str, Callable[[], nt.Topography]] = {
@@ -73,7 +74,7 @@ def add_parser(subparsers: Any) -> None:
     how.add_argument("--duration", metavar="TIME", help="stretch the operator's script to this, as 20s")
     how.add_argument("--seed", type=int, default=1, help="of the sensors' noise (default: %(default)s)")
     results = parser.add_argument_group("results")
-    results.add_argument("--out", default="nanotouch-out", metavar="DIR", help="folder for them (default: %(default)s)")
+    output.add_options(results)
     results.add_argument("--no-window", action="store_true", help="do not open the 3-D view where there is a display")
 
 
@@ -83,16 +84,15 @@ def run(args: argparse.Namespace) -> int:
     session = _session(args, topography)
     duration = None if args.duration is None else _duration(args.duration)
     _check_steps(session, duration)
-    out = output.folder(args.out)
-    output.clear(out, FILES)
-    print(describe(topography))
-    print(summary.before(session))
-    recording = _record(session, duration, out)
-    facts = summary.summarise(session, recording)
-    output.write_json(out / "summary.json", facts)
-    print(summary.words(facts))
-    _draw(session, topography, recording, out)
-    print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+    with output.folder(args, FILES) as out:
+        print(describe(topography))
+        print(summary.before(session))
+        recording = _record(session, duration, out)
+        facts = summary.summarise(session, recording)
+        output.write_json(out / "summary.json", facts)
+        print(summary.words(facts))
+        _draw(session, topography, recording, out)
+        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     if not args.no_window and view.has_display():
         view.open_window(topography, recording, session.scene.tip.radius)
     return 0
@@ -187,11 +187,22 @@ def _check_steps(session: nt.Session, duration: float | None) -> None:
 
 
 def _record(session: nt.Session, duration: float | None, out: Path) -> nt.Recording:
-    with (
-        record.Writer(out / "recording.mcap", session.metadata()) as writer,
-        output.progress_bar("touching") as progress,
-    ):
-        return session.run(duration, writer=writer, progress=progress)
+    """Play the script; after Ctrl-C the block in hand is finished, and the summary is that of the rows so far."""
+    writer = record.Writer(out / "recording.mcap", session.metadata())
+    try:
+        with stop.between_blocks() as check, writer, output.progress_bar("touching") as progress:
+
+            def after_block(done: float) -> None:
+                progress(done)
+                if done < 1.0:
+                    check()
+
+            return session.run(duration, writer=writer, progress=after_block)
+    except stop.Stopped as stopped:
+        with suppress(nt.Error):  # what counts is told
+            if writer.rows:
+                output.write_json(out / "summary.json", summary.summarise(session, record.read(writer.path)))
+        raise stop.Stopped(stopped.number, writer.saved) from None
 
 
 def _draw(session: nt.Session, topography: nt.Topography, recording: nt.Recording, out: Path) -> None:

@@ -96,7 +96,7 @@ def test_one_sentence(arguments: list[str], words: list[str], folder: Path, caps
 def test_results_that_cannot_be_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A folder where a result should be written."""
     (folder / "out" / "summary.json").mkdir(parents=True)
-    assert main(["touch", "--duration", "1s", "--out", "out"]) == 2
+    assert main(["touch", "--duration", "1s", "--out", "out", "--overwrite"]) == 2
     assert "cannot replace out/summary.json" in capsys.readouterr().err
     assert [path.name for path in (folder / "out").iterdir()] == ["summary.json"]
 

@@ -28,7 +28,7 @@ KEYS = {  # of the interface, and beyond
     "models", "snap_in_force_N", "pull_off_force_N", "hand_pull_off_force_N", "position_tracking_rms_m",
     "force_tracking_rms_N", "loop_rate_Hz", "steps", "stability_margin", "force_limit_N", "force_overshoot_N",
     "surface", "mode", "hand_snap_in_force_N", "planned_pull_off_force_N", "largest_force_N", "alpha_p", "alpha_f",
-    "duration_s", "stability", "states", "reasons", "seed", "version",
+    "duration_s", "incomplete", "stability", "states", "reasons", "seed", "version",
 }  # fmt: skip
 ALWAYS = {"recording.mcap", "summary.json", "time.png", "force_gap.png", "view.png"}
 
@@ -78,6 +78,7 @@ def test_leaves_what_it_promises(
     assert len(recording) == summary["steps"] == pytest.approx(duration * 1e4, abs=10)
     assert summary["loop_rate_Hz"] == 1e4
     assert summary["mode"] == arguments[1]
+    assert summary["incomplete"] is None
     assert summary["states"] == {"RUN": len(recording), "HOLD": 0, "RETRACT": 0, "LATCHED": 0}
     assert summary["stability_margin"] > 1.5
     assert summary["largest_force_N"] == recording.tip_force.max()
@@ -111,13 +112,13 @@ def test_same_seed_same_recording(tmp_path: Path, no_view: None) -> None:
     assert one == two != three
 
 
-def test_second_run_replaces_the_first(tmp_path: Path, no_view: None) -> None:
+def test_overwrite_replaces_all_of_the_first_run(tmp_path: Path, no_view: None) -> None:
     """What a scan left does not stand beside the results of a point; the user's own files stay."""
     (tmp_path / "notes.txt").write_text("mine")
     short = ["--surface", "flat", "--out", str(tmp_path)]
     assert main(["touch", "--mode", "scan", "--duration", "6s", *short]) == 0
     assert names(tmp_path) == ALWAYS | {"line.png", "notes.txt"}
-    assert main(["touch", "--duration", "1s", *short]) == 0
+    assert main(["touch", "--duration", "1s", *short, "--overwrite"]) == 0
     assert names(tmp_path) == ALWAYS | {"notes.txt"}
     assert json.loads((tmp_path / "summary.json").read_text())["mode"] == "point"
 
@@ -178,7 +179,7 @@ def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], 
 def test_window_opens_where_there_is_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, no_view: None) -> None:
     opened: list[float] = []
     monkeypatch.setattr(view, "open_window", lambda _topography, _recording, radius: opened.append(radius))
-    arguments = ["touch", "--duration", "0.5s", "--out", str(tmp_path)]
+    arguments = ["touch", "--duration", "0.5s", "--out", str(tmp_path), "--overwrite"]
     assert main(arguments) == 0
     assert not opened
     monkeypatch.setenv("DISPLAY", ":0")
@@ -186,15 +187,6 @@ def test_window_opens_where_there_is_a_display(tmp_path: Path, monkeypatch: pyte
     assert not opened
     assert main(arguments) == 0
     assert opened == [20e-9]
-
-
-def test_interrupted_leaves_nothing_half_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(record.Writer, "append", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
-    assert main(["touch", "--duration", "1s", "--out", str(tmp_path)]) == 130
-    assert names(tmp_path) == set()
-    assert capsys.readouterr().err == "nanotouch: stopped\n"
 
 
 def test_as_a_command(tmp_path: Path) -> None:
@@ -245,7 +237,7 @@ def test_approach_and_curve(no_view: None, tmp_path: Path, capsys: pytest.Captur
 
 
 def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    command = ["touch", "--surface", "flat", "--out", str(tmp_path), "--duration", "2s"]
+    command = ["touch", "--surface", "flat", "--out", str(tmp_path), "--duration", "2s", "--overwrite"]
     assert main([*command, "--control", "paper"]) == 2  # its own stage loop is unstable
     assert "not armed: stability margin 0 (exact contact), at least 1.5" in capsys.readouterr().err
     assert main([*command, "--control", "paper", "--minimum-margin", "0"]) == 0
@@ -265,6 +257,7 @@ def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.Ca
     assert "at 2 kHz" in capsys.readouterr().out
     assert main(["touch", "--rate", "1MHz", "--out", str(tmp_path)]) == 2
     assert "a lower --rate" in capsys.readouterr().err
-    assert main([*command, "--force-range", str(tmp_path / "recording.mcap")]) == 0
+    (tmp_path / "recording.mcap").rename(tmp_path / "test.mcap")
+    assert main([*command, "--force-range", str(tmp_path / "test.mcap")]) == 0
     assert main([*command, "--force-range", "plan"]) == 0
     assert main([*command, "--force-range", "5"]) == 2

@@ -298,7 +298,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert facts["refusal"] is None
     scene = tmp_path / "scene.toml"
     scene.write_text("[gains]\nforce_gain = 500\n")
-    assert main(["margins", str(scene), "--rate", "1kHz", "--no-map", "--out", str(tmp_path)]) == 1
+    assert main(["margins", str(scene), "--rate", "1kHz", "--no-map", "--out", str(tmp_path), "--overwrite"]) == 1
     assert "REFUSED" in capsys.readouterr().out
 
 
@@ -323,7 +323,7 @@ def test_force_range_sets_the_scale() -> None:
 
 
 def test_command_options_and_recordings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = ["--out", str(tmp_path)]
+    out = ["--out", str(tmp_path), "--overwrite"]
     assert main(["margins", "--no-map", "--control", "paper", *out]) == 1
     assert "unstable without any contact" in capsys.readouterr().out
     assert main(["margins", "--no-map", "--control", "impedance", "--delay", "2ms", "--force-range", "plan", *out]) == 0

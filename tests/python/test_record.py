@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recordings: what is written comes back equal; damage is reported; nothing half-written stays under the final name."""
+"""Recordings: what is written comes back equal; damage is reported; what is cut short is kept, and marked with why."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nanotouch import record
+from nanotouch._recorder import KILLED, ending
 from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
 from nanotouch.record import COLUMNS, Recording, Writer
 
@@ -135,7 +136,7 @@ def test_a_truncated_file_gives_what_is_whole(tmp_path: Path, keep: float) -> No
         back = record.read(path)
     assert same(recording[: len(back)], back)
     assert len(back) >= (keep - 0.25) * 50_000  # a block of 10 000 rows is a fifth
-    assert back.metadata == METADATA
+    assert back.metadata == METADATA | {"incomplete": "it ends early"}
 
 
 def test_a_flipped_bit_is_found(tmp_path: Path) -> None:
@@ -149,6 +150,7 @@ def test_a_flipped_bit_is_found(tmp_path: Path) -> None:
         back = record.read(path)
     assert 10_000 <= len(back) < 50_000
     assert same(recording[: len(back)], back)
+    assert back.incomplete is not None
 
 
 @pytest.mark.parametrize("content", [b"", b"prose, not a recording", b"\x89MCAP0\r\n", b"\x89MCAP0\r\n" + bytes(200)])
@@ -161,28 +163,116 @@ def test_other_files_are_refused(tmp_path: Path, content: bytes) -> None:
         record.read(tmp_path / "missing.mcap")
 
 
-def test_an_exception_leaves_no_file(tmp_path: Path) -> None:
-    def interrupted() -> None:
-        with Writer(tmp_path / "r.mcap") as writer:
-            writer.append(columns(10))
-            raise KeyboardInterrupt
+class Interrupted(KeyboardInterrupt):
+    def __str__(self) -> str:
+        return "stopped by SIGTERM"
 
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()
+
+@pytest.mark.parametrize(
+    ("error", "reason"),
+    [
+        (KeyboardInterrupt(), "stopped by SIGINT"),
+        (Interrupted(), "stopped by SIGTERM"),
+        (Error("the rig is gone"), "the rig is gone"),
+        (ZeroDivisionError("division by zero"), "ZeroDivisionError: division by zero"),
+        (RuntimeError("\u00e9" * 1000), "RuntimeError: " + "\u00e9" * 60),
+    ],
+)
+def test_an_exception_keeps_the_rows_and_says_why(tmp_path: Path, error: BaseException, reason: str) -> None:
+    def cut_short() -> None:
+        with writer:
+            writer.append(columns(1000))
+            writer.append(columns(10))
+            raise error
+
+    writer = Writer(tmp_path / "r.mcap", METADATA)
+    with pytest.raises(type(error)):
+        cut_short()
+    assert [path.name for path in tmp_path.iterdir()] == ["r.mcap"]
+    back = record.read(tmp_path / "r.mcap")  # warnings are errors here: the file is a whole one
+    assert len(back) == writer.rows == 1010
+    assert back.incomplete is not None
+    assert back.incomplete == reason or (len(reason) > 60 and back.incomplete.startswith(reason))
+    assert back.metadata == METADATA | {"incomplete": back.incomplete}
+    assert writer.saved == f"1010 rows up to 0.0009 s are in {tmp_path / 'r.mcap'}, marked as incomplete"
+    with pytest.raises(Error, match="this recording has ended"):
+        writer.append(columns(10))
+
+
+def test_an_exception_before_the_first_row_leaves_no_file(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), Writer(tmp_path / "r.mcap"):
+        raise KeyboardInterrupt
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_exception_keeps_the_recording_of_before(tmp_path: Path) -> None:
     record.write(tmp_path / "r.mcap", Recording(columns(10)))
+    writer = Writer(tmp_path / "r.mcap")
 
     def inconsistent() -> None:
-        with Writer(tmp_path / "r.mcap") as writer:
+        with writer:
             writer.append({"time": [0.0]})
             writer.append({"time": [1.0], "x": [0.0]})
 
     with pytest.raises(InvalidValue, match="the file has time"):
         inconsistent()
     assert len(record.read(tmp_path / "r.mcap")) == 10
+    assert {path.name for path in tmp_path.iterdir()} == {"r.mcap", writer.path.name}
+    assert len(record.read(writer.path)) == 1
+
+
+@pytest.fixture
+def killed(tmp_path: Path) -> Path:
+    """What kill -9 between two blocks leaves."""
+    writer = Writer(tmp_path / "r.mcap", METADATA)
+    writer.append(columns(1000))
+    part = next(tmp_path.glob("r.mcap.*.part"))
+    content = part.read_bytes()
+    writer.discard()
+    part.write_bytes(content)
+    return part
+
+
+def test_a_killed_process_leaves_a_finished_file(killed: Path) -> None:
+    """That other readers of MCAP read, too."""
+    reader = pytest.importorskip("mcap.reader")
+    back = record.read(killed)
+    assert same(back, Recording(columns(1000)))
+    assert back.incomplete == "the program that recorded it was killed"
+    with open(killed, "rb") as file:
+        assert len(list(reader.NonSeekingReader(file, validate_crcs=True).iter_messages())) == 1
+
+
+def test_the_next_process_of_that_number_leaves_it_alone(killed: Path) -> None:
+    content = killed.read_bytes()
+    record.write(killed.with_name("r.mcap"), Recording(columns(5)))
+    assert killed.read_bytes() == content
+    assert len(record.read(killed.with_name("r.mcap"))) == 5
+
+
+@pytest.mark.parametrize("torn", [False, True])
+def test_recover(killed: Path, torn: bool) -> None:
+    if torn:  # in the middle of the second block
+        chunk = b"\x06" + (10_000).to_bytes(8, "little") + bytes(1000)
+        killed.write_bytes(killed.read_bytes()[: -len(ending(KILLED))] + chunk)
+    content = killed.read_bytes()
+    path, found = record.recover(killed)
+    assert path == killed.with_name("r.mcap")
+    back = record.read(path)
+    assert same(back, Recording(columns(1000)))
+    assert same(back, found)
+    assert back.incomplete
+    assert {key: back.metadata[key] for key in METADATA} == METADATA
+    assert killed.read_bytes() == content
+    with pytest.raises(Error, match=r"r\.mcap: it exists already"):
+        record.recover(killed)
+    assert record.recover(path)[0] == killed.with_name("r.recovered.mcap")
+
+
+def test_recover_has_nothing_to_do(tmp_path: Path) -> None:
+    record.write(tmp_path / "r.mcap", Recording(columns(5)))
+    with pytest.raises(InvalidValue, match="is whole: there is nothing to recover"):
+        record.recover(tmp_path / "r.mcap")
     assert len(list(tmp_path.iterdir())) == 1
 
 
@@ -198,12 +288,12 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_disk_that_is_full_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     part = tmp_path / "full.part"
     part.symlink_to("/dev/full")
-    monkeypatch.setattr(record, "part_of", lambda path: part)
-    with pytest.raises(Error, match=r"cannot write .*r\.mcap: No space left"), Writer(tmp_path / "r.mcap") as writer:
-        writer.append(columns(10))
+    monkeypatch.setattr("nanotouch._recorder._new_part", lambda _: part.open("wb"))
+    with pytest.raises(Error, match=r"cannot write .*r\.mcap: No space left on device; no rows were recorded"):
+        Writer(tmp_path / "r.mcap")
     assert list(tmp_path.iterdir()) == []
 
 

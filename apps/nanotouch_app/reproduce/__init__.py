@@ -31,24 +31,22 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="which of 5, 6, 9 .. 11, 16 .. 19 (default: all)",
     )
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
-    )
+    output.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     found = [reproduction(number) for number in _checked(args.figure)]
-    out = output.folder(args.out)
-    for figure in found:
-        name = f"fig{figure.number}"
-        comments = {entry.name: f"{entry.value:g} {entry.unit}".rstrip() for entry in figure.parameters}
-        write_csv(out / f"{name}.csv", figure.columns, {"figure": f"{figure.number}, {figure.title}", **comments})
-        drawing.save(figure.draw, out / f"{name}.png")
-    output.write_json(out / "statements.json", {f"fig{figure.number}": figure.as_dict() for figure in found})
-    print("\n\n".join(words(figure) for figure in found))
-    files = [f"fig{figure.number}.{kind}" for figure in found for kind in ("png", "csv")]
-    print(f"\nwritten to {out}/: {', '.join([*files, 'statements.json'])}")
+    files = [*(f"fig{figure.number}.{kind}" for figure in found for kind in ("png", "csv")), "statements.json"]
+    with output.folder(args, files) as out:
+        for figure in found:
+            name = f"fig{figure.number}"
+            comments = {entry.name: f"{entry.value:g} {entry.unit}".rstrip() for entry in figure.parameters}
+            write_csv(out / f"{name}.csv", figure.columns, {"figure": f"{figure.number}, {figure.title}", **comments})
+            drawing.save(figure.draw, out / f"{name}.png")
+        output.write_json(out / "statements.json", {f"fig{figure.number}": figure.as_dict() for figure in found})
+        print("\n\n".join(words(figure) for figure in found))
+        print(f"\nwritten to {out}/: {', '.join(files)}")
     return 0
 
 

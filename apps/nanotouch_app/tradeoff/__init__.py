@@ -23,9 +23,7 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "tradeoff", help="measure speed and accuracy of every contact model and tier", description=__doc__
     )
-    parser.add_argument(
-        "--out", default="nanotouch-out", metavar="DIR", help="folder for the results (default: %(default)s)"
-    )
+    output.add_options(parser)
     parser.add_argument("--quick", action="store_true", help="few lambdas, few loads, rough timings: seconds")
     parser.add_argument("--doc", type=Path, metavar="FILE.md", help="also write the page on accuracy")
 
@@ -37,29 +35,30 @@ def run(args: argparse.Namespace) -> int:
     if args.doc:
         page.check(args.doc)
     require("matplotlib", "app")
-    out = output.folder(args.out)
-    output.clear(out, FILES)
-    with output.progress_bar("error maps") as progress:
-        maps = measure.maps(args.quick, progress)
-    with output.progress_bar("timing") as progress:
-        rows = measure.trade(args.quick, progress)
-    with output.progress_bar("plans") as progress:
-        planned = plans.trade(args.quick, progress)
-    with output.progress_bar("simulated rig") as progress:
-        ways = plant.trade(args.quick, progress)
-    how = "nanotouch tradeoff" + (" --quick" if args.quick else "")
-    comments = {"command": how, **{f"loads, {name}": words for name, words in errors.WORDS.items()}}
-    write_csv(out / "tradeoff.csv", measure.trade_columns(rows), comments)
-    write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
-    write_csv(out / "plans.csv", plans.columns(planned), {"command": how, "against": "nanotouch.reference"})
-    write_csv(out / "plant.csv", plant.columns(ways), {"command": how, "against": f"sub-step {plant.REFERENCE} rad"})
-    saved(drawing.trade(rows), out / "tradeoff.png", dpi=140)
-    saved(drawing.maps(maps), out / "errormap.png", dpi=140)
-    saved(plans.draw(planned), out / "plans.png", dpi=140)
-    if args.doc:
-        page.write(args.doc, maps, rows, planned)
-    print(page.summary(rows))
-    print(plans.summary(planned))
-    print(plant.summary(ways))
-    print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
+    with output.folder(args, FILES) as out:
+        with output.progress_bar("error maps") as progress:
+            maps = measure.maps(args.quick, progress)
+        with output.progress_bar("timing") as progress:
+            rows = measure.trade(args.quick, progress)
+        with output.progress_bar("plans") as progress:
+            planned = plans.trade(args.quick, progress)
+        with output.progress_bar("simulated rig") as progress:
+            ways = plant.trade(args.quick, progress)
+        how = "nanotouch tradeoff" + (" --quick" if args.quick else "")
+        comments = {"command": how, **{f"loads, {name}": words for name, words in errors.WORDS.items()}}
+        write_csv(out / "tradeoff.csv", measure.trade_columns(rows), comments)
+        write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
+        write_csv(out / "plans.csv", plans.columns(planned), {"command": how, "against": "nanotouch.reference"})
+        write_csv(
+            out / "plant.csv", plant.columns(ways), {"command": how, "against": f"sub-step {plant.REFERENCE} rad"}
+        )
+        saved(drawing.trade(rows), out / "tradeoff.png", dpi=140)
+        saved(drawing.maps(maps), out / "errormap.png", dpi=140)
+        saved(plans.draw(planned), out / "plans.png", dpi=140)
+        if args.doc:
+            page.write(args.doc, maps, rows, planned)
+        print(page.summary(rows))
+        print(plans.summary(planned))
+        print(plant.summary(ways))
+        print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
     return 0

@@ -3,7 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nanotouch.errors import InvalidValue
 
 
 @dataclass(frozen=True)
@@ -40,3 +47,29 @@ COLUMNS: dict[str, Column] = {
     "contact_radius": Column("<f8", "m", "simulated truth: radius of the contact, 0 when apart"),
     "surface_height": Column("<f8", "m", "simulated truth: tip-dilated surface under the tip"),
 }
+
+
+def checked(columns: Mapping[str, ArrayLike]) -> dict[str, NDArray[Any]]:
+    """The columns in the order and type of COLUMNS, or the first thing that is wrong with them."""
+    unknown = set(columns) - set(COLUMNS)
+    if unknown:
+        raise InvalidValue(f"unknown column {min(unknown)!r}; a recording has: {', '.join(COLUMNS)}")
+    if "time" not in columns:
+        raise InvalidValue("a recording needs the column 'time' [s]")
+    arrays = {name: _converted(name, columns[name]) for name in COLUMNS if name in columns}
+    rows = len(arrays["time"])
+    for name, values in arrays.items():
+        if len(values) != rows:
+            raise InvalidValue(f"column {name!r} has {len(values)} rows, 'time' has {rows}")
+    return arrays
+
+
+def _converted(name: str, values: ArrayLike) -> NDArray[Any]:
+    array = np.asarray(values)
+    if array.ndim != 1 or array.dtype.kind not in "fiub" or isinstance(values, np.ma.MaskedArray):
+        raise InvalidValue(f"column {name!r} must be an unmasked array of real numbers with one dimension")
+    with np.errstate(invalid="ignore"):  # NaN in an integer column: caught by the comparison
+        converted = np.ascontiguousarray(array, dtype=COLUMNS[name].dtype)
+    if converted.dtype.kind == "u" and not np.array_equal(converted, array):
+        raise InvalidValue(f"column {name!r} must hold integers from 0 to {np.iinfo(converted.dtype).max}")
+    return converted

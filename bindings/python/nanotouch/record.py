@@ -2,7 +2,8 @@
 """Recordings of a touch: named columns in SI units, written block by block to an MCAP file and read back.
 
 The file describes itself: its schema record (encoding ``nanotouch.columns``) is JSON that names every column with its
-type, unit and meaning, and says how a message holds them. Nothing is left under the final name before it is whole."""
+type, unit and meaning, and says how a message holds them. A recording that was cut short holds every whole block, and
+its metadata say why (:mod:`nanotouch._recorder`)."""
 
 from __future__ import annotations
 
@@ -12,9 +13,7 @@ import os
 import struct
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,22 +21,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from nanotouch._control import Law
 from nanotouch._files import checked_path
-from nanotouch._writing import BLOCK_ROWS, naming, part_of
+from nanotouch._recorder import ENCODING, INCOMPLETE, recovered_name
+from nanotouch._recorder import Writer as Writer
+from nanotouch._writing import BLOCK_ROWS
 from nanotouch._writing import replacing as replacing
 from nanotouch._writing import write_csv as write_csv
 from nanotouch.columns import COLUMNS as COLUMNS
 from nanotouch.columns import STATES as STATES
 from nanotouch.columns import Column as Column
-from nanotouch.errors import InvalidValue, ReadError, require
+from nanotouch.columns import checked
+from nanotouch.errors import Error, InvalidValue, ReadError, require
 
 if TYPE_CHECKING:  # a recording is read without a reader of curves
     from nanotouch.curves import ForceCurve
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
-TOPIC = "nanotouch/touch"
-ENCODING = "nanotouch.columns"
-LAYOUT = "one message is one block of rows: the columns in the order listed, each contiguous and little-endian"
-CHUNK_SIZE = 1 << 18  # what a killed process may lose [bytes]
 HDF5_STORAGE = {"chunks": True, "compression": "gzip", "shuffle": True, "fletcher32": True}
 
 
@@ -59,7 +57,7 @@ class Recording:
     metadata: dict[str, Any]
 
     def __init__(self, columns: Mapping[str, ArrayLike], metadata: Mapping[str, Any] | None = None) -> None:
-        self.columns = _checked(columns)
+        self.columns = checked(columns)
         self.metadata = dict(metadata or {})
 
     def __getattr__(self, name: str) -> NDArray[Any]:
@@ -93,6 +91,11 @@ class Recording:
             present = ", ".join(self.metadata) or "nothing"
             raise InvalidValue(f"the recording's metadata lacks {name!r}; it has: {present}")
         return float(self.metadata[name])
+
+    @property
+    def incomplete(self) -> str | None:
+        """Why the recording ended before it was to; None where it is whole."""
+        return self.metadata.get(INCOMPLETE)
 
     @property
     def scaled_slave_force(self) -> NDArray[np.float64]:
@@ -146,88 +149,6 @@ class Recording:
                 dataset.attrs["doc"] = COLUMNS[name].doc
 
 
-class Writer:
-    """Write a recording block by block; memory does not grow with its length. Use it in a ``with`` statement.
-
-    Until :meth:`close` the file is called ``<name>.<process id>.part``; an exception in the ``with`` body removes it.
-    What a killed process leaves there, :func:`read` still reads.
-    """
-
-    def __init__(self, path: str | os.PathLike[str], metadata: Mapping[str, Any] | None = None) -> None:
-        mcap = require("mcap.writer", "record")
-        texts = _texts(metadata or {})
-        self._path, self._part = Path(path), part_of(path)
-        with naming(self._path):
-            self._file = open(self._part, "wb")  # noqa: SIM115 (close and discard close it)
-            self._mcap = mcap.Writer(self._file, chunk_size=CHUNK_SIZE, compression=mcap.CompressionType.ZSTD)
-            self._mcap.start(profile="nanotouch", library="nanotouch")
-            self._mcap.add_metadata("nanotouch", texts)
-        self._names: tuple[str, ...] = ()
-        self._channel = 0
-        self._blocks = 0
-        self.rows = 0
-
-    def append(self, columns: Mapping[str, ArrayLike]) -> None:
-        """Write one block of rows; the first block decides which columns the file has."""
-        block = _checked(columns)
-        if not self._names:
-            self._register(tuple(block))
-        if tuple(block) != self._names:
-            raise InvalidValue(f"a block has the columns {', '.join(block)}; the file has {', '.join(self._names)}")
-        times = block["time"]
-        if not np.isfinite(times).all():
-            raise InvalidValue("a block has a time that is not finite; time [s] must be a number in every row")
-        stamp = max(0, round(float(times[0]) * 1e9)) if times.size else 0
-        data = b"".join(values.tobytes() for values in block.values())
-        with naming(self._path):
-            self._mcap.add_message(self._channel, log_time=stamp, data=data, publish_time=stamp, sequence=self._blocks)
-        self._blocks += 1
-        self.rows += times.size
-
-    def update(self, metadata: Mapping[str, Any]) -> None:
-        """Write the metadata anew: what is known only at the end, such as the requests of a session."""
-        with naming(self._path):
-            self._mcap.add_metadata("nanotouch", _texts(metadata))
-
-    def close(self) -> None:
-        """Finish the file and give it its name."""
-        if self._file.closed:
-            return
-        try:
-            if not self._names:
-                self.append({name: np.empty(0) for name in COLUMNS})
-            with naming(self._path):
-                self._mcap.finish()
-                self._file.flush()
-                os.fsync(self._file.fileno())
-                self._file.close()
-                os.replace(self._part, self._path)
-        except BaseException:
-            self.discard()
-            raise
-
-    def discard(self) -> None:
-        """Remove what was written; after :meth:`close` it does nothing."""
-        with suppress(OSError):  # closing flushes, which fails on the full disk that brought us here
-            self._file.close()
-        self._part.unlink(missing_ok=True)
-
-    def __enter__(self) -> Writer:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *_: BaseException | TracebackType | None) -> None:
-        if kind is None:
-            self.close()
-        else:
-            self.discard()
-
-    def _register(self, names: tuple[str, ...]) -> None:
-        schema = {"layout": LAYOUT, "columns": [{"name": name, **vars(COLUMNS[name])} for name in names]}
-        number = self._mcap.register_schema("nanotouch.Touch", ENCODING, json.dumps(schema, indent=1).encode())
-        self._channel = self._mcap.register_channel(TOPIC, ENCODING, number)
-        self._names = names
-
-
 def write(path: str | os.PathLike[str], recording: Recording) -> None:
     """Write a whole recording at once."""
     with Writer(path, recording.metadata) as writer:
@@ -242,7 +163,8 @@ def is_recording(path: str | os.PathLike[str]) -> bool:
 
 
 def read(path: str | os.PathLike[str]) -> Recording:
-    """Read a recording. A damaged or truncated file gives the whole blocks before the damage, with a warning."""
+    """Read a recording. A damaged or truncated file gives the whole blocks before the damage, with a warning, and is
+    marked as incomplete."""
     reader = require("mcap.stream_reader", "record")
     names: list[str] | None = None
     metadata: dict[str, Any] = {}
@@ -256,7 +178,7 @@ def read(path: str | os.PathLike[str]) -> Recording:
                 if isinstance(record, str):
                     damage = record
                 elif type(record).__name__ == "Metadata" and record.name == "nanotouch":
-                    metadata = {key: json.loads(value) for key, value in record.metadata.items()}
+                    metadata |= {key: json.loads(value) for key, value in record.metadata.items()}
                 elif type(record).__name__ == "Schema" and record.encoding == ENCODING:
                     names = _schema_names(record.data)
                 elif type(record).__name__ == "Message":
@@ -267,48 +189,44 @@ def read(path: str | os.PathLike[str]) -> Recording:
         raise ReadError(f"{path} is not a recording of nanotouch: {error}") from error
     if names is None:
         raise ReadError(f"{path} is not a recording of nanotouch: {damage or f'it has no schema {ENCODING!r}'}")
+    if damage:
+        metadata.setdefault(INCOMPLETE, damage)
     recording = Recording(_columns(path, names, blocks), metadata)
     if damage:
         warnings.warn(f"{path} is damaged ({damage}); {len(recording)} rows before the damage were read", stacklevel=2)
     return recording
 
 
+def recover(path: str | os.PathLike[str], out: str | os.PathLike[str] | None = None) -> tuple[Path, Recording]:
+    """Write what a killed process left as a recording that is marked as incomplete; `path` stays as it is.
+
+    Parameters
+    ----------
+    path : path
+        ``<name>.<process id>.part``, or a damaged recording.
+    out : path, optional
+        A new file; by default ``<name>``, or for another name ``<stem>.recovered.mcap`` beside it.
+
+    Returns
+    -------
+    (Path, Recording)
+        Where it is now, and what it holds; ``recording.incomplete`` says why it ended.
+    """
+    target = recovered_name(Path(path)) if out is None else Path(out)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the damage: it is in the metadata
+        recording = read(path)
+    if recording.incomplete is None:
+        raise InvalidValue(f"{path} is whole: there is nothing to recover")
+    if target.exists():
+        raise Error(f"cannot write {target}: it exists already; name another file")
+    write(target, recording)
+    return target, recording
+
+
 def _heading(name: str) -> str:
     unit = COLUMNS[name].unit
     return f"{name} [{unit}]" if unit else name
-
-
-def _texts(metadata: Mapping[str, Any]) -> dict[str, str]:
-    try:
-        return {key: json.dumps(value, allow_nan=False) for key, value in metadata.items()}
-    except (TypeError, ValueError) as error:
-        raise InvalidValue(f"the metadata of a recording must be JSON-able: {error}") from error
-
-
-def _checked(columns: Mapping[str, ArrayLike]) -> dict[str, NDArray[Any]]:
-    """The columns in the order and type of COLUMNS, or the first thing that is wrong with them."""
-    unknown = set(columns) - set(COLUMNS)
-    if unknown:
-        raise InvalidValue(f"unknown column {min(unknown)!r}; a recording has: {', '.join(COLUMNS)}")
-    if "time" not in columns:
-        raise InvalidValue("a recording needs the column 'time' [s]")
-    checked = {name: _converted(name, columns[name]) for name in COLUMNS if name in columns}
-    rows = len(checked["time"])
-    for name, values in checked.items():
-        if len(values) != rows:
-            raise InvalidValue(f"column {name!r} has {len(values)} rows, 'time' has {rows}")
-    return checked
-
-
-def _converted(name: str, values: ArrayLike) -> NDArray[Any]:
-    array = np.asarray(values)
-    if array.ndim != 1 or array.dtype.kind not in "fiub" or isinstance(values, np.ma.MaskedArray):
-        raise InvalidValue(f"column {name!r} must be an unmasked array of real numbers with one dimension")
-    with np.errstate(invalid="ignore"):  # NaN in an integer column: caught by the comparison
-        converted = np.ascontiguousarray(array, dtype=COLUMNS[name].dtype)
-    if converted.dtype.kind == "u" and not np.array_equal(converted, array):
-        raise InvalidValue(f"column {name!r} must hold integers from 0 to {np.iinfo(converted.dtype).max}")
-    return converted
 
 
 def _until_damage(records: Iterator[Any], file: IO[bytes]) -> Iterator[Any]:

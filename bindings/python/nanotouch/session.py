@@ -31,7 +31,7 @@ __all__ = [
     "settings_for_path",
 ]  # fmt: skip
 
-BLOCK_TICKS = 5000
+BLOCK_TICKS = 500  # rows that a killed process may lose
 INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
 ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
 
@@ -246,7 +246,7 @@ class Session:
             self._check(step)
         ticks = [round(step.duration * self.rate) for step in script]
         blocks: list[Columns] = []
-        done = 0
+        done = told = 0
         for step, left in zip(script, ticks, strict=True):
             self._aim(step)
             for length in _blocks_of(left):
@@ -254,6 +254,9 @@ class Session:
                 blocks.append(block)
                 done += length
                 if writer is not None:
+                    if told < len(self._events):  # a recording that is cut short can be replayed, too
+                        told = len(self._events)
+                        writer.update({"events": self.metadata()["events"]})
                     writer.append(block)
                 if progress is not None:
                     progress(done / sum(ticks))

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Finish what a killed process left of a recording: every whole block, marked as incomplete. FILE stays as it is."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from nanotouch import record
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "recover", help="finish what a killed process left of a recording", description=__doc__
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="recording.mcap.NUMBER.part, or a damaged recording")
+    parser.add_argument("--out", type=Path, metavar="FILE.mcap", help="a new file (default: FILE without .NUMBER.part)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    out, recording = record.recover(args.file, args.out)
+    print(f"{out}: {len(recording)} rows up to {recording.time[-1]:.6g} s, incomplete: {recording.incomplete}")
+    return 0
