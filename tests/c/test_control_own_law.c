@@ -147,6 +147,41 @@ static void what_the_rules_do_not_know_has_no_margin(void **state)
     assert_int_equal(nt_margins_own_law(&rig, &coupled, stiffness, &amounts), NT_E_UNSUPPORTED);
 }
 
+/* The largest of each signal that was asked about. */
+typedef struct asked {
+    double target, master, stage, master_speed, stage_speed;
+} asked;
+
+static nt_effort note(void *context, const nt_gains *gains, const nt_signals *s)
+{
+    asked *most = context;
+    (void)gains;
+    most->target = larger(most->target, fabs(s->target));
+    most->master = larger(most->master, fabs(s->master_position));
+    most->stage = larger(most->stage, fabs(s->stage_position));
+    most->master_speed = larger(most->master_speed, fabs(s->master_speed));
+    most->stage_speed = larger(most->stage_speed, fabs(s->stage_speed));
+    return (nt_effort){-s->scaling.alpha_f * s->felt_force, s->target};
+}
+
+/* A millionth of the travel, at the stage scaled by alpha_p, and speeds that go it in a period. */
+static void signals_are_moved_by_a_millionth_of_their_range(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    rig.master.travel = 0.3;
+    nt_settings settings = nt_settings_defaults(&rig);
+    settings.gains.alpha_p = 7e-7;
+    settings.gains.rate = 5e3;
+    asked most = {0.0, 0.0, 0.0, 0.0, 0.0};
+    settings.control = (nt_control){NT_CONTROL_OWN, note, &most};
+    nt_settings amounts;
+    assert_int_equal(nt_margins_own_law(&rig, &settings, stiffness, &amounts), NT_OK);
+    assert_true(fabs(most.target / 2.1e-13 - 1.0) < 1e-12 && fabs(most.stage / 2.1e-13 - 1.0) < 1e-12);
+    assert_true(fabs(most.master / 3e-7 - 1.0) < 1e-12);
+    assert_true(fabs(most.stage_speed / 1.05e-9 - 1.0) < 1e-12 && fabs(most.master_speed / 1.5e-3 - 1.0) < 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,6 +189,7 @@ int main(void)
         cmocka_unit_test(the_default_law_amounts_to_itself),
         cmocka_unit_test(a_bent_law_is_judged_where_it_is_steepest),
         cmocka_unit_test(what_the_rules_do_not_know_has_no_margin),
+        cmocka_unit_test(signals_are_moved_by_a_millionth_of_their_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

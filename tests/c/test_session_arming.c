@@ -148,12 +148,52 @@ static void setups_are_refused_by_name(void **state)
     nt_session_close(NULL);
 }
 
+/* What the guarantee adds for an indentation that cannot be seen. */
+static double unseen(const nt_session *session, const nt_session_setup *setup)
+{
+    const nt_plan *found = nt_session_plan(session);
+    const nt_hazard seen = {
+        .slope = setup->slope, .snap_in_force = found->largest_pull_off_force, .stiffness = found->maximum_stiffness};
+    const nt_guarantee without = nt_guarantee_compute(&setup->rig, &setup->settings, &seen);
+    return nt_session_guarantee(session).indentation - without.indentation;
+}
+
+/* Hertz has F = 4/3 E* sqrt(R) delta^1.5 at twice the threshold of free motion; with adhesion the force reaches it
+ * there, and never falls below it deeper down. */
+static void the_promise_adds_what_cannot_be_seen(void **state)
+{
+    (void)state;
+    for (int sticky = 0; sticky < 2; sticky++)
+        for (double E = 1e6; E < 1e12; E *= 30.0) {
+            nt_session_setup setup = nt_session_defaults();
+            setup.scene.sample.youngs_modulus = E;
+            setup.minimum_margin = 0.0;
+            if (!sticky) {
+                setup.scene.medium.relative_humidity = 0.0;
+                setup.scene.adhesion.work_of_adhesion = setup.scene.adhesion.hamaker_constant = 0.0;
+            }
+            nt_session *session = open_session(&setup);
+            const nt_plan *found = nt_session_plan(session);
+            const double depth = unseen(session, &setup);
+            const double force = 2.0 * nt_session_touch(session)->supervisor.free_force;
+            const double c = 4.0 / 3.0 * found->contact.effective_modulus * sqrt(setup.scene.tip.radius);
+            const nt_interaction_state attached = {.attached = 1};
+            if (!sticky)
+                assert_true(fabs(depth / pow(force / c, 2.0 / 3.0) - 1.0) < 1e-6);
+            assert_true(fabs(nt_interaction_eval_gap(found, &attached, NULL, -depth).F / force - 1.0) < 1e-5);
+            for (double deeper = 1.0001 * depth; deeper < 30.0 * depth; deeper *= 1.01)
+                assert_true(nt_interaction_eval_gap(found, &attached, NULL, -deeper).F > force);
+            nt_session_close(session);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(setups_are_refused_by_name),
         cmocka_unit_test(modes_and_scales_are_judged_while_running),
         cmocka_unit_test(an_own_law_is_judged_by_what_it_does),
+        cmocka_unit_test(the_promise_adds_what_cannot_be_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,6 +160,33 @@ static void step_gives_the_profile_of_the_tip(void **state)
         }
 }
 
+/* A ridge a u^2 + 2 rho sqrt(ab) u v + b v^2 below its summit, which lies between the pixels, under a tip that is all
+ * but flat: the summit is found as it is a parabola, but for a ridge so long (rho above 0.9) that noise would throw its
+ * summit anywhere; there each axis has its own parabola. */
+static void ridges_across_the_pixels_have_their_summit(void **state)
+{
+    (void)state;
+    enum { N = 41 };
+    static double ridge[N * N], out[N * N];
+    static const double rhos[] = {-0.98, -0.93, -0.87, -0.5, 0.0, 0.3, 0.87, 0.93, 0.98};
+    const double a = 1e-11, b = 2.5e-11, x0 = 20.37, y0 = 19.58, summit = 40e-9;
+    const nt_height_map map = {ridge, N, N, 1e-9, 1e-9};
+    for (size_t n = 0; n < sizeof rhos / sizeof *rhos; n++) {
+        const double c = 2.0 * rhos[n] * sqrt(a * b);
+        int top = 0;
+        for (int p = 0; p < N * N; p++) {
+            const double u = p % N - x0, v = p / N - y0;
+            ridge[p] = summit - a * u * u - c * u * v - b * v * v;
+            top = ridge[p] > ridge[top] ? p : top;
+        }
+        assert_int_equal(nt_surface_dilate(&map, &(nt_tip_shape){1e-3, 0.35}, out), NT_OK);
+        const double u = top % N - x0, v = top / N - y0, slope_x = 2.0 * a * u + c * v, slope_y = 2.0 * b * v + c * u;
+        const double apart = ridge[top] + slope_x * slope_x / (4.0 * a) + slope_y * slope_y / (4.0 * b);
+        assert_true(fabs(rhos[n]) < 0.1 || fabs(apart - summit) > 5e-14);
+        assert_true(fabs(out[20 * N + 20] - (fabs(rhos[n]) < 0.9 ? summit : apart)) < 2e-14);
+    }
+}
+
 static void flat_stays_flat(void **state)
 {
     (void)state;
@@ -233,6 +260,7 @@ int main(void)
         cmocka_unit_test(smooth_bodies_are_touched_between_the_pixels),
         cmocka_unit_test(spike_gives_the_reflected_tip),
         cmocka_unit_test(step_gives_the_profile_of_the_tip),
+        cmocka_unit_test(ridges_across_the_pixels_have_their_summit),
         cmocka_unit_test(flat_stays_flat),
         cmocka_unit_test(is_bounded_and_closes),
         cmocka_unit_test(refuses_bad_tips_and_maps),
