@@ -13,7 +13,7 @@ from nanotouch import fit as fitting
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import fit_many, output
-from nanotouch_app.quantity import parse_quantity
+from nanotouch_app.quantity import number, parse_quantity, whole_number
 
 FILES = ("fit.json", "fit.png", "stability.png")
 
@@ -36,7 +36,13 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--stability", action="store_true", help="also draw the modulus over the depth to which the curve is fitted"
     )
-    parser.add_argument("--index", type=int, default=0, metavar="N", help="which curve of a map (default: %(default)s)")
+    parser.add_argument(
+        "--index",
+        type=whole_number(0, 10**9),
+        default=0,
+        metavar="N",
+        help="which curve of a map (default: %(default)s)",
+    )
     parser.add_argument(
         "--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand, for a table"
     )
@@ -64,7 +70,7 @@ def add_knowledge(parser: argparse.ArgumentParser) -> None:
         "--untrusted", action="store_true", help="open files in a worker with limits on memory, time and open files"
     )
     parser.add_argument(
-        "--poisson-ratio", type=float, metavar="NU", help="of the sample: also gives its Young's modulus"
+        "--poisson-ratio", type=number(-0.99, 0.5), metavar="NU", help="of the sample: also gives its Young's modulus"
     )
     parser.add_argument("--scene", metavar="FILE", help="TOML file with tip, sample and adhesion")
 
@@ -75,6 +81,8 @@ def run(args: argparse.Namespace) -> int:
         if args.compare or args.stability:
             raise InvalidValue("--compare and --stability look at one curve: name one file")
         return fit_many.run(args, reading(args), knowledge(args))
+    if args.sidecar is not None:
+        raise InvalidValue("--sidecar goes with a table: --out results.csv")
     file = args.curve[0]
     found = curves.read(file, **reading(args))
     if not 0 <= args.index < len(found):

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 from nanotouch import maps
-from nanotouch.errors import Error, InvalidValue, require
+from nanotouch.errors import Error, require
 from nanotouch.fit.result import with_sigma
 
 from nanotouch_app import fit, output, stop
+from nanotouch_app.quantity import whole_number
 
 FILES = ("map.nc", "map.png", "map.json")
 SHOWN = ("effective_modulus", "youngs_modulus", "work_of_adhesion", "pull_off_force", "adhesion_work", "contact_point")
@@ -25,7 +26,9 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("map", help="fit every curve of a force map", description=__doc__)
     parser.add_argument("file", metavar="FILE", help="force map (JPK .jpk-force-map, .jpk-qi-data, NanoScope, ...)")
     fit.add_knowledge(parser)
-    parser.add_argument("--threads", type=int, default=0, metavar="N", help="default: one per processor")
+    parser.add_argument(
+        "--threads", type=whole_number(0, 1024), default=0, metavar="N", help="default: one per processor"
+    )
     parser.add_argument(
         "--cluster", metavar="ADDRESS", help="Dask scheduler, as tcp://host:8786, or 'local' for processes here"
     )
@@ -39,8 +42,6 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     for module in ("xarray", "h5netcdf"):
         require(module, "maps")
-    if args.threads < 0:
-        raise InvalidValue(f"--threads {args.threads}: expected 0 or more")
     with output.folder(args, FILES) as out:
         blocks = out / "map.blocks"
         if args.restart:

@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     if not args.no_map:
         require("matplotlib", "app")
     with output.folder(args, FILES) as out:
-        print(words(found, budget, settings, rig))
+        print("\n".join([*(f"warning: {warning}" for warning in plan.warnings), words(found, budget, settings, rig)]))
         facts = {"contact_stiffness": stiffness, **found._asdict(), "refusal": found.refusal, **budget._asdict()}
         output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
         if not args.no_map:

@@ -18,7 +18,8 @@ import nanotouch as nt
 from nanotouch import presets
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Demand, Rig, Scene, read_tables
-from nanotouch.units import parse_quantity
+
+from nanotouch_app.quantity import number, parse_quantity
 
 PRESETS = (
     "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots", "cell_in_liquid",
@@ -43,7 +44,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--quantity", choices=("force", "stiffness", "radius", "folds"), help="of what (default: force)"
     )
-    parser.add_argument("--budget", type=float, metavar="N", help="what an evaluation may cost, in Hertz evaluations")
+    parser.add_argument(
+        "--budget", type=number(1.0, 1e9), metavar="N", help="what an evaluation may cost, in Hertz evaluations"
+    )
     parser.add_argument("--probe", action="store_true", help="leave out what the rig's probe cannot measure")
     parser.add_argument(
         "--json", action="store_true", help='print the plan as data, SI; what is not finite as null or "inf"'

@@ -1,12 +1,46 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Quantities on the command line: every length, force, ... carries its unit."""
+"""Quantities on the command line: every length, force, ... carries its unit; and numbers that have none."""
 
 from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
 
 from nanotouch.errors import InvalidValue
 from nanotouch.units import parse_quantity
 
-__all__ = ["parse_point", "parse_points", "parse_quantity"]
+__all__ = ["number", "parse_point", "parse_points", "parse_quantity", "whole_number"]
+
+
+def number(minimum: float, maximum: float) -> Callable[[str], float]:
+    """What reads the value of an option: a number without a unit, within this range."""
+
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not minimum <= value <= maximum:
+            raise argparse.ArgumentTypeError(f"{text!r}: valid is a number, {minimum:g} .. {maximum:g}")
+        return value
+
+    return read
+
+
+def whole_number(minimum: int, maximum: int, written: str = "") -> Callable[[str], int]:
+    """The same for a whole number; ``written`` is how the maximum is told."""
+
+    def read(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = minimum - 1
+        if not minimum <= value <= maximum:
+            raise argparse.ArgumentTypeError(f"{text!r}: valid is a whole number, {minimum} .. {written or maximum}")
+        return value
+
+    return read
 
 
 def parse_points(text: str, count: int) -> list[tuple[float, float]]:

@@ -19,7 +19,7 @@ from nanotouch.scene import read_tables
 from nanotouch.session import MODES, ProbeModel
 
 from nanotouch_app import loop, output, stop, summary, view
-from nanotouch_app.quantity import parse_points, parse_quantity
+from nanotouch_app.quantity import number, parse_points, parse_quantity, whole_number
 
 SURFACES: dict[str, Callable[[], nt.Topography]] = {
     "grating": nt.surface.grating,
@@ -69,10 +69,12 @@ def add_parser(subparsers: Any) -> None:
     loop.add_options(how)
     how.add_argument("--probe-model", choices=get_args(ProbeModel), default="auto", help="how the cantilever is "
                      "simulated (default: %(default)s)")  # fmt: skip
-    how.add_argument("--minimum-margin", type=float, default=margins.MINIMUM, metavar="NUMBER", help="refuse to touch "
-                     "closer to the stability limit, 1, than this; 0: never (default: %(default)s)")  # fmt: skip
+    how.add_argument("--minimum-margin", type=number(0.0, 1e6), default=margins.MINIMUM, metavar="NUMBER",
+                     help="refuse to touch closer to the stability limit, 1, than this; 0: never "
+                     "(default: %(default)s)")  # fmt: skip
     how.add_argument("--duration", metavar="TIME", help="stretch the operator's script to this, as 20s")
-    how.add_argument("--seed", type=int, default=1, help="of the sensors' noise (default: %(default)s)")
+    how.add_argument("--seed", type=whole_number(0, 2**64 - 1, "2^64 - 1"), default=1, metavar="N",
+                     help="of the sensors' noise (default: %(default)s)")  # fmt: skip
     results = parser.add_argument_group("results")
     output.add_options(results)
     results.add_argument("--no-window", action="store_true", help="do not open the 3-D view where there is a display")

@@ -12,6 +12,24 @@ void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning)
         plan->warnings[plan->warning_count++] = warning;
 }
 
+/* A modulus below that of any solid, most often one in GPa under a key in Pa. No solid is stiffer than diamond's 1220
+ * GPa, so such a slip stays below 2000; the softest gels that stand in air have some 3 kPa (Style et al., Nat. Commun.
+ * 4 (2013) 2728). In a liquid samples go down to tens of Pa; tips do not. */
+#define SOFTEST_SOLID 2e3 /* [Pa] */
+
+static void check_moduli(nt_plan *plan, const nt_scene *scene)
+{
+    const double tip = scene->tip.youngs_modulus, sample = scene->sample.youngs_modulus;
+    if (tip < SOFTEST_SOLID)
+        nt_plan_add_warning(plan, (nt_plan_warning){"Young's modulus of the tip, softer than any tip, perhaps meant in "
+                                                    "GPa",
+                                                    "Pa", tip, SOFTEST_SOLID});
+    if (sample < SOFTEST_SOLID && scene->medium.kind != NT_MEDIUM_LIQUID)
+        nt_plan_add_warning(plan, (nt_plan_warning){"Young's modulus of the sample, softer than any solid outside a "
+                                                    "liquid, perhaps meant in GPa",
+                                                    "Pa", sample, SOFTEST_SOLID});
+}
+
 /* What the scene gives and nothing takes up; values that defaults have are not told. */
 static void check_facts(nt_plan *plan, const nt_scene *scene, int term)
 {
@@ -47,6 +65,7 @@ static void check_surface(nt_plan *plan)
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
 {
     plan->warning_count = 0;
+    check_moduli(plan, scene);
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->warn)
             nt_term_rows[term]->warn(plan, scene);

@@ -99,12 +99,34 @@ static void what_no_one_humidity_makes_is_told(void **state)
     assert_int_equal(warns_of("film"), 1);
 }
 
+/* 135 where 135 GPa were meant. A gel in a liquid is as soft; a tip never is. */
+static void moduli_of_no_solid_are_told(void **state)
+{
+    (void)state;
+    nt_scene scene = dry_silicon();
+    scene.sample.youngs_modulus = 3e3; /* a silicone gel */
+    make(&scene);
+    assert_int_equal(warns_of("Young's modulus"), 0);
+    scene.sample.youngs_modulus = 1220.0; /* diamond, in GPa */
+    make(&scene);
+    assert_int_equal(warns_of("Young's modulus of the sample"), 1);
+    assert_true(plan.warnings[0].value == 1220.0 && plan.warnings[0].limit == 2e3);
+    assert_string_equal(plan.warnings[0].unit, "Pa");
+    scene.medium.kind = NT_MEDIUM_LIQUID;
+    make(&scene);
+    assert_int_equal(warns_of("Young's modulus"), 0);
+    scene.tip.youngs_modulus = 135.0;
+    make(&scene);
+    assert_int_equal(warns_of("Young's modulus of the tip"), 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_not_used_is_told),
         cmocka_unit_test(warnings_are_of_what_is_visited),
         cmocka_unit_test(what_no_one_humidity_makes_is_told),
+        cmocka_unit_test(moduli_of_no_solid_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,7 +131,7 @@ def write(path: Path, text: str) -> Path:
 
 
 @pytest.mark.parametrize(("text", "message"), [
-    ("[a", "no valid TOML"),
+    ("[a", "is not a TOML file"),
     ('["a"]\nexlude = "x"\n', "expected one or more of"),
     ('["a"]\nexclude = ""\n', "reason in words"),
     ('["a"]\ncontact_point_nm = "3"\n', "contact_point_nm"),

@@ -70,7 +70,6 @@ def test_compares_laws_and_draws_stability(tmp_path: Path, capsys: pytest.Captur
         ["{file}", "--radius=-20nm"],
         ["{file}", "--index", "3"],
         ["{file}", "--spring-constant", "0N/m"],
-        ["{file}", "--poisson-ratio", "0.8"],
         ["{file}", "--out", "{file}"],
     ],
 )

@@ -38,6 +38,16 @@ def test_plan_of_the_default_scene() -> None:
     json.dumps(facts)
 
 
+def test_validity_is_of_the_largest_load() -> None:
+    """Hertz: a = (3 F R/(4 E*))^(1/3); a paraboloid's slope at the edge is a/R, Tabor's strain a fifth of it."""
+    dry = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0})
+    dry.sample.thickness = 100e-9
+    R, F, E = 20e-9, dry.range.maximum_load, 135e9 / (2.0 * (1.0 - 0.35**2))
+    a = (0.75 * F * R / E) ** (1 / 3)
+    expected = {"radius_ratio": a / R, "slope": a / R, "strain": 0.2 * a / R, "thickness_ratio": a / 100e-9}
+    assert dry.plan().explain()["validity"] == pytest.approx(expected, rel=1e-9)
+
+
 def test_plans_are_copied_and_pickled() -> None:
     scene, rig = presets.polyester()
     plan = scene.plan(rtol=1e-4, probe=rig)

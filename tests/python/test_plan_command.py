@@ -133,7 +133,6 @@ def test_budget(capsys: pytest.CaptureFixture[str]) -> None:
         (["--rtol", "little"], "'little' is not a number"),
         (["--atol", "10"], "no unit; write it like 100nN"),
         (["--atol", "10pm"], "the unit 'pm'"),
-        (["--budget", "nan"], "demand.budget = nan"),
     ],
 )
 def test_one_sentence_and_status_2(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -146,7 +145,7 @@ def test_one_sentence_and_status_2(arguments: list[str], words: str, capsys: pyt
 
 
 def test_not_a_number_of_evaluations(capsys: pytest.CaptureFixture[str]) -> None:
-    for arguments in (["--budget", "ten"], ["--quantity", "taste"]):
+    for arguments in (["--budget", "ten"], ["--budget", "nan"], ["--quantity", "taste"]):
         with pytest.raises(SystemExit) as stopped:
             main(["plan", "silicon_in_air", *arguments])
         assert stopped.value.code == 2
@@ -176,7 +175,7 @@ def test_wrong_files(text: str, words: str, tmp_path: Path, capsys: pytest.Captu
 
 def test_neither_file_nor_preset(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", str(tmp_path / "none.toml")]) == 2
-    assert "No such file" in capsys.readouterr().err
+    assert "no such file" in capsys.readouterr().err
     assert main(["plan", "silicon-in-air"]) == 2
     error = capsys.readouterr().err
     assert "did you mean silicon_in_air" in error

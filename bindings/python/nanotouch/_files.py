@@ -5,19 +5,23 @@ from __future__ import annotations
 
 import logging
 import struct
+import tomllib
 import warnings
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike, fspath
 from pathlib import Path
+from typing import Any
 
 from .errors import Error, ReadError, require
 
 #: Largest file opened [byte]: the largest single AFM files (force maps) are a few hundred megabytes.
 MAX_FILE_SIZE = 1 << 30
+MAX_TOML_SIZE = 1 << 20  # some 20 000 lines [byte]
 MAX_UNPACKED = 1 << 31  # of all that a container says it holds [byte]
-_TALKATIVE = ("tifffile", "afmformats.formats")  # they log what they raise as well
+# they log what they raise as well
+_TALKATIVE = ("tifffile", "afmformats.formats", "igor2.binarywave", "igor2.packed", "igor2.struct")
 _HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk")
 
 
@@ -43,6 +47,22 @@ def checked_path(path: str | PathLike[str]) -> Path:
     if size > MAX_FILE_SIZE:
         raise ReadError(f"{file}: {size / 2**20:.0f} MiB; files of up to {MAX_FILE_SIZE >> 20} MiB are read")
     return file
+
+
+def toml_tables(path: str | PathLike[str]) -> dict[str, Any]:
+    """The tables of a TOML file, with or without a byte-order mark."""
+    file = checked_path(path)
+    size = file.stat().st_size
+    if size > MAX_TOML_SIZE:
+        raise ReadError(f"{file}: {size >> 10} KiB; TOML files of up to {MAX_TOML_SIZE >> 10} KiB are read")
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8-sig"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ReadError(f"{file} is not a TOML file: {error}") from error
+    except ValueError as error:
+        raise ReadError(f"{file}: a whole number of more digits than can be read") from error
+    except RecursionError as error:
+        raise ReadError(f"{file}: lists or tables are nested too deep to be read") from error
 
 
 @contextmanager

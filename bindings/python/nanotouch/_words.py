@@ -16,6 +16,15 @@ def times(ratio: float) -> str:
     return f"{ratio:.2g} times" if ratio < 99.5 else f"{float(f'{ratio:.2g}'):.0f} times"
 
 
+def told(value: object) -> str:
+    """A wrong value as Python writes it, unless it is too large for a sentence."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # a whole number of more than 4300 digits, a list of lists of lists ...
+        return f"a too large {type(value).__name__}"
+    return text if len(text) <= 200 else f"{text[:100]} ... ({len(text)} characters)"
+
+
 def printable(text: str) -> str:
     """The same where it can be printed; of a file's name, bytes that are no character are written out."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")

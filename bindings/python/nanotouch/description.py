@@ -14,6 +14,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from nanotouch._words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.units import from_si, key_spellings, to_si
 
@@ -40,7 +41,7 @@ class Field(NamedTuple):
             return float(self.choices.index(choice))
         if isinstance(choice, int | float) and not isinstance(choice, bool) and choice in range(len(self.choices)):
             return float(choice)
-        raise InvalidValue(f"{label} = {choice!r} ({self.doc}): valid are {', '.join(self.choices)}")
+        raise InvalidValue(f"{label} = {told(choice)} ({self.doc}): valid are {', '.join(self.choices)}")
 
     def check(self, value: float, label: str, written: float, factor: float = 1.0) -> None:
         """Raise :class:`~nanotouch.errors.InvalidValue` for an SI value out of range, in the unit it was written in."""
@@ -154,7 +155,7 @@ class Description(Mapping[str, float]):
                     self.core.set(name, self.fields[name].number_of(value, f"[{section}] {key}"))
                     continue
                 if isinstance(value, bool) or not isinstance(value, int | float):
-                    raise InvalidValue(f"[{section}] {key} = {value!r}: it must be a number")
+                    raise InvalidValue(f"[{section}] {key} = {told(value)}: it must be a number")
                 number = _as_float(value)
                 si = to_si(number, factor) if math.isfinite(number) else number
                 self.fields[name].check(si, f"[{section}] {key}", number, factor)
@@ -248,18 +249,18 @@ def _shown(value: float | str) -> str:
 
 def _as_table(section: str, values: Any) -> Mapping[str, Any]:
     if not isinstance(values, Mapping):
-        raise InvalidValue(f"[{section}] must be a table of keys, not {values!r}")
+        raise InvalidValue(f"[{section}] must be a table of keys, not {told(values)}")
     return values
 
 
 def _as_number(value: Any, label: str) -> float:
     """A number of one's own or of numpy's; text, truth values and what has parts are none."""
     if isinstance(value, bool | np.bool_ | str | bytes):
-        raise InvalidValue(f"{label} = {value!r}: it must be a number")
+        raise InvalidValue(f"{label} = {told(value)}: it must be a number")
     try:
         return _as_float(value)
     except TypeError as error:
-        raise InvalidValue(f"{label} = {value!r}: it must be a number") from error
+        raise InvalidValue(f"{label} = {told(value)}: it must be a number") from error
 
 
 def _as_float(value: float) -> float:

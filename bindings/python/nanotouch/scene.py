@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 import os
-import tomllib
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from nanotouch import _core, materials
+from nanotouch._files import toml_tables
+from nanotouch._words import told
 from nanotouch.description import Description
-from nanotouch.errors import ReadError
+from nanotouch.errors import InvalidValue
 
 if TYPE_CHECKING:
     from nanotouch.plan import Plan
@@ -33,7 +34,7 @@ class Scene(Description, core_type=_core.Scene):
         """``material``: the moduli, and the surface energy where the table has it, of a named material."""
         if section not in ("tip", "sample") or key != "material":
             return False
-        material = materials.find(str(value))
+        material = materials.find(value if isinstance(value, str) else told(value))
         self[f"{section}.youngs_modulus"] = material.youngs_modulus
         self[f"{section}.poisson_ratio"] = material.poisson_ratio
         if math.isfinite(material.surface_energy):
@@ -73,6 +74,8 @@ class Scene(Description, core_type=_core.Scene):
         InvalidValue
             For a scene that no law covers, naming the field; for a demand that cannot be kept, with the best that can.
         """
+        if budget == 0.0:
+            raise InvalidValue("budget = 0: it must be above 0; None: whatever it costs")
         from nanotouch.plan import Plan  # the next layer, which needs this one: a method for convenience
 
         demand = Demand(
@@ -135,10 +138,4 @@ def read_toml(path: str | os.PathLike[str]) -> tuple[Scene, Rig, Settings]:
 
 def read_tables(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The tables of a TOML file."""
-    try:
-        with open(path, "rb") as file:
-            return tomllib.load(file)
-    except OSError as error:
-        raise ReadError(f"{os.fspath(path)}: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ReadError(f"{os.fspath(path)} is not a TOML file: {error}") from error
+    return toml_tables(path)

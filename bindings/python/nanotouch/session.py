@@ -113,7 +113,7 @@ class Session:
         mode: Mode = "point",
         path: Sequence[tuple[float, float]] | None = None,
         delay: float = 0.0,
-        seed: int = 0,
+        seed: int = 1,
         settings: Settings | None = None,
         force_range: tuple[float, float] | None = None,
         surface: Surface | None = None,

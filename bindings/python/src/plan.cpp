@@ -48,7 +48,6 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["least_radius"] = plan.radii ? plan.radii->minimum : plan.contact.radius;
     out["largest_radius"] = plan.radii ? plan.radii->maximum : plan.contact.radius;
     out["curvature_error"] = plan.curvature_error;
-    out["contact_strain"] = plan.validity.radius_ratio;
 }
 
 static py::dict as_dict(const nt_plan &plan)
@@ -63,6 +62,10 @@ static py::dict as_dict(const nt_plan &plan)
     add_numbers(plan, out);
     out["rivals"] = py::dict(py::arg("hertz") = plan.rivals.hertz, py::arg("dmt") = plan.rivals.dmt,
                              py::arg("jkr") = plan.rivals.jkr);
+    const nt_contact_validity &validity = plan.validity;
+    out["validity"] =
+        py::dict(py::arg("radius_ratio") = validity.radius_ratio, py::arg("slope") = validity.slope,
+                 py::arg("strain") = validity.strain, py::arg("thickness_ratio") = validity.thickness_ratio);
     out["warnings"] = warnings_of(plan);
     return out;
 }

@@ -16,15 +16,15 @@
 
 from __future__ import annotations
 
-import math
 import os
-import tomllib
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .._files import checked_path
+from .._files import toml_tables
+from .._words import told
 from ..errors import ReadError
 
 _NM = 1e-9
@@ -48,12 +48,8 @@ class Sidecar:
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Sidecar:
         """Read one; ReadError names what is wrong in it."""
-        file = checked_path(path)
-        try:
-            tables = tomllib.loads(file.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise ReadError(f"{file}: no valid TOML: {error}") from error
-        return cls({name: _decision(f"{file}: [{name!r}]", table) for name, table in tables.items()})
+        tables = toml_tables(path)
+        return cls({name: _decision(f"{os.fspath(path)}: [{name!r}]", table) for name, table in tables.items()})
 
     def of(self, file: Path, index: int) -> Decision:
         """For one curve: what is said of it, or else of its whole file."""
@@ -81,19 +77,21 @@ def _decision(where: str, table: Any) -> Decision:
         raise ReadError(f"{where}: expected one or more of {', '.join(sorted(known))}")
     exclude = table.get("exclude", "")
     if not isinstance(exclude, str) or ("exclude" in table and not exclude):
-        raise ReadError(f"{where}: exclude is {exclude!r}, expected the reason in words")
+        raise ReadError(f"{where}: exclude is {told(exclude)}, expected the reason in words")
     contact = table.get("contact_point_nm")
     if contact is not None and not _is_number(contact):
-        raise ReadError(f"{where}: contact_point_nm is {contact!r}, expected a number")
+        raise ReadError(f"{where}: contact_point_nm is {told(contact)}, expected a number")
     ends = table.get("baseline_nm")
     if ends is not None and not (
         isinstance(ends, list) and len(ends) == 2 and all(map(_is_number, ends)) and ends[0] < ends[1]
     ):
-        raise ReadError(f"{where}: baseline_nm is {ends!r}, expected two numbers that grow")
+        raise ReadError(f"{where}: baseline_nm is {told(ends)}, expected two numbers that grow")
     return Decision(
         exclude, None if contact is None else contact * _NM, None if ends is None else (ends[0] * _NM, ends[1] * _NM)
     )
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max  # a whole number may be beyond

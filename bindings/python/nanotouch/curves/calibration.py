@@ -9,7 +9,7 @@ moves with s.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from os import PathLike
@@ -87,17 +87,10 @@ class CalibrationTable:
             lines = file.read_text(encoding="utf-8-sig").splitlines()
         except UnicodeDecodeError as error:
             raise ReadError(f"{file}: not a text file: {error.reason}") from None
-        reader = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
-        names = [str(name).strip() for name in reader.fieldnames or ()]
-        if "file" not in names or len(names) != len(set(names)) or not set(names) <= set(_COLUMNS):
-            raise ReadError(f"{file}: columns {', '.join(names) or 'none'}; expected {', '.join(_COLUMNS)}")
-        reader.fieldnames = names
-        rows = []
-        for number, row in enumerate(reader, 1):
-            if None in row or not (row["file"] or "").strip():
-                raise ReadError(f"{file}: row {number} has no file pattern, or more fields than columns")
-            rows.append((str(row["file"]).strip(), _row_values(file, number, row)))
-        return cls(tuple(rows))
+        try:
+            return cls(tuple(_rows(file, [line for line in lines if line.strip() and not line.startswith("#")])))
+        except csv.Error as error:
+            raise ReadError(f"{file}: not a table: {error}") from None
 
     def of(self, file: str | PathLike[str]) -> Calibration:
         """What the table gives for a file; nothing if no pattern matches."""
@@ -112,6 +105,18 @@ class CalibrationTable:
 def _matches(pattern: str, file: Path) -> bool:
     path = file.absolute()
     return fnmatchcase(path.as_posix(), f"*/{pattern}") if "/" in pattern else fnmatchcase(path.name, pattern)
+
+
+def _rows(file: Path, lines: list[str]) -> Iterator[tuple[str, Calibration]]:
+    reader = csv.DictReader(lines)
+    names = [str(name).strip() for name in reader.fieldnames or ()]
+    if "file" not in names or len(names) != len(set(names)) or not set(names) <= set(_COLUMNS):
+        raise ReadError(f"{file}: columns {', '.join(names) or 'none'}; expected {', '.join(_COLUMNS)}")
+    reader.fieldnames = names
+    for number, row in enumerate(reader, 1):
+        if None in row or not (row["file"] or "").strip():
+            raise ReadError(f"{file}: row {number} has no file pattern, or more fields than columns")
+        yield str(row["file"]).strip(), _row_values(file, number, row)
 
 
 def _row_values(file: Path, number: int, row: Mapping[str, str | None]) -> Calibration:
