@@ -60,4 +60,4 @@ format:  ## format all sources
 	@$(VENV)/ruff format .
 
 clean:  ## forget everything that was built
-	@rm -rf build .venv nanotouch-out
+	@rm -rf build .venv
