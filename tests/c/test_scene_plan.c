@@ -95,29 +95,6 @@ static void the_error_of_jkr_is_told(void **state)
     }
 }
 
-/* Radii are measured by Hertz' contact radius at the largest load, (3 F R/(4 E*))^(1/3), where nothing adheres; lengths
- * of folds, forces and stiffnesses by their own. */
-static void errors_have_the_scale_of_their_quantity(void **state)
-{
-    (void)state;
-    for (double load = 1e-9; load < 2e-6; load *= 10.0) {
-        nt_scene scene = dry_silicon();
-        scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
-        scene.tip.shape = NT_SHAPE_PARABOLOID;
-        scene.tip.radius = 40e-9;
-        scene.range.maximum_load = load;
-        assert_int_equal(make(&plan, &scene, NULL), NT_OK);
-        assert_true(fabs(plan.scale / (1e-3 * load) - 1.0) < 1e-12);
-        const double E = plan.contact.effective_modulus, a = cbrt(0.75 * load * 40e-9 / E);
-        const nt_demand radius = {.relative_accuracy = 0.01, .quantity = NT_QUANTITY_RADIUS};
-        assert_int_equal(make(&plan, &scene, &radius), NT_OK);
-        assert_true(fabs(plan.scale / a - 1.0) < 1e-9);
-        const nt_demand stiff = {.relative_accuracy = 0.01, .quantity = NT_QUANTITY_STIFFNESS};
-        assert_int_equal(make(&plan, &scene, &stiff), NT_OK);
-        assert_true(fabs(plan.scale / (2.0 * E * a) - 1.0) < 1e-9);
-    }
-}
-
 /* Left out: the largest force that the term would have added. */
 static void bounds_of_what_is_left_out_are_true_maxima(void **state)
 {
@@ -356,7 +333,6 @@ int main(void)
         cmocka_unit_test(the_contact_law_follows_from_the_scene),
         cmocka_unit_test(a_meniscus_has_the_laplace_pressure),
         cmocka_unit_test(the_error_of_jkr_is_told),
-        cmocka_unit_test(errors_have_the_scale_of_their_quantity),
         cmocka_unit_test(bounds_of_what_is_left_out_are_true_maxima),
         cmocka_unit_test(a_plan_keeps_its_bound),
         cmocka_unit_test(stiffness_is_that_of_the_largest_load),
