@@ -52,7 +52,7 @@ static nt_request serve(nt_frames *frames, uint64_t tick, nt_status status, uint
 {
     nt_request taken;
     assert_int_equal(nt_frames_take(frames, &taken), 1);
-    const nt_answer answer = {.id = taken.id, .tick = tick, .status = status, .pending = pending};
+    const nt_answer answer = {.id = taken.id, .tick = tick, .status = (int32_t)status, .pending = pending};
     nt_frames_answer(frames, &answer);
     return taken;
 }
