@@ -4,9 +4,12 @@
 - :func:`force`: a scene with every term on, Maugis-Dugdale exact, composed here from the laws one by one; plans are
   measured against it.
 - :func:`lennard_jones`: a sphere on an elastic half-space under the Lennard-Jones law, self-consistent;
-  :func:`model_error` says what Hertz, DMT, JKR and Maugis-Dugdale are worth beside it.
+  :func:`model_error` says what Hertz, DMT, JKR and Maugis-Dugdale are worth beside it;
+- :class:`Yielding`: a paraboloid before and on an elastic half-space or layer under any pressure of the gap,
+  self-consistent; what plans say of soft samples is measured against it.
 """
 
+from nanotouch.reference._half_space import Layer
 from nanotouch.reference._lennard_jones import (
     LAMBDA_PER_MU,
     PEAK_STRESS,
@@ -20,19 +23,28 @@ from nanotouch.reference._lennard_jones import (
     tabor_mu,
 )
 from nanotouch.reference._scene import SceneForces, force, forces
+from nanotouch.reference._yielding import Pressure, Yielded, Yielding, brush, exponential, power, sum_of
 
 __all__ = [
     "LAMBDA_PER_MU",
     "PEAK_STRESS",
+    "Layer",
     "LennardJones",
+    "Pressure",
     "SceneForces",
     "TableError",
+    "Yielded",
+    "Yielding",
+    "brush",
+    "exponential",
     "force",
     "forces",
     "lennard_jones",
     "model_error",
     "mu_range",
+    "power",
     "pull_off",
+    "sum_of",
     "table_error",
     "tabor_mu",
 ]
