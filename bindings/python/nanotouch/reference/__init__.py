@@ -22,8 +22,9 @@ from nanotouch.reference._lennard_jones import (
     table_error,
     tabor_mu,
 )
+from nanotouch.reference._pressures import Pressure, brush, exponential, power, sum_of
 from nanotouch.reference._scene import SceneForces, force, forces
-from nanotouch.reference._yielding import Pressure, Yielded, Yielding, brush, exponential, power, sum_of
+from nanotouch.reference._yielding import Yielded, Yielding
 
 __all__ = [
     "LAMBDA_PER_MU",

@@ -13,6 +13,7 @@ p is a polynomial of x = s^2 on each panel, so that q is exact, and u is what ma
 from __future__ import annotations
 
 import functools
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,8 +68,8 @@ class Layer:
         """Wave numbers k [1/m], weights [1/m] and X(k t) - 1 of the compliance, the half-space's being 1."""
         pieces = [0.0, 0.5, 1.5, 3.0, 6.0, 12.0, 20.0]
         y, w = gauss(16)
-        kappa = np.concatenate([a + (b - a) * y for a, b in zip(pieces[:-1], pieces[1:], strict=True)])
-        weight = np.concatenate([(b - a) * w for a, b in zip(pieces[:-1], pieces[1:], strict=True)])
+        kappa = np.concatenate([a + (b - a) * y for a, b in itertools.pairwise(pieces)])
+        weight = np.concatenate([(b - a) * w for a, b in itertools.pairwise(pieces)])
         nu = self.poisson_ratio
         top = (3.0 - 4.0 * nu) * np.sinh(2.0 * kappa) - 2.0 * kappa
         bottom = (3.0 - 4.0 * nu) * np.cosh(2.0 * kappa) + 2.0 * kappa**2 + 5.0 - 12.0 * nu + 8.0 * nu**2
@@ -104,7 +105,7 @@ class Mesh:
         self.metric = metric
         self.K = 8.0 / modulus * (self.B.T @ metric @ self.B) / self.area[:, None]
         # u at r = 0: 2 q(0)/E* of a half-space; of the layer what its waves add there
-        self.K0 = 2.0 / modulus * self.B0 + 4.0 / modulus * self.rim @ self.B
+        self.K0 = 2.0 / modulus * self.B0 + 2.0 / modulus * self.rim @ self.B
 
 
 def abel(edges: Floats, tau: Floats) -> Floats:

@@ -13,47 +13,19 @@ Dugdale's).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from nanotouch._arrays import Floats
-from nanotouch.errors import InvalidValue, SolverError
+from nanotouch.errors import SolverError
 from nanotouch.reference._half_space import NODES, Layer, Mesh, coefficients, interpolate
+from nanotouch.reference._pressures import Pressure
 
 _PANELS = 120
 _FAR = 1e-11  # of the force, that is left beyond the mesh
-
-
-@dataclass(frozen=True)
-class Pressure:
-    """What two flats press on each other with at a gap [m]."""
-
-    pressure: Callable[[Floats], Floats]
-    """p [Pa], + repulsive"""
-    energy: Callable[[Floats], Floats]
-    """W = Int_g^inf p [J/m^2]"""
-    kinks: tuple[float, ...] = field(default=())
-    """gaps at which p has a kink [m]"""
-    diverges: bool = False
-    """at gap 0: the bodies never touch"""
-
-    def slope(self, gap: Floats) -> Floats:
-        """Dp/dg [Pa/m]: central differences of fourth order, on one side of a kink."""
-        step = 1e-4 * self.length(gap)
-        for kink in self.kinks:
-            step = np.minimum(step, np.maximum(0.4 * np.abs(gap - kink), 1e-9 * kink))
-        p = self.pressure
-        near = (p(gap + step) - p(gap - step)) * 8.0 - (p(gap + 2.0 * step) - p(gap - 2.0 * step))
-        return near / (12.0 * step)
-
-    def length(self, gap: Floats) -> Floats:
-        """W/p, about the decay length [m]."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            length = np.abs(self.energy(gap) / self.pressure(gap))
-        return np.where(np.isfinite(length) & (length > 0.0), np.minimum(length, 1e3 * np.abs(gap) + 1e-9), 1e-9)
 
 
 class Yielded(NamedTuple):
@@ -120,7 +92,7 @@ class Yielding:
         low, high = math.log(nearest), math.log(farthest)
         left, right = high - golden * (high - low), low + golden * (high - low)
         at_right, at_left = self.at_centre(math.exp(right)), self.at_centre(math.exp(left))
-        while high - low > 1e-7:
+        while high - low > 1e-4:  # h changes by its square
             if at_left.gap < at_right.gap:
                 high, right, at_right = right, left, at_left
                 left = high - golden * (high - low)
@@ -322,7 +294,7 @@ class Yielding:
         for kink in self.law.kinks:
             crossed = np.flatnonzero((g[1:] >= kink) & (g[:-1] < kink))
             for i in crossed:
-                x = self._crossing(state, kink, i)
+                x = self._crossing(state, kink, int(i))
                 near = mesh.edges[np.argmin(np.abs(mesh.edges - x))]
                 panel = int(np.searchsorted(mesh.edges, x)) - 1
                 if abs(near - x) > 1e-5 * x:
@@ -366,7 +338,7 @@ class Yielding:
         mesh, g, h = state.mesh, state.gaps, state.h
         a, R, E = mesh.a, self.R, self.E
         p, slope = self.law.pressure(g), self.law.slope(g)
-        inside, inside_slope = self._rim(mesh, h) if a > 0.0 else (np.zeros(g.size), np.zeros(g.size))
+        _, inside_slope = self._rim(mesh, h) if a > 0.0 else (np.zeros(g.size), np.zeros(g.size))
         # tangent along h at fixed a, then along a where the bodies touch
         M = np.eye(g.size) - mesh.K * slope
         by_h = np.linalg.solve(M, 1.0 + inside_slope)
@@ -385,7 +357,7 @@ class Yielding:
         energy += E * (d * d * a - 2.0 / 3.0 * d * a**3 / R + a**5 / (5.0 * R * R))
         energy += math.pi * a * a * float(self.law.energy(np.zeros(1))[0])
         # At fixed h the force does not depend on a in first order, the energy being stationary: k = -dF/dh.
-        k = self._contact_stiffness(mesh, slope, by_h)
+        k = self._contact_stiffness(mesh, slope, np.asarray(by_h))
         return Yielded(h, force, k, energy, 0.0, d, a, g.size)
 
     def _contact_stiffness(self, mesh: Mesh, slope: Floats, by_h: Floats) -> float:
@@ -397,45 +369,3 @@ class Yielding:
         """2 pi R Int W from a gap on, of a law that has almost ended there [J]."""
         gaps = gap * np.geomspace(1.0, 1e4, 400) if gap > 0.0 else np.zeros(2)
         return float(2.0 * np.pi * self.R * np.trapezoid(self.law.energy(gaps) * gaps, np.log(gaps)))
-
-
-def sum_of(*laws: Pressure) -> Pressure:
-    """Several at once."""
-    return Pressure(
-        lambda g: np.sum([law.pressure(g) for law in laws], axis=0),
-        lambda g: np.sum([law.energy(g) for law in laws], axis=0),
-        tuple(sorted({kink for law in laws for kink in law.kinks})),
-        any(law.diverges for law in laws),
-    )
-
-
-def exponential(pressure: float, decay_length: float) -> Pressure:
-    """P = p0 exp(-g/l): hydration, a double layer far out."""
-    if not decay_length > 0.0:
-        raise InvalidValue(f"decay_length = {decay_length:g} m: it must be above 0")
-    return Pressure(
-        lambda g: pressure * np.exp(-g / decay_length), lambda g: pressure * decay_length * np.exp(-g / decay_length)
-    )
-
-
-def power(constant: float, exponent: float, shift: float = 0.0) -> Pressure:
-    """P = constant/(g + shift)^exponent: van der Waals is -H/(6 pi), 3."""
-    return Pressure(
-        lambda g: constant * (g + shift) ** -exponent,
-        lambda g: constant / (exponent - 1.0) * (g + shift) ** (1.0 - exponent),
-        diverges=shift == 0.0,
-    )
-
-
-def brush(pressure: float, thickness: float) -> Pressure:
-    """Alexander and de Gennes: p = pressure [(T/g)^(9/4) - (g/T)^(3/4)] inside T; pressure = kT/s^3."""
-
-    def p(g: Floats) -> Floats:
-        x = np.clip(g / thickness, 1e-12, 1.0)
-        return pressure * (x**-2.25 - x**0.75)
-
-    def energy(g: Floats) -> Floats:
-        x = np.clip(g / thickness, 1e-12, 1.0)
-        return pressure * thickness * 4.0 / 35.0 * (7.0 * x**-1.25 + 5.0 * x**1.75 - 12.0)
-
-    return Pressure(p, energy, (thickness,), True)
