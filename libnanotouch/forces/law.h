@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the laws of a gap share: the hold below the minimum gap, and the form for arrays; private to forces/. */
+ * What the laws of a gap share: the hold below the minimum gap, and the form for arrays; private to the
+ * library. */
 #ifndef NANOTOUCH_FORCES_LAW_H
 #define NANOTOUCH_FORCES_LAW_H
 

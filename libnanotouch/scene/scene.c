@@ -8,6 +8,8 @@
 #define FIELD(path, ...) NT_FIELD(nt_scene, path, __VA_ARGS__)
 #define CHOICE(path, choices, last, doc) FIELD(path, choices, 0.0, last, doc)
 #define NO_YES "no|yes"
+#define OF_TERM(name, unit, least, most, usual, doc) , FIELD(medium.name, unit, least, most, doc)
+#define USUAL(name, unit, least, most, usual, doc) , .name = usual
 
 static const nt_field scene_fields[] = {
     CHOICE(tip.shape, "paraboloid|sphere|cone|punch|blunted|truncated", 5.0, "shape of the tip"),
@@ -46,7 +48,7 @@ static const nt_field scene_fields[] = {
     FIELD(medium.hydration_energy, "J/m^2", -1.0, 1.0, "hydration energy W of plates at gap 0; below 0: hydrophobic"),
     FIELD(medium.hydration_length, "m", 1e-11, 1e-7, "decay length of the hydration force"),
     FIELD(medium.brush_thickness, "m", 0.0, 1e-6, "thickness T of the free polymer brushes of both bodies; 0: none"),
-    FIELD(medium.brush_spacing, "m", 1e-10, 1e-6, "distance s of grafted chains"),
+    FIELD(medium.brush_spacing, "m", 1e-10, 1e-6, "distance s of grafted chains") NT_TERM_FIELDS(OF_TERM),
     CHOICE(adhesion.given, "work_of_adhesion|surface_energies|pull_off_force", 2.0, "what the adhesion follows from"),
     FIELD(adhesion.work_of_adhesion, "J/m^2", 0.0, 10.0, "work of adhesion w of the dry solids"),
     FIELD(adhesion.tip_surface_energy, "J/m^2", 0.0, 10.0, "surface energy of the tip"),
@@ -88,7 +90,7 @@ nt_scene nt_scene_defaults(void)
                    .relative_permittivity = 78.4,
                    .potential_per_ph = 0.006,
                    .hydration_length = 0.3e-9,
-                   .brush_spacing = 10e-9},
+                   .brush_spacing = 10e-9 NT_TERM_FIELDS(USUAL)},
         .adhesion = {.work_of_adhesion = 0.10, .equilibrium_distance = 0.2e-9, .hamaker_constant = 1e-19},
         .range = {.minimum_gap = -1e-3, .maximum_load = 2.2e-6, .viscosity = 1.8e-5},
     };

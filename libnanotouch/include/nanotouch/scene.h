@@ -7,6 +7,7 @@
 #include "nanotouch/contact.h"
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"
+#include "nanotouch/terms.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -42,6 +43,7 @@ typedef struct nt_specimen {
 
 typedef enum nt_medium_kind { NT_MEDIUM_AIR, NT_MEDIUM_VACUUM, NT_MEDIUM_LIQUID } nt_medium_kind;
 
+#define NT_TERM_FIELD_MEMBER(name, unit, least, most, usual, doc) double name;
 typedef struct nt_medium {
     double kind;                  /* nt_medium_kind: "air|vacuum|liquid" */
     double temperature;           /* T [K] */
@@ -58,7 +60,10 @@ typedef struct nt_medium {
     double hydration_length;      /* decay length of it [m] */
     double brush_thickness;       /* T, of the free polymer brushes of both bodies together; 0: none [m] */
     double brush_spacing;         /* s, distance of grafted chains [m] */
+    /* those of one law alone: terms.h */
+    NT_TERM_FIELDS(NT_TERM_FIELD_MEMBER)
 } nt_medium;
+#undef NT_TERM_FIELD_MEMBER
 
 typedef enum nt_adhesion_given {
     NT_ADHESION_GIVEN_WORK,     /* w as given */

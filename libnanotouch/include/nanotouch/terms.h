@@ -32,6 +32,10 @@ typedef struct nt_electrostatic_term {
     ROW(HYDRATION, hydration, nt_hydration)                                                                            \
     ROW(STERIC, steric, nt_steric)
 
+/* Fields of the section `medium` of a scene that belong to one law alone: name, unit, smallest, largest and usual value
+ * (0: no such force), meaning. */
+#define NT_TERM_FIELDS(FIELD)
+
 #define NT_TERM_NUMBER(ID, name, type) NT_PLAN_##ID,
 enum { NT_PLAN_CONTACT, NT_TERMS_BESIDE(NT_TERM_NUMBER) NT_PLAN_TERMS };
 #undef NT_TERM_NUMBER
