@@ -85,6 +85,7 @@ set(nanotouch_sources_scene
     scene/terms/rows.c
     scene/terms/steric.c
     scene/terms/vdw.c
+    scene/terms/yukawa.c
     scene/warnings.c)
 set(nanotouch_sources_hal hal/hal.c)
 set(nanotouch_sources_dynamics

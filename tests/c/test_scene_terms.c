@@ -29,6 +29,8 @@ static void make(nt_medium_kind kind)
     scene.medium.ionic_strength = 10.0;
     scene.medium.hydration_energy = 3e-3;
     scene.medium.brush_thickness = 12e-9;
+    scene.medium.yukawa_energy = 1e-3;
+    scene.medium.yukawa_length = 3e-9;
     scene.adhesion.hamaker_constant = 2e-21;
     scene.adhesion.contact_potential = 0.3;
     const nt_plan_inputs inputs = {.scene = &scene};

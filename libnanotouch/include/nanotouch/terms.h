@@ -23,6 +23,14 @@ typedef struct nt_electrostatic_term {
     nt_tip_angle angle;
 } nt_electrostatic_term;
 
+/* Matter that interacts by exp(-r/length)/r, in sphere and flat. */
+typedef struct nt_yukawa_term {
+    double energy;      /* W of two flats at gap 0 [J/m^2] */
+    double length;      /* decay length [m] */
+    double force;       /* of the sphere at gap 0 [N] */
+    double minimum_gap; /* [m] */
+} nt_yukawa_term;
+
 /* Every law beside contact: its number NT_PLAN_x, its name, and the type of its parameters in a plan. */
 #define NT_TERMS_BESIDE(ROW)                                                                                           \
     ROW(VDW, vdw, nt_vdw_term)                                                                                         \
@@ -30,11 +38,14 @@ typedef struct nt_electrostatic_term {
     ROW(CHARGE, charge, nt_point_charge)                                                                               \
     ROW(DOUBLE_LAYER, double_layer, nt_double_layer)                                                                   \
     ROW(HYDRATION, hydration, nt_hydration)                                                                            \
-    ROW(STERIC, steric, nt_steric)
+    ROW(STERIC, steric, nt_steric)                                                                                     \
+    ROW(YUKAWA, yukawa, nt_yukawa_term)
 
-/* Fields of the section `medium` of a scene that belong to one law alone: name, unit, smallest, largest and usual value
- * (0: no such force), meaning. */
-#define NT_TERM_FIELDS(FIELD)
+/* Fields of the section `medium` of a scene that belong to one law alone: name, unit, smallest, largest and usual
+ * value, meaning. Usually there is no such force. */
+#define NT_TERM_FIELDS(FIELD)                                                                                          \
+    FIELD(yukawa_energy, "J/m^2", -1.0, 1.0, 0.0, "energy W of flats at gap 0 by a Yukawa force; below 0: attraction") \
+    FIELD(yukawa_length, "m", 0.0, 1e-6, 0.0, "decay length of the Yukawa force; 0: none")
 
 #define NT_TERM_NUMBER(ID, name, type) NT_PLAN_##ID,
 enum { NT_PLAN_CONTACT, NT_TERMS_BESIDE(NT_TERM_NUMBER) NT_PLAN_TERMS };
