@@ -79,6 +79,8 @@ set(nanotouch_sources_scene
     scene/terms/capillary.c
     scene/terms/charge.c
     scene/terms/contact.c
+    scene/terms/custom.c
+    scene/terms/custom_table.c
     scene/terms/double_layer.c
     scene/terms/electrostatic.c
     scene/terms/hydration.c

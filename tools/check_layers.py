@@ -59,7 +59,7 @@ PYTHON_LAYERS = {
     "readers": "_transfer _worker _readers",
     "laws": "contact forces geometry materials",
     "devices": "faults frames commands hal _plant",
-    "descriptions": "description scene presets",
+    "descriptions": "description _custom scene presets",
     "measured": "images surface curves",
     "what is computed": "_plan_terms _plan_text plan interaction reference",
     "a touch": "_path _control supervisor _recorder record replay margins operator session",

@@ -19,9 +19,12 @@ gap)`).
 | --- | --- | --- | --- | --- |"""
 
 
+OTHER_PLACES = ("custom_2", "custom_3", "custom_4")
+
+
 def page() -> str:
     """All of it."""
-    return "\n".join([HEAD, *(line for row in ROWS for line in _lines(row))]) + "\n"
+    return "\n".join([HEAD, *(line for row in ROWS if row.name not in OTHER_PLACES for line in _lines(row))]) + "\n"
 
 
 def _lines(row: Row) -> list[str]:

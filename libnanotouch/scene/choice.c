@@ -46,8 +46,9 @@ static void take(nt_plan *plan, const nt_plan_options *options, const combinatio
     plan->on_count = 0;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         const nt_form form = options->option[term][best->index[term]].form;
-        plan->terms[term].name = nt_term_rows[term]->words.name;
-        plan->terms[term].title = nt_term_rows[term]->words.title;
+        plan->terms[term].name = nt_term_name_of(plan, term);
+        plan->terms[term].title =
+            nt_term_rows[term]->name_of ? plan->terms[term].name : nt_term_rows[term]->words.title;
         plan->terms[term].words = nt_term_form_of(plan, term, form)->words;
         plan->terms[term].form = form;
         plan->terms[term].error = options->option[term][best->index[term]].error;

@@ -84,6 +84,15 @@ static nt_status refuse(const nt_plan *plan, const nt_scene *scene, double share
     return NT_E_RANGE;
 }
 
+nt_status nt_plan_tabulate(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    nt_status status = NT_OK;
+    for (int term = 0; term < NT_PLAN_TERMS && status == NT_OK; ++term)
+        if (nt_term_rows[term]->tabulate)
+            status = nt_term_rows[term]->tabulate(law_of(plan, term), scene, problem);
+    return status;
+}
+
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     for (int term = 0; term < NT_PLAN_TERMS; ++term)

@@ -57,7 +57,8 @@ static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_opt
         const double error = form_distance(plan, term, words->forms[i].form, nearest);
         nt_plan_offer(plan, options, term, words->forms[i].form, blunter * nt_plan_share(plan, error));
     }
-    nt_plan_offer(plan, options, term, full, 0.0);
+    const double error = nt_term_rows[term]->error ? nt_term_rows[term]->error(nt_term_law(plan, term), quantity) : 0.0;
+    nt_plan_offer(plan, options, term, full, blunter * nt_plan_share(plan, error));
 }
 
 /* What the sum loses where large terms cancel, over max(|X|, S). Contact adds no less than -S to B, what the others

@@ -39,7 +39,9 @@ double nt_plan_last_hold(double release_gap);
 /* Pull-off, stiffness, jump-in and folds of a local contact: the worst of the surface. */
 void nt_plan_local_facts(nt_plan *plan, double maximum_load);
 
-/* laws.c: everything beside contact, by the rows of terms/. */
+/* laws.c: everything beside contact, by the rows of terms/: first what is tabulated once, ... */
+nt_status nt_plan_tabulate(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+/* ... then what depends on the contact, and what it leaves of w. */
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* One of these terms in a form at a gap; the sum of all of them in full [N]. */
 nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, double gap);

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "scene/parts.h"
+#include "scene/terms/term.h"
 
 const char *nt_form_name(nt_form form)
 {
@@ -58,7 +58,7 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
 {
     static const nt_plan empty = {.surface = NULL};
     const nt_demand demand = inputs->demand ? *inputs->demand : nt_demand_defaults();
-    const nt_status status = check(inputs, &demand, problem);
+    nt_status status = check(inputs, &demand, problem);
     if (status != NT_OK)
         return status;
     *plan = empty;
@@ -67,7 +67,8 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     plan->radii = inputs->radii;
     if (inputs->probe)
         plan->demand.force_floor = fmax(demand.force_floor, nt_probe_force_noise(inputs->probe));
-    return nt_plan_adhere(plan, inputs->scene, problem);
+    status = nt_plan_tabulate(plan, inputs->scene, problem);
+    return status == NT_OK ? nt_plan_adhere(plan, inputs->scene, problem) : status;
 }
 
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
@@ -94,4 +95,7 @@ void nt_plan_copy(nt_plan *copy, const nt_plan *plan)
     *copy = *plan;
     if (plan->table.cells)
         copy->table.cells = copy->cells;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        if (nt_term_rows[term]->name_of) /* the plan has the name itself */
+            copy->terms[term].name = copy->terms[term].title = nt_term_name_of(copy, term);
 }

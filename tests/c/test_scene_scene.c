@@ -22,7 +22,7 @@ static void every_field_is_refused_by_name(void **state)
     (void)state;
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
-    assert_int_equal((size_t)count * sizeof(double), sizeof(nt_scene)); /* no number is without a check */
+    assert_int_equal((size_t)count * sizeof(double), offsetof(nt_scene, custom)); /* no number is without a check */
     for (int i = 0; i < count; i++) {
         const nt_field *field = &fields[i];
         const double outside[] = {nextafter(field->minimum, -HUGE_VAL), nextafter(field->maximum, HUGE_VAL), NAN,

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+from collections.abc import Callable
 from typing import Any
 
 from numpy import dtype, float64, void
@@ -133,6 +134,13 @@ class _Described:
 
 class Scene(_Described):
     def copy(self) -> Scene: ...
+    def set_custom(
+        self,
+        laws: list[tuple[str, Callable[[float], tuple[float, float, float]], Callable[[float], float]]],
+        /,
+    ) -> None: ...
+
+custom_terms: int
 
 class Rig(_Described):
     def copy(self) -> Rig: ...

@@ -97,6 +97,8 @@ class Description(Mapping[str, float]):
 
     _core_type: ClassVar[Any]
     _all_sections: ClassVar[list[str]] = []
+    beside: ClassVar[tuple[str, ...]] = ()
+    """tables of a file that are no section of fields"""
     fields: ClassVar[dict[str, Field]]
     core: Any
 
@@ -107,7 +109,7 @@ class Description(Mapping[str, float]):
                 raise InvalidValue(
                     f"{type(self).__name__} has no section {section!r}; it has {', '.join(self.sections())}"
                 )
-            for key, value in _as_table(section, values).items():
+            for key, value in as_table(section, values).items():
                 name = f"{section}.{key}"
                 if self._set(section, key, value):
                     continue
@@ -118,7 +120,7 @@ class Description(Mapping[str, float]):
     def __init_subclass__(cls, core_type: Any) -> None:
         cls._core_type = core_type
         cls.fields = {entry[0]: Field(*entry) for entry in core_type.fields}
-        Description._all_sections = [*Description._all_sections, *cls.sections()]
+        Description._all_sections = [*Description._all_sections, *cls.sections(), *cls.beside]
 
     @classmethod
     def sections(cls) -> list[str]:
@@ -144,7 +146,7 @@ class Description(Mapping[str, float]):
                 raise InvalidValue(f"unknown section [{section}]; known are {', '.join(Description._all_sections)}")
         for section in self.sections():
             seen: dict[str, str] = {}
-            for key, value in _as_table(section, tables.get(section, {})).items():
+            for key, value in as_table(section, tables.get(section, {})).items():
                 if self._set(section, key, value):
                     continue
                 name, factor = self._field_of(section, key)
@@ -247,7 +249,8 @@ def _shown(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-def _as_table(section: str, values: Any) -> Mapping[str, Any]:
+def as_table(section: str, values: Any) -> Mapping[str, Any]:
+    """A table of a file or of a program."""
     if not isinstance(values, Mapping):
         raise InvalidValue(f"[{section}] must be a table of keys, not {told(values)}")
     return values

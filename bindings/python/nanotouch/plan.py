@@ -44,7 +44,9 @@ class Plan:
         if not isinstance(probe, Rig | None):
             raise TypeError(f"probe must be a Rig, not {type(probe).__name__}")
         rig = None if probe is None else probe.copy()
-        return cls(make_terrain(scene, wanted, rig, surface).plan, (scene.copy(), wanted.copy(), rig, surface))
+        with scene.naming_terms():
+            terrain = make_terrain(scene, wanted, rig, surface)
+        return cls(terrain.plan, (scene.copy(), wanted.copy(), rig, surface))
 
     @property
     def terms(self) -> list[Term]:

@@ -7,12 +7,17 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from nanotouch import _core, materials
+from nanotouch._custom import CustomTerm, find
+from nanotouch._custom import register as register
+from nanotouch._custom import registered as registered
 from nanotouch._files import toml_tables
 from nanotouch._words import told
-from nanotouch.description import Description
+from nanotouch.description import Description, as_table
 from nanotouch.errors import InvalidValue
 
 if TYPE_CHECKING:
@@ -23,7 +28,112 @@ Quantity = Literal["force", "stiffness", "radius", "folds"]
 
 
 class Scene(Description, core_type=_core.Scene):
-    """Tip, sample, medium and adhesion; by default the paper's silicon tip of 20 nm on silicon in humid air."""
+    """Tip, sample, medium and adhesion; by default the paper's silicon tip of 20 nm on silicon in humid air.
+
+    ``terms`` are laws of one's own, by the name of :func:`register` and with their parameters:
+    ``Scene(terms={"gel": {"strength": 1e-3}})``, in a file ``[terms.gel]``.
+    """
+
+    beside = ("terms",)
+    _terms: dict[str, tuple[CustomTerm, dict[str, float | str]]]
+
+    def __init__(self, *, terms: Mapping[str, Mapping[str, Any]] | None = None, **sections: Any) -> None:
+        super().__init__(**sections)
+        for name, values in (terms or {}).items():
+            self.add_term(name, **values)
+
+    @property
+    def terms(self) -> dict[str, dict[str, float]]:
+        """The laws of one's own with their parameters, SI."""
+        return {name: self._term_values(name) for name in self._terms}
+
+    def add_term(self, name: str, version: int | None = None, **parameters: float | str) -> None:
+        """Add a registered law, or give one that is there other parameters; a text is a field that one follows."""
+        term = find(name, version)
+        if name not in self._terms and len(self._terms) == _core.custom_terms:
+            raise InvalidValue(f"terms.{name}: a scene has at most {_core.custom_terms} laws of one's own")
+        values = term.values(parameters)
+        for value in values.values():
+            if isinstance(value, str) and value not in self.fields:
+                raise InvalidValue(f"terms.{name}: the scene has no field {value!r}")
+        self._terms[name] = term, values
+        self._describe_terms()
+
+    def remove_term(self, name: str) -> None:
+        """Take a law of one's own out."""
+        if name not in self._terms:
+            raise InvalidValue(f"terms.{name}: the scene has {', '.join(self._terms) or 'no law of one own'}")
+        del self._terms[name]
+        self._describe_terms()
+
+    def term_force(self, name: str, gap: float) -> float:
+        """Force of a law of one's own [N] at a gap [m], by its own function."""
+        term = self._terms[name][0]
+        return float(term.force(gap, **self._term_values(name)))
+
+    @contextmanager
+    def naming_terms(self) -> Iterator[None]:
+        """A refusal of the C library names a law of one's own by its place: here by its name, with what it raised."""
+        try:
+            yield
+        except InvalidValue as refusal:
+            for place, (name, (term, _)) in enumerate(self._terms.items()):
+                if f"custom[{place}]" in str(refusal):
+                    said = str(refusal).replace(f"custom[{place}]", f"terms.{name}")
+                    raise InvalidValue(said) from term.failure(self._term_values(name))
+            raise
+
+    def _term_values(self, name: str) -> dict[str, float]:
+        values = self._terms[name][1]
+        return {key: self[value] if isinstance(value, str) else value for key, value in values.items()}
+
+    def _describe_terms(self) -> None:
+        """Tell the C library; a parameter may follow a field that has changed."""
+        self.core.set_custom([term.bind(self._term_values(name)) for name, (term, _) in self._terms.items()])
+
+    def _take(self, core: Any) -> None:
+        super()._take(core)
+        object.__setattr__(self, "_terms", {})
+
+    def copy(self) -> Self:
+        """An independent copy."""
+        made = super().copy()
+        made._terms.update(self._terms)
+        return made
+
+    def update_from_tables(self, tables: Mapping[str, Any]) -> None:
+        """Set what the tables name; a section that no description has is refused."""
+        super().update_from_tables(tables)
+        for name, table in as_table("terms", tables.get("terms", {})).items():
+            self.add_term(name, **find(name).from_table(as_table(f"terms.{name}", table)))
+        self._describe_terms()
+
+    def to_dict(self) -> dict[str, dict[str, Any]]:
+        """Nested plain numbers in SI, and names of choices, for JSON; of laws of one's own their version, too."""
+        nested = super().to_dict()
+        if self._terms:
+            nested["terms"] = {
+                name: {"version": term.version, **values} for name, (term, values) in self._terms.items()
+            }
+        return nested
+
+    def __setitem__(self, name: str, value: float | str) -> None:
+        super().__setitem__(name, value)
+        if self._terms:
+            self._describe_terms()
+
+    def __eq__(self, other: object) -> bool:
+        same = not isinstance(other, Scene) or self._terms == other._terms
+        return same and super().__eq__(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> Any:
+        return _restore, (self.to_dict(),)
+
+    def __repr__(self) -> str:
+        own = f", terms={self.terms!r})" if self._terms else ")"
+        return super().__repr__().removesuffix(")") + own
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Self:
@@ -125,6 +235,10 @@ class Settings(Description, core_type=_core.Settings):
         made = cls.for_rig(rig)
         made.update_from_tables(read_tables(path))
         return made
+
+
+def _restore(sections: dict[str, dict[str, Any]]) -> Scene:
+    return Scene(**sections)
 
 
 def read_toml(path: str | os.PathLike[str]) -> tuple[Scene, Rig, Settings]:

@@ -3,8 +3,8 @@
 #include "descriptions.h"
 
 template <class T>
-static void bind_described(py::module_ &module, const char *name, const nt_field *fields, int count, T (*defaults)(),
-                           nt_status (*check)(const T *, nt_problem *))
+static py::class_<Described<T>> bind_described(py::module_ &module, const char *name, const nt_field *fields, int count,
+                                               T (*defaults)(), nt_status (*check)(const T *, nt_problem *))
 {
     using Self = Described<T>;
     auto find = [fields, count](const std::string &field) -> const nt_field * {
@@ -28,8 +28,58 @@ static void bind_described(py::module_ &module, const char *name, const nt_field
                  nt_problem problem{};
                  raise_on(check(&self.value, &problem), problem, name);
              })
-        .def("copy", [](const Self &self) { return Self{self.value}; });
+        .def("copy", [](const Self &self) { return self; });
     type.attr("fields") = py::tuple(table);
+    return type;
+}
+
+namespace
+{
+
+// Two functions of a gap: one gives U, F, k, the other the largest |F| from there on.
+struct CustomLaw {
+    py::function law, bound;
+};
+
+} // namespace
+
+// They are called while a plan is made, from any thread. The Python side catches what they raise and gives NaN.
+static nt_law_value call_law(const void *context, double gap)
+{
+    py::gil_scoped_acquire acquire;
+    const auto [U, F, k] = static_cast<const CustomLaw *>(context)->law(gap).cast<std::tuple<double, double, double>>();
+    return {U, F, k, 0.0};
+}
+
+static double call_bound(const void *context, double gap)
+{
+    py::gil_scoped_acquire acquire;
+    return static_cast<const CustomLaw *>(context)->bound(gap).cast<double>();
+}
+
+// The laws of one's own that a scene has, in the order of its places: name, law, bound.
+static void set_custom(Described<nt_scene> &scene,
+                       const std::vector<std::tuple<std::string, py::function, py::function>> &laws)
+{
+    if (laws.size() > NT_CUSTOM_TERMS)
+        throw py::value_error("a scene has at most " + std::to_string(NT_CUSTOM_TERMS) + " laws of one's own");
+    auto kept = std::make_shared<std::vector<CustomLaw>>();
+    for (const auto &[name, law, bound] : laws) {
+        if (name.empty() || name.size() >= NT_CUSTOM_NAME)
+            throw py::value_error("the name of a law has 1 to " + std::to_string(NT_CUSTOM_NAME - 1) + " bytes");
+        kept->push_back({law, bound});
+    }
+    for (size_t i = 0; i < NT_CUSTOM_TERMS; ++i) {
+        nt_custom_term &custom = scene.value.custom[i];
+        custom = nt_custom_term{};
+        if (i < laws.size()) {
+            std::get<0>(laws[i]).copy(custom.name, NT_CUSTOM_NAME - 1);
+            custom.law = &call_law;
+            custom.bound = &call_bound;
+            custom.context = &(*kept)[i];
+        }
+    }
+    scene.kept = kept;
 }
 
 static nt_settings settings_of_default_rig()
@@ -42,7 +92,9 @@ void bind_descriptions(py::module_ &module)
 {
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
-    bind_described<nt_scene>(module, "Scene", fields, count, nt_scene_defaults, nt_scene_check);
+    bind_described<nt_scene>(module, "Scene", fields, count, nt_scene_defaults, nt_scene_check)
+        .def("set_custom", &set_custom);
+    module.attr("custom_terms") = static_cast<int>(NT_CUSTOM_TERMS);
     fields = nt_demand_fields(&count);
     bind_described<nt_demand>(module, "Demand", fields, count, nt_demand_defaults, nt_demand_check);
     fields = nt_rig_fields(&count);

@@ -97,6 +97,7 @@ typedef struct nt_scene {
     nt_medium medium;
     nt_adhesion adhesion;
     nt_range range;
+    nt_custom_term custom[NT_CUSTOM_TERMS]; /* laws of one's own (terms.h), checked when a plan is made */
 } nt_scene;
 
 /* The paper's scene: silicon tip (R = 20 nm) on silicon (E = 135 GPa, nu = 0.35) in air of 40 % humidity. */

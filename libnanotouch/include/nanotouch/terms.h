@@ -31,6 +31,37 @@ typedef struct nt_yukawa_term {
     double minimum_gap; /* [m] */
 } nt_yukawa_term;
 
+/* --- A law of one's own --- */
+
+enum { NT_CUSTOM_TERMS = 4, NT_CUSTOM_NAME = 32, NT_CUSTOM_CELLS = 128 };
+
+/* {U, F, k, a = 0} at a gap [m]: U falls to 0 at infinite gap, F = -dU/dh, k = -dF/dh. */
+typedef nt_law_value nt_custom_law(const void *context, double gap);
+/* What |F| never exceeds at this gap and all larger ones [N]. */
+typedef double nt_custom_bound(const void *context, double gap);
+
+/* A scene's description of it. Both functions are called while a plan is made, and never by what runs: the plan keeps a
+ * table. What they state is compared with samples, and refused where it is wrong. */
+typedef struct nt_custom_term {
+    char name[NT_CUSTOM_NAME]; /* ends with 0; "": no such law */
+    nt_custom_law *law;
+    nt_custom_bound *bound;
+    const void *context; /* borrowed while plans are made */
+} nt_custom_term;
+
+/* The table of a plan: U between the gaps h[i] and h[i + 1] is a polynomial of the fifth degree, so that U, F and k are
+ * those of the law at both. Below the first gap F stays; beyond the last there is no force. */
+typedef struct nt_custom_table {
+    char name[NT_CUSTOM_NAME];
+    int count;     /* of cells; 0: no such law */
+    double radius; /* R of the tip [m] */
+    double gap[NT_CUSTOM_CELLS + 1];
+    double U[NT_CUSTOM_CELLS][6];                  /* coefficients over (h - h[i])/(h[i + 1] - h[i]) [J] */
+    double largest_force[NT_CUSTOM_CELLS + 1];     /* from h[i] on, as stated [N] */
+    double largest_stiffness[NT_CUSTOM_CELLS + 1]; /* the same, of samples [N/m] */
+    double force_error, stiffness_error;           /* largest of the table [N, N/m] */
+} nt_custom_table;
+
 /* Every law beside contact: its number NT_PLAN_x, its name, and the type of its parameters in a plan. */
 #define NT_TERMS_BESIDE(ROW)                                                                                           \
     ROW(VDW, vdw, nt_vdw_term)                                                                                         \
@@ -41,6 +72,13 @@ typedef struct nt_yukawa_term {
     ROW(STERIC, steric, nt_steric)                                                                                     \
     ROW(YUKAWA, yukawa, nt_yukawa_term)
 
+/* And the places for laws of one's own, nt_scene.custom. */
+#define NT_TERMS_CUSTOM(ROW)                                                                                           \
+    ROW(CUSTOM_1, custom_1, nt_custom_table)                                                                           \
+    ROW(CUSTOM_2, custom_2, nt_custom_table)                                                                           \
+    ROW(CUSTOM_3, custom_3, nt_custom_table)                                                                           \
+    ROW(CUSTOM_4, custom_4, nt_custom_table)
+
 /* Fields of the section `medium` of a scene that belong to one law alone: name, unit, smallest, largest and usual
  * value, meaning. Usually there is no such force. */
 #define NT_TERM_FIELDS(FIELD)                                                                                          \
@@ -48,12 +86,13 @@ typedef struct nt_yukawa_term {
     FIELD(yukawa_length, "m", 0.0, 1e-6, 0.0, "decay length of the Yukawa force; 0: none")
 
 #define NT_TERM_NUMBER(ID, name, type) NT_PLAN_##ID,
-enum { NT_PLAN_CONTACT, NT_TERMS_BESIDE(NT_TERM_NUMBER) NT_PLAN_TERMS };
+enum { NT_PLAN_CONTACT, NT_TERMS_BESIDE(NT_TERM_NUMBER) NT_TERMS_CUSTOM(NT_TERM_NUMBER) NT_PLAN_TERMS };
 #undef NT_TERM_NUMBER
 
 #define NT_TERM_MEMBER(ID, name, type) type name;
 typedef struct nt_plan_laws {
     NT_TERMS_BESIDE(NT_TERM_MEMBER)
+    NT_TERMS_CUSTOM(NT_TERM_MEMBER)
 } nt_plan_laws;
 #undef NT_TERM_MEMBER
 
@@ -68,7 +107,7 @@ typedef enum nt_form {
     NT_FORM_SERIES,     /* contact of a sphere without adhesion, in powers of delta/R */
     NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
     NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
-    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h) */
+    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h); a law of one's own */
     NT_FORM_POLISHED,
     NT_FORM_EXACT,
     NT_FORM_LOCAL,      /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */

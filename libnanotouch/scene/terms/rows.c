@@ -6,10 +6,12 @@
 #include "scene/terms/term.h"
 
 #define ROW(ID, name, type) [NT_PLAN_##ID] = &nt_term_##name,
-const nt_term_row *const nt_term_rows[NT_PLAN_TERMS] = {ROW(CONTACT, contact, ) NT_TERMS_BESIDE(ROW)};
+const nt_term_row *const nt_term_rows[NT_PLAN_TERMS] = {ROW(CONTACT, contact, ) NT_TERMS_BESIDE(ROW)
+                                                            NT_TERMS_CUSTOM(ROW)};
 
 #define OFFSET(ID, name, type) [NT_PLAN_##ID] = (unsigned)offsetof(nt_plan, laws.name),
-const unsigned nt_term_offsets[NT_PLAN_TERMS] = {[NT_PLAN_CONTACT] = 0, NT_TERMS_BESIDE(OFFSET)};
+const unsigned nt_term_offsets[NT_PLAN_TERMS] = {[NT_PLAN_CONTACT] = 0,
+                                                 NT_TERMS_BESIDE(OFFSET) NT_TERMS_CUSTOM(OFFSET)};
 
 static const nt_term_form left_out = {NT_FORM_OFF, 0.0, "left out"};
 
@@ -47,4 +49,10 @@ nt_pressure nt_plan_term_pressure(const nt_plan *plan, int term, double gap)
     if (nt_plan_full_form(plan, term) == NT_FORM_OFF)
         return (nt_pressure){0.0, 0.0, 0.0};
     return nt_term_rows[term]->pressure(nt_term_law(plan, term), gap);
+}
+
+const char *nt_term_name_of(const nt_plan *plan, int term)
+{
+    const nt_term_row *row = nt_term_rows[term];
+    return row->name_of ? row->name_of(nt_term_law(plan, term)) : row->words.name;
 }

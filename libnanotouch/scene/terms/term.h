@@ -44,6 +44,13 @@ typedef struct nt_term_row {
 
     /* --- Each of these may be NULL --- */
 
+    /* What takes long, may fail and does not depend on the adhesion, once for a plan. */
+    nt_status (*tabulate)(void *law, const nt_scene *scene, nt_problem *problem);
+    /* What its fullest form errs by itself [N or N/m]. */
+    double (*error)(const void *law, nt_quantity quantity);
+    /* Its name and title, where the scene gives them. */
+    const char *(*name_of)(const void *law);
+
     /* Offers its forms with their errors, where not by the rule for laws beside contact; `beside`: the largest that
      * these come to. */
     void (*offer)(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside);
@@ -61,6 +68,7 @@ typedef struct nt_term_row {
 #define NT_TERM_ROW(ID, name, type) extern const nt_term_row nt_term_##name;
 NT_TERM_ROW(CONTACT, contact, )
 NT_TERMS_BESIDE(NT_TERM_ROW)
+NT_TERMS_CUSTOM(NT_TERM_ROW)
 #undef NT_TERM_ROW
 
 /* Row and parameters of each term, by its number. */
@@ -72,8 +80,15 @@ static inline const void *nt_term_law(const nt_plan *plan, int term)
     return (const char *)plan + nt_term_offsets[term];
 }
 
+const char *nt_term_name_of(const nt_plan *plan, int term);
 /* Words and cost of a form. */
 const nt_term_form *nt_term_form_of(const nt_plan *plan, int term, nt_form form);
+
+/* custom_table.c: the table of a law of one's own from `hold` [m] on. NT_E_NOT_FINITE, NT_E_RANGE: what it states is
+ * wrong, with problem->field left to the caller. */
+nt_status nt_custom_tabulate(nt_custom_table *table, const nt_custom_term *custom, double hold, nt_problem *problem);
+/* The cell of a gap that is not below the first one; -1 beyond the last. */
+int nt_custom_cell(const nt_custom_table *table, double gap);
 
 /* capillary.c: a meniscus is no law beside contact but the source of its adhesion. */
 void nt_capillary_warn(nt_plan *plan, const nt_scene *scene);

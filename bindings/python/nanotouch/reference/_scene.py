@@ -56,7 +56,7 @@ def _forces(scene: Scene, work: float, gaps: Floats, history: History, radius: f
     ratio = left.radius / whole.radius
     terms = {"contact": _touch(scene, gaps, left, capture, history), "vdw": ratio * np.asarray(tail(gaps))}
     for row in ROWS[len(terms) :]:
-        law = _BESIDE.get(row.name) or functools.partial(_planned, row.name)
+        law = _BESIDE.get(row.name) or functools.partial(_custom if row.name in _CUSTOM else _planned, row.name)
         terms[row.name] = ratio * np.asarray(law(scene, gaps))
     return SceneForces(**terms)
 
@@ -295,6 +295,18 @@ _BESIDE = {
     "hydration": _hydration,
     "steric": _steric,
 }
+
+
+_CUSTOM = [row.name for row in ROWS if row.name.startswith("custom_")]
+
+
+def _custom(place: str, scene: Scene, gaps: Floats) -> Any:
+    """A law of one's own, by its own function."""
+    names = list(scene.terms)
+    if _CUSTOM.index(place) >= len(names):
+        return np.zeros(gaps.shape)
+    held = np.maximum(gaps, scene.adhesion.equilibrium_distance)
+    return np.vectorize(functools.partial(scene.term_force, names[_CUSTOM.index(place)]), otypes=[float])(held)
 
 
 def _planned(name: str, scene: Scene, gaps: Floats) -> Any:
