@@ -28,7 +28,9 @@ def page() -> str:
 
 
 def _lines(row: Row) -> list[str]:
-    heads = [(f"{row.title} (`{row.name}`)", row.doc, "yes" if row.has_pressure else "no")]
+    own = row.name == "custom_1"
+    name = "your own (`custom_1` to `custom_4`)" if own else f"{row.title} (`{row.name}`)"
+    heads = [(name, row.doc, "yes" if row.has_pressure else "no")]
     heads += [("", "", "")] * (len(row.forms) - 1)
     return [
         f"| {title} | {doc} | `{form.name}`: {form.words} | {form.cost:g} | {pressure} |"

@@ -90,26 +90,28 @@ static void report_shapes(void)
     plan.shape = paraboloid;
 }
 
+/* Every form of every law beside contact. */
 static void report_laws(void)
 {
-    static const struct {
-        const char *name;
-        int term;
-        nt_form form;
-    } rows[] = {{"vdw derjaguin", NT_PLAN_VDW, NT_FORM_DERJAGUIN},
-                {"vdw sphere", NT_PLAN_VDW, NT_FORM_SPHERE},
-                {"vdw tip", NT_PLAN_VDW, NT_FORM_TIP},
-                {"electrostatic sphere", NT_PLAN_ELECTROSTATIC, NT_FORM_SPHERE},
-                {"electrostatic tip", NT_PLAN_ELECTROSTATIC, NT_FORM_TIP},
-                {"charge", NT_PLAN_CHARGE, NT_FORM_ON},
-                {"double layer", NT_PLAN_DOUBLE_LAYER, NT_FORM_ON},
-                {"hydration", NT_PLAN_HYDRATION, NT_FORM_ON},
-                {"steric", NT_PLAN_STERIC, NT_FORM_ON}};
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
-        const int term = rows[i].term;
-        const nt_form form = rows[i].form;
-        report(rows[i].name, MEASURE(nt_plan_law_eval(&plan, term, form, fabs(gap) + 1e-10)));
-    }
+    for (int term = NT_PLAN_CONTACT + 1; term <= NT_PLAN_CUSTOM_1; ++term)
+        for (int i = 0; i < nt_term_words_of(term)->form_count; ++i) {
+            const nt_form form = nt_term_words_of(term)->forms[i].form;
+            char name[64];
+            (void)snprintf(name, sizeof name, "%s %s", nt_term_words_of(term)->name, nt_form_name(form));
+            report(name, MEASURE(nt_plan_law_eval(&plan, term, form, fabs(gap) + 1e-10)));
+        }
+}
+
+/* A law of one's own. */
+static nt_law_value exponential(const void *length, double gap)
+{
+    const double l = *(const double *)length, F = 1e-9 * exp(-gap / l);
+    return (nt_law_value){.U = F * l, .F = F, .k = F / l};
+}
+
+static double bound_of_exponential(const void *length, double gap)
+{
+    return exponential(length, gap).F;
 }
 
 static nt_law_value on_surface(double gap)
@@ -165,6 +167,9 @@ int main(void)
         gaps[i] = 2e-9 - 3e-9 * ((i * 97) % POINTS + 0.5) / POINTS;
     scene.tip.height = 1e-5; /* every term has its parameters, whatever the medium */
     scene.adhesion.contact_potential = 1.0;
+    scene.medium.yukawa_energy = scene.medium.yukawa_length = 1e-9;
+    static const double length = 1e-9;
+    scene.custom[0] = (nt_custom_term){"exponential", exponential, bound_of_exponential, &length};
     const nt_plan_inputs inputs = {.scene = &scene};
     if (nt_plan_make(&plan, &inputs, NULL) != NT_OK)
         return 1;

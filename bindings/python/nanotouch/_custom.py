@@ -7,14 +7,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from importlib.metadata import entry_points
 from typing import Any
 
 from nanotouch import _core
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import Error, InvalidValue
 from nanotouch.units import key_spellings, to_si
 
 Law = Callable[..., float]
 LONGEST_NAME = 31
+GROUP = "nanotouch.terms"
 
 
 @dataclass(frozen=True)
@@ -147,6 +149,8 @@ def registered() -> tuple[str, ...]:
 def find(name: str, version: int | None = None) -> CustomTerm:
     """The law of a name, of a version if one is asked for."""
     if name not in _known:
+        _install(name)
+    if name not in _known:
         raise InvalidValue(
             f"terms.{name}: no such law is registered (nanotouch.scene.register); registered: "
             f"{', '.join(_known) or 'none'}"
@@ -154,3 +158,12 @@ def find(name: str, version: int | None = None) -> CustomTerm:
     if version is not None and version != _known[name].version:
         raise InvalidValue(f"terms.{name}: version {version} is needed, version {_known[name].version} is registered")
     return _known[name]
+
+
+def _install(name: str) -> None:
+    """Let an installed package register its law: an entry point of that name, a function without arguments."""
+    for entry in entry_points(group=GROUP, name=name):
+        try:
+            entry.load()()
+        except Exception as error:
+            raise Error(f"the law {name!r} ({entry.value}) cannot be registered: {error}") from error

@@ -47,7 +47,7 @@ class Scene(Description, core_type=_core.Scene):
         """The laws of one's own with their parameters, SI."""
         return {name: self._term_values(name) for name in self._terms}
 
-    def add_term(self, name: str, version: int | None = None, **parameters: float | str) -> None:
+    def add_term(self, name: str, version: int | None = None, **parameters: Any) -> None:
         """Add a registered law, or give one that is there other parameters; a text is a field that one follows."""
         term = find(name, version)
         if name not in self._terms and len(self._terms) == _core.custom_terms:
@@ -105,7 +105,8 @@ class Scene(Description, core_type=_core.Scene):
         """Set what the tables name; a section that no description has is refused."""
         super().update_from_tables(tables)
         for name, table in as_table("terms", tables.get("terms", {})).items():
-            self.add_term(name, **find(name).from_table(as_table(f"terms.{name}", table)))
+            values: dict[str, Any] = {**find(name).from_table(as_table(f"terms.{name}", table))}
+            self.add_term(name, **values)
         self._describe_terms()
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
