@@ -195,15 +195,16 @@ static double bound_of_edged(const void *context, double gap)
 static void a_kink_is_no_error(void **state)
 {
     (void)state;
-    static const double reach = 7.3e-9;
-    nt_scene scene = with(&honest);
-    scene.custom[0] = (nt_custom_term){"wall", edged, bound_of_edged, &reach};
-    assert_int_equal(make(&scene, 1e-3), NT_OK);
-    assert_int_equal(plan.terms[NT_PLAN_CUSTOM_1].form, NT_FORM_TABLE);
-    for (double gap = 0.21e-9; gap < 20e-9; gap *= 1.01)
-        assert_true(fabs(nt_plan_term_eval(&plan, NT_PLAN_CUSTOM_1, gap).F - edged(&reach, gap).F) <=
-                    plan.laws.custom_1.force_error);
-    assert_true(plan.laws.custom_1.force_error < 1e-4 * 0.01 * reach);
+    static const double reaches[] = {0.1e-9, 0.2001e-9, 7.3e-9, 1e-6}; /* also inside z0, and just beyond it */
+    for (int i = 0; i < 4; i++) {
+        nt_scene scene = with(&honest);
+        scene.custom[0] = (nt_custom_term){"wall", edged, bound_of_edged, &reaches[i]};
+        assert_int_equal(make(&scene, 1e-3), NT_OK);
+        const double error = plan.laws.custom_1.force_error, z0 = scene.adhesion.equilibrium_distance;
+        for (double gap = z0; gap < 2e-6; gap *= 1.01)
+            assert_true(fabs(nt_plan_term_eval(&plan, NT_PLAN_CUSTOM_1, gap).F - edged(&reaches[i], gap).F) <= error);
+        assert_true(error <= 1e-3 * edged(&reaches[i], z0).F);
+    }
 }
 
 int main(void)

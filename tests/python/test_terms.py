@@ -122,6 +122,59 @@ def test_ones_own_law_is_planned_within_its_bound(rtol: float) -> None:
     assert "gel: tabulated, at most" in str(outcome.plan)
 
 
+def power(gap: float, strength: float, length: float, radius: float) -> tuple[float, float, float]:
+    F = strength * radius * (length / (gap + length)) ** 2
+    return F * (gap + length), F, 2 * F / (gap + length)
+
+
+def brush(gap: float, strength: float, length: float, radius: float) -> tuple[float, float, float]:
+    """With an edge, where its stiffness has a step."""
+    rest = max(1 - gap / length, 0.0)
+    k = strength * radius / length if rest > 0.0 else 0.0
+    return 0.5 * strength * radius * length * rest**2, strength * radius * rest, k
+
+
+def test_random_laws_in_random_scenes() -> None:
+    """Whatever the law and the scene: error within the bound, within the demand, folds in place."""
+    rng = np.random.default_rng(17)
+    for name, law in (("power", power), ("brush", brush)):
+        nt.scene.register(
+            name,
+            energy=lambda gap, law=law, **values: law(gap, **values)[0],
+            force=lambda gap, law=law, **values: law(gap, **values)[1],
+            stiffness=lambda gap, law=law, **values: law(gap, **values)[2],
+            bound=lambda gap, law=law, **values: abs(law(gap, **values)[1]),
+            parameters={"strength": None, "length": None, "radius": "tip.radius"},
+            units={"strength": "N/m", "length": "m", "radius": "m"},
+        )
+    made = 0
+    for _ in range(60):
+        scene = (random_scenes.near_preset if rng.random() < 0.5 else random_scenes.extreme)(rng)
+        strength = 10.0 ** rng.uniform(-6, 0) * rng.choice([-1.0, 1.0])
+        scene.add_term(
+            str(rng.choice(["power", "brush", "gel"])), strength=strength, length=10.0 ** rng.uniform(-10, -6)
+        )
+        rtol = 10.0 ** rng.uniform(-5, -0.5)
+        outcome = random_scenes.compare(scene, rtol)
+        if isinstance(outcome, random_scenes.Outcome):
+            made += 1
+            assert outcome.error <= outcome.plan.bound <= rtol, scene
+            assert outcome.folds_hold, scene
+        else:
+            assert "terms." not in str(outcome)
+    assert made > 40
+
+
+def test_a_measured_pull_off_is_that_of_the_whole() -> None:
+    scene = gelled(-0.05)
+    scene.adhesion.given, scene.adhesion.pull_off_force = "pull_off_force", 12e-9
+    outcome = random_scenes.compare(scene, 1e-4)
+    assert isinstance(outcome, random_scenes.Outcome)
+    assert outcome.folds_hold
+    assert outcome.error <= outcome.plan.bound
+    assert outcome.plan.pull_off_force == pytest.approx(12e-9, rel=1e-8)
+
+
 def test_a_parameter_follows_the_scene() -> None:
     scene = gelled()
     assert scene.terms == {"gel": {"strength": 0.4, "length": 2e-9, "radius": 20e-9}}

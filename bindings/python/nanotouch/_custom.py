@@ -19,9 +19,9 @@ LONGEST_NAME = 31
 GROUP = "nanotouch.terms"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CustomTerm:
-    """A law of one's own; see :func:`register`."""
+    """A law of one's own, equal to itself alone; see :func:`register`."""
 
     name: str
     energy: Law

@@ -12,7 +12,7 @@
 #define TOLERANCE 1e-9   /* of a force, or of SMALL times the largest one: no cell is split below it */
 #define SMALL 1e-4       /* forces below this share of the largest are not resolved better */
 #define FELT 1e-2        /* the same where a law is judged */
-#define NARROWEST 1e-4   /* width of a cell over its gap: at a kink of the force more does not help */
+#define NARROWEST 1e-6   /* width of a cell over its gap: at a kink of the force more does not help */
 #define STIFFNESS 1e-3   /* what an error of k counts beside one of F when cells are split */
 #define DISAGREE 1e-2    /* F is not -dU/dh beyond this share, or k not -dF/dh beyond ten times it */
 #define TABLED 2.0       /* the error oscillates within a cell: what was sampled may be half of it */

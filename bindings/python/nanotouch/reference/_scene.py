@@ -98,7 +98,7 @@ def _work(scene: Scene) -> float:
     if adhesion.given == "pull_off_force":
         if adhesion.pull_off_force == 0.0 and not _has_meniscus(scene):
             return 0.0
-        return _work_by_pull_off(tuple((name, scene[name]) for name in scene.fields))
+        return _work_by_pull_off(_Frozen(scene))
     if _has_meniscus(scene):
         return 2.0 * float(scene.medium.surface_tension)
     if adhesion.given == "surface_energies":
@@ -107,11 +107,11 @@ def _work(scene: Scene) -> float:
 
 
 @functools.lru_cache(maxsize=16)
-def _work_by_pull_off(values: tuple[tuple[str, Any], ...]) -> float:
-    """The w with which the whole scene pulls off with the measured force, for the values of its fields."""
+def _work_by_pull_off(frozen: _Frozen) -> float:
+    """The w with which the whole scene pulls off with the measured force."""
     from scipy.optimize import brentq
 
-    scene = _scene_of(values)
+    scene = frozen.scene
 
     def excess(log_work: float) -> float:
         try:
@@ -311,16 +311,22 @@ def _custom(place: str, scene: Scene, gaps: Floats) -> Any:
 
 def _planned(name: str, scene: Scene, gaps: Floats) -> Any:
     """A law that has no second source here: the library's own, in full; its own test has the second source."""
-    return _full_plan(tuple((field, scene[field]) for field in scene.fields)).law(name, gaps).F
+    return _full_plan(_Frozen(scene)).law(name, gaps).F
 
 
 @functools.lru_cache(maxsize=16)
-def _full_plan(values: tuple[tuple[str, Any], ...]) -> Plan:
-    return _scene_of(values).plan(rtol=0.0)
+def _full_plan(frozen: _Frozen) -> Plan:
+    return frozen.scene.plan(rtol=0.0)
 
 
-def _scene_of(values: tuple[tuple[str, Any], ...]) -> Scene:
-    scene = Scene()
-    for name, value in values:
-        scene[name] = value
-    return scene
+class _Frozen:
+    """A scene that a cache can know again, by its fields and its laws of one's own."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene.copy()
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.scene.values()))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Frozen) and self.scene == other.scene
