@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import math
 import pickle
+import re
 from collections.abc import Iterator
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -254,6 +255,22 @@ def test_names_and_parameters_are_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(InvalidValue, match="at most 4"):
         full.add_term("gel", strength=1e-3)
     assert len(full.plan().explain()["terms"]) == len(ROWS)
+
+
+def test_the_page_to_add_a_force_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "add_a_force.md").read_text(encoding="utf-8")
+    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    (table,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    made: dict[str, Scene] = {}
+    exec(program, made)
+    assert "gel: tabulated" in capsys.readouterr().out
+    path = tmp_path / "scene.toml"
+    path.write_text(table)
+    assert Scene.from_toml(path) == made["scene"]
+    listed = re.findall(r"^\| `(\S+)`(?:, `(\S+)`)? \|", page, re.MULTILINE)
+    files = [name for row in listed for name in row if "/" in name]
+    assert len(files) == 6
+    assert all((Path(__file__).parents[2] / name).exists() for name in files)
 
 
 def test_an_installed_package_registers_its_law(monkeypatch: pytest.MonkeyPatch) -> None:
