@@ -71,7 +71,7 @@ static double lost_bits(const nt_plan *plan, double nearest, double beside)
         return LAST_BITS * nt_plan_share(plan, ratio * beside);
     for (double gap = nearest; gap < 1e-1; gap = fmax(1.1 * gap, 1e-13)) {
         double all = 0.0, sum = 0.0;
-        for (int term = NT_PLAN_VDW; term < NT_PLAN_TERMS; ++term) {
+        for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
             const double F = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap).F;
             all += fabs(F);
             sum += F;
