@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <mutex>
+#include <new>
 
 namespace nanotouch
 {
@@ -14,19 +15,19 @@ namespace
 
 constexpr std::size_t size = 65536; // byte; to record its timings and unwind, Ceres takes some hundred
 
-thread_local void *reserve = nullptr;
-thread_local bool used = false;
+thread_local Reserve *current = nullptr;
 
 std::mutex change;
 long users = 0;
 std::atomic<std::new_handler> before{nullptr};
 
-void give_reserve()
+} // namespace
+
+void Reserve::give()
 {
-    if (reserve) {
-        std::free(reserve);
-        reserve = nullptr;
-        used = true;
+    if (current && current->memory_) {
+        std::free(current->memory_);
+        current->memory_ = nullptr;
     } else if (const std::new_handler other = before) {
         other();
     } else {
@@ -34,34 +35,33 @@ void give_reserve()
     }
 }
 
-} // namespace
-
-Reserve::Reserve() : outer_(reserve)
+Reserve::Reserve() : memory_(std::malloc(size)), outer_(current)
 {
-    void *made = std::malloc(size);
-    if (!made)
+    if (!memory_)
         throw std::bad_alloc();
-    reserve = made;
     const std::lock_guard<std::mutex> lock(change);
-    if (users++ == 0)
-        before = std::set_new_handler(give_reserve);
+    if (users++ == 0) {
+        const std::new_handler found = std::set_new_handler(give);
+        if (found != give) // a program that kept ours may have set it again
+            before = found;
+    }
+    current = this;
 }
 
 Reserve::~Reserve()
 {
     {
         const std::lock_guard<std::mutex> lock(change);
-        if (--users == 0 && std::get_new_handler() == give_reserve)
+        if (--users == 0 && std::get_new_handler() == give)
             std::set_new_handler(before);
     }
-    std::free(reserve);
-    reserve = outer_;
-    used = false;
+    std::free(memory_);
+    current = outer_;
 }
 
 bool Reserve::is_used()
 {
-    return used;
+    return current && !current->memory_;
 }
 
 } // namespace nanotouch

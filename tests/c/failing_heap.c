@@ -32,21 +32,23 @@ long heap_blocks(void)
 
 #if HEAP_CAN_FAIL
 
-#ifndef __has_feature
-#define __has_feature(name) 0
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __has_feature(address_sanitizer) ||               \
-    __has_feature(thread_sanitizer)
-#define ORIGINAL(name) __interceptor_##name
-#else
-#define ORIGINAL(name) __libc_##name
-#endif
+/* The original of a sanitizer, where the program has one, or of glibc. This file itself is built without sanitizers:
+ * malloc is called before they are ready. */
+#define DECLARE(result, name, ...)                                                                                     \
+    __attribute__((weak)) result __interceptor_##name(__VA_ARGS__);                                                    \
+    result __libc_##name(__VA_ARGS__);
+#define ORIGINAL(name) (__interceptor_##name ? __interceptor_##name : __libc_##name)
 
-void *ORIGINAL(malloc)(size_t size);
-void *ORIGINAL(calloc)(size_t count, size_t size);
-void *ORIGINAL(realloc)(void *memory, size_t size);
-void *ORIGINAL(memalign)(size_t alignment, size_t size);
-void ORIGINAL(free)(void *memory);
+DECLARE(void *, malloc, size_t size)
+DECLARE(void *, calloc, size_t count, size_t size)
+DECLARE(void *, realloc, void *memory, size_t size)
+DECLARE(void *, memalign, size_t alignment, size_t size)
+DECLARE(void, free, void *memory)
+
+int heap_is_sanitized(void)
+{
+    return __interceptor_malloc != NULL;
+}
 
 /* Takes it from what has been freed, if there is enough of it. */
 static int is_full(long size)
@@ -130,5 +132,12 @@ void free(void *memory)
 }
 
 #pragma GCC visibility pop
+
+#else
+
+int heap_is_sanitized(void)
+{
+    return 0;
+}
 
 #endif

@@ -22,5 +22,11 @@ void heap_fail(long n, heap_failure failure);
 long heap_recover(void);
 /* Blocks that are allocated now, those of the C++ runtime and of other threads included. */
 long heap_blocks(void);
+/* Whether it stands on that of a sanitizer, which needs memory itself to start a thread. */
+int heap_is_sanitized(void);
+
+typedef void heap_new_handler(void);
+/* Sets the new handler of C++, in programs with failing_new.cpp; returns the one before. */
+heap_new_handler *heap_set_new_handler(heap_new_handler *handler);
 
 #endif

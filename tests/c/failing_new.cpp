@@ -3,6 +3,15 @@
 #include <cstdlib>
 #include <new>
 
+extern "C" {
+#include "failing_heap.h"
+}
+
+heap_new_handler *heap_set_new_handler(heap_new_handler *handler)
+{
+    return std::set_new_handler(handler);
+}
+
 void *operator new(std::size_t size)
 {
     for (;;) {
