@@ -75,23 +75,18 @@ static double growth_in(const nt_plan *plan, double gap)
 
 #define NEAREST 1e-13 /* sweeps in ratios begin here [m] */
 
-/* The strongest pull in contact: from the release gap to twice that depth; in ratios, too, for terms that change within
- * a nanometre. */
+/* The strongest pull in contact: from the release gap to where contact alone carries no load, since below gap 0 nothing
+ * else changes; in ratios, too, for terms that change within a nanometre. */
 static double strongest_hold(const nt_plan *plan)
 {
     const double release = plan->release_gap;
-    const double reach = plan->source == NT_ADHESION_NONE ? plan->contact.radius : fmax(release, 1e-15);
-    double deepest = -3.0 * reach;
+    double deepest = -3.0 * (plan->source == NT_ADHESION_NONE ? plan->contact.radius : fmax(release, 1e-15));
     if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
-        deepest = -fmax(reach, 3.0 * fabs(plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale));
-    const double corners[] = {0.0, plan->capture_gap, release};
-    double best = fmax(largest_of(plan, pull_out, (sweep){deepest, release, 0}),
-                       largest_of(plan, pull_out, (sweep){-NEAREST, deepest, 1}));
+        deepest = -plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale;
+    double best = fmax(largest_of(plan, pull_out, (sweep){deepest, release, 0}), pull_out(plan, release));
     if (release > NEAREST)
         best = fmax(best, largest_of(plan, pull_out, (sweep){NEAREST, release, 1}));
-    for (int i = 0; i < 3; ++i)
-        best = fmax(best, pull_out(plan, fmin(corners[i], release)));
-    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+    for (int term = 0; term < NT_PLAN_TERMS; ++term) /* the force has a corner there; contact's is first touch */
         best = fmax(best, pull_out(plan, fmin(nt_plan_hold_gap(plan, term), release)));
     return best;
 }
@@ -116,9 +111,6 @@ static double steepest_pull(const nt_plan *plan)
     if (capture > NEAREST)
         steepest = fmax(fmax(steepest, largest_of(plan, growth_in, (sweep){-capture, capture, 0})),
                         largest_of(plan, growth_in, (sweep){NEAREST, capture, 1}));
-    const double corners[] = {capture, 0.0, capture * outside};
-    for (int i = 0; i < 3; ++i)
-        steepest = fmax(steepest, growth_in(plan, corners[i]));
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         steepest = fmax(steepest, growth_in(plan, nt_plan_hold_gap(plan, term) * outside));
     return steepest;

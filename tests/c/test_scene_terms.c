@@ -10,11 +10,25 @@
 
 #include <cmocka.h>
 
+#include "larger.h"
 #include "scene/terms/term.h"
 
 #define PI 3.14159265358979323846
 
 static nt_plan plan;
+static nt_custom_term last; /* in the last place of laws of one's own */
+
+static nt_law_value push(const void *context, double gap)
+{
+    (void)context;
+    const double F = 1e-7 * exp(-gap / 3e-9);
+    return (nt_law_value){.U = 3e-9 * F, .F = F, .k = F / 3e-9};
+}
+
+static double bound_of_push(const void *context, double gap)
+{
+    return push(context, gap).F;
+}
 
 /* A blunt tip with all the forces that its medium lets it have. */
 static void make(nt_medium_kind kind)
@@ -33,6 +47,7 @@ static void make(nt_medium_kind kind)
     scene.medium.yukawa_length = 3e-9;
     scene.adhesion.hamaker_constant = 2e-21;
     scene.adhesion.contact_potential = 0.3;
+    scene.custom[NT_CUSTOM_TERMS - 1] = last;
     const nt_plan_inputs inputs = {.scene = &scene};
     assert_int_equal(nt_plan_make(&plan, &inputs, NULL), NT_OK);
 }
@@ -119,6 +134,30 @@ static void flats_are_those_of_the_sphere(void **state)
     assert_true(nt_plan_term_pressure(&plan, NT_PLAN_ELECTROSTATIC, 1e-9).pressure == 0.0); /* not in a liquid */
 }
 
+/* All terms beside contact together: the sum of each alone, those last in the list, which only push, too. */
+static void what_is_beside_contact(void **state)
+{
+    (void)state;
+    int seen = 0;
+    last = (nt_custom_term){.name = "push", .law = push, .bound = bound_of_push};
+    for (int kind = NT_MEDIUM_AIR; kind <= NT_MEDIUM_LIQUID; kind++) {
+        make((nt_medium_kind)kind);
+        for (double gap = -1e-9; gap < 20e-9; gap += 0.7e-9) {
+            double sum = 0.0, largest = 0.0;
+            for (int term = NT_PLAN_TERMS - 1; term > NT_PLAN_CONTACT; term--) {
+                const double F = nt_plan_term_eval(&plan, term, gap).F;
+                seen |= (F != 0.0) << term;
+                sum += F;
+                largest = larger(largest, fabs(F));
+            }
+            assert_true(fabs(nt_plan_beside_at(&plan, gap) - sum) <= 1e-14 * largest);
+        }
+    }
+    last = (nt_custom_term){.name = ""};
+    const int not_here = (1 << (NT_PLAN_TERMS - 1)) - (1 << NT_PLAN_CUSTOM_1);
+    assert_int_equal(seen | not_here, (1 << NT_PLAN_TERMS) - 2);
+}
+
 /* A term alone, whether the plan has it or not. */
 static void one_term_alone(void **state)
 {
@@ -136,6 +175,7 @@ int main(void)
         cmocka_unit_test(every_row_is_whole),
         cmocka_unit_test(every_law_is_a_potential_within_its_limit),
         cmocka_unit_test(flats_are_those_of_the_sphere),
+        cmocka_unit_test(what_is_beside_contact),
         cmocka_unit_test(one_term_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
