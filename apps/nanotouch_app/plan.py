@@ -47,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--budget", type=number(1.0, 1e9), metavar="N", help="what an evaluation may cost, in Hertz evaluations"
     )
-    parser.add_argument("--probe", action="store_true", help="leave out what the rig's probe cannot measure")
+    parser.add_argument("--probe", action="store_true", help="tell what the rig's probe cannot resolve, too")
     parser.add_argument(
         "--json", action="store_true", help='print the plan as data, SI; what is not finite as null or "inf"'
     )

@@ -65,8 +65,7 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     plan->demand = demand;
     plan->surface = inputs->surface;
     plan->radii = inputs->radii;
-    if (inputs->probe)
-        plan->demand.force_floor = fmax(demand.force_floor, nt_probe_force_noise(inputs->probe));
+    plan->probe_noise = inputs->probe ? nt_probe_force_noise(inputs->probe) : 0.0;
     status = nt_plan_tabulate(plan, inputs->scene, problem);
     return status == NT_OK ? nt_plan_adhere(plan, inputs->scene, problem) : status;
 }

@@ -161,7 +161,8 @@ static void plan_is_that_of_the_parts(void **state)
     assert_int_equal(nt_plan_make(&whole, &inputs, NULL), NT_OK);
     assert_memory_equal(whole.terms, plan->terms, sizeof whole.terms);
     assert_memory_equal(&whole.bound, &plan->bound, sizeof whole.bound);
-    assert_true(whole.demand.force_floor == plan->demand.force_floor && plan->demand.force_floor > 0.0);
+    assert_true(whole.demand.force_floor == 0.0 && plan->demand.force_floor == 0.0);
+    assert_true(whole.probe_noise == plan->probe_noise && plan->probe_noise > 0.0);
     assert_true(whole.pull_off_force == plan->pull_off_force && whole.cost == plan->cost);
     nt_terrain_close(terrain);
 }

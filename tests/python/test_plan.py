@@ -13,7 +13,7 @@ import pytest
 import random_scenes
 from hypothesis import given
 from hypothesis import strategies as st
-from nanotouch import Demand, Plan, Rig, Scene, Surface, presets, reference, surface
+from nanotouch import Demand, Plan, Rig, Scene, Session, Surface, presets, reference, surface
 from nanotouch.errors import Error, InvalidValue
 
 PRESETS = random_scenes.PRESETS
@@ -199,12 +199,32 @@ def test_what_cannot_be_felt_is_left_out(name: str, atol: float) -> None:
         assert (np.abs(planned - truth) <= allowed).all()
 
 
-def test_a_probe_raises_the_floor() -> None:
-    """8 N/m, 33 nm/V and 50 mV peak to peak leave 2.2 nN of noise: the tail of 0.39 nN need not be computed."""
-    scene, rig = presets.silicon_in_air()
-    plan = scene.plan(probe=rig)
-    assert plan.explain()["force_floor"] == pytest.approx(8.0 * 33e-9 * 0.05 / 6.0, rel=1e-12)
-    assert [term.name for term in plan.omitted] == ["vdw"]
+@pytest.mark.parametrize("rtol", [0.3, 1e-3, 1e-7, 0.0])
+@pytest.mark.parametrize("name", ["silicon_in_air", "mica_in_air", "silicone_rubber"])
+def test_a_probe_adds_its_noise_and_changes_nothing(name: str, rtol: float) -> None:
+    """8 N/m, 33 nm/V and 50 mV peak to peak leave 2.2 nN of noise."""
+    scene, rig = getattr(presets, name)()
+    plan, felt = scene.plan(rtol=rtol), scene.plan(rtol=rtol, probe=rig)
+    facts = felt.explain()
+    assert facts.pop("probe_noise") == pytest.approx(rig.probe.spring_constant * 33e-9 * 0.05 / 6.0, rel=1e-12)
+    without = plan.explain()
+    assert without.pop("probe_noise") == 0.0
+    assert json.dumps(facts) == json.dumps(without)  # NaN is one, too
+    gaps = np.linspace(3e-9, -1e-9, 101)
+    np.testing.assert_array_equal(felt.force(gaps), plan.force(gaps))
+    assert "the probe cannot tell forces below" in str(felt)
+    assert str(plan).splitlines() == [line for line in str(felt).splitlines() if "the probe" not in line]
+
+
+@pytest.mark.parametrize("rtol", [0.3, 1e-3, 1e-7])
+def test_a_session_makes_the_plan_of_its_demand(rtol: float) -> None:
+    """Of the same scene up to the same load; the truth that the sample is has all its adhesion."""
+    scene, rig = presets.mica_in_air()
+    session = Session(scene, rig, rtol=rtol, minimum_margin=0.0, preflight=False)
+    scene.range.maximum_load = session.settings.limits.force
+    assert str(session.plan) == str(scene.plan(rtol=rtol, probe=rig))
+    assert session.plan.pull_off_force > 1e-9
+    assert session.plan.bound <= rtol
 
 
 @pytest.mark.parametrize("quantity", ["stiffness", "radius", "folds"])

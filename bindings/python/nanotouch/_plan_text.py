@@ -28,6 +28,8 @@ def text_of(facts: dict[str, Any]) -> str:
         lines.append(_surface(contact, facts))
     lines.append(_total(facts))
     lines.append(_numbers(contact, facts))
+    if facts["probe_noise"] > 0.0:
+        lines.append(f"the probe cannot tell forces below {in_words(facts['probe_noise'], 'N')}, its noise")
     return "\n".join(lines + [f"warning: {Warning(*warning)}" for warning in facts["warnings"]])
 
 

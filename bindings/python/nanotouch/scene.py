@@ -174,7 +174,7 @@ class Scene(Description, core_type=_core.Scene):
             What has to be that accurate: ``"force"``, ``"stiffness"``, ``"radius"`` (of contact), ``"folds"`` (their
             gaps, under grips).
         probe : Rig, optional
-            Raises ``atol`` to the force noise of its probe.
+            Tells the force noise of its probe beside the plan; what is computed stays the same.
         budget : float, optional
             What one evaluation may cost, in Hertz evaluations.
         surface : Surface, optional

@@ -33,6 +33,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["full_cost"] = plan.full_cost;
     out["scale"] = plan.scale;
     out["force_floor"] = plan.demand.force_floor;
+    out["probe_noise"] = plan.probe_noise;
     out["lambda"] = plan.lambda;
     out["radius"] = plan.contact.radius;
     out["effective_modulus"] = plan.contact.effective_modulus;

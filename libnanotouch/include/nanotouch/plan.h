@@ -71,7 +71,8 @@ typedef struct nt_plan {
     double full_cost;  /* of everything on, exact [Hertz evaluations] */
     double scale; /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy), a thousandth of the
                    * largest load where nothing pulls [N, N/m, m] */
-    nt_demand demand; /* as given, the floor raised to what the probe can measure */
+    nt_demand demand;   /* as given */
+    double probe_noise; /* of the force, RMS: what is weaker the probe cannot tell; 0: no probe [N] */
     nt_plan_rivals rivals;
     nt_plan_warning warnings[NT_PLAN_WARNINGS_MAX];
     int warning_count;
@@ -111,7 +112,7 @@ typedef struct nt_plan {
 typedef struct nt_plan_inputs {
     const nt_scene *scene;
     const nt_demand *demand;    /* NULL: nt_demand_defaults */
-    const nt_probe *probe;      /* raises the floor to its force noise; NULL: none */
+    const nt_probe *probe;      /* only adds probe_noise, which the plan tells; NULL: none */
     const nt_surface *surface;  /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
     const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not asked for */
     const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */

@@ -17,7 +17,7 @@ typedef struct nt_terrain nt_terrain;
 typedef struct nt_terrain_setup {
     nt_scene scene;             /* its tip (tip.radius, tip.half_angle) is the one that touches */
     nt_demand demand;           /* of the plan; the bank is as fine as it asks */
-    const nt_probe *probe;      /* raises the floor of the demand to its force noise; NULL: none */
+    const nt_probe *probe;      /* only adds probe_noise, which the plan tells; NULL: none */
     nt_height_map map;          /* heights, read by nt_terrain_make only; map.heights NULL: none */
     int dilated;                /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
     const nt_surface *surface;  /* dilated by this tip, borrowed until nt_terrain_close; NULL: none */
