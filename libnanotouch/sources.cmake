@@ -68,6 +68,7 @@ set(nanotouch_sources_scene
     scene/contact.c
     scene/demand.c
     scene/distance.c
+    scene/elastic.c
     scene/facts.c
     scene/interaction.c
     scene/laws.c
@@ -88,7 +89,12 @@ set(nanotouch_sources_scene
     scene/terms/steric.c
     scene/terms/vdw.c
     scene/terms/yukawa.c
-    scene/warnings.c)
+    scene/warnings.c
+    scene/yield_follow.c
+    scene/yield_mesh.c
+    scene/yield_solve.c
+    scene/yield_table.c
+    scene/yielding.c)
 set(nanotouch_sources_hal hal/hal.c)
 set(nanotouch_sources_dynamics
     dynamics/cantilever.c

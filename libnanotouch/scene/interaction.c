@@ -54,6 +54,10 @@ nt_bank_value nt_plan_contact_at(const nt_plan *plan, const nt_place *place, dou
 static nt_bank_value eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
 {
     nt_bank_value sum = {{0.0, 0.0, 0.0, 0.0}, 0.0};
+    if (plan->yield.count > 0 && !isnan(gap)) {
+        sum.law = nt_plan_yield_at(plan, gap);
+        return sum;
+    }
     for (int i = 0; i < plan->on_count; ++i) {
         const int term = plan->on[i];
         add(&sum.law, nt_term_rows[term]->eval(nt_term_law(plan, term), plan->terms[term].form, gap));

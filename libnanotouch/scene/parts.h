@@ -91,6 +91,15 @@ void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_f
 /* An error in the demanded quantity as a share of its scale. */
 double nt_plan_share(const nt_plan *plan, double error);
 
+/* elastic.c: what the terms beside contact err by where they add on the undeformed gap, as a share of the demand;
+ * also the elastic number. */
+double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
+/* yielding.c: the plan of a scene without adhesion whose sample yields to all terms together. */
+nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+/* {U, F, k, a} of it at a gap; the sum of its terms on the undeformed gap. */
+nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap);
+nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);
+
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
 

@@ -6,10 +6,13 @@
 
 #include "scene/terms/term.h"
 
+#define UNASKED 0.01 /* without a demand the sample is rigid up to this error */
+
 const char *nt_form_name(nt_form form)
 {
-    static const char *const names[] = {"off",   "on",  "derjaguin", "sphere",   "tip",   "paraboloid", "series",
-                                        "shape", "jkr", "table",     "polished", "exact", "local",      "local exact"};
+    static const char *const names[] = {"off",        "on",     "derjaguin", "sphere",      "tip",
+                                        "paraboloid", "series", "shape",     "jkr",         "table",
+                                        "polished",   "exact",  "local",     "local exact", "yielding"};
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
 }
 
@@ -70,12 +73,74 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     return status == NT_OK ? nt_plan_adhere(plan, inputs->scene, problem) : status;
 }
 
-nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+/* With the error of terms that add on the undeformed gap, if the demand keeps that. */
+static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
+{
+    const double demanded = plan->demand.relative_accuracy, rigid = plan->rigid_error;
+    if (demanded > 0.0 && rigid >= demanded)
+        return NT_E_RANGE;
+    plan->demand.relative_accuracy = demanded > 0.0 ? demanded - rigid : 0.0;
+    const nt_status status = nt_plan_choose(plan, options, problem);
+    plan->demand.relative_accuracy = demanded;
+    if (status != NT_OK || plan->on_count == 0)
+        return status;
+    plan->terms[NT_PLAN_CONTACT].error += rigid;
+    plan->bound.force_error += rigid;
+    return NT_OK;
+}
+
+/* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
+ */
+static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
+{
+    double least = plan->rigid_error * (1.0 + 1e-9);
+    int count = 0;
+    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
+    for (int term = 0; term < NT_PLAN_TERMS; ++term)
+        least += options->option[term][options->count[term] - 1].error;
+    const int better = problem && (problem->field != field->name || least < problem->minimum);
+    if (problem && least < field->maximum && better && !(plan->demand.budget > 0.0))
+        *problem = (nt_problem){field->name, field->unit, plan->demand.relative_accuracy, least, field->maximum};
+    return NT_E_RANGE;
+}
+
+/* With adhesion, and where something else pulls that no table was made for, the terms add on the undeformed gap,
+ * whatever that errs by: the plan warns of it. */
+static int is_left(const nt_plan *plan)
+{
+    return plan->source != NT_ADHESION_NONE ||
+           plan->pull_off_force > UNASKED * plan->scale;
+}
+
+/* The cheapest plan whose terms add on the undeformed gap, with what that errs by; if it errs by too much, the sample
+ * yields. A demand of 0 asks for every law in full. */
+static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     nt_plan_options options;
+    nt_plan_options_of(plan, scene, &options);
+    const double demanded = plan->demand.relative_accuracy;
+    nt_status status = nt_plan_choose(plan, &options, problem);
+    plan->rigid_error = nt_plan_rigid_error(plan, scene);
+    if (plan->source != NT_ADHESION_NONE || plan->rigid_error == 0.0 || (status == NT_OK && plan->on_count == 0))
+        return status;
+    const nt_status rigid =
+        demanded > 0.0 || plan->rigid_error <= UNASKED ? choose_rigid(plan, &options, NULL) : NT_E_RANGE;
+    if (rigid == NT_OK)
+        return NT_OK;
+    const nt_status yields = nt_plan_yield(plan, scene, problem);
+    if (yields == NT_OK)
+        return NT_OK;
+    if (is_left(plan))
+        return nt_plan_choose(plan, &options, problem);
+    if (!(demanded > 0.0) && isfinite(plan->rigid_error))
+        return choose_rigid(plan, &options, problem);
+    return refuse(plan, &options, problem);
+}
+
+nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
     plan->bank = inputs->bank;
-    nt_plan_options_of(plan, inputs->scene, &options);
-    const nt_status status = nt_plan_choose(plan, &options, problem);
+    const nt_status status = choose(plan, inputs->scene, problem);
     if (status != NT_OK)
         return status;
     finish(plan, inputs->scene->range.maximum_load);

@@ -62,6 +62,24 @@ static void check_surface(nt_plan *plan)
                                                     (double)plan->radii->limited, 0.0});
 }
 
+#define SPHERE 0.1 /* over delta/R: what the force of a sphere lacks of its paraboloid's */
+
+/* A sample that yields has a paraboloid before it. With adhesion, or where a jump is left to the
+ * laws, the terms beside contact add on the undeformed gap, whatever that errs by. */
+static void check_yielding(nt_plan *plan)
+{
+    const double demanded = plan->demand.relative_accuracy;
+    const double flatter = SPHERE * plan->largest_indentation / plan->contact.radius;
+    if (plan->yield.count > 0 && plan->shape.kind == NT_SHAPE_SPHERE && flatter > demanded)
+        nt_plan_add_warning(
+            plan, (nt_plan_warning){"sphere taken for a paraboloid, whose force is larger by", "", flatter, demanded});
+    const int left = plan->yield.count == 0 && plan->on_count > 0 && plan->bound.force_error < plan->rigid_error;
+    if (left && plan->rigid_error > (demanded > 0.0 ? demanded : 0.01))
+        nt_plan_add_warning(plan,
+                            (nt_plan_warning){"error of forces before contact, to which this sample yields, left out",
+                                              "", plan->rigid_error, demanded});
+}
+
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
 {
     plan->warning_count = 0;
@@ -71,6 +89,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
             nt_term_rows[term]->warn(plan, scene);
     check_drag(plan, scene);
     check_surface(plan);
+    check_yielding(plan);
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         check_facts(plan, scene, term);
     check_facts(plan, scene, NT_PLAN_CONTACT);

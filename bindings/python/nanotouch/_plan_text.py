@@ -24,6 +24,7 @@ def text_of(facts: dict[str, Any]) -> str:
     contact, *others = _terms(facts)
     lines = [_contact(contact, facts)]
     lines += [_term(term, facts) for term in others if term.force > 0.0]
+    lines += _yielding(facts)
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
     lines.append(_total(facts))
@@ -58,6 +59,20 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
         text += "; " if facts["quantity"] == "force" else "; in force "
         text += ", ".join(f"{name} would err by {_percent(error)}" for name, error in rivals.items())
     return text
+
+
+def _yielding(facts: dict[str, Any]) -> list[str]:
+    """How far the sample gives to forces before contact, where that is felt."""
+    size = f"elastic number {in_words(facts['elastic_number'], '', 2)}"
+    error = "it would jump" if math.isinf(facts["rigid_error"]) else f"err by {_percent(facts['rigid_error'])}"
+    if facts["yields"]:
+        return [f"sample: yields to all forces together, {size}; laws that add on the undeformed gap could {error}"]
+    if facts["rigid_error"] == 0.0 or facts["adhesion_source"] != "none":
+        return []
+    return [
+        f"sample: does not yield before contact, {size}; forces add on the undeformed gap, which errs by "
+        f"{_percent(facts['rigid_error'])}"
+    ]
 
 
 def _terms(facts: dict[str, Any]) -> list[Term]:

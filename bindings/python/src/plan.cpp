@@ -32,6 +32,9 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["cost"] = plan.cost;
     out["full_cost"] = plan.full_cost;
     out["scale"] = plan.scale;
+    out["elastic_number"] = plan.elastic_number;
+    out["rigid_error"] = plan.rigid_error;
+    out["yields"] = plan.yield.count > 0;
     out["force_floor"] = plan.demand.force_floor;
     out["probe_noise"] = plan.probe_noise;
     out["lambda"] = plan.lambda;

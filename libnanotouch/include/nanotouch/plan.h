@@ -62,6 +62,28 @@ typedef struct nt_plan_rivals {
 
 enum { NT_PLAN_CELLS = 256 };
 
+/* {U, F, k} of a sample that yields, over the gap: cubics between nodes (docs/yielding.md). */
+enum { NT_YIELD_TABLE = 160 };
+typedef struct nt_yield_node {
+    double v;     /* grows inwards: -h, or the root of the distance to where the bodies touch or jump [m, m^(1/2)] */
+    double F;     /* [N] */
+    double slope; /* dF/dv [N/m, N/m^(1/2)] */
+    double k;     /* [N/m] */
+    double U;     /* [J] */
+    double a;     /* radius of contact [m] */
+} nt_yield_node;
+typedef struct nt_yield_table {
+    int count;    /* of nodes; 0: the sample does not yield */
+    int apart;    /* of them before contact */
+    int jumps;    /* 1: apart ends in a jump */
+    double touch; /* h where the bodies touch or jump; -inf: never [m] */
+    double first; /* the largest h; farther out the laws add on the undeformed gap [m] */
+    double last;  /* the smallest h [m] */
+    double shift; /* of the gap there, by which force and table meet [m] */
+    double hold;  /* in contact the gap below which laws keep their force [m] */
+    nt_yield_node node[NT_YIELD_TABLE];
+} nt_yield_table;
+
 /* Immutable after nt_plan_make. It refers to itself: share it by pointer; copy it with nt_plan_copy only. */
 typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
@@ -105,6 +127,9 @@ typedef struct nt_plan {
     const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
     const nt_maugis_bank *bank; /* borrowed; NULL: none */
+    nt_yield_table yield;       /* of a sample that yields to forces beside contact */
+    double elastic_number;      /* e of the terms beside contact, the largest in the range [-] */
+    double rigid_error;         /* of adding them on the undeformed gap, in the norm of the demand [-] */
     double curvature_error;     /* of leaving the curvature of the surface out, in the norm of the demand [-] */
 } nt_plan;
 

@@ -110,8 +110,9 @@ typedef enum nt_form {
     NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h); a law of one's own */
     NT_FORM_POLISHED,
     NT_FORM_EXACT,
-    NT_FORM_LOCAL,      /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */
-    NT_FORM_LOCAL_EXACT /* the same by the exact solver */
+    NT_FORM_LOCAL,       /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */
+    NT_FORM_LOCAL_EXACT, /* the same by the exact solver */
+    NT_FORM_YIELDING     /* contact and all beside it, gap and displacement solved together */
 } nt_form;
 /* "off", "on", "derjaguin", ... */
 NT_API const char *nt_form_name(nt_form form);

@@ -31,6 +31,7 @@ static const nt_term_form forms[] = {
     {NT_FORM_TABLE, 14.0, "Maugis-Dugdale table"},
     {NT_FORM_POLISHED, 40.0, "Maugis-Dugdale, polished table"},
     {NT_FORM_EXACT, 280.0, "Maugis-Dugdale, exact"},
+    {NT_FORM_YIELDING, 14.0, "on a sample that yields to all forces together"},
     {NT_FORM_LOCAL_EXACT, 1100.0, "Maugis-Dugdale, exact, with the radius of each place"},
 };
 enum { FORMS = sizeof forms / sizeof forms[0] };

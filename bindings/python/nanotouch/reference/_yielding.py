@@ -68,7 +68,8 @@ class Yielding:
     ) -> None:
         self.law, self.R, self.E, self.layer, self.tolerance = pressure, radius, effective_modulus, layer, tolerance
         self._state: _State | None = None
-        self._touch: float | None = None
+        self.touch: float | None = None
+        """the gap of the undeformed bodies where they touch, once they have [m]"""
 
     def at(self, gap: float) -> Yielded:
         """At a gap of the undeformed bodies [m]."""
@@ -121,10 +122,20 @@ class Yielding:
 
     def _anywhere(self, gap: float) -> Yielded:
         """At a gap, in contact where the bodies touch."""
-        if gap >= self._touch_gap():
+        if self.touch is None:
+            try:
+                found = self.at(gap)
+            except SolverError:  # so far into the other body that there is no such equilibrium
+                if self.law.diverges:
+                    raise
+            else:
+                if found.centre_gap >= 0.0 or self.law.diverges:
+                    return found
+            self.touch = self.at_centre(0.0).gap
+        if gap >= self.touch:
             return self.at(gap)
-        low, high = 0.0, math.sqrt(self.R * (self._touch_gap() - gap))  # a of Hertz, which yields less
-        f_low, f_high = self._touch_gap() - gap, self.touching(high).gap - gap
+        low, high = 0.0, math.sqrt(self.R * (self.touch - gap))  # a of Hertz, which yields less
+        f_low, f_high = self.touch - gap, self.touching(high).gap - gap
         while f_high > 0.0:
             low, f_low, high = high, f_high, 1.3 * high
             f_high = self.touching(high).gap - gap
@@ -139,12 +150,6 @@ class Yielding:
             else:
                 high, f_high, f_low = found.contact_radius, error, f_low / 2.0
         raise SolverError(f"no contact at a gap of {gap:g} m")
-
-    def _touch_gap(self) -> float:
-        """H where the bodies touch, -inf where the law diverges before."""
-        if self._touch is None:
-            self._touch = -math.inf if self.law.diverges else self.at_centre(0.0).gap
-        return self._touch
 
     def _length(self, gap: float) -> float:
         return float(self.law.length(np.array([gap]))[0])

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The force of a scene without adhesion whose sample yields, composed from the laws of :mod:`nanotouch.forces` and
+solved by :class:`nanotouch.reference.Yielding`; it shares no code with plans."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nanotouch import forces as laws
+from nanotouch._arrays import Floats, Law, as_floats
+from nanotouch.reference._half_space import Layer
+from nanotouch.reference._pressures import Pressure
+from nanotouch.reference._yielding import Yielding
+from nanotouch.scene import Scene
+
+_CLOSE = 1e-12
+"""a minimum gap that is none [m]"""
+
+
+def yielded_force(scene: Scene, gap: ArrayLike) -> Floats:
+    """Force on the tip [N] at gaps [m] in falling order: van der Waals, double layer, hydration and brush, in contact
+    Hertz with them. Bodies touch at the interatomic distance; between there and gap 0 the force stays."""
+    hold = scene.adhesion.equilibrium_distance
+    law = _pressure(scene, hold)
+    modulus, share = _modulus(scene)
+    thickness = scene.sample.thickness
+    layer = Layer(thickness, scene.sample.poisson_ratio, share) if thickness > 0.0 else None
+    sample = Yielding(law, scene.tip.radius, modulus, layer, tolerance=1e-6)
+    forces = []
+    for here in as_floats(gap, "gap"):
+        found = sample.curve([here - hold])[0] if sample.touch is None else None
+        if sample.touch is not None:
+            found = sample.curve([here - hold if here - hold >= sample.touch else min(sample.touch, here)])[0]
+        assert found is not None
+        forces.append(found.force)
+    return np.array(forces)
+
+
+def _modulus(scene: Scene) -> tuple[float, float]:
+    """E*, and the share of the compliance that is the sample's."""
+    compliance = [(1.0 - body.poisson_ratio**2) / body.youngs_modulus for body in (scene.tip, scene.sample)]
+    return 1.0 / sum(compliance), compliance[1] / sum(compliance)
+
+
+def _pressure(scene: Scene, hold: float) -> Pressure:
+    """Of all laws, over the gap from where the bodies touch; p = k/(2 pi R), as Derjaguin has it."""
+    evals = _laws(scene)
+    per_area = 2.0 * np.pi * scene.tip.radius
+
+    def pressure(g: Floats) -> Floats:
+        return np.asarray(sum(evaluate(g + hold).k for evaluate in evals) / per_area)
+
+    def energy(g: Floats) -> Floats:
+        return np.asarray(sum(evaluate(g + hold).F for evaluate in evals) / per_area)
+
+    brush = scene.medium.brush_thickness
+    ends = (brush - hold,) if brush > hold else ()
+    return Pressure(pressure, energy, ends, diverges=brush > 10.0 * hold)  # bodies with brushes do not touch
+
+
+def _laws(scene: Scene) -> list[Callable[[Floats], Law]]:
+    tip, sample, medium, distance = scene.tip, scene.sample, scene.medium, scene.adhesion.equilibrium_distance
+    radius: dict[str, Any] = {"radius": tip.radius}
+    found: list[Callable[[Floats], Law]] = []
+    if scene.adhesion.hamaker_constant > 0.0:
+        found.append(
+            lambda g: laws.vdw_derjaguin(
+                g,
+                hamaker_constant=scene.adhesion.hamaker_constant,
+                roughness=sample.roughness + 2.0 * distance,
+                minimum_gap=_CLOSE,
+                **radius,
+            )
+        )
+    if medium.ionic_strength > 0.0:
+        debye = laws.debye_length(
+            medium.ionic_strength,
+            relative_permittivity=medium.relative_permittivity,
+            temperature=medium.temperature,
+        )
+        found.append(
+            lambda g: laws.double_layer(
+                g,
+                debye_length=debye,
+                relative_permittivity=medium.relative_permittivity,
+                tip_potential=tip.surface_potential,
+                sample_potential=sample.surface_potential,
+                minimum_gap=_CLOSE,
+                **radius,
+            )
+        )
+    if medium.hydration_energy != 0.0:
+        found.append(
+            lambda g: laws.hydration(
+                g, amplitude=medium.hydration_energy, decay_length=medium.hydration_length, minimum_gap=0.0, **radius
+            )
+        )
+    if medium.brush_thickness > distance:
+        found.append(
+            lambda g: laws.steric(
+                g,
+                thickness=medium.brush_thickness,
+                spacing=medium.brush_spacing,
+                temperature=medium.temperature,
+                minimum_gap=_CLOSE,
+                **radius,
+            )
+        )
+    return found

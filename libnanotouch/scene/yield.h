@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A sample that yields: a rigid paraboloid before and on an elastic half-space or layer under any pressure of the gap,
+ * gap and displacement solved together (docs/yielding.md). Private to scene/.
+ *
+ *     g(r) = h + r^2/(2 R) + u(r) >= 0        p(r) = p(g) where g > 0        u = K p        F = 2 pi Int p r dr
+ *
+ * The solver is some 270 kB; a plan has it on the stack while its sample is found to yield, and keeps a table. */
+#ifndef NANOTOUCH_SCENE_YIELD_H
+#define NANOTOUCH_SCENE_YIELD_H
+
+#include "nanotouch/plan.h"
+
+/* Two flats at a gap [m] above that of a pole. */
+typedef nt_pressure nt_pressure_law(const void *context, double gap);
+
+enum { NT_YIELD_ORDER = 8, NT_YIELD_PANELS = 16, NT_YIELD_NODES = 128, NT_YIELD_WAVES = 48, NT_YIELD_ENDS = 8 };
+
+/* What yields, to what. */
+typedef struct nt_yield_sample {
+    double radius;        /* R [m] */
+    double modulus;       /* E* [Pa] */
+    double thickness;     /* of a layer bonded to rigid ground; 0: a half-space [m] */
+    double poisson_ratio; /* of that layer [-] */
+    double share;         /* of the compliance 1/E* that is the layer's, the rest is the tip's [-] */
+    nt_pressure_law *law;
+    const void *context;
+    double length;              /* over which the law falls where the sample begins to yield [m] */
+    double pole;                /* the gap where the law diverges, <= 0; contact is at gap 0 [m] */
+    double ends[NT_YIELD_ENDS]; /* gaps where the law has a kink, as where a brush ends [m] */
+    int end_count;
+} nt_yield_sample;
+
+/* yield_mesh.c: panels of x = r^2 - a^2, on each of which p is a polynomial, and what pressures at their nodes do. */
+typedef struct nt_yield_mesh {
+    int panels, count;
+    double a;                                 /* radius of contact [m] */
+    double edges[NT_YIELD_PANELS + 1];        /* [m^2] */
+    double x[NT_YIELD_NODES];                 /* [m^2] */
+    double area[NT_YIELD_NODES];              /* [m^2] */
+    double K[NT_YIELD_NODES][NT_YIELD_NODES]; /* u = K p [m/Pa] */
+    double K0[NT_YIELD_NODES];                /* u(0) = K0 . p; in contact 2 q(a)/E* = K0 . p [m/Pa] */
+    double load[NT_YIELD_NODES];              /* 4 Int q dt = load . p [m^2] */
+} nt_yield_mesh;
+/* From edges, panels and a; `waves` is room for NT_YIELD_WAVES times NT_YIELD_NODES numbers. */
+void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, double *waves);
+/* Values at the nodes, taken to an x; beyond the mesh they fall as 1/r. */
+double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double x);
+/* The last two Legendre coefficients of values on a panel, the larger. */
+double nt_yield_mesh_tail(const double *values, int panel);
+
+/* yield_solve.c: what is held while the gaps are found. */
+typedef enum nt_yield_hold {
+    NT_YIELD_GAP,    /* h of the undeformed bodies */
+    NT_YIELD_CENTRE, /* the gap under the apex, through the folds of an attraction, too */
+    NT_YIELD_CONTACT /* the radius of contact */
+} nt_yield_hold;
+
+/* One equilibrium. */
+typedef struct nt_yield_point {
+    double h;      /* gap of the undeformed bodies [m] */
+    double F;      /* on the tip, + repulsive [N] */
+    double k;      /* -dF/dh [N/m] */
+    double centre; /* the gap under the apex [m] */
+    double slope;  /* d(centre)/dh; of contact 0 [-] */
+    double a;      /* radius of contact [m] */
+} nt_yield_point;
+
+typedef struct nt_yield_solver {
+    const nt_yield_sample *sample;
+    double tolerance; /* of the force, of the mesh [-] */
+    double placed;    /* how near to a kink an edge is, over x [-] */
+    double rough;     /* the worst panel, in what it must resolve [-] */
+    double h;         /* [m] */
+    nt_yield_mesh mesh;
+    double gap[NT_YIELD_NODES]; /* [m] */
+    double A[NT_YIELD_NODES + 1][NT_YIELD_NODES + 1];
+} nt_yield_solver;
+/* The law of the sample at a gap [m]. */
+static inline nt_pressure nt_yield_law(const nt_yield_solver *s, double gap)
+{
+    return s->sample->law(s->sample->context, gap);
+}
+
+/* yield_follow.c. */
+/* Edges in rising order, in the making. */
+typedef struct nt_yield_edges {
+    double at[2 * NT_YIELD_PANELS + NT_YIELD_ENDS + 2];
+    int count;
+} nt_yield_edges;
+/* Puts gaps and mesh on other edges [m^2], at a radius of contact [m]. */
+void nt_yield_move(nt_yield_solver *s, const double *edges, int panels, double a);
+/* Edges that resolve more; whether there are any. */
+int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list);
+/* Joins panels that are far finer than they need to be; whether there were any. */
+int nt_yield_coarsen(nt_yield_solver *s);
+
+/* Apart, at a gap so large that the sample hardly yields. */
+nt_status nt_yield_begin(nt_yield_solver *solver, const nt_yield_sample *sample, double gap);
+/* The next equilibrium, not far from the last one; on failure the last one stands. */
+nt_status nt_yield_go(nt_yield_solver *solver, nt_yield_hold hold, double value, nt_yield_point *point);
+
+/* yield_table.c: {U, F, k} over h, from `farthest` inwards until the force is `load` or the gap `nearest`. */
+typedef struct nt_yield_range {
+    double farthest, nearest; /* [m] */
+    double load;              /* [N] */
+    double least_centre;      /* of an attraction: where it ends if it does not jump before [m] */
+    double tolerance;         /* of F, over max(|F|, scale) [-] */
+    double scale;             /* [N] */
+    int attracts;             /* ends in a jump */
+    int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale) */
+    double stiffness_scale;   /* [N/m] */
+} nt_yield_range;
+nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range);
+/* Where the table holds, h <= its first; deeper than its last F goes on with the last slope. */
+nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h);
+
+/* elastic.c: all terms beside contact at a gap of undeformed bodies. */
+typedef struct nt_elastic_sum {
+    double F, k;         /* net [N, N/m] */
+    double all_F, all_k; /* of the sizes */
+    int pulls;
+} nt_elastic_sum;
+nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap);
+/* What rigid bodies err by there, as a share of the demand. */
+double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s);
+/* The largest gap inside which one of them keeps its force [m]. */
+double nt_elastic_hold(const nt_plan *plan);
+
+#endif

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The mesh of a sample that yields follows the pressure: panels are cut where pressure or gap are not resolved, edges
+ * are put where a law has a kink, and what is finer than it need be is joined. */
+#include <math.h>
+#include <string.h>
+
+#include "scene/yield.h"
+
+enum { N = NT_YIELD_ORDER };
+
+#define BENT 1e-3      /* last coefficients of the gap over the gap */
+#define LEFT_OVER 20.0 /* of the tolerance: the force beyond the mesh, which counts as that of rigid bodies */
+#define CLOSE 0.35     /* of a panel: an edge so close to a kink is moved there */
+#define FURTHER 3.0    /* the mesh grows by */
+#define WIDEST 4.0     /* of R^2: the mesh ends there */
+#define FINE 2e-3      /* of what a panel must resolve: it can be twice as wide */
+
+/* The length over which the law falls at a gap [m]. */
+static double length_at(const nt_yield_solver *s, double gap)
+{
+    const nt_pressure p = nt_yield_law(s, gap);
+    const double length = fabs(p.energy / p.pressure);
+    return isfinite(length) && length > 0.0 ? length : 1e-9;
+}
+
+/* The gaps on another mesh: what lifts them off the undeformed one is smooth. */
+void nt_yield_move(nt_yield_solver *s, const double *edges, int panels, double a)
+{
+    nt_yield_mesh *m = &s->mesh;
+    const double R2 = 2.0 * s->sample->radius, a2 = m->a * m->a;
+    const nt_yield_mesh *old = m;
+    double lift[NT_YIELD_NODES], moved[NT_YIELD_NODES], x[NT_YIELD_NODES];
+    const int same = panels == m->panels && memcmp(edges, m->edges, (size_t)(panels + 1) * sizeof *edges) == 0;
+    if (same && a == m->a)
+        return;
+    for (int i = 0; i < m->count; ++i)
+        lift[i] = s->gap[i] - s->h - (a2 + m->x[i]) / R2;
+    /* the nodes of the new mesh lie as those of the old one within their panels */
+    for (int i = 0; i < panels * N; ++i) {
+        const double at = (m->x[i % N] - m->edges[0]) / (m->edges[1] - m->edges[0]);
+        x[i] = edges[i / N] + (edges[i / N + 1] - edges[i / N]) * at;
+        moved[i] = s->h + (a * a + x[i]) / R2 + nt_yield_mesh_at(old, lift, x[i] + a * a - a2);
+    }
+    memcpy(m->edges, edges, (size_t)(panels + 1) * sizeof *edges);
+    m->panels = panels;
+    m->a = a;
+    nt_yield_mesh_make(m, s->sample, s->A[0]);
+    memcpy(s->gap, moved, (size_t)m->count * sizeof *moved);
+}
+
+/* Per panel, in what is tolerated: the last coefficients of pressure and gap. */
+static double roughness(const nt_yield_solver *s, int panel, const double *p, double all)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    double least = INFINITY;
+    for (int i = panel * N; i < (panel + 1) * N; ++i)
+        least = fmin(least, s->gap[i]);
+    const double width = m->edges[panel + 1] - m->edges[panel];
+    const double tail = nt_yield_mesh_tail(p, panel) * NT_PI * width / all;
+    const double bent = nt_yield_mesh_tail(s->gap, panel) / fmax(least, length_at(s, 0.0));
+    return fmax(tail / s->tolerance, bent / BENT);
+}
+
+/* The x at which the gap is `end`, in a panel; NaN if it is not there. */
+static double crossing(const nt_yield_solver *s, int panel, double end)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    double low = m->edges[panel], high = m->edges[panel + 1];
+    if (!(nt_yield_mesh_at(m, s->gap, low * (1.0 + 1e-12)) < end && nt_yield_mesh_at(m, s->gap, high) >= end))
+        return NAN;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (low + high);
+        if (nt_yield_mesh_at(m, s->gap, middle) < end)
+            low = middle;
+        else
+            high = middle;
+    }
+    return high;
+}
+
+static void insert(nt_yield_edges *list, double x)
+{
+    int i = list->count++;
+    for (; i > 0 && list->at[i - 1] > x; --i)
+        list->at[i] = list->at[i - 1];
+    list->at[i] = x;
+}
+
+/* An edge at a kink of the law: the one that was there for it before is moved, else there is one more. */
+static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel, double x)
+{
+    const double width = s->mesh.edges[panel + 1] - s->mesh.edges[panel];
+    int nearest = 1;
+    for (int i = 1; i < list->count; ++i)
+        if (fabs(list->at[i] - x) < fabs(list->at[nearest] - x))
+            nearest = i;
+    if (fabs(list->at[nearest] - x) < s->placed * x)
+        return 0;
+    if (fabs(list->at[nearest] - x) < CLOSE * width) {
+        --list->count;
+        for (int i = nearest; i < list->count; ++i)
+            list->at[i] = list->at[i + 1];
+    }
+    insert(list, x);
+    return 1;
+}
+
+/* Cuts what is not resolved, puts edges at kinks, goes further out where force is left; whether anything changed. */
+int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    double p[NT_YIELD_NODES], all = 0.0;
+    int changed = 0;
+    list->count = m->panels + 1;
+    memcpy(list->at, m->edges, (size_t)list->count * sizeof *m->edges);
+    for (int i = 0; i < m->count; ++i) {
+        p[i] = nt_yield_law(s, s->gap[i]).pressure;
+        all += fabs(p[i]) * m->area[i];
+    }
+    s->rough = 0.0;
+    for (int panel = 0; panel < m->panels && all > 0.0; ++panel) {
+        int kinked = 0;
+        for (int i = 0; i < s->sample->end_count; ++i) {
+            const double x = crossing(s, panel, s->sample->ends[i]);
+            if (!isnan(x))
+                kinked |= place_kink(s, list, panel, x);
+        }
+        const double rough = roughness(s, panel, p, all);
+        changed |= kinked;
+        if (kinked || rough <= 1.0)
+            continue;
+        s->rough = fmax(s->rough, rough);
+        insert(list, 0.5 * (m->edges[panel] + m->edges[panel + 1]));
+        changed = 1;
+    }
+    const double R = s->sample->radius, last = m->edges[m->panels];
+    const double outer = fabs(nt_yield_law(s, s->gap[m->count - 1]).energy) * 2.0 * NT_PI * R;
+    if (outer > LEFT_OVER * s->tolerance * all && last < WIDEST * R * R) {
+        insert(list, FURTHER * last);
+        s->rough = fmax(s->rough, outer / (LEFT_OVER * s->tolerance * all));
+        changed = 1;
+    }
+    return changed;
+}
+
+/* Drops every second edge between panels that are far finer than they need to be; whether there were any. */
+int nt_yield_coarsen(nt_yield_solver *s)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    double p[NT_YIELD_NODES], all = 0.0, edges[NT_YIELD_PANELS + 1];
+    int count = 0, dropped = 0;
+    for (int i = 0; i < m->count; ++i) {
+        p[i] = nt_yield_law(s, s->gap[i]).pressure;
+        all += fabs(p[i]) * m->area[i];
+    }
+    edges[count++] = 0.0;
+    for (int panel = 0; panel < m->panels; ++panel) {
+        const int inner = panel + 1 < m->panels && !dropped && all > 0.0;
+        dropped = inner && roughness(s, panel, p, all) < FINE && roughness(s, panel + 1, p, all) < FINE;
+        if (!dropped)
+            edges[count++] = m->edges[panel + 1];
+    }
+    const int fewer = count - 1 < m->panels;
+    nt_yield_move(s, edges, count - 1, m->a);
+    return fewer;
+}

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The equilibrium of tip and sample: Newton on the gaps at the nodes of a mesh that follows the pressure. In contact
+ * the surface follows the tip, so that q(t) = E* (delta - t^2/R)/2 is known for t < a; it is continuous at a, since the
+ * pressure is finite there (Maugis 1992, with any law in place of Dugdale's). */
+#include <math.h>
+#include <string.h>
+
+#include "scene/yield.h"
+
+enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, STRICT = 5, HALVINGS = 24 };
+
+#define CONVERGED 1e-11     /* of the largest gap */
+#define AHEAD 0.7           /* of the way to where a law diverges */
+#define PLACED 2e-4         /* of x: where a kink of the law is */
+#define ROUGHLY_PLACED 4e-3 /* the same after some meshes; the force errs by its square */
+#define TOLERABLE 10.0      /* times what a panel must resolve */
+
+/* What the pressure in contact does at x outside [m], and its slope in h. */
+static double rim(const nt_yield_solver *s, double h, double x, double *slope)
+{
+    const double a = s->mesh.a, R = s->sample->radius, r2 = a * a + x, arc = asin(fmin(a / sqrt(r2), 1.0));
+    *slope = -2.0 / NT_PI * arc;
+    return 2.0 / NT_PI * ((-h - 0.5 * r2 / R) * arc + 0.5 * a / R * sqrt(x));
+}
+
+/* Solves A y = b in place, b in the last column of nothing: Gauss with row pivots; 0 where A is singular. */
+static int eliminate(nt_yield_solver *s, double *b, int n)
+{
+    for (int c = 0; c < n; ++c) {
+        int best = c;
+        for (int i = c + 1; i < n; ++i)
+            if (fabs(s->A[i][c]) > fabs(s->A[best][c]))
+                best = i;
+        if (!(fabs(s->A[best][c]) > 0.0))
+            return 0;
+        for (int j = c; j < n && best != c; ++j) {
+            const double swap = s->A[c][j];
+            s->A[c][j] = s->A[best][j];
+            s->A[best][j] = swap;
+        }
+        const double swap = b[c];
+        b[c] = b[best];
+        b[best] = swap;
+        for (int i = c + 1; i < n; ++i) {
+            const double factor = s->A[i][c] / s->A[c][c];
+            for (int j = c + 1; j < n && factor != 0.0; ++j)
+                s->A[i][j] -= factor * s->A[c][j];
+            b[i] -= factor * b[c];
+        }
+    }
+    for (int i = n - 1; i >= 0; --i) {
+        for (int j = i + 1; j < n; ++j)
+            b[i] -= s->A[i][j] * b[j];
+        b[i] /= s->A[i][i];
+    }
+    return isfinite(b[0]);
+}
+
+/* The row of what is held, and its residual. */
+static double held(nt_yield_solver *s, nt_yield_hold hold, double value, const nt_pressure *p)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    const int n = m->count;
+    const double sign = hold == NT_YIELD_CENTRE ? 1.0 : -1.0;
+    double u0 = 0.0;
+    for (int j = 0; j < n; ++j) {
+        u0 += m->K0[j] * p[j].pressure;
+        s->A[n][j] = hold == NT_YIELD_GAP ? 0.0 : sign * m->K0[j] * p[j].slope;
+    }
+    s->A[n][n] = hold == NT_YIELD_CONTACT ? -1.0 : 1.0;
+    if (hold == NT_YIELD_GAP)
+        return value - s->h;
+    return hold == NT_YIELD_CENTRE ? value - s->h - u0 : s->h + m->a * m->a / s->sample->radius + u0;
+}
+
+/* One step of Newton; how far it went over the largest gap, NaN where it cannot. */
+static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    const int n = m->count;
+    nt_pressure p[NT_YIELD_NODES];
+    double b[NT_YIELD_NODES + 1], ahead = 1.0, far = 0.0, moved = 0.0;
+    for (int j = 0; j < n; ++j)
+        p[j] = nt_yield_law(s, s->gap[j]);
+    for (int i = 0; i < n; ++i) {
+        double slope = 0.0, u = m->a > 0.0 ? rim(s, s->h, m->x[i], &slope) : 0.0;
+        for (int j = 0; j < n; ++j) {
+            u += m->K[i][j] * p[j].pressure;
+            s->A[i][j] = -m->K[i][j] * p[j].slope;
+        }
+        s->A[i][i] += 1.0;
+        s->A[i][n] = -1.0 - slope;
+        b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + u - s->gap[i];
+    }
+    b[n] = held(s, hold, value, p);
+    if (!eliminate(s, b, n + 1))
+        return NAN;
+    for (int i = 0; i < n; ++i)
+        if (-b[i] > AHEAD * (s->gap[i] - s->sample->pole))
+            ahead = fmin(ahead, AHEAD * (s->gap[i] - s->sample->pole) / -b[i]);
+    for (int i = 0; i < n; ++i) {
+        s->gap[i] += ahead * b[i];
+        far = fmax(far, fabs(s->gap[i]));
+        moved = fmax(moved, fabs(b[i]));
+        if (!isfinite(s->gap[i]))
+            return NAN;
+    }
+    s->h += ahead * b[n];
+    return moved / (far + fabs(s->h));
+}
+
+static nt_status newton(nt_yield_solver *s, nt_yield_hold hold, double value)
+{
+    for (int i = 0; i < STEPS; ++i) {
+        const double moved = newton_step(s, hold, value);
+        if (isnan(moved))
+            return NT_E_NO_CONVERGENCE;
+        if (moved < CONVERGED)
+            return NT_OK;
+    }
+    return NT_E_NO_CONVERGENCE;
+}
+
+/* Newton, a better mesh, Newton, ...; what a full mesh does not resolve has to be within the tolerance of others. */
+static nt_status settle(nt_yield_solver *s, nt_yield_hold hold, double value)
+{
+    nt_yield_edges list;
+    for (int i = 0; i < MESHES; ++i) {
+        s->placed = i < STRICT ? PLACED : ROUGHLY_PLACED;
+        const nt_status status = newton(s, hold, value);
+        if (status != NT_OK)
+            return status;
+        if (!nt_yield_refine(s, &list))
+            return NT_OK;
+        if (list.count <= NT_YIELD_PANELS + 1) {
+            nt_yield_move(s, list.at, list.count - 1, s->mesh.a);
+            continue;
+        }
+        if (!nt_yield_coarsen(s))
+            return s->rough < TOLERABLE ? NT_OK : NT_E_NO_CONVERGENCE;
+    }
+    return NT_E_NO_CONVERGENCE;
+}
+
+nt_status nt_yield_begin(nt_yield_solver *s, const nt_yield_sample *sample, double gap)
+{
+    s->sample = sample;
+    s->h = gap;
+    s->mesh.a = 0.0;
+    s->mesh.panels = 4;
+    for (int i = 0; i <= 4; ++i)
+        s->mesh.edges[i] = i == 0 ? 0.0 : 2.0 * sample->radius * sample->length * pow(2.0, i - 1);
+    nt_yield_mesh_make(&s->mesh, sample, s->A[0]);
+    for (int i = 0; i < s->mesh.count; ++i)
+        s->gap[i] = gap + 0.5 * s->mesh.x[i] / sample->radius;
+    return settle(s, NT_YIELD_GAP, gap);
+}
+
+/* --- One point --- */
+
+/* Of the whole: F, k, the gap under the apex and its slope in h, by the tangent at fixed a. */
+static int report(nt_yield_solver *s, nt_yield_point *point)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    const int n = m->count;
+    const double R = s->sample->radius, E = s->sample->modulus, a = m->a;
+    nt_pressure p[NT_YIELD_NODES];
+    double y[NT_YIELD_NODES];
+    for (int j = 0; j < n; ++j)
+        p[j] = nt_yield_law(s, s->gap[j]);
+    for (int i = 0; i < n; ++i) {
+        double slope = 0.0;
+        if (a > 0.0)
+            (void)rim(s, s->h, m->x[i], &slope);
+        y[i] = 1.0 + slope;
+        for (int j = 0; j < n; ++j)
+            s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
+    }
+    if (!eliminate(s, y, n))
+        return 0;
+    const nt_pressure outer = nt_yield_law(s, s->gap[n - 1]);
+    double F = 2.0 * NT_PI * R * outer.energy, k = 2.0 * NT_PI * R * outer.pressure, u0 = 0.0, u0_slope = 0.0;
+    for (int j = 0; j < n; ++j) {
+        const double weight = a > 0.0 ? m->load[j] : m->area[j];
+        F += weight * p[j].pressure;
+        k -= weight * p[j].slope * y[j];
+        u0 += m->K0[j] * p[j].pressure;
+        u0_slope += m->K0[j] * p[j].slope * y[j];
+    }
+    *point = (nt_yield_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a};
+    if (a > 0.0)
+        *point = (nt_yield_point){s->h, F + 2.0 * E * a * (-s->h - a * a / (3.0 * R)), k + 2.0 * E * a, 0.0, 0.0, a};
+    return isfinite(point->F) && isfinite(point->k);
+}
+
+static double value_of(const nt_yield_solver *s, nt_yield_hold hold)
+{
+    double u0 = 0.0;
+    if (hold == NT_YIELD_GAP)
+        return s->h;
+    if (hold == NT_YIELD_CONTACT)
+        return s->mesh.a;
+    for (int j = 0; j < s->mesh.count; ++j)
+        u0 += s->mesh.K0[j] * nt_yield_law(s, s->gap[j]).pressure;
+    return s->h + u0;
+}
+
+/* One step, from and back to what was found last. */
+static nt_status step_to(nt_yield_solver *s, nt_yield_hold hold, double value)
+{
+    double gap[NT_YIELD_NODES], edges[NT_YIELD_PANELS + 1];
+    const double h = s->h, a = s->mesh.a;
+    const int panels = s->mesh.panels;
+    memcpy(gap, s->gap, sizeof gap);
+    memcpy(edges, s->mesh.edges, sizeof edges);
+    if (hold == NT_YIELD_CONTACT)
+        nt_yield_move(s, edges, panels, value);
+    const nt_status status = settle(s, hold, value);
+    if (status != NT_OK) {
+        nt_yield_move(s, edges, panels, a);
+        memcpy(s->gap, gap, sizeof gap);
+        s->h = h;
+    }
+    return status;
+}
+
+nt_status nt_yield_go(nt_yield_solver *s, nt_yield_hold hold, double value, nt_yield_point *point)
+{
+    double here = value_of(s, hold), target = value;
+    (void)nt_yield_coarsen(s);
+    for (int halvings = 0; halvings < HALVINGS;) {
+        if (step_to(s, hold, target) != NT_OK) {
+            target = 0.5 * (here + target);
+            ++halvings;
+            continue;
+        }
+        if (target == value)
+            return report(s, point) ? NT_OK : NT_E_NO_CONVERGENCE;
+        here = target;
+        target = value;
+    }
+    return NT_E_NO_CONVERGENCE;
+}
