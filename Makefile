@@ -33,6 +33,7 @@ heavy:  ## 10 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@tools/setup.sh test
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/energy.py
+	@$(VENV)/python tests/heavy/yielding.py
 	@$(VENV)/python tests/heavy/kills.py
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory

@@ -64,7 +64,7 @@ static void every_row_is_whole(void **state)
         const nt_term_row *row = nt_term_rows[term];
         const nt_term_words *words = nt_term_words_of(term);
         assert_true(is_said(words->name) && is_said(words->title) && is_said(words->doc));
-        assert_true(words->form_count > 0 && words->form_count <= 16);
+        assert_true(words->form_count > 0 && words->form_count <= 32);
         for (int i = 0; i < words->form_count; i++)
             assert_true(words->forms[i].cost > 0.0 && is_said(words->forms[i].words));
         assert_true(row->full_form && row->eval);

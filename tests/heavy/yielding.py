@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random soft scenes without adhesion: is a planned force ever farther from the self-consistent half-space or layer than
-the plan says, whether its sample yields or adds on the undeformed gap? Resumable: ``--first SEED``.
+"""Random soft scenes without adhesion: is a planned force ever farther from the self-consistent half-space or layer
+than the plan says, whether its sample yields or adds on the undeformed gap? Resumable: ``--first SEED``.
 
 A violation prints the seed that makes the scene again; what is refused is counted by its reason.
 """
@@ -12,9 +12,8 @@ import sys
 import time
 from collections import Counter
 
-import numpy as np
-
 import nanotouch as nt
+import numpy as np
 from nanotouch import reference
 from nanotouch.errors import Error, SolverError
 

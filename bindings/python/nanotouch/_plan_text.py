@@ -64,9 +64,10 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
 def _yielding(facts: dict[str, Any]) -> list[str]:
     """How far the sample gives to forces before contact, where that is felt."""
     size = f"elastic number {in_words(facts['elastic_number'], '', 2)}"
-    error = "it would jump" if math.isinf(facts["rigid_error"]) else f"err by {_percent(facts['rigid_error'])}"
+    infinite = math.isinf(facts["rigid_error"])
+    error = "would jump" if infinite else f"could err by {_percent(facts['rigid_error'])}"
     if facts["yields"]:
-        return [f"sample: yields to all forces together, {size}; laws that add on the undeformed gap could {error}"]
+        return [f"sample: yields to all forces together, {size}; laws that add on the undeformed gap {error}"]
     if facts["rigid_error"] == 0.0 or facts["adhesion_source"] != "none":
         return []
     return [
