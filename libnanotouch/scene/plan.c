@@ -108,8 +108,7 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
  * whatever that errs by: the plan warns of it. */
 static int is_left(const nt_plan *plan)
 {
-    return plan->source != NT_ADHESION_NONE ||
-           plan->pull_off_force > UNASKED * plan->scale;
+    return plan->source != NT_ADHESION_NONE || plan->pull_off_force > UNASKED * plan->scale;
 }
 
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by; if it errs by too much, the sample

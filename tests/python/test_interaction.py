@@ -69,7 +69,8 @@ def test_laps_over_bumpy_surfaces(name: str, curved: bool) -> None:
     scene = scene_of(name)
     body = cycles.bumpy(scene, 1)
     body = body if curved else cycles.without_radii(body)
-    plan = scene.plan(surface=body)
+    # where the sample yields, quadrature feels that k steps a little between the cubics of its table
+    plan = scene.plan(1e-4 if name == "cell_in_liquid" else 0.01, surface=body)
     if curved and name != "cell_in_liquid":  # without adhesion a sphere has no law with a radius for each place
         assert plan.terms[0].form == "local"
     balance = cycles.random_laps(plan, scene, body, np.random.default_rng(2), 150)
