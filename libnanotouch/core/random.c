@@ -5,12 +5,18 @@
 
 #include <math.h>
 
-static uint64_t splitmix64(uint64_t *state)
+static const uint64_t gamma64 = UINT64_C(0x9e3779b97f4a7c15); /* 2^64 over the golden ratio, odd */
+
+static uint64_t mix64(uint64_t z)
 {
-    uint64_t z = (*state += UINT64_C(0x9e3779b97f4a7c15));
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
     return z ^ (z >> 31);
+}
+
+static uint64_t splitmix64(uint64_t *state)
+{
+    return mix64(*state += gamma64);
 }
 
 static uint64_t rotate_left(uint64_t x, int bits)
@@ -39,20 +45,61 @@ nt_random nt_random_seed(uint64_t seed)
     return random;
 }
 
+static double to_uniform(uint64_t bits)
+{
+    return (double)(bits >> 11) * 0x1p-53;
+}
+
+enum { TRIES = 32 }; /* of Marsaglia's polar method; each is accepted with probability pi/4 */
+
+/* Of two uniform numbers: 1 and a standard normal one, or 0 where the point is outside the circle. */
+static int to_normal(double first, double second, double *normal)
+{
+    const double u = 2.0 * first - 1.0, v = 2.0 * second - 1.0, s = u * u + v * v;
+    if (!(s > 0.0 && s < 1.0))
+        return 0;
+    *normal = u * sqrt(-2.0 * log(s) / s);
+    return 1;
+}
+
 double nt_random_uniform(nt_random *random)
 {
-    return (double)(xoshiro256pp(random->state) >> 11) * 0x1p-53;
+    return to_uniform(xoshiro256pp(random->state));
 }
 
 double nt_random_normal(nt_random *random)
 {
-    enum { TRIES = 32 }; /* each is accepted with probability pi/4 */
+    double normal = 0.0;
     for (int i = 0; i < TRIES; i++) {
-        const double u = 2.0 * nt_random_uniform(random) - 1.0;
-        const double v = 2.0 * nt_random_uniform(random) - 1.0;
-        const double s = u * u + v * v;
-        if (s > 0.0 && s < 1.0)
-            return u * sqrt(-2.0 * log(s) / s);
+        const double first = nt_random_uniform(random);
+        if (to_normal(first, nt_random_uniform(random), &normal))
+            break;
     }
-    return 0.0;
+    return normal;
+}
+
+nt_noise nt_noise_of(uint64_t seed, uint32_t channel)
+{
+    return (nt_noise){.key = mix64(mix64(seed + gamma64) + gamma64 * (channel + UINT64_C(1)))};
+}
+
+void nt_noise_seek(nt_noise *noise, uint64_t tick)
+{
+    noise->position = tick << 32;
+}
+
+double nt_noise_uniform(nt_noise *noise)
+{
+    return to_uniform(mix64(noise->key + gamma64 * ++noise->position));
+}
+
+double nt_noise_normal(nt_noise *noise)
+{
+    double normal = 0.0;
+    for (int i = 0; i < TRIES; i++) {
+        const double first = nt_noise_uniform(noise);
+        if (to_normal(first, nt_noise_uniform(noise), &normal))
+            break;
+    }
+    return normal;
 }

@@ -268,7 +268,7 @@ static nt_status advance(course *c, int level)
 }
 
 nt_status nt_cantilever_step(const nt_cantilever_model *model, nt_cantilever_state *state, const nt_force_field *field,
-                             double base_height, nt_random *random)
+                             double base_height, nt_noise *noise)
 {
     if (field->eval == NULL || !(field->length > 0.0))
         return NT_E_ARGUMENT;
@@ -283,8 +283,8 @@ nt_status nt_cantilever_step(const nt_cantilever_model *model, nt_cantilever_sta
     const int free = flies_free(model, state, field, &c.law, fmin(c.first, c.last));
     while (c.place < 1u << model->finest) {
         if (model->probe.temperature > 0.0) {
-            c.kick[0] = nt_random_normal(random);
-            c.kick[1] = nt_random_normal(random);
+            c.kick[0] = nt_noise_normal(noise);
+            c.kick[1] = nt_noise_normal(noise);
         }
         const int wanted = free ? 0 : level_for(model, c.law.k), allowed = level_at(c.place, model->finest);
         const nt_status status = advance(&c, wanted > allowed ? wanted : allowed);

@@ -31,11 +31,11 @@ double nt_hand_effort(const nt_hand_state *hand)
     return nt_hand_now(hand).force + hand->random_force;
 }
 
-void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period, nt_random *random)
+void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period, nt_noise *noise)
 {
     state->elapsed += period;
     if (hand->relaxation > 0.0)
         state->rest -= expm1(-period / hand->relaxation) * (position - state->rest);
-    if (hand->random_force > 0.0 && nt_random_uniform(random) < -expm1(-hand->random_rate * period))
-        state->random_force = hand->random_force * (2.0 * nt_random_uniform(random) - 1.0);
+    if (hand->random_force > 0.0 && nt_noise_uniform(noise) < -expm1(-hand->random_rate * period))
+        state->random_force = hand->random_force * (2.0 * nt_noise_uniform(noise) - 1.0);
 }

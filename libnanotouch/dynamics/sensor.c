@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-double nt_sensor_read(const nt_sensor *sensor, double value, nt_random *random)
+double nt_sensor_read(const nt_sensor *sensor, double value, nt_noise *noise)
 {
     double reading = value;
     if (sensor->noise > 0.0)
-        reading += sensor->noise * nt_random_normal(random);
+        reading += sensor->noise * nt_noise_normal(noise);
     if (sensor->resolution > 0.0)
         reading = sensor->resolution * nearbyint(reading / sensor->resolution);
     if (reading > sensor->range)

@@ -96,6 +96,54 @@ static void normal_has_its_moments_and_tails(void **state)
     assert_true(fabs(beyond_3 - 0.0026997961 * N) < 4 * sqrt(0.0027 * N));
 }
 
+/* A draw is a function of seed, channel and tick: not of what was drawn before. */
+static void noise_is_known_by_its_place(void **state)
+{
+    (void)state;
+    nt_noise noise = nt_noise_of(5, 2), other = nt_noise_of(5, 2);
+    nt_noise_seek(&noise, 1000);
+    const double there = nt_noise_normal(&noise);
+    for (uint64_t tick = 0; tick <= 1000; tick++) {
+        nt_noise_seek(&other, tick);
+        const double drawn = nt_noise_normal(&other);
+        assert_true(tick < 1000 ? drawn != there : drawn == there);
+    }
+    /* splitmix64 (Steele, Lea and Flood) from state 0: its first number is published with the generator */
+    nt_noise published = {0, 0};
+    assert_true((uint64_t)ldexp(nt_noise_uniform(&published), 53) == UINT64_C(0xe220a8397b1dcdaf) >> 11);
+}
+
+enum { CHANNELS = 12, TICKS = 40000 };
+
+/* The noise that a sensor shows: the first normal number of each tick. */
+static double first_normal(uint64_t seed, uint32_t channel, uint64_t tick)
+{
+    nt_noise noise = nt_noise_of(seed, channel);
+    nt_noise_seek(&noise, tick);
+    return nt_noise_normal(&noise);
+}
+
+/* White over ticks, unrelated between channels and neighbouring seeds: correlations within 5 standard errors. */
+static void noise_of_channels_and_ticks_is_independent(void **state)
+{
+    (void)state;
+    double lag = 0.0, square = 0.0, across[CHANNELS] = {0.0}, seeds = 0.0;
+    for (uint64_t tick = 0; tick < TICKS; tick++) {
+        const double now = first_normal(1, 0, tick);
+        square += now * now / TICKS;
+        lag += now * first_normal(1, 0, tick + 1) / TICKS;
+        seeds += now * first_normal(2, 0, tick) / TICKS;
+        for (uint32_t channel = 1; channel < CHANNELS; channel++)
+            across[channel] += now * first_normal(1, channel, tick) / TICKS;
+    }
+    const double error = 5.0 / sqrt(TICKS);
+    assert_true(fabs(square - 1.0) < sqrt(2.0) * error);
+    assert_true(fabs(lag) < error);
+    assert_true(fabs(seeds) < error);
+    for (int channel = 1; channel < CHANNELS; channel++)
+        assert_true(fabs(across[channel]) < error);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -103,6 +151,8 @@ int main(void)
         cmocka_unit_test(follows_xoshiro256pp),
         cmocka_unit_test(uniform_fills_the_unit_interval),
         cmocka_unit_test(normal_has_its_moments_and_tails),
+        cmocka_unit_test(noise_is_known_by_its_place),
+        cmocka_unit_test(noise_of_channels_and_ticks_is_independent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -150,7 +150,7 @@ static void thermal_motion_has_its_energy(void **state)
 {
     (void)state;
     enum { N = 20000 };
-    nt_random random = nt_random_seed(11);
+    nt_noise noise = nt_noise_of(11, 0);
     static const double periods[] = {1e-5, 1e-4, 1e-3}, ratios[] = {0.0, 0.0, 0.0, 1.0, 30.0};
     for (int i = 0; i < 5; i++) {
         const nt_probe probe = probe_of(0.1, 2.0, 300.0);
@@ -162,7 +162,7 @@ static void thermal_motion_has_its_energy(void **state)
         double squares = 0.0, speeds = 0.0;
         for (int k = -100; k < N; k++) {
             for (int skip = 0; skip < (i == 0 || i > 2 ? 3 : 1); skip++)
-                assert_int_equal(nt_cantilever_step(&model, &now, &field, 0.0, &random), NT_OK);
+                assert_int_equal(nt_cantilever_step(&model, &now, &field, 0.0, &noise), NT_OK);
             squares += k < 0 ? 0.0 : now.deflection * now.deflection;
             speeds += k < 0 ? 0.0 : now.speed * now.speed;
         }

@@ -67,13 +67,13 @@ static void adversary_may_do_anything(void **state)
 {
     (void)state;
     const nt_hand hand = {.random_force = 5.0, .random_rate = 30.0};
-    nt_random random = nt_random_seed(1);
+    nt_noise noise = nt_noise_of(1, 0);
     nt_hand_state now = {0};
     int changes = 0;
     double squares = 0.0, largest = 0.0;
     for (int k = 0; k < 1000000; k++) {
         const double last = now.random_force;
-        nt_hand_step(&now, &hand, 0.0, 1e-4, &random);
+        nt_hand_step(&now, &hand, 0.0, 1e-4, &noise);
         changes += now.random_force != last;
         squares += now.random_force * now.random_force;
         largest = larger(largest, fabs(now.random_force));

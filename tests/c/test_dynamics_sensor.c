@@ -21,10 +21,10 @@ static void noise_has_its_deviation(void **state)
     (void)state;
     enum { N = 100000 };
     const nt_sensor sensor = {.noise = 0.3, .resolution = 0.0, .range = 100.0};
-    nt_random random = nt_random_seed(3);
+    nt_noise noise = nt_noise_of(3, 0);
     double mean = 0.0, variance = 0.0;
     for (int i = 0; i < N; i++) {
-        const double error = nt_sensor_read(&sensor, 5.0, &random) - 5.0;
+        const double error = nt_sensor_read(&sensor, 5.0, &noise) - 5.0;
         mean += error / N;
         variance += error * error / N;
     }
@@ -49,10 +49,10 @@ static void noise_dithers_the_steps(void **state)
     (void)state;
     enum { N = 100000 };
     const nt_sensor sensor = {.noise = 1.0, .resolution = 1.0, .range = 100.0};
-    nt_random random = nt_random_seed(5);
+    nt_noise noise = nt_noise_of(5, 0);
     double mean = 0.0;
     for (int i = 0; i < N; i++)
-        mean += nt_sensor_read(&sensor, 0.3, &random) / N;
+        mean += nt_sensor_read(&sensor, 0.3, &noise) / N;
     assert_true(fabs(mean - 0.3) < 4.0 * sqrt(1.0 + 1.0 / 12.0) / sqrt(N));
 }
 
@@ -69,8 +69,8 @@ static void nan_stays_nan(void **state)
 {
     (void)state;
     const nt_sensor sensor = {.noise = 0.1, .resolution = 0.01, .range = 1.0};
-    nt_random random = nt_random_seed(1);
-    assert_true(isnan(nt_sensor_read(&sensor, (double)NAN, &random)));
+    nt_noise noise = nt_noise_of(1, 0);
+    assert_true(isnan(nt_sensor_read(&sensor, (double)NAN, &noise)));
 }
 
 int main(void)

@@ -280,7 +280,8 @@ static void no_hand_can_break_the_force_limit(void **state)
     for (int n = 0; n < 60; n++) {
         l = begun;
         l.sim.plan = &begun.plan;
-        l.sim.random = nt_random_seed((uint64_t)n);
+        for (uint32_t stream = 0; stream < NT_SIM_NOISES; ++stream)
+            l.sim.noise[stream] = nt_noise_of((uint64_t)n, stream);
         for (int i = 0; i < 20000; i++) {
             if (nt_random_uniform(&random) < 0.003)
                 loop_push(&l, 10.0 * nt_random_uniform(&random) - 5.0 + (n % 2 ? 2.0 : 0.0),

@@ -146,49 +146,57 @@ static void a_margin_of_one_and_a_half_is_calm(void **state)
     }
 }
 
-/* Speed of the master, the largest of seconds 1 to 5 and of the last two of twenty [m/s]; `resolution` is its step. */
-static void armed_in_spite(const double *point, double resolution, double *early, double *late)
+/* A loop armed below a margin of 1: its settings, the step in which the master is read [m], and whether the passivity
+ * observer watches it. */
+typedef struct brave_loop {
+    double rate, delay, force_gain, resolution;
+    int watched;
+} brave_loop;
+
+/* The largest speed of the master in the last two of twenty seconds; 0 where the supervisor holds [m/s]. */
+static double speed_in_the_end(const brave_loop *brave)
 {
     static loop l;
     nt_session_setup setup = nt_session_defaults();
-    setup.settings.gains.rate = point[0];
-    setup.settings.gains.delay = point[1];
-    setup.settings.gains.force_gain = point[2];
+    setup.settings.gains.rate = brave->rate;
+    setup.settings.gains.delay = brave->delay;
+    setup.settings.gains.force_gain = brave->force_gain;
     setup.clearance = 20e-9;
-    setup.rig.master.resolution = resolution;
+    setup.rig.master.resolution = brave->resolution;
     assert_int_equal(loop_open(&l, &setup), NT_OK);
     const nt_margins margins = nt_margins_compute(&setup.rig, &setup.settings.gains, l.plan.maximum_stiffness);
     assert_true(margins.margin < 0.7);
+    if (!brave->watched)
+        l.touch.passivity.dead_zone = HUGE_VAL;
     loop_push(&l, 1.5, 0.5);
-    *early = *late = 0.0;
+    double worst = 0.0;
     for (double t = 0.0; t < 20.0; t += l.touch.period) {
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
-        const double speed = fabs(l.sim.master.speed);
-        if (t > 1.0 && t < 5.0)
-            *early = larger(*early, speed);
-        if (t > 18.0)
-            *late = larger(*late, speed);
+        if (t > 18.0 && l.command.state != NT_HOLD)
+            worst = larger(worst, fabs(l.sim.master.speed));
     }
-    print_message("%4.0f Hz, d = %.0f, K_f %3.0f, margin %.2f: speed of the master %.4f -> %.4f m/s, gain %.2f\n",
-                  point[0], point[1], point[2], margins.margin, *early, *late, l.state.passivity.gain);
-    assert_true(l.state.passivity.trips > 0 && l.state.passivity.gain < 1.0);
-    if (l.command.state == NT_HOLD)
-        *late = 0.0;
+    assert_true(brave->watched == (l.state.passivity.trips > 0 && l.state.passivity.gain < 1.0));
+    print_message("%4.0f Hz, d = %.0f, K_f %3.0f, margin %.2f, %s: speed of the master %.4f m/s, gain %.2f\n", brave->rate,
+                  brave->delay, brave->force_gain, margins.margin, brave->watched ? "watched" : "not watched", worst,
+                  l.state.passivity.gain);
+    return worst;
 }
 
-/* Armed in spite of a margin below 1: the observer takes gain away until it is calm, or the supervisor holds. What is
- * left is a quarter at most where the master is read finely; its own steps keep up half a step a period beside it. */
+/* Armed in spite of a margin below 1: the observer takes gain away until it is calm, or the supervisor holds. Three
+ * tenths at most are left of the limit cycle that runs where nobody watches (0.26 in 64 runs with seeds 1 to 16) where
+ * the master is read finely; its own steps keep up a step a period beside it. */
 static void what_is_unstable_is_calmed_or_held(void **state)
 {
     (void)state;
     static const double cases[][3] = {{1e3, 1, 150}, {1e3, 3, 60}, {333, 1, 40}, {2e3, 2, 150}};
     const double resolution = nt_session_defaults().rig.master.resolution;
     for (int i = 0; i < 4; i++) {
-        double early, fine, late;
-        armed_in_spite(cases[i], 1e-9, &early, &fine);
-        assert_true(fine < 0.25 * early);
-        armed_in_spite(cases[i], resolution, &early, &late);
-        assert_true(late < fine + 0.5 * resolution * cases[i][0]);
+        const double *c = cases[i];
+        const double wild = speed_in_the_end(&(brave_loop){c[0], c[1], c[2], 1e-9, 0});
+        const double fine = speed_in_the_end(&(brave_loop){c[0], c[1], c[2], 1e-9, 1});
+        const double coarse = speed_in_the_end(&(brave_loop){c[0], c[1], c[2], resolution, 1});
+        assert_true(fine < 0.3 * wild);
+        assert_true(coarse < fine + resolution * c[0]);
     }
 }
 

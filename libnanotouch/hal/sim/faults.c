@@ -131,7 +131,7 @@ static double noise_of(nt_sim *sim, const nt_fault *fault, double value)
 {
     const nt_sensor *sensor = sensor_of(sim, fault->channel);
     const nt_sensor loud = {fault->value * fmax(sensor->noise, sensor->resolution), sensor->resolution, sensor->range};
-    return nt_sensor_read(&loud, value, &sim->random);
+    return nt_sensor_read(&loud, value, nt_sim_noise_now(sim, NT_SIM_NOISE_FAULT + (int)fault->channel));
 }
 
 /* One reading of one sensor. */

@@ -9,6 +9,13 @@
 extern "C" {
 #endif
 
+/* The stream of a channel at the beginning of this tick. */
+static inline nt_noise *nt_sim_noise_now(nt_sim *sim, int stream)
+{
+    nt_noise_seek(&sim->noise[stream], sim->tick);
+    return &sim->noise[stream];
+}
+
 /* --- probe.c: one period of the cantilever, base and surface where they are now --- */
 
 double nt_sim_surface_height(const nt_sim *sim);

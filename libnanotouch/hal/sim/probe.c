@@ -62,7 +62,8 @@ nt_status nt_sim_move_probe(nt_sim *sim)
     const nt_force_field field = {force_at, moved_to, &context, sim->plan->length};
     const double base = sim->start_height - sim->stage.position - nt_sim_stage_drift(sim) - surface;
     const nt_status status =
-        sim->dynamic ? nt_cantilever_step(&sim->cantilever_model, &sim->cantilever, &field, base, &sim->random)
+        sim->dynamic ? nt_cantilever_step(&sim->cantilever_model, &sim->cantilever, &field, base,
+                                          nt_sim_noise_now(sim, NT_SIM_NOISE_TIP))
                      : nt_cantilever_settle(&sim->cantilever, &sim->rig.probe, &field, base, NULL);
     const double gap = sim->cantilever.tip_height;
     const nt_law_value law = law_there(&context, gap);

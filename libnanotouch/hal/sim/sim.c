@@ -106,10 +106,11 @@ nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup)
     nt_sim made = {.plan = setup->plan,
                    .rig = *setup->rig,
                    .period = setup->period,
-                   .random = nt_random_seed(setup->seed),
                    .x = setup->x,
                    .y = setup->y,
                    .master = {.position = setup->master_position}};
+    for (uint32_t i = 0; i < NT_SIM_NOISES; i++)
+        made.noise[i] = nt_noise_of(setup->seed, i);
     status = init_delay(&made, setup->delay);
     for (int i = 0; setup->faults && i < setup->faults->count && status == NT_OK; i++)
         status = nt_faults_add(&made.faults, &setup->faults->list[i]);
@@ -148,18 +149,23 @@ static int is_converted(const nt_sim *sim)
     return floor((double)sim->tick * per_tick) > floor((double)(sim->tick - 1u) * per_tick);
 }
 
+static double convert(nt_sim *sim, const nt_sensor *sensor, nt_channel channel, double value)
+{
+    return nt_sensor_read(sensor, value, nt_sim_noise_now(sim, (int)channel));
+}
+
 nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
 {
     const double latency = sim->rig.converters.adc_latency;
     sim->moments[sim->tick % NT_SIM_SLOTS] = moment_now(sim);
     if (is_converted(sim)) {
         const nt_moment seen = moment_before(sim, latency);
-        sim->converted =
-            (nt_sample){.tick = sim->tick,
-                        .master_position = nt_sensor_read(&sim->master_sensor, seen.master_position, &sim->random),
-                        .operator_force = nt_sensor_read(&sim->gauge, seen.operator_force, &sim->random),
-                        .stage_position = nt_sensor_read(&sim->stage_sensor, seen.stage_position, &sim->random),
-                        .deflection = nt_sensor_read(&sim->deflection_sensor, seen.deflection, &sim->random)};
+        sim->converted = (nt_sample){
+            .tick = sim->tick,
+            .master_position = convert(sim, &sim->master_sensor, NT_CHANNEL_MASTER_POSITION, seen.master_position),
+            .operator_force = convert(sim, &sim->gauge, NT_CHANNEL_OPERATOR_FORCE, seen.operator_force),
+            .stage_position = convert(sim, &sim->stage_sensor, NT_CHANNEL_STAGE_POSITION, seen.stage_position),
+            .deflection = convert(sim, &sim->deflection_sensor, NT_CHANNEL_DEFLECTION, seen.deflection)};
     }
     nt_sample found = sim->converted;
     found.age = latency + (double)(sim->tick - found.tick) * sim->period;
@@ -229,7 +235,8 @@ static nt_status pass_period(nt_sim *sim, const nt_command *command)
     if (sim->parts[0].length > 0.0)
         pass_part(sim, &sim->parts[0], &sim->pending[(newest - 1u) % NT_SIM_SLOTS]);
     pass_part(sim, &sim->parts[1], &sim->pending[newest % NT_SIM_SLOTS]);
-    nt_hand_step(&sim->hand, &sim->rig.hand, sim->master.position, sim->period, &sim->random);
+    nt_hand_step(&sim->hand, &sim->rig.hand, sim->master.position, sim->period,
+                 nt_sim_noise_now(sim, NT_SIM_NOISE_HAND));
     ++sim->tick;
     return nt_sim_move_probe(sim);
 }

@@ -77,11 +77,11 @@ typedef struct nt_cantilever_model {
 /* substep in radians, > 0: 0.25 is usual; a larger one is coarser, and stable too. NT_E_RANGE, NT_E_NOT_FINITE. */
 NT_API nt_status nt_cantilever_model_init(nt_cantilever_model *model, const nt_probe *probe, double period,
                                           double substep);
-/* One period, in which the base moves to base_height on a straight line. random may be NULL where the temperature is 0.
+/* One period, in which the base moves to base_height on a straight line. noise may be NULL where the temperature is 0.
  * At most 2^finest sub-steps. NT_E_ARGUMENT (field length not positive), NT_E_NOT_FINITE where the field is, with the
  * state left where it was last finite. */
 NT_API NT_REALTIME nt_status nt_cantilever_step(const nt_cantilever_model *model, nt_cantilever_state *state,
-                                                const nt_force_field *field, double base_height, nt_random *random);
+                                                const nt_force_field *field, double base_height, nt_noise *noise);
 
 /* --- stage: x_s'' /wn^2 + x_s'/(wn Q) + x_s = P[u] - f/k_stage (Eq. 13 repaired, E15), u the command and f the tip
  *     force, + pushing the stage back; P the piezo's own play and creep, P[u] = u where it has none --- */
@@ -130,9 +130,9 @@ NT_API void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target);
 NT_API NT_REALTIME nt_hand_target nt_hand_now(const nt_hand_state *hand);
 /* The force that the hand means to apply, before its impedance: the script's and the adversary's [N]. */
 NT_API NT_REALTIME double nt_hand_effort(const nt_hand_state *hand);
-/* One period; the master stands at `position` [m]. random may be NULL where random_force is 0. */
+/* One period; the master stands at `position` [m]. noise may be NULL where random_force is 0. */
 NT_API NT_REALTIME void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period,
-                                     nt_random *random);
+                                     nt_noise *noise);
 
 /* --- master, and the hand that holds it: (m + m_h) x'' + (b + b_h) x' + k_h (x - rest) + f_C sgn x' = f (Eq. 12), f =
  *     motor force + the hand's effort, held; between hard end stops. Exact, sticking and slipping too --- */
@@ -163,8 +163,8 @@ typedef struct nt_sensor {
     double resolution; /* step, 0 for none */
     double range;      /* saturates at +- this */
 } nt_sensor;
-/* Noise, then steps, then saturation. NaN in, NaN out. random may be NULL where noise is 0. */
-NT_API NT_REALTIME double nt_sensor_read(const nt_sensor *sensor, double value, nt_random *random);
+/* Noise, then steps, then saturation. NaN in, NaN out. noise may be NULL where noise is 0. */
+NT_API NT_REALTIME double nt_sensor_read(const nt_sensor *sensor, double value, nt_noise *noise);
 
 #ifdef __cplusplus
 }

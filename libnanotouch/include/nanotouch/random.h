@@ -24,6 +24,22 @@ NT_API NT_REALTIME double nt_random_uniform(nt_random *random);
  */
 NT_API NT_REALTIME double nt_random_normal(nt_random *random);
 
+/* Noise of one channel: a function of seed, channel and tick, whatever other channels draw and whatever came before. So
+ * one half of a rig may be replaced, or restored at any tick, and the other's noise stays. splitmix64 (Steele, Lea and
+ * Flood 2014) at a position: number n of a stream is mix(key + n gamma). */
+typedef struct nt_noise {
+    uint64_t key;      /* of seed and channel */
+    uint64_t position; /* next number of the stream */
+} nt_noise;
+
+/* The stream of a channel, before its first tick. Any seed and any channel are good. */
+NT_API nt_noise nt_noise_of(uint64_t seed, uint32_t channel);
+/* To the beginning of a tick, which has 2^32 numbers. */
+NT_API NT_REALTIME void nt_noise_seek(nt_noise *noise, uint64_t tick);
+/* As nt_random_uniform and nt_random_normal. */
+NT_API NT_REALTIME double nt_noise_uniform(nt_noise *noise);
+NT_API NT_REALTIME double nt_noise_normal(nt_noise *noise);
+
 #ifdef __cplusplus
 }
 #endif

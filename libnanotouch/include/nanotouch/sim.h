@@ -28,7 +28,7 @@ typedef struct nt_sim_setup {
     double x, y;            /* where it starts [m] */
     double clearance;       /* L, height of the tip above the surface there [m] */
     double master_position; /* x_m at the start [m] */
-    uint64_t seed;          /* of the sensors' noise */
+    uint64_t seed;          /* of all that is random */
     double
         delay; /* between write and effect, 0 .. NT_SIM_DELAY_MAX with the converters' own [periods]; may be a part */
     nt_probe_model probe_model;
@@ -53,6 +53,15 @@ typedef struct nt_moment {
     double deflection, stage_position, master_position; /* [m] */
     double operator_force;                              /* [N] */
 } nt_moment;
+
+/* What is random, a stream each (random.h): a half of the rig draws nothing from the other's. The sensors come first, in
+ * the order of nt_channel, then what a fault adds to each. */
+typedef enum nt_sim_noise {
+    NT_SIM_NOISE_FAULT = NT_CHANNEL_OPERATOR_FORCE + 1,
+    NT_SIM_NOISE_HAND = 2 * NT_SIM_NOISE_FAULT,
+    NT_SIM_NOISE_TIP, /* thermal motion of the cantilever */
+    NT_SIM_NOISES
+} nt_sim_noise;
 
 /* What lasting faults have to remember. */
 typedef struct nt_fault_memory {
@@ -82,7 +91,7 @@ typedef struct nt_sim {
     int dynamic; /* the cantilever is */
     /* state */
     uint64_t tick;
-    nt_random random;
+    nt_noise noise[NT_SIM_NOISES];
     nt_hand_state hand;
     nt_stage_state stage;
     double stage_drive; /* the command as far as the driver has slewed [m] */
