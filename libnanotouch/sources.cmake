@@ -126,16 +126,25 @@ set(nanotouch_sources_control
     control/supervisor.c
     control/touch.c
     control/verdict.c)
-set(nanotouch_sources_sim hal/sim/faults.c hal/sim/probe.c hal/sim/sim.c)
+set(nanotouch_sources_sim hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
 set(nanotouch_sources_session
     session/arming.c
+    session/changes.c
+    session/clock.c
     session/commands.c
+    session/composition.c
+    session/frame.c
     session/frames.c
+    session/halves.c
+    session/history.c
+    session/inputs.c
     session/observer.c
+    session/pace.c
+    session/requests.c
     session/run.c
     session/session.c
     session/shared_memory.c

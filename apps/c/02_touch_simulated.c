@@ -17,11 +17,11 @@ typedef struct {
 
 static void add(summary *s, const nt_record *r, double alpha_f)
 {
-    s->largest_force = fmax(s->largest_force, r->tip_force);
-    s->smallest_force = fmin(s->smallest_force, r->tip_force);
+    s->largest_force = fmax(s->largest_force, r->tip_force[NT_Z]);
+    s->smallest_force = fmin(s->smallest_force, r->tip_force[NT_Z]);
     s->smallest_operator_force = fmin(s->smallest_operator_force, alpha_f * r->slave_force);
     if (r->time > 5.0 && r->time < 6.0) {
-        const double error = r->operator_force - alpha_f * r->slave_force;
+        const double error = r->operator_force[NT_Z] - alpha_f * r->slave_force;
         s->tracking_square += error * error;
         ++s->tracking_count;
     }
@@ -32,7 +32,7 @@ static nt_status run(nt_session *session, const nt_input *input, summary *s)
 {
     static nt_record records[BLOCK];
     const nt_touch *touch = nt_session_touch(session);
-    nt_status status = nt_session_aim(session, input);
+    nt_status status = nt_session_aim(session, input, NULL);
     long left = lround(input->duration / touch->period);
     while (status == NT_OK && left > 0) {
         const long ticks = left < BLOCK ? left : BLOCK;
@@ -57,9 +57,9 @@ int main(void)
         return 1;
     }
     const nt_input script[] = {
-        {.operator_force = 0.2, .duration = 0.5},  {.operator_force = 0.2, .duration = 2.5},  /* approach */
-        {.operator_force = 2.0, .duration = 1.5},  {.operator_force = 2.0, .duration = 1.5},  /* press */
-        {.operator_force = -0.3, .duration = 3.0}, {.operator_force = -0.3, .duration = 1.0}, /* retract */
+        {.operator_force[NT_Z] = 0.2, .duration = 0.5},  {.operator_force[NT_Z] = 0.2, .duration = 2.5},  /* approach */
+        {.operator_force[NT_Z] = 2.0, .duration = 1.5},  {.operator_force[NT_Z] = 2.0, .duration = 1.5},  /* press */
+        {.operator_force[NT_Z] = -0.3, .duration = 3.0}, {.operator_force[NT_Z] = -0.3, .duration = 1.0}, /* retract */
     };
     summary s = {0};
     for (size_t i = 0; i < sizeof script / sizeof script[0] && status == NT_OK; ++i)

@@ -35,7 +35,9 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     const double ringing = ringing_amplitude(&rig->stage, shape.gains.stage_damping, vertical);
     const double step = probe->sensitivity * probe->resolution;
     const double sigma = nt_probe_force_noise(probe) / probe->spring_constant;
-    nt_guarantee found = {.reaction_time = nt_margins_compute(&shape.rig, &shape.gains, hazard->stiffness).loop_delay};
+    nt_rig slave = shape.rig;
+    slave.master.rate = 0.0; /* a slow master takes no part in a stop */
+    nt_guarantee found = {.reaction_time = nt_margins_compute(&slave, &shape.gains, hazard->stiffness).loop_delay};
     const double closer = (vertical + hazard->slope * limits->lateral_speed) * found.reaction_time;
     found.motion = k_eff * closer;
     found.ringing = k_eff * ringing;

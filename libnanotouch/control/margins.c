@@ -31,9 +31,16 @@ static double hop_delay(const nt_rig *rig, const nt_gains *gains)
     return 0.5 / gains->rate + nt_sampled_dead_time(rig, gains);
 }
 
+/* Round the slave: from the stage's command to the reading of the force. */
+static double slave_delay(const nt_rig *rig, const nt_gains *gains)
+{
+    return hop_delay(rig, gains) + stage_lag(&rig->stage, gains);
+}
+
+/* The whole loop, with what a slow master holds: its reading, and the motor's force. */
 static double loop_delay(const nt_rig *rig, const nt_gains *gains)
 {
-    return 2.0 * hop_delay(rig, gains) + stage_lag(&rig->stage, gains);
+    return hop_delay(rig, gains) + slave_delay(rig, gains) + 2.0 * nt_sampled_master_hold(rig, gains);
 }
 
 /* Standard deviation of the gauge behind the low-pass y += c (u - y), which passes c/(2 - c) of the variance. */
@@ -46,7 +53,8 @@ static double filtered_gauge_noise(const nt_master *master, const nt_gains *gain
 /* R2: v[k+1] = v[k] - (K_f b_h T/m) v[k-d] turns over at 2 sin(pi/(4 d + 2)). */
 static double pad_limit(const nt_rig *rig, const nt_gains *gains)
 {
-    const double delay = nt_sampled_dead_time(rig, gains) * gains->rate; /* [periods] */
+    const double dead_time = nt_sampled_dead_time(rig, gains) + nt_sampled_master_hold(rig, gains);
+    const double delay = dead_time * gains->rate; /* [periods] */
     return rig->master.mass * gains->rate / rig->hand.damping * 2.0 * sin(NT_PI / (4.0 * delay + 2.0));
 }
 
@@ -76,8 +84,10 @@ static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double conta
     margins.stability_limit = rig->master.damping / (margins.loop_delay * lift);
     margins.margin = margins.stability_limit / margins.loop_stiffness;
     const double servo = gains->height_gain * k_r / (gains->alpha_f * gains->alpha_p * rig->probe.spring_constant) *
-                         (margins.loop_delay - hop_delay(rig, gains)); /* integral gain times lag */
-    margins.height_margin = fmin(1.0 / servo, rig->master.damping / (hop_delay(rig, gains) * gains->height_stiffness));
+                         slave_delay(rig, gains); /* integral gain times lag */
+    const double hand_hop = hop_delay(rig, gains) + 2.0 * nt_sampled_master_hold(rig, gains);
+    const double height = rig->master.damping / (hand_hop * gains->height_stiffness);
+    margins.height_margin = rig->master.motor != 0.0 ? fmin(1.0 / servo, height) : 1.0 / servo;
     const nt_sampled_limits limits = nt_sampled_limits_of(loop, K_f, k_r);
     margins.exact_limit = limits.loop_stiffness;
     margins.exact_frequency = limits.angle / (2.0 * NT_PI) * gains->rate;
@@ -104,8 +114,10 @@ static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, cons
         NT_VERDICT(rig->master.max_force / (3.0 * margins->force_noise), "R5 noise"),
         NT_VERDICT(coupling, "virtual coupling"),
     };
-    nt_verdict least = verdicts[0];
-    for (int i = 1; i < (int)(sizeof verdicts / sizeof verdicts[0]); i++)
+    enum { VERDICTS = (int)(sizeof verdicts / sizeof verdicts[0]) };
+    const int first = rig->master.motor != 0.0 ? 0 : VERDICTS - 1; /* without a motor no loop closes through the hand */
+    nt_verdict least = verdicts[first];
+    for (int i = first + 1; i < VERDICTS; i++)
         if (!(verdicts[i].margin >= least.margin))
             least = verdicts[i];
     return least;
@@ -128,7 +140,9 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
         return (nt_verdict)NT_VERDICT(INFINITY, "none");
     if (mode != NT_MODE_TOUCH)
         return (nt_verdict)NT_VERDICT(margins->height_margin, "height servo");
-    const double coupling = nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness, margins->loop_delay);
+    const double coupling =
+        nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness,
+                                 hop_delay(&shape.rig, &shape.gains) + slave_delay(&shape.rig, &shape.gains));
     const nt_verdict stage = NT_VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
     const nt_verdict touch = judge_touch(margins, &shape.rig, &shape.gains, coupling);
     return stage.margin >= touch.margin ? touch : stage;

@@ -18,10 +18,10 @@
 
 void nt_tare_apply(const nt_tare *tare, const nt_probe *probe, nt_sample *sample)
 {
-    if (fabs(sample->deflection) >= nt_probe_deflection_range(probe))
+    if (fabs(sample->deflection[NT_Z]) >= nt_probe_deflection_range(probe))
         sample->flags |= NT_SAMPLE_SATURATED;
-    sample->deflection -= tare->deflection;
-    sample->operator_force -= tare->operator_force;
+    sample->deflection[NT_Z] -= tare->deflection;
+    sample->operator_force[NT_Z] -= tare->operator_force;
 }
 
 nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings)
@@ -43,8 +43,8 @@ nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings)
 static int is_good(const nt_preflight *preflight, const nt_sample *sample)
 {
     const int measures_hand = preflight->rig.master.gauge != 0.0;
-    return sample->flags == 0u && isfinite(sample->deflection) && isfinite(sample->stage_position) &&
-           (!measures_hand || isfinite(sample->operator_force));
+    return sample->flags == 0u && isfinite(sample->deflection[NT_Z]) && isfinite(sample->stage_position[NT_Z]) &&
+           (!measures_hand || isfinite(sample->operator_force[NT_Z]));
 }
 
 static nt_preflight_verdict judge(nt_preflight_state *state, double value, double limit, nt_preflight_verdict bad)
@@ -83,10 +83,10 @@ static nt_preflight_verdict judge_tare(const nt_preflight *preflight, nt_preflig
 static void weigh(const nt_preflight *preflight, nt_preflight_state *state, const nt_sample *sample)
 {
     nt_tare *sum = &state->sums[state->tick >= preflight->ticks];
-    sum->deflection += sample->deflection;
+    sum->deflection += sample->deflection[NT_Z];
     if (preflight->rig.master.gauge != 0.0)
-        sum->operator_force += sample->operator_force;
-    state->rest += sample->stage_position;
+        sum->operator_force += sample->operator_force[NT_Z];
+    state->rest += sample->stage_position[NT_Z];
 }
 
 /* Where the stage shall be `tick` ticks after the tare: back, wait, forth, wait. */
@@ -134,10 +134,10 @@ nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflig
     if (state->tick + 1u == tare)
         state->verdict = judge_tare(preflight, state);
     if (state->tick >= tare + 2u * move - move / 2u && state->tick < tare + 2u * move)
-        state->lifted += sample->stage_position;
+        state->lifted += sample->stage_position[NT_Z];
     if (state->tick + 1u == tare + 2u * move)
         state->verdict = judge_move(preflight, state);
-    command->stage_position = state->tick < tare ? 0.0 : drawn_back(preflight, state->tick - tare + 1u);
+    command->stage_position[NT_Z] = state->tick < tare ? 0.0 : drawn_back(preflight, state->tick - tare + 1u);
     ++state->tick;
     if (state->verdict == NT_PREFLIGHT_RUNNING && state->tick == tare + 4u * move)
         state->verdict = NT_PREFLIGHT_PASSED;

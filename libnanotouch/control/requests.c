@@ -11,7 +11,7 @@ nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, d
         return NT_E_NOT_FINITE;
     if (duration < 0.0)
         return NT_E_RANGE;
-    const double distance = hypot(x - state->command.x, y - state->command.y);
+    const double distance = hypot(x - state->command.stage_position[NT_X], y - state->command.stage_position[NT_Y]);
     state->target_x = x;
     state->target_y = y;
     state->target_time = greater(duration, distance / touch->settings.limits.lateral_speed);
@@ -28,8 +28,9 @@ nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
     state->passivity.energy = 0.0;
     state->retracted = 0.0;
     state->phase = NT_PHASE_DOWN;
-    state->target_x = state->command.x; /* the path that a stop has cut short does not go on by itself */
-    state->target_y = state->command.y;
+    state->target_x =
+        state->command.stage_position[NT_X]; /* the path that a stop has cut short does not go on by itself */
+    state->target_y = state->command.stage_position[NT_Y];
     state->target_time = 0.0;
     return NT_OK;
 }

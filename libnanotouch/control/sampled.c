@@ -80,6 +80,11 @@ double nt_sampled_dead_time(const nt_rig *rig, const nt_gains *gains)
     return gains->delay * T + converters->adc_latency + repeats + converters->dac_latency;
 }
 
+double nt_sampled_master_hold(const nt_rig *rig, const nt_gains *gains)
+{
+    return rig->master.rate > 0.0 ? fmax(0.0, 1.0 / rig->master.rate - 1.0 / gains->rate) : 0.0;
+}
+
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)
 {
     const double T = 1.0 / gains->rate, dead_time = nt_sampled_dead_time(rig, gains);
@@ -87,7 +92,7 @@ nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)
     const nt_hand *hand = &rig->hand;
     nt_sampled_loop loop = {
         .master = nt_sampled_make(rig->master.mass + hand->mass, rig->master.damping + hand->damping, hand->stiffness,
-                                  T, dead_time),
+                                  T, dead_time + 2.0 * nt_sampled_master_hold(rig, gains)),
         .stage = nt_sampled_make(1.0 / (wn * wn), 1.0 / (wn * rig->stage.quality), 1.0, T, dead_time),
         .stage_loop = nt_stage_loop_make(&rig->stage, gains),
         .hand = *hand,

@@ -51,6 +51,8 @@ typedef struct nt_sampled_loop {
     double derivative;   /* K_v [s] */
 } nt_sampled_loop;
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains);
+/* How long a master that is slower than the loop holds its reading, and its motor a force, beyond a period [s]. */
+double nt_sampled_master_hold(const nt_rig *rig, const nt_gains *gains);
 /* Dead time of one hop: computing, conversion [s]. */
 double nt_sampled_dead_time(const nt_rig *rig, const nt_gains *gains);
 

@@ -103,7 +103,8 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
 
 const nt_field *nt_settings_fields(int *count)
 {
-    *count = (int)(sizeof settings_fields / sizeof settings_fields[0]);
+    if (count)
+        *count = (int)(sizeof settings_fields / sizeof settings_fields[0]);
     return settings_fields;
 }
 

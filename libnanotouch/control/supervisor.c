@@ -42,7 +42,8 @@ const char *nt_reason_name(uint32_t reason)
                                         "device lost",
                                         "indentation limit",
                                         "control law gave no number",
-                                        "gain backed off"};
+                                        "gain backed off",
+                                        "stale master"};
     for (uint32_t bit = 0; bit < sizeof names / sizeof *names; ++bit)
         if (reason == 1u << bit)
             return names[bit];
@@ -85,6 +86,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
     const int shows_noise = sigma > step; /* identical codes are normal where the noise is below one step */
     const double travelled = STUCK_STEPS * greater(stage->resolution, LEAST_STAGE_STEP);
     return (nt_supervisor){.period = period,
+                           .master_period = rig->master.rate > 0.0 ? greater(period, 1.0 / rig->master.rate) : period,
                            .spring_constant = probe->spring_constant,
                            .deflection_range = nt_probe_deflection_range(probe),
                            .free_force = probe->spring_constant * (FREE_SIGMA * sigma + step),
@@ -122,10 +124,11 @@ static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
 {
     const double gauge = supervisor->gauge_range;
     return !(sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST)) &&
-           is_within(sample->master_position, supervisor->master_range) &&
-           (gauge == 0.0 || is_within(sample->operator_force, 2.0 * gauge)) &&
-           is_within(sample->stage_position, supervisor->stage_range) && isfinite(sample->deflection) &&
-           isfinite(sample->x) && isfinite(sample->y) && isfinite(sample->age) && sample->age >= 0.0;
+           is_within(sample->master_position[NT_Z], supervisor->master_range) &&
+           (gauge == 0.0 || is_within(sample->operator_force[NT_Z], 2.0 * gauge)) &&
+           is_within(sample->stage_position[NT_Z], supervisor->stage_range) && isfinite(sample->deflection[NT_Z]) &&
+           isfinite(sample->stage_position[NT_X]) && isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) &&
+           sample->age >= 0.0;
 }
 
 static nt_state blame(nt_supervisor_state *state, uint32_t reason, nt_state verdict)
@@ -146,13 +149,13 @@ static nt_state judge_validity(const nt_supervisor *supervisor, nt_supervisor_st
 
 static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const double force = supervisor->spring_constant * sample->deflection;
+    const double force = supervisor->spring_constant * sample->deflection[NT_Z];
     nt_state verdict = NT_RUN;
-    if (sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection) >= supervisor->deflection_range)
+    if (sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection[NT_Z]) >= supervisor->deflection_range)
         verdict = blame(state, NT_REASON_SATURATED, NT_RETRACT);
     if (fabs(force) > supervisor->limits.force)
         verdict = blame(state, NT_REASON_FORCE_LIMIT, NT_RETRACT);
-    if (supervisor->gauge_range > 0.0 && fabs(sample->operator_force) >= supervisor->gauge_range)
+    if (supervisor->gauge_range > 0.0 && fabs(sample->operator_force[NT_Z]) >= supervisor->gauge_range)
         state->reasons |= NT_REASON_OPERATOR_CLIPPED;
     return verdict;
 }
@@ -162,8 +165,8 @@ static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state
 static nt_state judge_indentation(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
                                   int moves_sideways)
 {
-    const double travel = sample->stage_position - sample->deflection; /* of the tip, towards the sample */
-    const int is_free = fabs(supervisor->spring_constant * sample->deflection) <= supervisor->free_force;
+    const double travel = sample->stage_position[NT_Z] - sample->deflection[NT_Z]; /* of the tip, towards the sample */
+    const int is_free = fabs(supervisor->spring_constant * sample->deflection[NT_Z]) <= supervisor->free_force;
     if (is_free || isnan(state->surface))
         state->surface = travel;
     else if (moves_sideways)
@@ -173,10 +176,18 @@ static nt_state judge_indentation(const nt_supervisor *supervisor, nt_supervisor
                                                                : NT_RUN;
 }
 
+/* A hand that is no longer heard of: the stage stays, the force fades. Nothing says that the tip is in danger. */
+static nt_state judge_master_age(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    const double age = sample->master_age; /* below 0: its clock has jumped */
+    const int is_fresh = age >= 0.0 && age <= STALE_HOLD_PERIODS * supervisor->master_period;
+    return !is_fresh ? blame(state, NT_REASON_MASTER_STALE, NT_HOLD) : NT_RUN;
+}
+
 static nt_state judge_age(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     if (sample->age <= STALE_HOLD_PERIODS * supervisor->period)
-        return NT_RUN;
+        return judge_master_age(supervisor, state, sample);
     const int retracts = sample->age > STALE_RETRACT_PERIODS * supervisor->period;
     return blame(state, NT_REASON_STALE, retracts ? NT_RETRACT : NT_HOLD);
 }
@@ -204,14 +215,14 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
 {
     if (supervisor->stuck_distance == 0.0)
         return NT_RUN;
-    const int saturated = fabs(sample->deflection) >= supervisor->deflection_range; /* shows no noise */
-    if (saturated || sample->deflection != state->stuck_deflection) {
-        state->stuck_deflection = sample->deflection;
-        state->stuck_position = sample->stage_position;
+    const int saturated = fabs(sample->deflection[NT_Z]) >= supervisor->deflection_range; /* shows no noise */
+    if (saturated || sample->deflection[NT_Z] != state->stuck_deflection) {
+        state->stuck_deflection = sample->deflection[NT_Z];
+        state->stuck_position = sample->stage_position[NT_Z];
         state->stuck_run = 0;
         return NT_RUN;
     }
-    const int moved = fabs(sample->stage_position - state->stuck_position) > supervisor->stuck_distance;
+    const int moved = fabs(sample->stage_position[NT_Z] - state->stuck_position) > supervisor->stuck_distance;
     if (state->stuck_run < STUCK_SAMPLES || (moved && state->stuck_run < 2u * STUCK_SAMPLES))
         ++state->stuck_run;
     if (state->stuck_run < STUCK_SAMPLES || !moved)
@@ -235,7 +246,7 @@ static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_stat
 {
     const nt_limits *limits = &supervisor->limits;
     const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
-    if (fabs(sample->stage_position - state->expected) <= slack) {
+    if (fabs(sample->stage_position[NT_Z] - state->expected) <= slack) {
         state->off_run = 0;
         return NT_RUN;
     }
@@ -268,7 +279,7 @@ static nt_state judge_motion(const nt_supervisor *supervisor, nt_supervisor_stat
 {
     if (sample->age > STALE_HOLD_PERIODS * supervisor->period)
         return NT_RUN;
-    const nt_state growth = judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection);
+    const nt_state growth = judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection[NT_Z]);
     return worse(growth, judge_follow(supervisor, state, sample));
 }
 
@@ -280,10 +291,11 @@ static nt_state judge_remains(const nt_supervisor *supervisor, nt_supervisor_sta
     if (!is_fresh || sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST))
         return NT_RUN;
     nt_state verdict = NT_RUN;
-    if (is_within(sample->stage_position, supervisor->stage_range))
+    if (is_within(sample->stage_position[NT_Z], supervisor->stage_range))
         verdict = judge_follow(supervisor, state, sample);
-    if (isfinite(sample->deflection))
-        verdict = worse(verdict, judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection));
+    if (isfinite(sample->deflection[NT_Z]))
+        verdict =
+            worse(verdict, judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection[NT_Z]));
     return verdict;
 }
 

@@ -80,6 +80,8 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .period = period,
                      .law = nt_servo_law_of(&settings->control),
                      .stage_loop = nt_stage_loop_make(&rig->stage, &shape.gains),
+                     .leads_sideways = rig->master.axes > 1.0,
+                     .borders = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}},
                      .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),
                      .speed_filter = low_pass_factor(SPEED_BANDWIDTH, period),
@@ -111,8 +113,9 @@ nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, dou
                                         .gain_factor = 1.0},
                             .target_x = x,
                             .target_y = y,
-                            .command = {.x = x, .y = y}};
+                            .command = {.stage_position = {x, y}}};
     state.signals.scaling = state.rescale.now;
+    state.hand_at[NT_X] = state.hand_at[NT_Y] = NAN;  /* until it is seen */
     state.offset = -gains->alpha_p * master_position; /* the stage begins at 0 */
     return state;
 }
@@ -133,11 +136,11 @@ static double without_spike(const nt_touch *touch, nt_touch_state *state, double
 static void follow_motion(const nt_touch *touch, nt_signals *signals, const nt_sample *sample)
 {
     const double rate = touch->settings.gains.rate;
-    signals->master_speed = (sample->master_position - signals->master_position) * rate;
+    signals->master_speed = (sample->master_position[NT_Z] - signals->master_position) * rate;
     signals->smooth_speed += touch->speed_filter * (signals->master_speed - signals->smooth_speed);
-    signals->stage_speed = (sample->stage_position - signals->stage_position) * rate;
-    signals->master_position = sample->master_position;
-    signals->stage_position = sample->stage_position;
+    signals->stage_speed = (sample->stage_position[NT_Z] - signals->stage_position) * rate;
+    signals->master_position = sample->master_position[NT_Z];
+    signals->stage_position = sample->stage_position[NT_Z];
 }
 
 /* A new alpha_p counts from where the master is: no bump. */
@@ -176,14 +179,27 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
     state->signals.gain_factor = passivity->gain;
 }
 
+/* How far the hand has gone sideways since the tip last followed; nothing while they are uncoupled. */
+static void follow_hand_sideways(nt_touch_state *state, const nt_sample *sample)
+{
+    for (int i = NT_X; i < NT_Z; ++i) {
+        const double step = sample->master_position[i] - state->hand_at[i];
+        if (isfinite(step) && state->engaged > 0.0 && !state->clutch_open)
+            state->sideways[i] += step;
+        state->hand_at[i] = sample->master_position[i];
+    }
+}
+
 static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
     nt_signals *signals = &state->signals;
-    const double stage_step = sample->stage_position - signals->stage_position;
+    const double stage_step = sample->stage_position[NT_Z] - signals->stage_position;
     follow_motion(touch, signals, sample);
-    signals->operator_force = touch->rig.master.gauge != 0.0 ? sample->operator_force : 0.0;
+    if (touch->leads_sideways)
+        follow_hand_sideways(state, sample);
+    signals->operator_force = touch->rig.master.gauge != 0.0 ? sample->operator_force[NT_Z] : 0.0;
     signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
-    signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection);
+    signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
     rescale(touch, state);
     if (state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
         watch_energy(touch, state, stage_step);
@@ -191,7 +207,9 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
 
 static int moves_sideways(const nt_touch_state *state)
 {
-    return state->target_x != state->command.x || state->target_y != state->command.y;
+    return state->sideways[NT_X] != 0.0 || state->sideways[NT_Y] != 0.0 ||
+           state->target_x != state->command.stage_position[NT_X] ||
+           state->target_y != state->command.stage_position[NT_Y];
 }
 
 static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
@@ -213,12 +231,36 @@ static double lift_of(const nt_touch *touch, const nt_touch_state *state)
     return state->supervisor.reasons & NT_REASON_STUCK ? PROBE_STEPS * touch->rig.stage.resolution : 0.0;
 }
 
+/* A master of three axes leads the tip sideways, as it presses: from where it was last coupled, no faster than the
+ * lateral limit. */
+static void follow_sideways(const nt_touch *touch, nt_touch_state *state)
+{
+    const double most = touch->settings.limits.lateral_speed * touch->period;
+    double *stage = state->command.stage_position, way[2];
+    for (int i = NT_X; i < NT_Z; ++i)
+        way[i] = state->signals.scaling.alpha_p * state->sideways[i];
+    const double length = hypot(way[NT_X], way[NT_Y]), share = length > most ? most / length : 1.0;
+    for (int i = NT_X; i < NT_Z; ++i) {
+        const double wanted = stage[i] + share * way[i];
+        stage[i] = clamp(wanted, touch->borders[i][0], touch->borders[i][1]);
+        if (stage[i] != wanted)
+            state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
+        state->sideways[i] *= 1.0 - share; /* what is left is owed */
+    }
+    state->target_x = stage[NT_X];
+    state->target_y = stage[NT_Y];
+}
+
 static void move_lateral(const nt_touch *touch, nt_touch_state *state)
 {
+    if (touch->leads_sideways) {
+        follow_sideways(touch, state);
+        return;
+    }
     const double left = state->target_time;
     const double share = left > touch->period ? touch->period / left : 1.0;
-    state->command.x += share * (state->target_x - state->command.x);
-    state->command.y += share * (state->target_y - state->command.y);
+    state->command.stage_position[NT_X] += share * (state->target_x - state->command.stage_position[NT_X]);
+    state->command.stage_position[NT_Y] += share * (state->target_y - state->command.stage_position[NT_Y]);
     state->target_time = greater(0.0, left - touch->period);
 }
 
@@ -251,9 +293,9 @@ static void drive_motor(const nt_touch *touch, nt_touch_state *state, double wan
  * still. */
 static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
-    const double error = state->reference - sample->stage_position;
+    const double error = state->reference - sample->stage_position[NT_Z];
     const int trusted = state->supervisor.state == NT_RUN && fabs(error) <= touch->settings.limits.follow_error;
-    const double measured = trusted ? sample->stage_position : state->reference;
+    const double measured = trusted ? sample->stage_position[NT_Z] : state->reference;
     const double wanted = nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
     const double command = clamp(wanted, -touch->stage_end, touch->stage_end);
     if (command != wanted)
@@ -267,10 +309,10 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     if (state->supervisor.invalid_run == 0)
         observe(touch, state, sample);
     drive_motor(touch, state, act(touch, state));
-    state->command.stage_position = drive_stage(touch, state, sample);
+    state->command.stage_position[NT_Z] = drive_stage(touch, state, sample);
     if (state->passivity.gain < 1.0)
         state->supervisor.reasons |= NT_REASON_BACKED_OFF;
-    state->command.motor_force = state->sent[state->ticks % NT_TOUCH_SENT] = state->motor_force;
+    state->command.motor_force[NT_Z] = state->sent[state->ticks % NT_TOUCH_SENT] = state->motor_force;
     state->command.state = (uint32_t)state->supervisor.state;
     state->command.reasons = state->supervisor.reasons;
     ++state->ticks;

@@ -40,6 +40,10 @@ static const nt_field rig_fields[] = {
     FIELD(master.gauge_range, "N", 1e-3, 1e3, "the strain gauge saturates at +- this"),
     FIELD(master.gauge_noise, "N", 0.0, 1e2, "standard deviation of the strain gauge"),
     FIELD(master.gauge_resolution, "N", 0.0, 1e2, "step of the strain gauge, 0 for none"),
+    FIELD(master.motor, "no|yes", 0.0, 1.0,
+          "whether it can push back; without a motor it is a position device, as a mouse is"),
+    FIELD(master.rate, "Hz", 0.0, 1e6, "rate of its own measurements, 0 for that of the loop"),
+    FIELD(master.axes, "", 1.0, 3.0, "axes that it has: 1 presses, 3 move the tip sideways, too"),
     FIELD(hand.mass, "kg", 0.0, 1e2, "mass m_h that moves with the master"),
     FIELD(hand.damping, "N s/m", 0.0, 1e5, "damping b_h of hand or finger pad"),
     FIELD(hand.stiffness, "N/m", 0.0, 1e7, "stiffness k_h of hand or finger pad"),
@@ -92,6 +96,8 @@ nt_rig nt_rig_defaults(void)
                 .gauge_range = 5.0,
                 .gauge_noise = 0.02 / 6.0, /* the paper's 0.02 N include the noise: peak to peak within one step */
                 .gauge_resolution = 0.02,
+                .motor = 1.0,
+                .axes = 1.0,
             },
     };
 }

@@ -16,19 +16,23 @@ void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target)
 nt_hand_target nt_hand_now(const nt_hand_state *hand)
 {
     const nt_hand_target *from = &hand->from, *to = &hand->to;
-    nt_hand_target now = {.force = to->force, .x = to->x, .y = to->y};
+    nt_hand_target now = *to;
+    now.duration = 0.0;
     if (hand->elapsed < to->duration) {
         const double rest = 1.0 - hand->elapsed / to->duration;
-        now.force -= rest * (to->force - from->force);
-        now.x -= rest * (to->x - from->x);
-        now.y -= rest * (to->y - from->y);
+        for (int i = 0; i < NT_AXES; ++i) {
+            now.force[i] -= rest * (to->force[i] - from->force[i]);
+            now.position[i] -= rest * (to->position[i] - from->position[i]);
+        }
     }
     return now;
 }
 
 double nt_hand_effort(const nt_hand_state *hand)
 {
-    return nt_hand_now(hand).force + hand->random_force;
+    const nt_hand_target *from = &hand->from, *to = &hand->to;
+    const double rest = hand->elapsed < to->duration ? 1.0 - hand->elapsed / to->duration : 0.0;
+    return to->force[NT_Z] - rest * (to->force[NT_Z] - from->force[NT_Z]) + hand->random_force;
 }
 
 void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period, nt_noise *noise)

@@ -1,35 +1,167 @@
-/* SPDX-License-Identifier: BSD-3-Clause */
-#include <stddef.h>
-
+/* SPDX-License-Identifier: BSD-3-Clause
+ * One half of a rig through its backend, and both halves as one sample. */
 #include "nanotouch/hal.h"
 
-nt_status nt_hal_open(nt_hal *hal, const nt_hal_backend *backend, void *context)
+#include <math.h>
+#include <stddef.h>
+
+#include "core/problem.h"
+
+#define ALL_CHANNELS ((1u << NT_READS) - 1u)
+#define LONGEST_PERIOD 1.0 /* between the measurements of a half [s] */
+
+static nt_status check_backend(const nt_backend *backend, nt_half half)
 {
     if (!backend || !backend->read || !backend->write)
         return NT_E_ARGUMENT;
-    if (backend->api_version != NT_HAL_API_VERSION)
+    if (backend->size != sizeof *backend || backend->version != NT_HAL_API_VERSION || backend->half != half)
         return NT_E_UNSUPPORTED;
-    hal->backend = backend;
-    hal->context = context;
     return NT_OK;
 }
 
-nt_status nt_hal_read(nt_hal *hal, nt_sample *sample)
+static nt_status check_capabilities(const nt_capabilities *found, nt_problem *problem)
 {
-    return hal->backend ? hal->backend->read(hal->context, sample) : NT_E_STATE;
+    if (found->axes < 1 || found->axes > NT_AXES)
+        return nt_problem_set(problem, "capabilities.axes", "", found->axes, 1.0, NT_AXES);
+    if (!(found->period >= 0.0 && found->period <= LONGEST_PERIOD))
+        return nt_problem_set(problem, "capabilities.period", "s", found->period, 0.0, LONGEST_PERIOD);
+    if (found->rows < 0 || (found->rows > 0 && !found->channels))
+        return nt_problem_set(problem, "capabilities.rows", "", found->rows, 0.0, found->channels ? HUGE_VAL : 0.0);
+    return NT_OK;
 }
 
-nt_status nt_hal_write(nt_hal *hal, const nt_command *command)
+nt_status nt_hal_open(nt_hal *hal, nt_half half, const nt_hal_choice *choice, const nt_host *host, nt_problem *problem)
 {
-    return hal->backend ? hal->backend->write(hal->context, command) : NT_E_STATE;
+    nt_status status = check_backend(choice->backend, half);
+    if (status != NT_OK)
+        return status;
+    const nt_backend *backend = choice->backend;
+    nt_hal made = {.backend = backend,
+                   .context = choice->context ? choice->context : backend->context,
+                   .capabilities = {.size = sizeof made.capabilities, .can = NT_CAN_FEEL | NT_CAN_PUSH, .axes = 1},
+                   .reading = {.size = sizeof made.reading, .flags = NT_SAMPLE_INVALID}};
+    if (backend->open)
+        status = backend->open(made.context, host, problem);
+    if (status == NT_OK && backend->describe)
+        status = backend->describe(made.context, &made.capabilities);
+    if (status == NT_OK)
+        status = check_capabilities(&made.capabilities, problem);
+    if (status == NT_OK)
+        *hal = made;
+    else if (backend->close)
+        backend->close(made.context);
+    return status;
+}
+
+nt_status nt_hal_configure(nt_hal *hal, const nt_configuration *configuration, nt_problem *problem)
+{
+    if (!hal->backend)
+        return NT_E_STATE;
+    return hal->backend->configure ? hal->backend->configure(hal->context, configuration, problem) : NT_OK;
+}
+
+nt_status nt_hal_arm(nt_hal *hal)
+{
+    if (!hal->backend)
+        return NT_E_STATE;
+    const nt_status status = hal->backend->arm ? hal->backend->arm(hal->context) : NT_OK;
+    hal->is_armed = status == NT_OK;
+    return status;
+}
+
+static void forget(nt_reading *reading, uint32_t flags)
+{
+    for (int i = 0; i < NT_AXES; ++i)
+        reading->position[i] = reading->felt[i] = NAN;
+    reading->flags |= flags;
+    reading->valid = 0;
+}
+
+/* What a half does not call valid is no number, whatever stands there. */
+static void keep_valid(nt_reading *reading)
+{
+    for (int i = 0; i < NT_AXES; ++i) {
+        if (!(reading->valid & 1u << (NT_READS_POSITION + i)))
+            reading->position[i] = NAN;
+        if (!(reading->valid & 1u << (NT_READS_FELT + i)))
+            reading->felt[i] = NAN;
+    }
+}
+
+nt_status nt_hal_read(nt_hal *hal)
+{
+    if (!hal->backend)
+        return NT_E_STATE;
+    const uint64_t sequence = hal->reading.sequence;
+    const nt_status status = hal->backend->read(hal->context, &hal->reading);
+    if (status == NT_E_DEVICE || hal->is_lost)
+        forget(&hal->reading, NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID);
+    else if (hal->reading.sequence < sequence)
+        forget(&hal->reading, NT_SAMPLE_INVALID);
+    else if ((hal->reading.valid & ALL_CHANNELS) != ALL_CHANNELS)
+        keep_valid(&hal->reading);
+    return status == NT_E_DEVICE ? NT_OK : status;
+}
+
+nt_status nt_hal_write(nt_hal *hal, const nt_action *action)
+{
+    if (!hal->backend)
+        return NT_E_STATE;
+    const nt_status status = hal->backend->write(hal->context, action);
+    hal->is_lost = status == NT_E_DEVICE;
+    return hal->is_lost ? NT_OK : status;
+}
+
+void nt_hal_disarm(nt_hal *hal)
+{
+    if (!hal->backend || !hal->is_armed)
+        return;
+    if (hal->backend->disarm)
+        hal->backend->disarm(hal->context);
+    hal->is_armed = 0;
 }
 
 void nt_hal_close(nt_hal *hal)
 {
     if (!hal || !hal->backend)
         return;
+    nt_hal_disarm(hal);
     if (hal->backend->close)
         hal->backend->close(hal->context);
     hal->backend = NULL;
     hal->context = NULL;
+}
+
+static double seconds_between(int64_t from, int64_t to)
+{
+    return (double)(to - from) / 1e9;
+}
+
+nt_sample nt_hal_sample(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now)
+{
+    const nt_reading *hand = &master->reading, *probe = &slave->reading;
+    nt_sample sample = {.tick = tick,
+                        .age = seconds_between(probe->time, now),
+                        .master_age = seconds_between(hand->time, now),
+                        .lateness = hand->lateness > probe->lateness ? hand->lateness : probe->lateness,
+                        .flags = hand->flags | probe->flags};
+    for (int i = 0; i < NT_AXES; ++i) {
+        sample.master_position[i] = hand->position[i];
+        sample.operator_force[i] = hand->felt[i];
+        sample.stage_position[i] = probe->position[i];
+        sample.deflection[i] = probe->felt[i];
+    }
+    return sample;
+}
+
+nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command, nt_action *action)
+{
+    action->state = command->state;
+    for (int i = 0; i < NT_AXES; ++i)
+        action->target[i] = command->motor_force[i];
+    const nt_status status = nt_hal_write(master, action);
+    for (int i = 0; i < NT_AXES; ++i)
+        action->target[i] = command->stage_position[i];
+    const nt_status second = nt_hal_write(slave, action);
+    return status == NT_OK ? second : status;
 }

@@ -1,72 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A session running: one period after another, requests between them, and what may be read of it. No heap. */
+ * A session running: one period after another, and what may be read of it. No heap, no lock. */
 #include <math.h>
 
 #include "session/state.h"
-
-nt_status nt_session_aim(nt_session *session, const nt_input *input)
-{
-    if (!isfinite(input->operator_force) || !isfinite(input->x) || !isfinite(input->y) || !isfinite(input->duration))
-        return NT_E_NOT_FINITE;
-    if (input->duration < 0.0)
-        return NT_E_RANGE;
-    if (session->plan.surface && !nt_surface_contains(session->plan.surface, input->x, input->y))
-        return NT_E_RANGE;
-    nt_mailbox_post(&session->mailbox, input);
-    return NT_OK;
-}
-
-static nt_status take_input(nt_session *session)
-{
-    nt_input input;
-    if (!nt_mailbox_take(&session->mailbox, &input))
-        return NT_OK;
-    const nt_hand_target target = {.force = input.operator_force, .duration = input.duration};
-    nt_sim_aim_hand(&session->sim, &target);
-    return nt_touch_aim(&session->touch, &session->touch_state, input.x, input.y, input.duration);
-}
-
-static nt_record record_of(const nt_session *session, const nt_sample *sample, const nt_command *command,
-                           const nt_truth *truth)
-{
-    const uint64_t tick = session->touch_state.ticks - 1u;
-    nt_record record = {.tick = tick,
-                        .time = (double)tick * session->touch.period,
-                        .x = sample->x,
-                        .y = sample->y,
-                        .master_position = sample->master_position,
-                        .operator_force = sample->operator_force,
-                        .stage_position = sample->stage_position,
-                        .stage_command = command->stage_position,
-                        .deflection = sample->deflection,
-                        .slave_force = session->touch.rig.probe.spring_constant * sample->deflection,
-                        .age = sample->age,
-                        .lateness = sample->lateness,
-                        .flags = sample->flags,
-                        .phase = (uint32_t)session->touch_state.phase,
-                        .motor_force = command->motor_force,
-                        .gap = truth->gap,
-                        .tip_force = truth->tip_force,
-                        .contact_radius = truth->contact_radius,
-                        .surface_height = truth->surface_height,
-                        .state = command->state,
-                        .reasons = command->reasons};
-    return record;
-}
-
-/* What stands in for a sample that a device did not give. */
-static void lose_device(nt_session *session, nt_sample *sample)
-{
-    const nt_sample lost = {.tick = sample->tick,
-                            .master_position = NAN,
-                            .operator_force = NAN,
-                            .stage_position = NAN,
-                            .deflection = NAN,
-                            .x = session->touch_state.command.x,
-                            .y = session->touch_state.command.y,
-                            .flags = NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID};
-    *sample = lost;
-}
 
 /* The button is held, or has been pressed since the last tick: no press is lost to a quick release. */
 enum { STOP_HELD = 1, STOP_UNSEEN = 2 };
@@ -87,125 +23,192 @@ void nt_session_emergency_stop(nt_session *session, int pressed)
         atomic_fetch_and(&session->stop, ~(unsigned)STOP_HELD);
 }
 
-/* A device that fails is the supervisor's matter; a simulation that fails is an error. */
-static nt_status read_device(nt_session *session, nt_sample *sample)
+static void take_input(nt_session *session)
 {
-    const nt_status status = nt_hal_read(&session->hal, sample);
-    if (status == NT_E_DEVICE || (status == NT_OK && session->device_lost)) {
-        lose_device(session, sample);
-        return NT_OK;
+    nt_input input;
+    if (!nt_mailbox_take(&session->mailbox, &input))
+        return;
+    if (session->simulates[NT_HALF_MASTER]) {
+        nt_hand_target target = {.holds = input.holds, .duration = input.duration};
+        for (int i = 0; i < NT_AXES; ++i) {
+            target.force[i] = input.operator_force[i];
+            target.position[i] = input.master_position[i];
+        }
+        nt_sim_aim_hand(&session->sim.master, &target);
     }
+    if (isnan(input.x))
+        return;
+    const nt_event event = {.kind = NT_EVENT_AIM, .value = {input.x, input.y, input.duration}};
+    if (nt_touch_aim(&session->now->touch, &session->touch_state, input.x, input.y, input.duration) == NT_OK)
+        (void)nt_session_keep_event(session, &event);
+}
+
+static nt_record record_of(const nt_session *session, const nt_sample *sample, const nt_command *command,
+                           const nt_truth *truth)
+{
+    const nt_touch *touch = &session->now->touch;
+    const uint64_t tick = session->touch_state.ticks - 1u;
+    nt_record record = {.tick = tick,
+                        .time = (double)tick * touch->period,
+                        .slave_force = touch->rig.probe.spring_constant * sample->deflection[NT_Z],
+                        .gap = truth->gap,
+                        .contact_radius = truth->contact_radius,
+                        .surface_height = truth->surface_height,
+                        .age = sample->age,
+                        .master_age = sample->master_age,
+                        .lateness = sample->lateness,
+                        .flags = sample->flags,
+                        .phase = (uint32_t)session->touch_state.phase,
+                        .state = command->state,
+                        .reasons = command->reasons};
+    for (int i = 0; i < NT_AXES; ++i) {
+        record.master_position[i] = sample->master_position[i];
+        record.operator_force[i] = sample->operator_force[i];
+        record.stage_position[i] = sample->stage_position[i];
+        record.stage_command[i] = command->stage_position[i];
+        record.deflection[i] = sample->deflection[i];
+        record.motor_force[i] = command->motor_force[i];
+        record.tip_force[i] = truth->tip_force[i];
+    }
+    return record;
+}
+
+/* Without a clock of the machine, time is ticks times period, as the simulated halves count it. */
+static int64_t time_of(const nt_session *session, uint64_t tick)
+{
+    if (session->clock)
+        return session->clock();
+    return llround((double)(session->flights + tick) * session->now->touch.period * 1e9);
+}
+
+nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sample)
+{
+    session->time = time_of(session, tick);
+    nt_status status = nt_hal_read(&session->master);
     if (status == NT_OK)
-        nt_tare_apply(&session->tare, &session->touch.rig.probe, sample);
+        status = nt_hal_read(&session->slave);
+    *sample = nt_hal_sample(&session->master, &session->slave, tick, session->time);
     return status;
 }
 
-static nt_status read_sample(nt_session *session, nt_sample *sample)
+nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command)
 {
-    const nt_status status = read_device(session, sample);
-    if (status == NT_OK)
-        sample->flags |= take_stop(session);
-    return status;
+    nt_action action = {.size = sizeof action, .tick = tick, .time = session->time};
+    return nt_hal_command(&session->master, &session->slave, command, &action);
 }
 
-static nt_status write_command(nt_session *session, const nt_command *command)
+static const nt_truth unknown = {
+    .gap = NAN, .tip_force = {NAN, NAN, NAN}, .contact_radius = NAN, .surface_height = NAN};
+
+static nt_status keep(nt_session *session, const nt_record *record)
 {
-    const nt_status status = nt_hal_write(&session->hal, command);
-    session->device_lost = status == NT_E_DEVICE; /* shows with the next sample */
-    return session->device_lost ? NT_OK : status;
+    if (session->frames) {
+        const nt_frame frame = nt_session_frame(session, record);
+        nt_frames_publish(session->frames, &frame);
+    }
+    if (!session->records)
+        return NT_OK;
+    const nt_status status = nt_ring_push(&session->ring, record);
+    if (status == NT_OK || !session->may_drop)
+        return status;
+    atomic_fetch_add_explicit(&session->dropped, 1, memory_order_relaxed);
+    return NT_OK;
 }
 
-static nt_status step(nt_session *session)
+static nt_status tick_with(nt_session *session, nt_record *record)
 {
-    nt_sample sample = {.tick = session->touch_state.ticks};
+    nt_sample sample;
     nt_command command;
-    const nt_truth truth = session->sim.truth; /* at the moment of the sample */
-    nt_status status = take_input(session);
-    if (status == NT_OK)
-        status = read_sample(session, &sample);
+    if (session->frames)
+        nt_session_take_clients(session);
+    nt_session_take_calls(session);
+    take_input(session);
+    const nt_truth truth = session->simulates[NT_HALF_SLAVE] ? session->sim.slave.truth : unknown; /* at this moment */
+    const uint64_t tick = session->touch_state.ticks;
+    const nt_status status = nt_session_sample(session, tick, &sample);
     if (status != NT_OK)
         return status;
-    nt_touch_step(&session->touch, &session->touch_state, &sample, &command);
-    const nt_record record = record_of(session, &sample, &command, &truth);
-    status = nt_ring_push(&session->ring, &record);
-    return status == NT_OK ? write_command(session, &command) : status;
+    nt_tare_apply(&session->tare, &session->now->touch.rig.probe, &sample);
+    sample.flags |= take_stop(session);
+    if (session->clock)
+        sample.lateness = session->lateness;
+    nt_touch_step(&session->now->touch, &session->touch_state, &sample, &command);
+    *record = record_of(session, &sample, &command, &truth);
+    const nt_status kept = keep(session, record);
+    return kept == NT_OK ? nt_session_write(session, tick, &command) : kept;
+}
+
+nt_status nt_session_tick(nt_session *session)
+{
+    nt_record record;
+    return tick_with(session, &record);
+}
+
+static nt_status check_free(const nt_session *session, long ticks)
+{
+    if (ticks < 0)
+        return NT_E_RANGE;
+    if (nt_session_is_running(session))
+        return NT_E_STATE;
+    if (session->records && (size_t)ticks > session->ring.capacity - nt_ring_count(&session->ring))
+        return NT_E_CAPACITY;
+    return nt_session_check_pace(session, NT_PACE_FREE);
 }
 
 nt_status nt_session_advance(nt_session *session, long ticks)
 {
-    if (ticks < 0)
-        return NT_E_RANGE;
-    if ((size_t)ticks > session->ring.capacity - nt_ring_count(&session->ring))
-        return NT_E_CAPACITY;
-    nt_status status = NT_OK;
-    for (long i = 0; i < ticks && status == NT_OK; ++i)
-        status = step(session);
+    nt_status status = check_free(session, ticks);
+    for (long i = 0; i < ticks && status == NT_OK; ++i) {
+        if (session->frames)
+            nt_session_serve_clients(session); /* no thread does it here */
+        status = nt_session_tick(session);
+    }
+    return status;
+}
+
+nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *frame)
+{
+    nt_record record;
+    nt_status status = check_free(session, 1);
+    if (status == NT_OK && input)
+        status = nt_session_aim(session, input, NULL);
+    if (status == NT_OK)
+        status = tick_with(session, &record);
+    if (status == NT_OK)
+        *frame = nt_session_frame(session, &record);
     return status;
 }
 
 long nt_session_read(nt_session *session, nt_record *records, long count)
 {
-    return count > 0 ? (long)nt_ring_pop(&session->ring, records, (size_t)count) : 0;
+    return session->records && count > 0 ? (long)nt_ring_pop(&session->ring, records, (size_t)count) : 0;
 }
 
-nt_status nt_session_arm(nt_session *session, int confirmed)
+long nt_session_read_events(nt_session *session, nt_event *events, long count)
 {
-    return nt_touch_arm(&session->touch_state, confirmed);
-}
-
-/* Would the loop be armed in this mode, with these scales? */
-static int is_allowed(const nt_session *session, nt_mode mode, const nt_scaling *scaling)
-{
-    nt_settings settings = session->touch.settings;
-    settings.gains.alpha_p = scaling->alpha_p;
-    settings.gains.alpha_f = scaling->alpha_f;
-    nt_margins margins;
-    return nt_session_allows(session, nt_session_judge(session, &settings, mode, &margins).margin);
-}
-
-nt_status nt_session_set_mode(nt_session *session, nt_mode mode)
-{
-    if (mode > NT_MODE_CURVE)
-        return NT_E_ARGUMENT;
-    if (!is_allowed(session, mode, &session->touch_state.rescale.wanted))
-        return NT_E_RANGE;
-    return nt_touch_set_mode(&session->touch_state, mode);
-}
-
-nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling)
-{
-    if (isfinite(scaling->alpha_p) && isfinite(scaling->alpha_f) && scaling->alpha_p > 0.0 && scaling->alpha_f > 0.0 &&
-        !is_allowed(session, session->touch_state.wanted_mode, scaling))
-        return NT_E_RANGE;
-    return nt_touch_rescale(&session->touch_state, scaling);
-}
-
-void nt_session_clutch(nt_session *session, int open)
-{
-    nt_touch_clutch(&session->touch_state, open);
-}
-
-nt_status nt_session_inject(nt_session *session, const nt_fault *fault)
-{
-    nt_fault shifted = *fault;
-    if (fault->start < 0.0)
-        return NT_E_RANGE;
-    shifted.start += (double)session->first_tick * session->sim.period;
-    return nt_sim_inject(&session->sim, &shifted);
+    return count > 0 ? (long)nt_ring_pop(&session->events, events, (size_t)count) : 0;
 }
 
 int nt_session_is_dynamic(const nt_session *session)
 {
-    return session->sim.dynamic;
+    return session->simulates[NT_HALF_SLAVE] && session->sim.slave.dynamic;
 }
 
+const nt_capabilities *nt_session_capabilities(const nt_session *session, nt_half half)
+{
+    return half == NT_HALF_MASTER ? &session->master.capabilities : &session->slave.capabilities;
+}
+const nt_session_setup *nt_session_setup_of(const nt_session *session)
+{
+    return &session->now->setup;
+}
 const nt_plan *nt_session_plan(const nt_session *session)
 {
-    return &session->plan;
+    return nt_terrain_plan(session->now->terrain);
 }
 const nt_touch *nt_session_touch(const nt_session *session)
 {
-    return &session->touch;
+    return &session->now->touch;
 }
 const nt_touch_state *nt_session_touch_state(const nt_session *session)
 {
@@ -213,7 +216,7 @@ const nt_touch_state *nt_session_touch_state(const nt_session *session)
 }
 nt_guarantee nt_session_guarantee(const nt_session *session)
 {
-    return session->guarantee;
+    return session->now->guarantee;
 }
 nt_tare nt_session_tare(const nt_session *session)
 {
@@ -221,11 +224,15 @@ nt_tare nt_session_tare(const nt_session *session)
 }
 nt_margins nt_session_margins(const nt_session *session)
 {
-    return session->margins;
+    return session->now->margins;
+}
+nt_reach nt_session_reach(const nt_session *session)
+{
+    return session->now->reach;
 }
 double nt_session_start_height(const nt_session *session)
 {
-    return session->sim.start_height;
+    return session->simulates[NT_HALF_SLAVE] ? session->sim.slave.start_height : (double)NAN;
 }
 double nt_session_master_start(const nt_session *session)
 {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Composes plan, simulated rig, touch step and ring; the heap is used in open only. */
+ * Opens and closes a session; the heap is used here and in composition.c only. */
 #include "nanotouch/session.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "core/problem.h"
 #include "session/state.h"
 
 nt_session_setup nt_session_defaults(void)
@@ -16,6 +18,7 @@ nt_session_setup nt_session_defaults(void)
                               .settings = nt_settings_defaults(&rig),
                               .mode = NT_MODE_TOUCH,
                               .clearance = 0.1e-6,
+                              .rise = NAN,
                               .seed = 1,
                               .ring_capacity = 65536,
                               .minimum_margin = 1.5,
@@ -23,94 +26,90 @@ nt_session_setup nt_session_defaults(void)
     return setup;
 }
 
+static nt_status check_start(const nt_session_setup *setup, nt_problem *problem)
+{
+    const nt_surface *surface = setup->surface;
+    const nt_height_map *map = &setup->map;
+    const int is_flat = !surface && !map->heights;
+    const double width = surface ? (double)(surface->nx - 1) * surface->dx : (double)(map->nx - 1) * map->dx;
+    const double height = surface ? (double)(surface->ny - 1) * surface->dy : (double)(map->ny - 1) * map->dy;
+    if (!isfinite(setup->x) || (!is_flat && !(setup->x >= 0.0 && setup->x <= width)))
+        return nt_problem_set(problem, "x", "m", setup->x, is_flat ? -1.0 : 0.0, is_flat ? 1.0 : width);
+    if (!isfinite(setup->y) || (!is_flat && !(setup->y >= 0.0 && setup->y <= height)))
+        return nt_problem_set(problem, "y", "m", setup->y, is_flat ? -1.0 : 0.0, is_flat ? 1.0 : height);
+    return NT_OK;
+}
+
 /* Numbers of the setup that no other check sees; rig and settings have been checked. */
 static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
 {
     if (setup->settings.gains.delay > NT_SIM_DELAY_MAX)
-        return nt_session_refuse(problem, "gains.delay", "periods", setup->settings.gains.delay, 0.0, NT_SIM_DELAY_MAX);
+        return nt_problem_set(problem, "gains.delay", "periods", setup->settings.gains.delay, 0.0, NT_SIM_DELAY_MAX);
     if (!(setup->clearance >= 1e-9 && setup->clearance <= 1e-3))
-        return nt_session_refuse(problem, "clearance", "m", setup->clearance, 1e-9, 1e-3);
-    if (setup->ring_capacity < 2 || setup->ring_capacity > 1L << 26)
-        return nt_session_refuse(problem, "ring_capacity", "", (double)setup->ring_capacity, 2.0, 67108864.0);
+        return nt_problem_set(problem, "clearance", "m", setup->clearance, 1e-9, 1e-3);
+    if (setup->ring_capacity < 0 || setup->ring_capacity == 1 || setup->ring_capacity > 1L << 26)
+        return nt_problem_set(problem, "ring_capacity", "", (double)setup->ring_capacity, 2.0, 67108864.0);
     const double climb = setup->settings.gains.alpha_p * 0.8 * setup->rig.master.travel;
-    if (!(setup->rise >= 0.0 && setup->rise <= setup->clearance + climb))
-        return nt_session_refuse(problem, "rise", "m", setup->rise, 0.0, setup->clearance + climb);
-    if (!(setup->slope >= 0.0 && setup->slope <= 1e3))
-        return nt_session_refuse(problem, "slope", "", setup->slope, 0.0, 1e3);
+    if (!isnan(setup->rise) && !(setup->rise >= 0.0 && setup->rise <= setup->clearance + climb))
+        return nt_problem_set(problem, "rise", "m", setup->rise, 0.0, setup->clearance + climb);
     if (!(setup->minimum_margin >= 0.0))
-        return nt_session_refuse(problem, "minimum_margin", "", setup->minimum_margin, 0.0, INFINITY);
-    if (!isfinite(setup->x))
-        return nt_session_refuse(problem, "x", "m", setup->x, -1.0, 1.0);
-    if (!isfinite(setup->y))
-        return nt_session_refuse(problem, "y", "m", setup->y, -1.0, 1.0);
-    if (setup->surface && !nt_surface_contains(setup->surface, setup->x, setup->y)) {
-        const nt_surface *surface = setup->surface;
-        const double width = (double)(surface->nx - 1) * surface->dx;
-        if (setup->x < 0.0 || setup->x > width)
-            return nt_session_refuse(problem, "x", "m", setup->x, 0.0, width);
-        return nt_session_refuse(problem, "y", "m", setup->y, 0.0, (double)(surface->ny - 1) * surface->dy);
-    }
-    return NT_OK;
+        return nt_problem_set(problem, "minimum_margin", "", setup->minimum_margin, 0.0, INFINITY);
+    if (setup->settings.control.law && setup->settings.control.choice != NT_CONTROL_OWN)
+        return nt_problem_set(problem, "control.choice beside a law of one's own", "default|paper|impedance|own",
+                              (double)setup->settings.control.choice, NT_CONTROL_OWN, NT_CONTROL_OWN);
+    return check_start(setup, problem);
 }
 
-/* Room to press, and room to draw back: a margin, and what the surface rises above the clearance. */
-static double master_start(const nt_session_setup *setup)
+/* Fresh memory gets its pages when it is first written; that shall not be in a control period. */
+static void *take_memory(size_t count, size_t size)
 {
-    const double climb = fmax(0.0, setup->rise - setup->clearance) / setup->settings.gains.alpha_p;
-    return -0.4 * setup->rig.master.travel + climb;
+    volatile unsigned char *bytes = calloc(count, size);
+    for (size_t i = 0; bytes && i < count * size; i += 1024)
+        bytes[i] = 0;
+    return (void *)bytes;
 }
 
-static nt_status make_sim(nt_session *session, const nt_session_setup *setup)
+static nt_status make_rings(nt_session *session, const nt_session_setup *setup)
 {
-    const nt_sim_setup sim = {.plan = &session->plan,
-                              .rig = &setup->rig,
-                              .period = session->touch.period,
-                              .x = setup->x,
-                              .y = setup->y,
-                              .clearance = setup->clearance,
-                              .master_position = master_start(setup),
-                              .seed = setup->seed,
-                              .delay = setup->settings.gains.delay,
-                              .probe_model = setup->probe_model,
-                              .substep = setup->substep,
-                              .faults = setup->faults};
-    const nt_status status = nt_sim_init(&session->sim, &sim);
-    return status == NT_OK ? nt_hal_open(&session->hal, nt_sim_backend(), &session->sim) : status;
+    size_t capacity = 2;
+    while (capacity < (size_t)setup->ring_capacity)
+        capacity *= 2;
+    session->event_memory = take_memory(NT_SESSION_EVENTS, sizeof *session->event_memory);
+    session->client_memory = take_memory(NT_SESSION_CALLS, sizeof *session->client_memory);
+    session->call_memory = take_memory(NT_SESSION_CALLS, sizeof *session->call_memory);
+    if (setup->ring_capacity > 0)
+        session->records = take_memory(capacity, sizeof *session->records);
+    if (!session->event_memory || !session->call_memory || !session->client_memory ||
+        (setup->ring_capacity > 0 && !session->records))
+        return NT_E_NO_MEMORY;
+    nt_mailbox_init(&session->mailbox, session->mailbox_memory, sizeof(nt_input));
+    nt_status status = nt_ring_init(&session->events, session->event_memory, sizeof(nt_event), NT_SESSION_EVENTS);
+    if (status == NT_OK)
+        status = nt_ring_init(&session->calls, session->call_memory, sizeof(nt_call), NT_SESSION_CALLS);
+    if (status == NT_OK)
+        status = nt_ring_init(&session->clients, session->client_memory, sizeof(nt_request), NT_SESSION_CALLS);
+    if (status == NT_OK && session->records)
+        status = nt_ring_init(&session->ring, session->records, sizeof(nt_record), capacity);
+    return status;
 }
 
-static nt_status compose(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
+static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_problem *problem)
 {
-    nt_scene scene = setup->scene;
-    scene.range.maximum_load = setup->settings.limits.force;
-    const nt_plan_inputs inputs = {.scene = &scene,
-                                   .demand = &setup->demand,
-                                   .probe = &setup->rig.probe,
-                                   .surface = setup->surface,
-                                   .radii = setup->radii,
-                                   .bank = setup->bank};
-    nt_status status = nt_touch_make(&session->touch, &setup->rig, &setup->settings, setup->mode, problem);
+    nt_status status = make_rings(session, setup);
     if (status == NT_OK)
-        status = nt_plan_make(&session->plan, &inputs, problem);
+        status = nt_compose(&session->now, setup, NULL, problem);
     if (status == NT_OK)
-        status = nt_session_promise(session, setup, problem);
-    if (status == NT_OK)
-        status = make_sim(session, setup);
-    session->master_start = session->sim.master.position;
+        status = nt_session_open_halves(session, problem);
     if (status == NT_OK && setup->preflight)
         status = nt_session_fly(session, problem);
     if (status != NT_OK)
         return status;
-    session->touch_state = nt_touch_start(&session->touch, session->master_start, setup->x, setup->y);
-    nt_mailbox_init(&session->mailbox, session->mailbox_memory, sizeof(nt_input));
+    session->touch_state = nt_touch_start(&session->now->touch, session->master_start, setup->x, setup->y);
+    session->asked_mode = setup->mode;
+    session->master_travel = setup->rig.master.travel;
+    memcpy(session->borders, session->now->touch.borders, sizeof session->borders);
+    session->asked_scaling = (nt_scaling){setup->settings.gains.alpha_p, setup->settings.gains.alpha_f};
     return NT_OK;
-}
-
-/* Fresh memory gets its pages when it is first written; that shall not be in a control period. */
-static void touch_pages(void *memory, size_t size)
-{
-    volatile unsigned char *bytes = memory;
-    for (size_t i = 0; i < size; i += 1024)
-        bytes[i] = 0;
 }
 
 nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem)
@@ -124,22 +123,10 @@ nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, n
         status = check_setup(setup, problem);
     if (status != NT_OK)
         return status;
-    size_t capacity = 2;
-    while (capacity < (size_t)setup->ring_capacity)
-        capacity *= 2;
     nt_session *made = calloc(1, sizeof *made);
     if (!made)
         return NT_E_NO_MEMORY;
-    atomic_init(&made->stop, 0u);
-    made->records = calloc(capacity, sizeof *made->records);
-    if (made->records)
-        touch_pages(made->records, capacity * sizeof *made->records);
-    else
-        status = NT_E_NO_MEMORY;
-    if (status == NT_OK)
-        status = nt_ring_init(&made->ring, made->records, sizeof(nt_record), capacity);
-    if (status == NT_OK)
-        status = compose(made, setup, problem);
+    status = begin(made, setup, problem);
     if (status != NT_OK) {
         nt_session_close(made);
         return status;
@@ -148,11 +135,32 @@ nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, n
     return NT_OK;
 }
 
+nt_status nt_session_publish(nt_session *session, const char *name)
+{
+    if (nt_session_is_running(session) || session->frames)
+        return NT_E_STATE;
+    return nt_frames_create(&session->frames, name);
+}
+
+nt_frames *nt_session_frames(nt_session *session)
+{
+    return session->frames;
+}
+
 void nt_session_close(nt_session *session)
 {
     if (!session)
         return;
-    nt_hal_close(&session->hal);
+    (void)nt_session_halt(session);
+    nt_hal_close(&session->master);
+    nt_hal_close(&session->slave);
+    nt_frames_close(session->frames);
+    nt_composition_close(atomic_load(&session->retired), session->now);
+    nt_composition_close(session->now, NULL);
     free(session->records);
+    free(session->event_memory);
+    free(session->call_memory);
+    free(session->client_memory);
+    free(session->history);
     free(session);
 }

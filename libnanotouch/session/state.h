@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to session/: what a session holds. */
+ * Private to session/: what a session holds, and who may touch it. */
 #ifndef NANOTOUCH_SESSION_STATE_H
 #define NANOTOUCH_SESSION_STATE_H
 
@@ -8,36 +8,146 @@
 #include "core/ring.h"
 #include "nanotouch/session.h"
 
-struct nt_session {
-    nt_plan plan;
+/* All that does not change between two ticks. A change makes another one, outside the loop, and swaps the pointer. */
+typedef struct nt_composition {
+    nt_session_setup setup; /* its pointers are not used after open, but surface and radii */
     nt_touch touch;
-    nt_touch_state touch_state;
-    double master_start; /* [m] */
+    nt_terrain *terrain; /* shared with the composition before where only settings differ */
+    nt_terrain *ground;  /* the first one, which owns the surface of all that follow */
+    nt_reach reach;
     nt_margins margins;
     nt_guarantee guarantee;
-    double minimum_margin;
+} nt_composition;
+
+/* A request on its way into the loop; `next` is the composition that goes with it, or NULL. */
+typedef struct nt_call {
+    uint64_t id; /* of a client's request; 0: of a caller that waits */
+    nt_event event;
+    nt_composition *next;
+    nt_status refused; /* a client's request that could not be prepared */
+} nt_call;
+
+typedef struct nt_runner nt_runner; /* pace.c */
+
+struct nt_session {
+    /* the loop's; of whoever advances */
+    nt_composition *now;
+    nt_touch_state touch_state;
     nt_tare tare;
-    uint64_t first_tick; /* of the rig, after preflight */
-    int device_lost;
+    nt_hal master, slave;
+    int64_t time;           /* of this tick on the halves' clock [ns] */
+    int64_t (*clock)(void); /* hard pace: of the machine; else NULL, and ticks times period count */
+    double lateness;        /* of this tick, hard pace [s] */
+    uint64_t flights;       /* ticks of the preflight */
+    int may_drop;           /* hard pace: a full ring is counted, the loop goes on */
+    nt_sim sim;             /* halves that are simulated */
+    int simulates[2];       /* by nt_half */
+    nt_host host;
+    double master_start, master_travel; /* [m] */
+    double borders[2][2];               /* of the surface, x and y [m]; with master_travel for inputs of any thread */
+    int64_t deadline;                   /* of the next tick before a session is armed, with a real half [ns] */
+    nt_frames *frames;
+    /* between threads */
     atomic_uint stop; /* emergency stop: STOP_HELD, STOP_UNSEEN (run.c) */
-    nt_sim sim;
-    nt_hal hal;
+    atomic_ullong dropped;
     nt_mailbox mailbox;
     nt_input mailbox_memory[3];
-    nt_ring ring;
-    nt_record *records;
+    nt_ring ring, events, calls, clients;
+    nt_record *records; /* NULL: nothing is recorded */
+    nt_event *event_memory;
+    nt_call *call_memory;
+    nt_request *client_memory;
+    _Atomic(nt_composition *) retired; /* out of the loop's hands, to be freed by who made the next */
+    atomic_flag asking;                /* one thread prepares and asks at a time */
+    atomic_int call_status;            /* of the caller that waits: CALL_WAITING until it has been done */
+    nt_runner *runner;                 /* NULL: no thread */
+    struct nt_history *history;        /* NULL: none is kept */
+    /* of who makes requests */
+    nt_mode asked_mode;
+    nt_scaling asked_scaling;
 };
 
-/* Names what is wrong, and returns the status for it. */
-nt_status nt_session_refuse(nt_problem *problem, const char *field, const char *unit, double value, double minimum,
-                            double maximum);
+enum { NT_CALL_WAITING = -1, NT_SESSION_EVENTS = 4096, NT_SESSION_CALLS = 64 };
+
+/* --- composition.c --- */
+
+/* Terrain, plan, touch step, margins, guarantee. before: of the session so far, whose terrain serves where only
+ * settings differ; or NULL. */
+nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const nt_composition *before,
+                     nt_problem *problem);
+/* Frees it, and those of its terrains that the other does not use. */
+void nt_composition_close(nt_composition *composition, const nt_composition *other);
+/* Do two setups of one session agree in all that can be changed? */
+int nt_composition_is_same(const nt_session_setup *a, const nt_session_setup *b);
+/* Is this margin enough? A minimum of 0 asks for none. */
+int nt_composition_allows(const nt_composition *composition, double margin);
 /* Of these settings in a mode at the stiffest contact of the plan. */
-nt_verdict nt_session_judge(const nt_session *session, const nt_settings *settings, nt_mode mode, nt_margins *margins);
-/* Is that margin enough? A minimum of 0 asks for none. */
-int nt_session_allows(const nt_session *session, double margin);
-/* Keeps margins and guarantee; refuses below the minimum margin. */
-nt_status nt_session_promise(nt_session *session, const nt_session_setup *setup, nt_problem *problem);
+nt_verdict nt_composition_judge(const nt_composition *composition, const nt_settings *settings, nt_mode mode,
+                                nt_margins *margins);
+
+/* --- halves.c --- */
+
+/* Opens, configures and arms both halves. */
+nt_status nt_session_open_halves(nt_session *session, nt_problem *problem);
+/* May they run at this pace? */
+nt_status nt_session_check_pace(const nt_session *session, nt_pace pace);
 /* Tare and sign test, on the rig's own time. */
 nt_status nt_session_fly(nt_session *session, nt_problem *problem);
+
+/* --- run.c --- */
+
+/* One period. */
+nt_status nt_session_tick(nt_session *session);
+/* Reads both halves as one sample, at the time of this tick. */
+nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sample);
+nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command);
+
+/* --- changes.c, inputs.c: outside the loop --- */
+
+/* Is this request all right? Composes what a change needs, into call->next. */
+nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_problem *problem);
+/* May the tip be sent there? */
+nt_status nt_session_check_place(const nt_session *session, double x, double y, double duration, nt_problem *problem);
+
+/* --- requests.c --- */
+
+/* Hands a prepared call to the loop and waits for it, or does it where nothing runs; takes call->next. */
+nt_status nt_session_ask(nt_session *session, const nt_call *call);
+/* The loop: what has been asked since the last tick is done now. */
+void nt_session_take_calls(nt_session *session);
+nt_status nt_session_keep_event(nt_session *session, const nt_event *event);
+/* The loop: hands a client's request on. And the thread that prepares: does it. */
+void nt_session_take_clients(nt_session *session);
+void nt_session_serve_clients(nt_session *session);
+
+/* --- history.c --- */
+
+typedef struct nt_history nt_history;
+/* Memory for it; nothing where a half is not simulated. */
+nt_status nt_history_make(nt_session *session);
+/* Keeps this moment, if it is one to be kept. */
+void nt_history_keep(nt_session *session);
+/* Goes back to the newest moment that is not after a tick. NT_E_NO_SOLUTION if none is left. */
+nt_status nt_history_back(nt_session *session, uint64_t tick);
+
+/* --- frame.c --- */
+
+nt_frame nt_session_frame(const nt_session *session, const nt_record *record);
+
+/* --- clock.c --- */
+
+int64_t nt_session_machine_time(void); /* [ns] */
+void nt_session_sleep_until(int64_t deadline);
+/* With a real half, before it runs: waits for the next period. */
+void nt_session_keep_time(nt_session *session);
+/* One thread prepares and asks at a time. */
+void nt_session_lock(nt_session *session);
+void nt_session_unlock(nt_session *session);
+
+/* --- pace.c --- */
+
+/* Waits until the loop's thread has done what was asked; NT_E_STATE when it has ended instead. */
+nt_status nt_session_await(nt_session *session);
+int nt_session_is_running(const nt_session *session);
 
 #endif

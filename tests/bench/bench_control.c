@@ -143,11 +143,11 @@ static void report(const char *name, const cost *found, const cost *nothing)
 static nt_session *open_pressed(nt_mode mode)
 {
     nt_session_setup setup = nt_session_defaults();
-    const nt_input input = {.operator_force = 1.0, .duration = 0.5};
+    const nt_input input = {.operator_force[NT_Z] = 1.0, .duration = 0.5};
     nt_session *session = NULL;
     setup.mode = mode;
     setup.clearance = 20e-9;
-    if (nt_session_open(&session, &setup, NULL) != NT_OK || nt_session_aim(session, &input) != NT_OK)
+    if (nt_session_open(&session, &setup, NULL) != NT_OK || nt_session_aim(session, &input, NULL) != NT_OK)
         return NULL;
     for (int i = 0; i < 2; i++)
         if (nt_session_advance(session, TICKS) != NT_OK || nt_session_read(session, records, TICKS) != TICKS)
@@ -157,15 +157,14 @@ static nt_session *open_pressed(nt_mode mode)
 
 static nt_sample sample_of(const nt_record *record)
 {
-    const nt_sample sample = {.tick = record->tick,
-                              .age = record->age,
-                              .master_position = record->master_position,
-                              .operator_force = record->operator_force,
-                              .stage_position = record->stage_position,
-                              .deflection = record->deflection,
-                              .x = record->x,
-                              .y = record->y,
-                              .flags = record->flags};
+    nt_sample sample = {
+        .tick = record->tick, .age = record->age, .master_age = record->master_age, .flags = record->flags};
+    for (int i = 0; i < NT_AXES; i++) {
+        sample.master_position[i] = record->master_position[i];
+        sample.operator_force[i] = record->operator_force[i];
+        sample.stage_position[i] = record->stage_position[i];
+        sample.deflection[i] = record->deflection[i];
+    }
     return sample;
 }
 

@@ -38,7 +38,7 @@ static void run_read(int i)
 static void run_write(int i)
 {
     nt_command command = l.command;
-    command.stage_position += i % 2 ? 0.2e-9 : 0.0;
+    command.stage_position[NT_Z] += i % 2 ? 0.2e-9 : 0.0;
     (void)nt_sim_write(&still, &command);
 }
 
@@ -70,9 +70,10 @@ static nt_status prepare(double force, nt_probe_model model, double substep)
     for (int i = 0; i < 30000 && status == NT_OK; i++)
         status = loop_tick(&l, NULL, NULL);
     if (model == NT_PROBE_DYNAMIC) {
-        l.sim.dynamic = 1;
+        l.sim.slave.dynamic = 1;
         if (status == NT_OK)
-            status = nt_cantilever_model_init(&l.sim.cantilever_model, &l.sim.rig.probe, l.sim.period, substep);
+            status = nt_cantilever_model_init(&l.sim.slave.cantilever_model, &l.sim.slave.link.rig.probe,
+                                              l.sim.slave.link.period, substep);
     }
     still = l.sim;
     return status;

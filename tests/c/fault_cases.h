@@ -105,10 +105,10 @@ static inline void note(const loop *l, outcome *o, int tick)
     if (o->latched == 0 && l->command.state == NT_LATCHED)
         o->latched = tick + 1;
     o->reasons |= l->command.reasons;
-    o->worst_force = larger(o->worst_force, fabs(l->sim.truth.tip_force));
-    o->worst_indentation = larger(o->worst_indentation, -l->sim.truth.gap);
-    o->finite &=
-        isfinite(l->sim.truth.tip_force) && isfinite(l->sim.stage.position) && isfinite(l->sim.master.position);
+    o->worst_force = larger(o->worst_force, fabs(l->sim.slave.truth.tip_force[NT_Z]));
+    o->worst_indentation = larger(o->worst_indentation, -l->sim.slave.truth.gap);
+    o->finite &= isfinite(l->sim.slave.truth.tip_force[NT_Z]) && isfinite(l->sim.slave.stage.position) &&
+                 isfinite(l->sim.master.arm[NT_Z].position);
 }
 
 /* The operator draws back, and presses again. */
@@ -122,9 +122,9 @@ static inline void move_hand(loop *l, int tick)
 
 static inline nt_status observe(loop *l, int time, outcome *o)
 {
-    *o = (outcome){.worst_force = l->sim.truth.tip_force, .finite = 1};
+    *o = (outcome){.worst_force = l->sim.slave.truth.tip_force[NT_Z], .finite = 1};
     const double reference = l->state.reference;
-    double motor = l->command.motor_force;
+    double motor = l->command.motor_force[NT_Z];
     int coupled = 0; /* tick that was last in RUN */
     for (int i = 0; i < time; i++) {
         move_hand(l, i);
@@ -134,8 +134,8 @@ static inline nt_status observe(loop *l, int time, outcome *o)
         note(l, o, i);
         if (l->command.state == NT_RUN)
             coupled = i;
-        o->fastest_motor = larger(o->fastest_motor, fabs(l->command.motor_force - motor));
-        motor = l->command.motor_force;
+        o->fastest_motor = larger(o->fastest_motor, fabs(l->command.motor_force[NT_Z] - motor));
+        motor = l->command.motor_force[NT_Z];
         if (i > coupled + 530)
             o->late_motor = larger(o->late_motor, fabs(motor));
     }
@@ -172,11 +172,11 @@ static inline void start(loop *l, const fault_case *one, const fault_case *other
     const fault_case *const cases[] = {one, other};
     const loop *begun = is_slow(one) ? &pressed_slow : &pressed;
     *l = *begun;
-    l->sim.plan = &begun->plan;
+    l->sim.slave.plan = &begun->plan;
     for (int i = 0; i < 2; i++)
         if (cases[i] != NULL) {
             nt_fault fault = cases[i]->fault;
-            fault.start = (double)l->sim.tick * l->sim.period;
+            fault.start = (double)l->sim.slave.link.tick * l->sim.slave.link.period;
             assert_int_equal(nt_sim_inject(&l->sim, &fault), NT_OK);
         }
 }

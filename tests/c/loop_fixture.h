@@ -15,7 +15,7 @@ typedef struct loop {
 } loop;
 
 /* Rig and settings are those of setup; the scene's plan for the force limit. The loop must not be moved afterwards
- * (sim.plan). */
+ * (sim.slave.plan). */
 static inline nt_status loop_open(loop *l, const nt_session_setup *setup)
 {
     nt_scene scene = setup->scene;
@@ -57,8 +57,8 @@ static inline nt_status loop_tick(loop *l, loop_fault fault, void *context)
 
 static inline void loop_push(loop *l, double force, double duration)
 {
-    const nt_hand_target target = {.force = force, .duration = duration};
-    nt_sim_aim_hand(&l->sim, &target);
+    const nt_hand_target target = {.force = {[NT_Z] = force}, .duration = duration};
+    nt_sim_aim_hand(&l->sim.master, &target);
 }
 
 /* What nt_guarantee has in store for a surface of this slope. */

@@ -62,7 +62,7 @@ static void an_approach_without_a_surface_stops_at_the_end_of_travel(void **stat
     bench_run(&b, 0.0, rig.stage.travel / 20e-6);
     assert_int_equal(b.state.phase, NT_PHASE_DOWN);
     assert_true(b.command.reasons & NT_REASON_COMMAND_LIMITED);
-    assert_true(fabs(b.command.stage_position - 0.5 * rig.stage.travel) < 1e-12);
+    assert_true(fabs(b.command.stage_position[NT_Z] - 0.5 * rig.stage.travel) < 1e-12);
 }
 
 /* Found, then touched: the switch moves nothing, and the hand takes over where the stage stands. */
@@ -126,16 +126,16 @@ static void a_clutch_indexes_the_master_anew(void **state)
     bench b;
     assert_int_equal(bench_open(&b, &rig, &settings, NT_MODE_TOUCH), NT_OK);
     bench_run(&b, 1.0, 4.0);
-    const double stage = b.command.stage_position, x = b.x;
+    const double stage = b.command.stage_position[NT_Z], x = b.x;
     nt_touch_clutch(&b.state, 1);
     b.fastest_motor = 0.0;
     bench_run(&b, -0.5, 0.5);
     assert_true(b.x < x - 1e-3);
-    assert_true(fabs(b.command.stage_position - stage) < 1e-13 && b.command.motor_force == 0.0);
+    assert_true(fabs(b.command.stage_position[NT_Z] - stage) < 1e-13 && b.command.motor_force[NT_Z] == 0.0);
     assert_true(b.fastest_motor < 0.3 && b.command.state == NT_RUN);
     nt_touch_clutch(&b.state, 0);
     bench_run(&b, 1.0, 0.001);
-    assert_true(fabs(b.command.stage_position - stage) < 1e-9);
+    assert_true(fabs(b.command.stage_position[NT_Z] - stage) < 1e-9);
     bench_run(&b, 1.0, 4.0);
     assert_true(fabs(settings.gains.alpha_f * bench_force(&b) - 1.0) < 1e-6);
     assert_int_equal(b.state.passivity.trips, 0);
@@ -178,9 +178,9 @@ static void a_coupling_calms_a_contact_that_is_too_stiff(void **state)
         if (!coupled)
             continue;
         assert_true(fabs(settings.gains.alpha_f * bench_force(&b) - 1.0) < 1e-6); /* the force is true all the same */
-        const double from = b.x, stage = b.command.stage_position;
+        const double from = b.x, stage = b.command.stage_position[NT_Z];
         bench_run(&b, 1.5, 3.0); /* 0.5 N more: softer than the coupling alone */
-        assert_true(b.x - from > 0.5 / 500.0 && b.command.stage_position > stage);
+        assert_true(b.x - from > 0.5 / 500.0 && b.command.stage_position[NT_Z] > stage);
     }
 }
 
@@ -218,7 +218,7 @@ static void a_law_of_ones_own_stands_under_the_same_limits(void **state)
     for (int i = 0; i < 5; i++) {
         bench_tick(&b);
         assert_int_equal(b.command.state, expected[i]);
-        assert_true(isfinite(b.command.motor_force) && isfinite(b.command.stage_position));
+        assert_true(isfinite(b.command.motor_force[NT_Z]) && isfinite(b.command.stage_position[NT_Z]));
     }
     assert_true(b.command.reasons & NT_REASON_LAW);
     assert_true(b.fastest_motor <= settings.limits.motor_rate * b.touch.period * (1.0 + 1e-12));
@@ -240,7 +240,7 @@ static void a_master_without_a_gauge_is_felt_by_impedance(void **state)
     for (int i = 0; i < 80000; i++) {
         b.push = 1.0;
         bench_tick(&b);
-        b.sample.operator_force = NAN;
+        b.sample.operator_force[NT_Z] = NAN;
         assert_int_equal(b.command.state, NT_RUN);
     }
     assert_true(fabs(settings.gains.alpha_f * bench_force(&b) - 1.0) < 1e-6);
@@ -260,15 +260,15 @@ static void a_spike_does_not_reach_the_hand(void **state)
     bench b;
     assert_int_equal(bench_open(&b, &rig, &settings, NT_MODE_TOUCH), NT_OK);
     bench_run(&b, 1.0, 4.0);
-    const double before = b.command.motor_force, normal = b.sample.deflection;
+    const double before = b.command.motor_force[NT_Z], normal = b.sample.deflection[NT_Z];
     nt_sample sample = b.sample;
     for (int i = 0; i < 20; i++) {
-        sample.deflection = i == 5 ? 100e-9 : i < 10 ? normal : normal + 50e-9;
+        sample.deflection[NT_Z] = i == 5 ? 100e-9 : i < 10 ? normal : normal + 50e-9;
         nt_touch_step(&b.touch, &b.state, &sample, &b.command);
         if (i <= 10)
-            assert_true(fabs(b.command.motor_force - before) < 1e-3);
+            assert_true(fabs(b.command.motor_force[NT_Z] - before) < 1e-3);
     }
-    assert_true(b.command.motor_force < before - 1.0);
+    assert_true(b.command.motor_force[NT_Z] < before - 1.0);
 }
 
 int main(void)

@@ -29,13 +29,14 @@ static nt_preflight_state fly(const nt_preflight *preflight, const trouble *wron
     nt_random random = nt_random_seed(4);
     for (long tick = 0; tick < 1000000 && state.verdict == NT_PREFLIGHT_RUNNING; tick++) {
         const double t = (double)tick * preflight->period;
-        const nt_sample sample = {.deflection = wrong->bias + wrong->drift * t + 1e-9 * nt_random_normal(&random),
-                                  .operator_force = 0.02 * round((wrong->hand_bias + wrong->hand_drift * t) / 0.02),
-                                  .stage_position = 1e-9 * round(wrong->gain * command.stage_position / 1e-9),
-                                  .flags = wrong->flags};
+        const nt_sample sample = {
+            .deflection[NT_Z] = wrong->bias + wrong->drift * t + 1e-9 * nt_random_normal(&random),
+            .operator_force[NT_Z] = 0.02 * round((wrong->hand_bias + wrong->hand_drift * t) / 0.02),
+            .stage_position[NT_Z] = 1e-9 * round(wrong->gain * command.stage_position[NT_Z] / 1e-9),
+            .flags = wrong->flags};
         nt_preflight_step(preflight, &state, &sample, &command);
-        *highest = larger(*highest, command.stage_position);
-        assert_true(fabs(command.stage_position) <= preflight->distance * (1.0 + 1e-12));
+        *highest = larger(*highest, command.stage_position[NT_Z]);
+        assert_true(fabs(command.stage_position[NT_Z]) <= preflight->distance * (1.0 + 1e-12));
     }
     return state;
 }
@@ -90,11 +91,12 @@ static void the_tare_is_the_bias(void **state)
     assert_int_equal(found.verdict, NT_PREFLIGHT_PASSED);
     assert_true(fabs(found.tare.deflection + 17e-9) < 5e-9 / sqrt(2.0 * preflight.ticks));
     assert_true(fabs(found.tare.operator_force - 0.3) < 1e-12);
-    nt_sample sample = {.deflection = -17e-9, .operator_force = 1.3};
+    nt_sample sample = {.deflection[NT_Z] = -17e-9, .operator_force[NT_Z] = 1.3};
     nt_tare_apply(&found.tare, &rig.probe, &sample);
-    assert_true(fabs(sample.deflection) < 1e-9 && fabs(sample.operator_force - 1.0) < 1e-12);
+    assert_true(fabs(sample.deflection[NT_Z]) < 1e-9 && fabs(sample.operator_force[NT_Z] - 1.0) < 1e-12);
     assert_int_equal(sample.flags, 0);
-    sample.deflection = nt_probe_deflection_range(&rig.probe); /* saturation is the electronics', not the tare's */
+    sample.deflection[NT_Z] =
+        nt_probe_deflection_range(&rig.probe); /* saturation is the electronics', not the tare's */
     nt_tare_apply(&found.tare, &rig.probe, &sample);
     assert_int_equal(sample.flags, NT_SAMPLE_SATURATED);
 }

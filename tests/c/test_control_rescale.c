@@ -33,21 +33,21 @@ static void a_new_scale_makes_no_bump(void **state)
         bench b;
         open_bench(&b);
         bench_run(&b, 1.0, 6.0);
-        const double stage = b.command.stage_position;
+        const double stage = b.command.stage_position[NT_Z];
         b.fastest_motor = b.fastest_stage = 0.0;
         const nt_scaling wanted = times(&b, factors[i][0], factors[i][1]);
         assert_int_equal(nt_touch_rescale(&b.state, &wanted), NT_OK);
         bench_tick(&b);
-        assert_true(fabs(b.command.stage_position - stage) < 1e-12);
+        assert_true(fabs(b.command.stage_position[NT_Z] - stage) < 1e-12);
         bench_run(&b, 1.0, 12.0);
         /* (1 + K_f) of the force, by one thousandth per period */
         assert_true(b.fastest_motor < 3.0 * 1.5e-3);
         assert_true(fabs(b.state.rescale.now.alpha_p - wanted.alpha_p) < 1e-12 * wanted.alpha_p);
         assert_true(fabs(b.state.rescale.now.alpha_f - wanted.alpha_f) < 1e-12 * wanted.alpha_f);
         assert_true(fabs(wanted.alpha_f * bench_force(&b) - 1.0) < 1e-4); /* f_m = alpha_f f_s */
-        const double from = b.command.stage_position, x = b.x;
+        const double from = b.command.stage_position[NT_Z], x = b.x;
         bench_run(&b, 1.2, 3.0);
-        assert_true(fabs(b.command.stage_position - from - wanted.alpha_p * (b.x - x)) < 1e-11);
+        assert_true(fabs(b.command.stage_position[NT_Z] - from - wanted.alpha_p * (b.x - x)) < 1e-11);
     }
 }
 

@@ -23,7 +23,7 @@ static int make_touch(void **state)
 
 static nt_state step(nt_supervisor_state *state, const nt_sample *sample)
 {
-    const nt_situation situation = {.reference = sample->stage_position};
+    const nt_situation situation = {.reference = sample->stage_position[NT_Z]};
     return nt_supervisor_step(&touch.supervisor, state, sample, &situation);
 }
 
@@ -61,8 +61,8 @@ static void indentation_counts_from_first_touch(void **unused)
         double indentation = 0.0;
         for (double z = 0.0; state.state == NT_RUN && z < 5e-6; z += 1e-9) {
             indentation = larger(0.0, z - surface) / (1.0 + softness);
-            const nt_sample sample = {.stage_position = z,
-                                      .deflection = softness * indentation + 1e-12 * fmod(z, 2e-9)};
+            const nt_sample sample = {.stage_position[NT_Z] = z,
+                                      .deflection[NT_Z] = softness * indentation + 1e-12 * fmod(z, 2e-9)};
             const nt_situation situation = {.reference = z};
             nt_supervisor_step(&touch.supervisor, &state, &sample, &situation);
         }
@@ -74,7 +74,7 @@ static void indentation_counts_from_first_touch(void **unused)
     nt_supervisor_state state = nt_supervisor_start();
     for (int i = 0; i < 3000; i++) { /* the stage draws back by 0.3 um to let the surface rise by 0.3 um, and returns */
         const double hill = 0.3e-6 * sin(i * 1e-3 * 3.14159);
-        const nt_sample sample = {.stage_position = 1e-6 - hill, .deflection = 50e-9 + 1e-12 * (i % 2)};
+        const nt_sample sample = {.stage_position[NT_Z] = 1e-6 - hill, .deflection[NT_Z] = 50e-9 + 1e-12 * (i % 2)};
         const nt_situation situation = {.reference = 1e-6 - hill, .moves_sideways = 1};
         assert_int_equal(nt_supervisor_step(&touch.supervisor, &state, &sample, &situation), NT_RUN);
     }
@@ -104,8 +104,9 @@ typedef struct follower {
 
 static follower at_rest(void)
 {
-    return (follower){
-        .state = nt_supervisor_start(), .sample = {.deflection = 1e-9, .stage_position = 1e-6}, .reference = 1e-6};
+    return (follower){.state = nt_supervisor_start(),
+                      .sample = {.deflection[NT_Z] = 1e-9, .stage_position[NT_Z] = 1e-6},
+                      .reference = 1e-6};
 }
 
 static nt_state follow(follower *in)
@@ -124,8 +125,8 @@ static void a_stage_that_does_not_follow(void **unused)
         follower in = at_rest();
         int held = 0, latched = 0;
         for (int tick = 1; tick < 10000 && latched == 0; tick++) {
-            in.sample.deflection += 1e-12; /* alive */
-            in.sample.stage_position += held ? 0.0 : gains[i] * 10e-6 * touch.period;
+            in.sample.deflection[NT_Z] += 1e-12; /* alive */
+            in.sample.stage_position[NT_Z] += held ? 0.0 : gains[i] * 10e-6 * touch.period;
             in.reference += held ? 0.0 : 10e-6 * touch.period;
             const nt_state found = follow(&in);
             held = found >= NT_HOLD && held == 0 ? tick : held;
@@ -145,15 +146,15 @@ static void a_stage_that_follows_well_enough(void **unused)
     (void)unused;
     follower in = at_rest();
     for (int i = 0; i < 10000; i++) {
-        in.sample.stage_position = in.reference + (i % 50 < 2 ? 2.0 : 0.0) * touch.settings.limits.follow_error;
-        in.sample.deflection += 1e-12;
+        in.sample.stage_position[NT_Z] = in.reference + (i % 50 < 2 ? 2.0 : 0.0) * touch.settings.limits.follow_error;
+        in.sample.deflection[NT_Z] += 1e-12;
         assert_int_equal(follow(&in), NT_RUN);
     }
     in = at_rest();
     for (int i = 0; i < 500; i++) { /* 20 um/s for 50 ms; hysteresis takes 60 nm away, and comes back */
         in.reference += 20e-6 * touch.period;
-        in.sample.stage_position = in.reference - 12e-9 - 60e-9 * sin(3.14159 * i / 500.0);
-        in.sample.deflection += 1e-12;
+        in.sample.stage_position[NT_Z] = in.reference - 12e-9 - 60e-9 * sin(3.14159 * i / 500.0);
+        in.sample.deflection[NT_Z] += 1e-12;
         assert_int_equal(follow(&in), NT_RUN);
     }
 }
@@ -164,14 +165,14 @@ static void a_lift_that_does_not_help_is_given_up(void **unused)
     (void)unused;
     for (int blind = 0; blind < 2; blind++) {
         follower in = at_rest();
-        in.sample.deflection = 100e-9;
+        in.sample.deflection[NT_Z] = 100e-9;
         follow(&in);
         in.sample.flags = NT_SAMPLE_LIMIT_SWITCH;
         int ticks = 0;
         for (; in.state.state != NT_LATCHED && ticks < 1000; ticks++) {
             in.reference -= 1e-9;
-            in.sample.stage_position = blind ? (double)NAN : in.sample.stage_position + 1e-9;
-            in.sample.deflection += 1e-9;
+            in.sample.stage_position[NT_Z] = blind ? (double)NAN : in.sample.stage_position[NT_Z] + 1e-9;
+            in.sample.deflection[NT_Z] += 1e-9;
             follow(&in);
         }
         assert_int_equal(in.state.state, NT_LATCHED);
@@ -184,8 +185,8 @@ static void a_lift_that_does_not_help_is_given_up(void **unused)
     in.sample.flags = NT_SAMPLE_LIMIT_SWITCH;
     for (int i = 0; i < 500; i++) {
         in.reference -= 1e-9;
-        in.sample.stage_position = in.state.expected;
-        in.sample.deflection = i < 60 ? 100e-9 - 2e-9 * i : 1e-10 * (i % 2);
+        in.sample.stage_position[NT_Z] = in.state.expected;
+        in.sample.deflection[NT_Z] = i < 60 ? 100e-9 - 2e-9 * i : 1e-10 * (i % 2);
         assert_int_equal(follow(&in), NT_RETRACT);
     }
 }

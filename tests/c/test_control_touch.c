@@ -29,38 +29,37 @@ static void set_up(rig *r, nt_mode mode)
 {
     const nt_rig paper = nt_rig_defaults();
     const nt_settings settings = nt_settings_defaults(&paper);
-    memset(r, 0, sizeof *r);
+    *r = (rig){.random = nt_random_seed(2)};
     assert_int_equal(nt_touch_make(&r->touch, &paper, &settings, mode, NULL), NT_OK);
     r->state = nt_touch_start(&r->touch, 0.0, 0.0, 0.0);
-    r->random = nt_random_seed(2);
 }
 
 /* One tick: the stage stands where it was told to last, the deflection shows its noise. */
 static void tick(rig *r)
 {
-    const double deflection = r->sample.deflection;
-    r->sample.stage_position = r->command.stage_position;
-    r->sample.deflection += 1e-9 * nt_random_normal(&r->random);
+    const double deflection = r->sample.deflection[NT_Z];
+    r->sample.stage_position[NT_Z] = r->command.stage_position[NT_Z];
+    r->sample.deflection[NT_Z] += 1e-9 * nt_random_normal(&r->random);
     nt_touch_step(&r->touch, &r->state, &r->sample, &r->command);
-    r->sample.deflection = deflection;
-    r->fastest_force = larger(r->fastest_force, fabs(r->command.motor_force - r->last_force));
-    r->fastest_stage = larger(r->fastest_stage, fabs(r->command.stage_position - r->last_stage));
-    r->last_force = r->command.motor_force;
-    r->last_stage = r->command.stage_position;
+    r->sample.deflection[NT_Z] = deflection;
+    r->fastest_force = larger(r->fastest_force, fabs(r->command.motor_force[NT_Z] - r->last_force));
+    r->fastest_stage = larger(r->fastest_stage, fabs(r->command.stage_position[NT_Z] - r->last_stage));
+    r->last_force = r->command.motor_force[NT_Z];
+    r->last_stage = r->command.stage_position[NT_Z];
     r->sample.tick++;
 }
 
 /* Pressing with 2 N against a scaled force of 1.8 N for half a second: engaged, the motor busy. */
 static void press(rig *r)
 {
-    r->sample.operator_force = 2.0;
-    r->sample.deflection = 1.8 / r->touch.settings.gains.alpha_f / r->touch.rig.probe.spring_constant;
+    r->sample.operator_force[NT_Z] = 2.0;
+    r->sample.deflection[NT_Z] = 1.8 / r->touch.settings.gains.alpha_f / r->touch.rig.probe.spring_constant;
     for (int i = 0; i < 5000; i++) {
-        r->sample.master_position += 1e-3 * ONE_TICK; /* slower than the stage can go */
+        r->sample.master_position[NT_Z] += 1e-3 * ONE_TICK; /* slower than the stage can go */
         tick(r);
     }
     assert_int_equal(r->command.state, NT_RUN);
-    assert_true(r->command.motor_force < -1.0);
+    assert_true(r->command.motor_force[NT_Z] < -1.0);
     r->fastest_force = r->fastest_stage = 0.0;
 }
 
@@ -74,8 +73,8 @@ static void the_law_of_motor_and_stage_in_run(void **state)
         tick(&r); /* the master stands: all has settled */
     const nt_gains *gains = &r.touch.settings.gains;
     /* Eq. 17 by hand: -1.8 - 2 (1.8 - 2.0) N; the noise of 1 nm makes (1 + K_f) alpha_f k_c 1 nm = 0.074 N */
-    assert_true(fabs(r.command.motor_force + 1.4) < 5 * 0.075);
-    assert_true(fabs(r.command.stage_position - gains->alpha_p * r.sample.master_position) < 1e-14);
+    assert_true(fabs(r.command.motor_force[NT_Z] + 1.4) < 5 * 0.075);
+    assert_true(fabs(r.command.stage_position[NT_Z] - gains->alpha_p * r.sample.master_position[NT_Z]) < 1e-14);
     assert_int_equal(r.command.reasons, 0);
 }
 
@@ -84,11 +83,11 @@ static void the_force_fades_in(void **state)
     (void)state;
     rig r;
     set_up(&r, NT_MODE_TOUCH);
-    r.sample.deflection = 1.0 / r.touch.settings.gains.alpha_f / r.touch.rig.probe.spring_constant;
+    r.sample.deflection[NT_Z] = 1.0 / r.touch.settings.gains.alpha_f / r.touch.rig.probe.spring_constant;
     for (int i = 1; i <= 1500; i++) { /* 0.1 s by default: in proportion */
         tick(&r);
         const double share = smaller(1.0, i * ONE_TICK / 0.1);
-        assert_true(fabs(r.command.motor_force + 3.0 * share) < 5 * 0.075);
+        assert_true(fabs(r.command.motor_force[NT_Z] + 3.0 * share) < 5 * 0.075);
     }
 }
 
@@ -100,7 +99,7 @@ static void a_stop_fades_the_force_without_a_step(void **state)
         rig r;
         set_up(&r, NT_MODE_TOUCH);
         press(&r);
-        const double before = r.command.motor_force;
+        const double before = r.command.motor_force[NT_Z];
         if (fault == 0)
             r.sample.flags = NT_SAMPLE_EMERGENCY_STOP;
         if (fault == 1)
@@ -108,18 +107,17 @@ static void a_stop_fades_the_force_without_a_step(void **state)
         if (fault == 2)
             r.sample.age = 6.0 * ONE_TICK;
         if (fault == 3)
-            r.sample.operator_force = NAN;
+            r.sample.operator_force[NT_Z] = NAN;
         tick(&r); /* the same tick for 0..2, the second bad sample for 3 */
         assert_int_equal(r.command.state, fault == 0 ? NT_LATCHED : fault == 3 ? NT_HOLD : NT_RETRACT);
         for (int i = 1; i < FADE + 30; i++) {
-            const double was = fabs(r.command.motor_force);
+            const double was = fabs(r.command.motor_force[NT_Z]);
             tick(&r);
             assert_true(r.command.state >= NT_RETRACT);
             /* damping: the speed of 1 mm/s makes 0.05 N at first, and dies away */
-            assert_true(fabs(r.command.motor_force) <= was + 0.06 &&
-                        fabs(r.command.motor_force) <= fabs(before) + 0.06);
+            assert_true(fabs(r.command.motor_force[NT_Z]) <= smaller(was, fabs(before)) + 0.06);
             if (i > FADE)
-                assert_true(r.command.motor_force == 0.0);
+                assert_true(r.command.motor_force[NT_Z] == 0.0);
         }
         assert_true(r.fastest_force <= r.touch.settings.limits.motor_rate * ONE_TICK * (1.0 + 1e-12));
         assert_true(r.fastest_force < 0.1); /* far from a step of 1.4 N */
@@ -132,8 +130,8 @@ static void retract_is_bounded_in_distance_and_speed(void **state)
     rig r;
     set_up(&r, NT_MODE_TOUCH);
     press(&r);
-    const double from = r.state.reference, stage = r.command.stage_position;
-    r.sample.deflection = r.touch.settings.limits.force / r.touch.rig.probe.spring_constant + 10e-9;
+    const double from = r.state.reference, stage = r.command.stage_position[NT_Z];
+    r.sample.deflection[NT_Z] = r.touch.settings.limits.force / r.touch.rig.probe.spring_constant + 10e-9;
     tick(&r);
     assert_int_equal(r.command.state, NT_RETRACT); /* the same tick */
     assert_true(r.state.reference < from);
@@ -141,7 +139,7 @@ static void retract_is_bounded_in_distance_and_speed(void **state)
         tick(&r);
     const nt_limits *limits = &r.touch.settings.limits;
     assert_true(fabs(from - r.state.reference - limits->retract_distance) < 1e-15);
-    assert_true(fabs(stage - r.command.stage_position - limits->retract_distance) < 2e-9);
+    assert_true(fabs(stage - r.command.stage_position[NT_Z] - limits->retract_distance) < 2e-9);
     /* the damped stage loop overshoots a change of speed by 4.6 % of it */
     assert_true(r.fastest_stage < 1.05 * limits->retract_speed * ONE_TICK);
     assert_int_equal(r.command.state, NT_RETRACT); /* and stays until armed */
@@ -162,7 +160,7 @@ static void retract_ends_at_the_end_of_travel(void **state)
         tick(&r);
         assert_true(r.state.reference >= -0.2e-6);
     }
-    assert_true(fabs(r.command.stage_position + 0.2e-6) < 1e-12);
+    assert_true(fabs(r.command.stage_position[NT_Z] + 0.2e-6) < 1e-12);
 }
 
 static void hold_keeps_z(void **state)
@@ -173,13 +171,13 @@ static void hold_keeps_z(void **state)
     press(&r);
     for (int i = 0; i < 2000; i++)
         tick(&r);
-    const double stage = r.command.stage_position;
+    const double stage = r.command.stage_position[NT_Z];
     r.sample.age = 3.0 * ONE_TICK;
     for (int i = 0; i < 1000; i++) {
-        r.sample.master_position += 5e-3 * ONE_TICK; /* the operator moves on, uncoupled */
+        r.sample.master_position[NT_Z] += 5e-3 * ONE_TICK; /* the operator moves on, uncoupled */
         tick(&r);
         assert_int_equal(r.command.state, NT_HOLD);
-        assert_true(fabs(r.command.stage_position - stage) < 1e-13);
+        assert_true(fabs(r.command.stage_position[NT_Z] - stage) < 1e-13);
     }
 }
 
@@ -192,7 +190,7 @@ static void arming_needs_confirmation_and_is_bumpless(void **state)
     press(&r);
     r.sample.flags = NT_SAMPLE_EMERGENCY_STOP;
     for (int i = 0; i < 3000; i++) {
-        r.sample.master_position -= 2e-3 * ONE_TICK;
+        r.sample.master_position[NT_Z] -= 2e-3 * ONE_TICK;
         tick(&r);
         assert_int_equal(r.command.state, NT_LATCHED);
     }
@@ -206,19 +204,19 @@ static void arming_needs_confirmation_and_is_bumpless(void **state)
     assert_int_equal(r.command.reasons, NT_REASON_EMERGENCY_STOP);
     for (int i = 0; i < 3000; i++)
         tick(&r);
-    const double stage = r.command.stage_position, master = r.sample.master_position;
+    const double stage = r.command.stage_position[NT_Z], master = r.sample.master_position[NT_Z];
     r.fastest_force = r.fastest_stage = 0.0;
     assert_int_equal(nt_touch_arm(&r.state, 1), NT_OK);
-    r.sample.deflection = 0.0;
+    r.sample.deflection[NT_Z] = 0.0;
     tick(&r);
     assert_int_equal(r.command.state, NT_RUN);
-    assert_true(fabs(r.command.stage_position - stage) < 1e-13);
+    assert_true(fabs(r.command.stage_position[NT_Z] - stage) < 1e-13);
     for (int i = 0; i < 3000; i++) {
-        r.sample.master_position += 1e-3 * ONE_TICK;
+        r.sample.master_position[NT_Z] += 1e-3 * ONE_TICK;
         tick(&r);
     }
-    const double moved = r.touch.settings.gains.alpha_p * (r.sample.master_position - master);
-    assert_true(fabs(r.command.stage_position - stage - moved) < 0.02 * moved); /* follows from where it stood */
+    const double moved = r.touch.settings.gains.alpha_p * (r.sample.master_position[NT_Z] - master);
+    assert_true(fabs(r.command.stage_position[NT_Z] - stage - moved) < 0.02 * moved); /* follows from where it stood */
     assert_true(r.fastest_stage < 1.1 * moved / 3000 && r.fastest_force < 0.4);
     /* RETRACT needs nobody at the rig */
     r.sample.flags = NT_SAMPLE_LIMIT_SWITCH;
@@ -238,20 +236,23 @@ static void nonsense_never_gets_through(void **state)
         nt_random random = nt_random_seed(17);
         const nt_limits *limits = &r.touch.settings.limits;
         for (int i = 0; i < 100000; i++) {
-            double *fields[] = {&r.sample.age,        &r.sample.master_position, &r.sample.operator_force,
-                                &r.sample.deflection, &r.sample.stage_position,  &r.sample.x};
+            double *fields[] = {&r.sample.age,
+                                &r.sample.master_position[NT_Z],
+                                &r.sample.operator_force[NT_Z],
+                                &r.sample.deflection[NT_Z],
+                                &r.sample.stage_position[NT_Z],
+                                &r.sample.stage_position[NT_X]};
             memset(&r.sample, 0, sizeof r.sample);
             for (int j = 0; j < 6; j++)
                 *fields[j] = nt_random_uniform(&random) < 0.1 ? odd[(int)(9 * nt_random_uniform(&random))]
                                                               : 1e-6 * nt_random_normal(&random);
-            const double before = r.command.stage_position, force = r.command.motor_force;
+            const double before = r.command.stage_position[NT_Z], force = r.command.motor_force[NT_Z];
             nt_touch_step(&r.touch, &r.state, &r.sample, &r.command);
-            assert_true(isfinite(r.command.motor_force) && isfinite(r.command.stage_position));
-            assert_true(fabs(r.command.motor_force) <= limits->motor_force);
-            assert_true(fabs(r.command.motor_force - force) <= limits->motor_rate * ONE_TICK * (1.0 + 1e-12));
-            assert_true(fabs(r.command.stage_position) <= 0.5 * r.touch.rig.stage.travel);
+            assert_true(fabs(r.command.motor_force[NT_Z]) <= limits->motor_force); /* and a number */
+            assert_true(fabs(r.command.motor_force[NT_Z] - force) <= limits->motor_rate * ONE_TICK * (1.0 + 1e-12));
+            assert_true(fabs(r.command.stage_position[NT_Z]) <= 0.5 * r.touch.rig.stage.travel);
             /* the reference goes 2 nm, the integral 0.6 % of a follow error of 0.1 um, the notch overshoots by 5 % */
-            assert_true(fabs(r.command.stage_position - before) < 1.1 * (2e-9 + 0.6e-9));
+            assert_true(fabs(r.command.stage_position[NT_Z] - before) < 1.1 * (2e-9 + 0.6e-9));
             if (i % 50 == 0)
                 assert_int_equal(nt_touch_arm(&r.state, 1), NT_OK);
         }
@@ -267,7 +268,7 @@ static void a_copied_state_gives_the_same_commands(void **state)
     press(&r);
     rig copy = r;
     for (int i = 0; i < 2000; i++) {
-        r.sample.master_position = copy.sample.master_position = 1e-4 * sin(0.01 * i);
+        r.sample.master_position[NT_Z] = copy.sample.master_position[NT_Z] = 1e-4 * sin(0.01 * i);
         tick(&r);
         tick(&copy);
         assert_memory_equal(&r.command, &copy.command, sizeof r.command);
@@ -279,27 +280,28 @@ static void lateral_motion_is_straight_and_limited(void **state)
     (void)state;
     rig r;
     set_up(&r, NT_MODE_TOUCH);
+    const double *at = r.command.stage_position;
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, 3e-6, 4e-6, 1.0), NT_OK); /* 5 um/s */
     for (int i = 1; i <= 12000; i++) {
         tick(&r);
         const double share = smaller(1.0, i * ONE_TICK);
-        assert_true(fabs(r.command.x - 3e-6 * share) < 1e-15 && fabs(r.command.y - 4e-6 * share) < 1e-15);
+        assert_true(fabs(at[NT_X] - 3e-6 * share) < 1e-15 && fabs(at[NT_Y] - 4e-6 * share) < 1e-15);
     }
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, 27e-6, 36e-6, 0.0), NT_OK); /* at once: no, 20 um/s */
     for (int i = 0; i < 10000; i++) {
-        const double x = r.command.x, y = r.command.y;
+        const double x = at[NT_X], y = at[NT_Y];
         tick(&r);
-        assert_true(hypot(r.command.x - x, r.command.y - y) <= 20e-6 * ONE_TICK * (1.0 + 1e-9));
+        assert_true(hypot(at[NT_X] - x, at[NT_Y] - y) <= 20e-6 * ONE_TICK * (1.0 + 1e-9));
     }
     r.sample.flags = NT_SAMPLE_LIMIT_SWITCH; /* half-way: stops, and stays when armed */
     tick(&r);
-    const double stopped_x = r.command.x, stopped = r.command.y;
+    const double stopped_x = r.command.stage_position[NT_X], stopped = r.command.stage_position[NT_Y];
     r.sample.flags = 0;
     assert_int_equal(nt_touch_arm(&r.state, 0), NT_OK);
     for (int i = 0; i < 1000; i++)
         tick(&r);
     assert_int_equal(r.command.state, NT_RUN);
-    assert_true(r.command.x == stopped_x && r.command.y == stopped && stopped < 25e-6);
+    assert_true(at[NT_X] == stopped_x && at[NT_Y] == stopped && stopped < 25e-6);
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, NAN, 0.0, 0.0), NT_E_NOT_FINITE);
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, 0.0, 0.0, HUGE_VAL), NT_E_NOT_FINITE);
     assert_int_equal(nt_touch_aim(&r.touch, &r.state, 0.0, 0.0, -1.0), NT_E_RANGE);
@@ -311,7 +313,7 @@ static void commands_are_limited_and_flagged(void **state)
     (void)state;
     rig r;
     set_up(&r, NT_MODE_TOUCH);
-    r.sample.master_position = 5e-3; /* 0.1 um at once */
+    r.sample.master_position[NT_Z] = 5e-3; /* 0.1 um at once */
     tick(&r);
     assert_int_equal(r.command.state, NT_RUN);
     assert_int_equal(r.command.reasons, NT_REASON_COMMAND_LIMITED);
@@ -319,7 +321,7 @@ static void commands_are_limited_and_flagged(void **state)
     for (int i = 0; i < 100; i++)
         tick(&r);
     assert_int_equal(r.command.reasons, 0);
-    r.sample.operator_force = 5.0; /* the gauge at its range */
+    r.sample.operator_force[NT_Z] = 5.0; /* the gauge at its range */
     tick(&r);
     assert_int_equal(r.command.state, NT_RUN);
     assert_int_equal(r.command.reasons, NT_REASON_OPERATOR_CLIPPED);
@@ -338,15 +340,16 @@ static void topography_holds_the_set_force(void **state)
         if (i > 20000)
             surface = 50e-9 - 30e-9 * smaller(1.0, (i - 20000) * ONE_TICK);
         /* probe 8 N/m in series with the sample's 4 N/m: deflection is a third of the approach */
-        r.sample.deflection = larger(0.0, r.command.stage_position - surface) / 3.0;
+        r.sample.deflection[NT_Z] = larger(0.0, r.command.stage_position[NT_Z] - surface) / 3.0;
         tick(&r);
         if ((i > 15000 && i < 20000) || i > 38000)
-            assert_true(fabs(r.touch.rig.probe.spring_constant * r.sample.deflection - gains->set_point) <
+            assert_true(fabs(r.touch.rig.probe.spring_constant * r.sample.deflection[NT_Z] - gains->set_point) <
                         0.02 * gains->set_point);
     }
     assert_int_equal(r.command.state, NT_RUN);
     const double height = r.state.reference / gains->alpha_p;
-    assert_true(fabs(r.command.motor_force - smaller(5.0, 3000.0 * (height - r.sample.master_position))) < 0.01);
+    assert_true(fabs(r.command.motor_force[NT_Z] - smaller(5.0, 3000.0 * (height - r.sample.master_position[NT_Z]))) <
+                0.01);
 }
 
 static void what_the_rig_cannot_keep_is_refused(void **state)

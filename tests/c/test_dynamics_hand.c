@@ -17,36 +17,40 @@ static void goes_straight_and_stays(void **state)
 {
     (void)state;
     nt_hand_state hand = {0};
-    nt_hand_aim(&hand, &(nt_hand_target){.force = 2.0, .x = 1e-6, .y = -3e-6, .duration = 1.0});
+    nt_hand_aim(&hand, &(nt_hand_target){
+                           .force = {1e-6, -3e-6, 2.0}, .position = {-1e-3, 0.0, 4e-3}, .holds = 1, .duration = 1.0});
     for (int k = 0; k <= 8; k++) { /* steps of 1/4 s, exact in binary: the middle is the middle */
         const double part = k < 4 ? k / 4.0 : 1.0;
         const nt_hand_target now = nt_hand_now(&hand);
-        assert_true(fabs(now.force - 2.0 * part) < 1e-15);
-        assert_true(fabs(now.x - 1e-6 * part) < 1e-21 && fabs(now.y + 3e-6 * part) < 1e-21);
+        assert_true(fabs(now.force[NT_Z] - 2.0 * part) < 1e-15);
+        assert_true(fabs(now.force[NT_X] - 1e-6 * part) < 1e-21 && fabs(now.force[NT_Y] + 3e-6 * part) < 1e-21);
+        assert_true(fabs(now.position[NT_X] + 1e-3 * part) < 1e-18 && fabs(now.position[NT_Z] - 4e-3 * part) < 1e-18);
+        assert_int_equal(now.holds, 1);
         nt_hand_step(&hand, &still, 0.0, 0.25, NULL);
     }
     const nt_hand_target now = nt_hand_now(&hand);
-    assert_true(now.force == 2.0 && now.x == 1e-6 && now.y == -3e-6); /* exactly there in the end */
+    assert_true(now.force[NT_Z] == 2.0 && now.force[NT_X] == 1e-6 && now.force[NT_Y] == -3e-6);
+    assert_true(now.position[NT_X] == -1e-3 && now.position[NT_Z] == 4e-3); /* exactly there in the end */
 }
 
 static void new_aim_starts_where_the_hand_is(void **state)
 {
     (void)state;
     nt_hand_state hand = {0};
-    nt_hand_aim(&hand, &(nt_hand_target){.force = 4.0, .duration = 1.0});
+    nt_hand_aim(&hand, &(nt_hand_target){.force = {[NT_Z] = 4.0}, .duration = 1.0});
     nt_hand_step(&hand, &still, 0.0, 0.5, NULL);
-    nt_hand_aim(&hand, &(nt_hand_target){.force = -2.0, .duration = 2.0});
-    assert_true(fabs(nt_hand_now(&hand).force - 2.0) < 1e-15);
+    nt_hand_aim(&hand, &(nt_hand_target){.force = {[NT_Z] = -2.0}, .duration = 2.0});
+    assert_true(fabs(nt_hand_now(&hand).force[NT_Z] - 2.0) < 1e-15);
     nt_hand_step(&hand, &still, 0.0, 1.0, NULL);
-    assert_true(fabs(nt_hand_now(&hand).force) < 1e-15);
+    assert_true(fabs(nt_hand_now(&hand).force[NT_Z]) < 1e-15);
 }
 
 static void no_duration_is_at_once(void **state)
 {
     (void)state;
     nt_hand_state hand = {0};
-    nt_hand_aim(&hand, &(nt_hand_target){.force = 1.5});
-    assert_true(nt_hand_now(&hand).force == 1.5);
+    nt_hand_aim(&hand, &(nt_hand_target){.force = {[NT_Z] = 1.5}});
+    assert_true(nt_hand_now(&hand).force[NT_Z] == 1.5);
 }
 
 /* After its time constant 1 - 1/e of the way to the master is relaxed, in whatever steps. */

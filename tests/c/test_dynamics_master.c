@@ -160,7 +160,7 @@ static void grip_force_balances_the_master(void **state)
     const nt_hand hand = {.mass = 0.08, .damping = 3.0, .stiffness = 800.0};
     const nt_master_model model = model_of(&master, &hand, 1e-3);
     nt_master_state now = {0};
-    nt_hand_state holds = {.to = {.force = 1.0}, .rest = 2e-4, .random_force = 0.25};
+    nt_hand_state holds = {.to = {.force = {[NT_Z] = 1.0}}, .rest = 2e-4, .random_force = 0.25};
     for (int k = 0; k < 200; k++) {
         const double motor = -0.6 * cos(0.4 * k);
         nt_master_step(&model, &now, motor + nt_hand_effort(&holds), holds.rest);

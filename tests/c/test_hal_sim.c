@@ -48,8 +48,10 @@ static nt_sim sim_of(const nt_sim_setup *setup)
 static nt_command script(uint64_t tick)
 {
     const double t = (double)tick;
-    return (nt_command){
-        .motor_force = sin(0.01 * t), .stage_position = 60e-9 * sin(0.00157 * t), .x = 1e-9 * t, .y = 2e-9 * t};
+    return (nt_command){.motor_force[NT_Z] = sin(0.01 * t),
+                        .stage_position[NT_Z] = 60e-9 * sin(0.00157 * t),
+                        .stage_position[NT_X] = 1e-9 * t,
+                        .stage_position[NT_Y] = 2e-9 * t};
 }
 
 static void a_copy_replays_to_the_last_bit(void **state)
@@ -57,8 +59,8 @@ static void a_copy_replays_to_the_last_bit(void **state)
     (void)state;
     const nt_sim_setup setup = setup_of(7, 2);
     nt_sim sim = sim_of(&setup);
-    const nt_hand_target push = {.force = 1.0, .duration = 0.1};
-    nt_sim_aim_hand(&sim, &push);
+    const nt_hand_target push = {.force = {[NT_Z] = 1.0}, .duration = 0.1};
+    nt_sim_aim_hand(&sim.master, &push);
     nt_sim copy = sim;
     int touched = 0;
     for (uint64_t i = 0; i < 4000; i++) {
@@ -69,10 +71,10 @@ static void a_copy_replays_to_the_last_bit(void **state)
         assert_int_equal(nt_sim_read(&sim, &a), NT_OK);
         assert_int_equal(nt_sim_read(&copy, &b), NT_OK);
         assert_memory_equal(&a, &b, SAMPLE_BYTES);
-        assert_memory_equal(&sim.truth, &copy.truth, sizeof sim.truth);
+        assert_memory_equal(&sim.slave.truth, &copy.slave.truth, sizeof sim.slave.truth);
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
         assert_int_equal(nt_sim_write(&copy, &command), NT_OK);
-        touched |= sim.truth.contact_radius > 0.0;
+        touched |= sim.slave.truth.contact_radius > 0.0;
     }
     assert_true(touched);
 }
@@ -90,11 +92,11 @@ static void seeds_make_the_noise_and_nothing_else(void **state)
         const nt_command rest = {0};
         nt_sim_read(&a, &x);
         nt_sim_read(&b, &y);
-        differ += x.deflection != y.deflection;
-        square += x.deflection * x.deflection;
+        differ += x.deflection[NT_Z] != y.deflection[NT_Z];
+        square += x.deflection[NT_Z] * x.deflection[NT_Z];
         nt_sim_write(&a, &rest);
         nt_sim_write(&b, &rest);
-        assert_memory_equal(&a.truth, &b.truth, sizeof a.truth);
+        assert_memory_equal(&a.slave.truth, &b.slave.truth, sizeof a.slave.truth);
     }
     assert_true(differ > COUNT * 0.9);
     /* sigma = S 50 mV/6 and the converter's steps; 20 000 samples: 0.5 % */
@@ -119,13 +121,16 @@ static void delay_is_exact(void **state)
             nt_sample sample;
             nt_sim_read(&sim, &sample);
             assert_int_equal(sample.tick, i);
-            if (!master_moved && sample.master_position != 0.0)
+            if (!master_moved && sample.master_position[NT_Z] != 0.0)
                 master_moved = i;
-            if (!stage_moved && sample.stage_position > 1e-13) /* not the pull of the surface */
+            if (!stage_moved && sample.stage_position[NT_Z] > 1e-13) /* not the pull of the surface */
                 stage_moved = i;
-            if (!x_moved && sample.x != 0.0)
+            if (!x_moved && sample.stage_position[NT_X] != 0.0)
                 x_moved = i;
-            const nt_command impulse = {.motor_force = 1.0, .stage_position = 5e-9, .x = 1e-9}, rest = {0};
+            const nt_command impulse = {.motor_force[NT_Z] = 1.0,
+                                        .stage_position[NT_Z] = 5e-9,
+                                        .stage_position[NT_X] = 1e-9},
+                             rest = {0};
             nt_sim_write(&sim, i == sent ? &impulse : &rest);
         }
         assert_int_equal(master_moved, sent + (uint64_t)delay + 1);
@@ -146,28 +151,30 @@ static void hand_gauge_and_master(void **state)
     nt_sim_setup setup = setup_of(3, 0);
     setup.master_position = -9e-3;
     nt_sim sim = sim_of(&setup);
-    const nt_hand_target push = {.force = 4.0, .duration = 0.2}, hard = {.force = 8.0, .duration = 0.0};
+    const nt_hand_target push = {.force = {[NT_Z] = 4.0}, .duration = 0.2},
+                         hard = {.force = {[NT_Z] = 8.0}, .duration = 0.0};
     const nt_command rest = {0};
     nt_sample sample;
-    nt_sim_aim_hand(&sim, &push);
+    nt_sim_aim_hand(&sim.master, &push);
     for (int i = 0; i < 2500; i++) {
         nt_sim_read(&sim, &sample);
         const double force = 4.0 * smaller(1.0, i * T / 0.2);
-        assert_true(is_multiple(sample.operator_force, 0.02) &&
-                    fabs(sample.operator_force - force) < 0.01 + 6 * 0.0034);
-        assert_true(is_multiple(sample.master_position, 4e-5));
-        assert_true(fabs(sample.master_position - sim.master.position) <= 2.01e-5);
-        assert_true(is_multiple(sample.deflection, rig.probe.sensitivity * rig.probe.resolution));
-        assert_true(is_multiple(sample.stage_position, 1e-9));
+        assert_true(is_multiple(sample.operator_force[NT_Z], 0.02) &&
+                    fabs(sample.operator_force[NT_Z] - force) < 0.01 + 6 * 0.0034);
+        assert_true(is_multiple(sample.master_position[NT_Z], 4e-5));
+        assert_true(fabs(sample.master_position[NT_Z] - sim.master.arm[NT_Z].position) <= 2.01e-5);
+        assert_true(is_multiple(sample.deflection[NT_Z], rig.probe.sensitivity * rig.probe.resolution));
+        assert_true(is_multiple(sample.stage_position[NT_Z], 1e-9));
         nt_sim_write(&sim, &rest);
     }
-    assert_true(fabs(sim.master.speed / (4.0 / 100.0) - 1.0) < 1e-6);
-    nt_sim_aim_hand(&sim, &hard);
+    assert_true(fabs(sim.master.arm[NT_Z].speed / (4.0 / 100.0) - 1.0) < 1e-6);
+    nt_sim_aim_hand(&sim.master, &hard);
     nt_sim_read(&sim, &sample);
-    assert_true(sample.operator_force == 5.0); /* clipped */
+    assert_true(sample.operator_force[NT_Z] == 5.0); /* clipped */
     for (int i = 0; i < 5000; i++)
         nt_sim_write(&sim, &rest);
-    assert_true(sim.master.position == 0.5 * rig.master.travel && sim.master.speed == 0.0); /* end stop */
+    assert_true(sim.master.arm[NT_Z].position == 0.5 * rig.master.travel &&
+                sim.master.arm[NT_Z].speed == 0.0); /* end stop */
 }
 
 /* The motor pushes with its own force, no more; the driver keeps the stage's speed and travel. */
@@ -179,16 +186,16 @@ static void actuators_have_their_limits(void **state)
     nt_sim_setup setup = setup_of(3, 0);
     setup.rig = &small;
     nt_sim sim = sim_of(&setup);
-    const nt_command wild = {.motor_force = -1e6, .stage_position = -1.0};
+    const nt_command wild = {.motor_force[NT_Z] = -1e6, .stage_position[NT_Z] = -1.0};
     double fastest = 0.0;
     for (int i = 0; i < 1000; i++) {
-        const double before = sim.stage_drive;
+        const double before = sim.slave.stage_drive;
         assert_int_equal(nt_sim_write(&sim, &wild), NT_OK);
-        fastest = larger(fastest, before - sim.stage_drive);
-        assert_true(sim.master.speed >= -5.0 / 100.0 * (1.0 + 1e-12));
+        fastest = larger(fastest, before - sim.slave.stage_drive);
+        assert_true(sim.master.arm[NT_Z].speed >= -5.0 / 100.0 * (1.0 + 1e-12));
     }
     assert_true(fabs(fastest - small.stage.max_speed * T) < 1e-18);
-    assert_true(sim.stage_drive == -0.5e-6);
+    assert_true(sim.slave.stage_drive == -0.5e-6);
 }
 
 static void a_command_that_is_not_a_number_is_refused(void **state)
@@ -197,7 +204,10 @@ static void a_command_that_is_not_a_number_is_refused(void **state)
     const nt_sim_setup setup = setup_of(3, 1);
     nt_sim sim = sim_of(&setup);
     const nt_sim before = sim;
-    const nt_command bad[] = {{.motor_force = NAN}, {.stage_position = HUGE_VAL}, {.x = NAN}, {.y = -HUGE_VAL}};
+    const nt_command bad[] = {{.motor_force[NT_Z] = NAN},
+                              {.stage_position[NT_Z] = HUGE_VAL},
+                              {.stage_position[NT_X] = NAN},
+                              {.stage_position[NT_Y] = -HUGE_VAL}};
     for (int i = 0; i < 4; i++)
         assert_int_equal(nt_sim_write(&sim, &bad[i]), NT_E_NOT_FINITE);
     assert_memory_equal(&sim, &before, sizeof sim);
@@ -215,19 +225,21 @@ static void the_surface_pushes_back(void **state)
     nt_sim_setup setup = setup_of(3, 0);
     setup.rig = &soft;
     nt_sim sim = sim_of(&setup);
-    const nt_command press = {.stage_position = 150e-9};
+    const nt_command press = {.stage_position[NT_Z] = 150e-9};
     for (int i = 0; i < 5000; i++) {
         assert_int_equal(nt_sim_write(&sim, &press), NT_OK);
         /* at every tick: the probe is in balance (to 1e-7 of the range of adhesion, 1.1 nm, times k_c) */
-        assert_true(fabs(soft.probe.spring_constant * sim.cantilever.deflection - sim.truth.tip_force) < 1e-15);
-        const double base = sim.start_height - sim.stage.position;
-        assert_true(fabs(sim.truth.tip_height - base - sim.cantilever.deflection) < 1e-20);
-        assert_true(sim.truth.gap == sim.truth.tip_height - sim.truth.surface_height);
+        assert_true(fabs(soft.probe.spring_constant * sim.slave.cantilever.deflection -
+                         sim.slave.truth.tip_force[NT_Z]) < 1e-15);
+        const double base = sim.slave.start_height - sim.slave.stage.position;
+        assert_true(fabs(sim.slave.truth.tip_height - base - sim.slave.cantilever.deflection) < 1e-20);
+        assert_true(sim.slave.truth.gap == sim.slave.truth.tip_height - sim.slave.truth.surface_height);
     }
-    assert_true(sim.truth.tip_force > 0.5e-6 && sim.truth.contact_radius > 1e-9);
-    assert_true(fabs(150e-9 - sim.stage.position - sim.truth.tip_force / 1000.0) < 1e-15);
-    const double spring = 150e-9 - 50e-9 - sim.truth.tip_force / 1000.0; /* base below the surface by this */
-    assert_true(fabs(sim.cantilever.deflection - spring - sim.truth.gap) < 1e-15);
+    assert_true(sim.slave.truth.tip_force[NT_Z] > 0.5e-6 && sim.slave.truth.contact_radius > 1e-9);
+    assert_true(fabs(150e-9 - sim.slave.stage.position - sim.slave.truth.tip_force[NT_Z] / 1000.0) < 1e-15);
+    const double spring =
+        150e-9 - 50e-9 - sim.slave.truth.tip_force[NT_Z] / 1000.0; /* base below the surface by this */
+    assert_true(fabs(sim.slave.cantilever.deflection - spring - sim.slave.truth.gap) < 1e-15);
 }
 
 /* Through jump-in and pull-off and back: the surface has taken energy from the probe, the more the slower. */
@@ -244,15 +256,16 @@ static void a_cycle_of_touch_dissipates(void **state)
     nt_sim sim = sim_of(&setup);
     double work = 0.0, strongest_pull = 0.0;
     for (int i = 0; i <= 40000; i++) {
-        const nt_command command = {.stage_position = 25e-9 * (1.0 - fabs(i / 20000.0 - 1.0))};
-        const double base = sim.stage.position, force = sim.truth.tip_force;
+        const nt_command command = {.stage_position[NT_Z] = 25e-9 * (1.0 - fabs(i / 20000.0 - 1.0))};
+        const double base = sim.slave.stage.position, force = sim.slave.truth.tip_force[NT_Z];
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
-        work += 0.5 * (force + sim.truth.tip_force) * (sim.stage.position - base); /* done by the stage on the probe */
-        strongest_pull = larger(strongest_pull, -sim.truth.tip_force);
+        work += 0.5 * (force + sim.slave.truth.tip_force[NT_Z]) *
+                (sim.slave.stage.position - base); /* done by the stage on the probe */
+        strongest_pull = larger(strongest_pull, -sim.slave.truth.tip_force[NT_Z]);
     }
     assert_true(fabs(strongest_pull / plan.pull_off_force - 1.0) <
                 0.02); /* a spring of 8 N/m is nearly a dead weight */
-    assert_true(sim.truth.contact_radius == 0.0 && sim.interaction.attached == 0);
+    assert_true(sim.slave.truth.contact_radius == 0.0 && sim.slave.interaction.attached == 0);
     /* snap-off alone gives away the spring's energy, F^2/(2 k_c) */
     assert_true(work > 0.5 * plan.pull_off_force * plan.pull_off_force / (2.0 * rig.probe.spring_constant));
 }
@@ -269,12 +282,14 @@ static void the_surface_under_the_tip_is_the_maps(void **state)
     setup.x = 100e-9;
     setup.y = 60e-9;
     nt_sim sim = sim_of(&setup);
-    assert_true(sim.start_height == nt_surface_height(&surface, 100e-9, 60e-9).z + 50e-9);
+    assert_true(sim.slave.start_height == nt_surface_height(&surface, 100e-9, 60e-9).z + 50e-9);
     for (int i = 0; i < 1000; i++) {
-        const nt_command command = {.x = (100.0 + 0.1 * i) * 1e-9, .y = (60.0 + 0.05 * i) * 1e-9};
+        const nt_command command = {.stage_position[NT_X] = (100.0 + 0.1 * i) * 1e-9,
+                                    .stage_position[NT_Y] = (60.0 + 0.05 * i) * 1e-9};
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
-        assert_true(sim.truth.surface_height == nt_surface_height(&surface, command.x, command.y).z);
-        assert_true(sim.x == command.x && sim.y == command.y);
+        assert_true(sim.slave.truth.surface_height ==
+                    nt_surface_height(&surface, command.stage_position[NT_X], command.stage_position[NT_Y]).z);
+        assert_true(sim.slave.x == command.stage_position[NT_X] && sim.slave.y == command.stage_position[NT_Y]);
     }
 }
 
@@ -309,25 +324,29 @@ static void setups_are_checked(void **state)
     assert_int_not_equal(nt_sim_init(&sim, &bad), NT_OK);
 }
 
-static void the_backend_is_the_simulator(void **state)
+static void the_backends_are_the_simulator(void **state)
 {
     (void)state;
     const nt_sim_setup setup = setup_of(4, 0);
     nt_sim a = sim_of(&setup), b = a;
-    nt_hal hal;
-    nt_sample x, y;
-    assert_int_equal(nt_hal_open(&hal, nt_sim_backend(), &a), NT_OK);
-    a.flags = b.flags = NT_SAMPLE_EMERGENCY_STOP;
+    const nt_hal_choice hand = {nt_sim_master_backend(), &a.master}, probe = {nt_sim_slave_backend(), &a.slave};
+    nt_hal master, slave;
+    assert_int_equal(nt_hal_open(&master, NT_HALF_MASTER, &hand, NULL, NULL), NT_OK);
+    assert_int_equal(nt_hal_open(&slave, NT_HALF_SLAVE, &probe, NULL, NULL), NT_OK);
     for (uint64_t i = 0; i < 100; i++) {
         const nt_command command = script(i);
-        nt_hal_read(&hal, &x);
-        nt_sim_read(&b, &y);
+        nt_sample y;
+        assert_int_equal(nt_hal_read(&master), NT_OK);
+        assert_int_equal(nt_hal_read(&slave), NT_OK);
+        const nt_sample x = nt_hal_sample(&master, &slave, i, llround((double)i * setup.period * 1e9));
+        assert_int_equal(nt_sim_read(&b, &y), NT_OK);
         assert_memory_equal(&x, &y, SAMPLE_BYTES);
-        assert_int_equal(x.flags, NT_SAMPLE_EMERGENCY_STOP);
-        nt_hal_write(&hal, &command);
-        nt_sim_write(&b, &command);
+        nt_action action = {.size = sizeof action, .tick = i};
+        assert_int_equal(nt_hal_command(&master, &slave, &command, &action), NT_OK);
+        assert_int_equal(nt_sim_write(&b, &command), NT_OK);
     }
-    nt_hal_close(&hal);
+    nt_hal_close(&master);
+    nt_hal_close(&slave);
 }
 
 int main(void)
@@ -343,7 +362,7 @@ int main(void)
         cmocka_unit_test(a_cycle_of_touch_dissipates),
         cmocka_unit_test(the_surface_under_the_tip_is_the_maps),
         cmocka_unit_test(setups_are_checked),
-        cmocka_unit_test(the_backend_is_the_simulator),
+        cmocka_unit_test(the_backends_are_the_simulator),
     };
     return cmocka_run_group_tests(tests, make_plan, NULL);
 }

@@ -53,12 +53,13 @@ static void a_part_of_a_period_is_exact(void **state)
     rig.hand = (nt_hand){.mass = 0.02, .damping = 1.0, .stiffness = 500.0};
     nt_sim coarse = sim_of(&rig, T, 1.3), fine = sim_of(&rig, T / 10.0, 13.0);
     for (int i = 0; i < 2000; i++) {
-        const nt_command command = {.motor_force = 2.0 * sin(0.05 * i), .stage_position = 50e-9 * sin(0.03 * i)};
+        const nt_command command = {.motor_force[NT_Z] = 2.0 * sin(0.05 * i),
+                                    .stage_position[NT_Z] = 50e-9 * sin(0.03 * i)};
         assert_int_equal(nt_sim_write(&coarse, &command), NT_OK);
         for (int part = 0; part < 10; part++)
             assert_int_equal(nt_sim_write(&fine, &command), NT_OK);
-        assert_true(fabs(coarse.master.position - fine.master.position) < 1e-14);
-        assert_true(fabs(coarse.stage.position - fine.stage.position) < 1e-18);
+        assert_true(fabs(coarse.master.arm[NT_Z].position - fine.master.arm[NT_Z].position) < 1e-14);
+        assert_true(fabs(coarse.slave.stage.position - fine.slave.stage.position) < 1e-18);
     }
 }
 
@@ -70,10 +71,10 @@ static void the_output_latency_is_a_delay(void **state)
     late.converters.dac_latency = 0.7 * T;
     nt_sim a = sim_of(&rig, T, 1.7), b = sim_of(&late, T, 1.0);
     for (int i = 0; i < 500; i++) {
-        const nt_command command = {.motor_force = sin(0.1 * i)};
+        const nt_command command = {.motor_force[NT_Z] = sin(0.1 * i)};
         assert_int_equal(nt_sim_write(&a, &command), NT_OK);
         assert_int_equal(nt_sim_write(&b, &command), NT_OK);
-        assert_true(fabs(a.master.position - b.master.position) < 1e-16);
+        assert_true(fabs(a.master.arm[NT_Z].position - b.master.arm[NT_Z].position) < 1e-16);
     }
 }
 
@@ -84,13 +85,14 @@ static void the_input_latency_shows_the_past(void **state)
     nt_rig rig = ideal_rig();
     rig.converters.adc_latency = 2.25 * T;
     nt_sim sim = sim_of(&rig, T, 0.0);
-    const nt_command push = {.motor_force = 1.0};
+    const nt_command push = {.motor_force[NT_Z] = 1.0};
     for (int i = 0; i < 500; i++) {
         nt_sample sample;
         assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
         assert_true(fabs(sample.age - 2.25 * T) < 1e-18);
         if (i > 300) /* 30 time constants: b v = f */
-            assert_true(fabs(sample.master_position - (sim.master.position - 2.25 * T * 1.0 / 100.0)) < 1e-14);
+            assert_true(fabs(sample.master_position[NT_Z] - (sim.master.arm[NT_Z].position - 2.25 * T * 1.0 / 100.0)) <
+                        1e-14);
         assert_int_equal(nt_sim_write(&sim, &push), NT_OK);
     }
 }
@@ -102,7 +104,7 @@ static void a_slow_converter_repeats_itself(void **state)
     nt_rig rig = ideal_rig();
     rig.converters.adc_rate = 3e3;
     nt_sim sim = sim_of(&rig, T, 0.0);
-    const nt_command push = {.motor_force = 1.0};
+    const nt_command push = {.motor_force[NT_Z] = 1.0};
     double last = NAN;
     int fresh = 0;
     for (int i = 0; i < 1000; i++) {
@@ -110,9 +112,9 @@ static void a_slow_converter_repeats_itself(void **state)
         assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
         assert_int_equal(sample.tick, i);
         fresh += sample.age == 0.0;
-        assert_true(sample.age == 0.0 ? sample.master_position != last : sample.master_position == last);
+        assert_true(sample.age == 0.0 ? sample.master_position[NT_Z] != last : sample.master_position[NT_Z] == last);
         assert_true(sample.age < 3.5 * T);
-        last = sample.master_position;
+        last = sample.master_position[NT_Z];
         assert_int_equal(nt_sim_write(&sim, &push), NT_OK);
     }
     assert_true(fresh >= 300 && fresh <= 301);
@@ -132,20 +134,20 @@ static void bits_are_steps(void **state)
     rig.probe.noise = 0.05;
     nt_sim sim = sim_of(&rig, T, 0.0);
     for (int i = 0; i < 200; i++) {
-        const nt_command command = {.stage_position = -1e-7 * i, .motor_force = 0.03 * i};
+        const nt_command command = {.stage_position[NT_Z] = -1e-7 * i, .motor_force[NT_Z] = 0.03 * i};
         nt_sample sample;
         assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
-        assert_true(is_multiple(sample.deflection, 0.033e-6 * 20.0 / 256.0));
-        assert_true(is_multiple(sample.stage_position, rig.stage.travel / 256.0));
-        assert_true(is_multiple(sample.master_position, rig.master.travel / 256.0));
+        assert_true(is_multiple(sample.deflection[NT_Z], 0.033e-6 * 20.0 / 256.0));
+        assert_true(is_multiple(sample.stage_position[NT_Z], rig.stage.travel / 256.0));
+        assert_true(is_multiple(sample.master_position[NT_Z], rig.master.travel / 256.0));
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
     }
     for (int i = 0; i < 5000; i++) {
-        const nt_command command = {.stage_position = -1.1e-6, .motor_force = 0.03};
+        const nt_command command = {.stage_position[NT_Z] = -1.1e-6, .motor_force[NT_Z] = 0.03};
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
     }
-    assert_true(fabs(sim.stage.position + 3.0 * rig.stage.travel / 256.0) < 1e-12); /* 1.17 um is nearest */
-    assert_true(fabs(sim.master.speed - 10.0 / 256.0 / 100.0) < 1e-6 || sim.master.speed == 0.0);
+    assert_true(fabs(sim.slave.stage.position + 3.0 * rig.stage.travel / 256.0) < 1e-12); /* 1.17 um is nearest */
+    assert_true(fabs(sim.master.arm[NT_Z].speed - 10.0 / 256.0 / 100.0) < 1e-6 || sim.master.arm[NT_Z].speed == 0.0);
 }
 
 static void without_a_gauge_nothing_is_said(void **state)
@@ -156,7 +158,7 @@ static void without_a_gauge_nothing_is_said(void **state)
     nt_sim sim = sim_of(&rig, T, 0.0);
     nt_sample sample;
     assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
-    assert_true(isnan(sample.operator_force) && sample.flags == 0 && isfinite(sample.deflection));
+    assert_true(isnan(sample.operator_force[NT_Z]) && sample.flags == 0 && isfinite(sample.deflection[NT_Z]));
 }
 
 /* In air the dynamic probe moves by k_B T/k_c, sampled at any rate. 20 000 samples are known to 1 %, 5 sigma are 5 %.
@@ -177,7 +179,7 @@ static void the_probe_trembles_in_air(void **state)
         const nt_command rest = {0};
         nt_sample sample;
         assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
-        squares += sample.deflection * sample.deflection;
+        squares += sample.deflection[NT_Z] * sample.deflection[NT_Z];
         assert_int_equal(nt_sim_write(&sim, &rest), NT_OK);
     }
     assert_true(fabs(squares / 20000.0 * 0.1 / (BOLTZMANN * 300.0) - 1.0) < 0.05);
@@ -199,17 +201,17 @@ static void both_models_tell_the_same(void **state)
     assert_int_equal(nt_sim_init(&still, &setup), NT_OK);
     setup.probe_model = NT_PROBE_DYNAMIC;
     assert_int_equal(nt_sim_init(&moving, &setup), NT_OK);
-    assert_true(!still.dynamic && moving.dynamic);
+    assert_true(!still.slave.dynamic && moving.slave.dynamic);
     int apart = 0;
     double deepest = 0.0;
     for (int i = 0; i <= 2000; i++) {
-        const nt_command command = {.stage_position = 30e-9 * (1.0 - fabs(i / 1000.0 - 1.0))};
+        const nt_command command = {.stage_position[NT_Z] = 30e-9 * (1.0 - fabs(i / 1000.0 - 1.0))};
         assert_int_equal(nt_sim_write(&still, &command), NT_OK);
         assert_int_equal(nt_sim_write(&moving, &command), NT_OK);
         const double error =
-            rig.probe.spring_constant * fabs(still.cantilever.deflection - moving.cantilever.deflection);
+            rig.probe.spring_constant * fabs(still.slave.cantilever.deflection - moving.slave.cantilever.deflection);
         apart += error > bound;
-        deepest = larger(deepest, still.truth.tip_force);
+        deepest = larger(deepest, still.slave.truth.tip_force[NT_Z]);
     }
     print_message("bound %.2g N, passed in %d of 2000 ticks\n", bound, apart);
     assert_true(deepest > 50e-9 && apart <= 10);
@@ -229,24 +231,25 @@ static double energy_left_in_tension(double viscosity)
     static nt_sim sim;
     assert_int_equal(nt_sim_init(&sim, &setup), NT_OK);
     for (int i = 0; i < 40000; i++) { /* touch, and draw back until it pulls by half of what it can */
-        const nt_command command = {.stage_position = i < 20000 ? 7e-9 : 4e-9};
+        const nt_command command = {.stage_position[NT_Z] = i < 20000 ? 7e-9 : 4e-9};
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
     }
-    const double rest = 0.5 * rig.probe.spring_constant * sim.cantilever.deflection * sim.cantilever.deflection;
-    const double floor = rest + sim.truth.energy, mass = nt_probe_effective_mass(&rig.probe);
-    assert_true(sim.truth.tip_force < -0.2 * plan.pull_off_force && sim.truth.contact_radius > 0.0);
-    assert_int_equal(nt_cantilever_model_init(&sim.cantilever_model, &rig.probe, 1e-6, 0.25), NT_OK);
-    sim.dynamic = 1;
-    sim.cantilever.speed = 1e-5;
+    const double rest =
+        0.5 * rig.probe.spring_constant * sim.slave.cantilever.deflection * sim.slave.cantilever.deflection;
+    const double floor = rest + sim.slave.truth.energy, mass = nt_probe_effective_mass(&rig.probe);
+    assert_true(sim.slave.truth.tip_force[NT_Z] < -0.2 * plan.pull_off_force && sim.slave.truth.contact_radius > 0.0);
+    assert_int_equal(nt_cantilever_model_init(&sim.slave.cantilever_model, &rig.probe, 1e-6, 0.25), NT_OK);
+    sim.slave.dynamic = 1;
+    sim.slave.cantilever.speed = 1e-5;
     const double kick = 0.5 * mass * 1e-10;
     double before = kick;
     for (int i = 0; i < 50; i++) {
-        const nt_command stay = {.stage_position = 4e-9};
+        const nt_command stay = {.stage_position[NT_Z] = 4e-9};
         assert_int_equal(nt_sim_write(&sim, &stay), NT_OK);
-        const nt_cantilever_state *now = &sim.cantilever;
+        const nt_cantilever_state *now = &sim.slave.cantilever;
         const double energy = 0.5 * mass * now->speed * now->speed +
-                              0.5 * rig.probe.spring_constant * now->deflection * now->deflection + sim.truth.energy -
-                              floor;
+                              0.5 * rig.probe.spring_constant * now->deflection * now->deflection +
+                              sim.slave.truth.energy - floor;
         assert_true(energy < before + 1e-3 * kick); /* the table's U and F agree to 1e-6 of them; kick is 1e-3 of U */
         before = energy;
     }

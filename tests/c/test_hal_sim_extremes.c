@@ -42,14 +42,17 @@ static void shake(const nt_rig *rig, nt_probe_model model, double period, int ti
         nt_sample sample;
         assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
         const double wave = sin(0.05 * i);
-        const nt_command command = {.motor_force = 3.0 * wave, .stage_position = smaller(half, 20e-9) * wave};
+        const nt_command command = {.motor_force[NT_Z] = 3.0 * wave,
+                                    .stage_position[NT_Z] = smaller(half, 20e-9) * wave};
         assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
-        assert_true(isfinite(sample.deflection) && isfinite(sample.stage_position) && isfinite(sample.master_position));
-        assert_true(isfinite(sim.truth.tip_force) && isfinite(sim.cantilever.speed) && isfinite(sim.stage.speed));
-        assert_true(fabs(sim.stage.position) <= 2.0 * rig->stage.travel);
-        reach = larger(reach, fabs(sim.stage.position));
+        assert_true(isfinite(sample.deflection[NT_Z]) && isfinite(sample.stage_position[NT_Z]) &&
+                    isfinite(sample.master_position[NT_Z]));
+        assert_true(isfinite(sim.slave.truth.tip_force[NT_Z]) && isfinite(sim.slave.cantilever.speed) &&
+                    isfinite(sim.slave.stage.speed));
+        assert_true(fabs(sim.slave.stage.position) <= 2.0 * rig->stage.travel);
+        reach = larger(reach, fabs(sim.slave.stage.position));
         const double pull = 2.0 * plan.pull_off_force / rig->probe.spring_constant;
-        assert_true(fabs(sim.cantilever.deflection) < 3.0 * (reach + pull + 10e-9));
+        assert_true(fabs(sim.slave.cantilever.deflection) < 3.0 * (reach + pull + 10e-9));
     }
 }
 
@@ -144,11 +147,11 @@ static void ends_of_the_ranges_run_or_are_refused(void **state)
             ran++;
             for (int tick = 0; tick < 50; tick++) {
                 nt_sample sample;
-                const nt_command command = {.motor_force = 1.0, .stage_position = 1e-10 * tick};
+                const nt_command command = {.motor_force[NT_Z] = 1.0, .stage_position[NT_Z] = 1e-10 * tick};
                 assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);
                 assert_int_equal(nt_sim_write(&sim, &command), NT_OK);
-                assert_true(isfinite(sim.truth.tip_force) && isfinite(sim.stage.position) &&
-                            isfinite(sim.master.position));
+                assert_true(isfinite(sim.slave.truth.tip_force[NT_Z]) && isfinite(sim.slave.stage.position) &&
+                            isfinite(sim.master.arm[NT_Z].position));
             }
         }
     assert_true(ran > 3 * count / 2);

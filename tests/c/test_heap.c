@@ -173,7 +173,8 @@ static void problems_are_printed_without_heap(void **unused)
 /* Approach, press, retract: 6000 ticks of simulated rig and touch step; the probe by either model, with faults. */
 static void run_session(nt_probe_model model)
 {
-    const nt_input inputs[] = {{.operator_force = 1.0, .duration = 0.1}, {.operator_force = -1.0, .duration = 0.1}};
+    const nt_input inputs[] = {{.operator_force[NT_Z] = 1.0, .duration = 0.1},
+                               {.operator_force[NT_Z] = -1.0, .duration = 0.1}};
     static nt_record records[1000];
     nt_session_setup setup = nt_session_defaults();
     setup.probe_model = model;
@@ -185,7 +186,7 @@ static void run_session(nt_probe_model model)
     armed = 1;
     nt_status status = NT_OK;
     for (int i = 0; i < 6 && status == NT_OK; i++) {
-        status = nt_session_aim(session, &inputs[i % 2]);
+        status = nt_session_aim(session, &inputs[i % 2], NULL);
         if (status == NT_OK)
             status = nt_session_advance(session, 1000);
         count += nt_session_read(session, records, 1000);
@@ -228,8 +229,9 @@ static void touch_step_uses_no_heap(void **unused)
         status = nt_touch_make(&touch, &rig, &settings, (nt_mode)mode, NULL);
         nt_touch_state state = nt_touch_start(&touch, 0.0, 0.0, 0.0);
         for (int i = 0; i < 400 && status == NT_OK; i++) {
-            nt_sample sample = {
-                .stage_position = command.stage_position, .operator_force = 0.1, .deflection = i * 1e-12};
+            nt_sample sample = {.stage_position[NT_Z] = command.stage_position[NT_Z],
+                                .operator_force[NT_Z] = 0.1,
+                                .deflection[NT_Z] = i * 1e-12};
             sample.flags = i % 100 > 90 ? NT_SAMPLE_INVALID : i > 350 ? NT_SAMPLE_EMERGENCY_STOP : 0u;
             status = nt_touch_aim(&touch, &state, 1e-6, i * 1e-9, 0.1);
             nt_touch_step(&touch, &state, &sample, &command);

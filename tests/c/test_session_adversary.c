@@ -75,7 +75,7 @@ static void watch(const nt_session *session, long count, closeness *found, doubl
     const nt_guarantee promised = nt_session_guarantee(session);
     for (long i = 0; i < count; i++) {
         const nt_record *r = &records[i];
-        found->force = larger(found->force, fabs(r->tip_force) / promised.force);
+        found->force = larger(found->force, fabs(r->tip_force[NT_Z]) / promised.force);
         *lowest = smaller(*lowest, r->gap);
     }
     found->indentation = larger(found->indentation, -*lowest / promised.indentation);
@@ -87,21 +87,22 @@ static closeness attack(nt_session *session, nt_random *random)
     closeness found = {0.0, 0.0, 0};
     double lowest = 0.0;
     const nt_gains *gains = &nt_session_touch(session)->settings.gains;
-    const nt_input begin = {.operator_force = 2.0, .duration = 0.05};
-    assert_int_equal(nt_session_aim(session, &begin), NT_OK);
+    const nt_input begin = {.operator_force[NT_Z] = 2.0, .duration = 0.05};
+    assert_int_equal(nt_session_aim(session, &begin, NULL), NT_OK);
     for (int blow = 0; blow < 60; blow++) {
         const double share = nt_random_uniform(random);
-        const nt_input input = {.operator_force = between(random, -2.0, 5.0), .duration = between(random, 0.0, 0.03)};
+        const nt_input input = {.operator_force[NT_Z] = between(random, -2.0, 5.0),
+                                .duration = between(random, 0.0, 0.03)};
         const nt_scaling scaling = {gains->alpha_p * magnitude(random, 0.5, 2.0),
                                     gains->alpha_f * magnitude(random, 0.5, 2.0)};
         if (blow > 3)
-            assert_int_equal(nt_session_aim(session, &input), NT_OK);
+            assert_int_equal(nt_session_aim(session, &input, NULL), NT_OK);
         if (share < 0.1)
-            (void)!nt_session_rescale(session, &scaling); /* may be too close to the limit */
+            (void)!nt_session_rescale(session, &scaling, NULL); /* may be too close to the limit */
         else if (share < 0.15)
             nt_session_clutch(session, share < 0.125);
         else if (share < 0.2)
-            (void)!nt_session_set_mode(session, (nt_mode)(int)between(random, 0.0, 3.999)); /* this too */
+            (void)!nt_session_set_mode(session, (nt_mode)(int)between(random, 0.0, 3.999), NULL); /* this too */
         const long ticks = 1 + (long)between(random, 0.0, 500.0);
         assert_int_equal(nt_session_advance(session, ticks), NT_OK);
         const long count = nt_session_read(session, records, TICKS);

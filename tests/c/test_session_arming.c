@@ -39,18 +39,18 @@ static void modes_and_scales_are_judged_while_running(void **state)
     setup.mode = NT_MODE_CURVE;
     setup.settings.gains.force_gain = 300.0;
     nt_session *session = open_session(&setup);
-    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH), NT_E_RANGE);
-    assert_int_equal(nt_session_set_mode(session, NT_MODE_APPROACH), NT_OK);
-    assert_int_equal(nt_session_set_mode(session, (nt_mode)9), NT_E_ARGUMENT);
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH, NULL), NT_E_RANGE);
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_APPROACH, NULL), NT_OK);
+    assert_int_equal(nt_session_set_mode(session, (nt_mode)9, NULL), NT_E_ARGUMENT);
     nt_session_close(session);
     setup.settings.gains.force_gain = 2.0;
     session = open_session(&setup);
     const nt_scaling steep = {100.0 * setup.settings.gains.alpha_p, setup.settings.gains.alpha_f};
-    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH), NT_OK);
-    assert_int_equal(nt_session_rescale(session, &steep), NT_E_RANGE); /* by the mode that it is in now */
-    assert_int_equal(nt_session_set_mode(session, NT_MODE_CURVE), NT_OK);
-    assert_int_equal(nt_session_rescale(session, &steep), NT_OK);
-    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH), NT_E_RANGE); /* by the scales that it has now */
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH, NULL), NT_OK);
+    assert_int_equal(nt_session_rescale(session, &steep, NULL), NT_E_RANGE); /* by the mode that it is in now */
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_CURVE, NULL), NT_OK);
+    assert_int_equal(nt_session_rescale(session, &steep, NULL), NT_OK);
+    assert_int_equal(nt_session_set_mode(session, NT_MODE_TOUCH, NULL), NT_E_RANGE); /* by the scales that it has now */
     nt_session_close(session);
 }
 
@@ -136,7 +136,7 @@ static void setups_are_refused_by_name(void **state)
     bad.x = HUGE_VAL;
     expect_refusal(&bad, NT_E_NOT_FINITE, "x");
     bad = good;
-    bad.ring_capacity = 0;
+    bad.ring_capacity = 1; /* 0: nothing is recorded */
     expect_refusal(&bad, NT_E_RANGE, "ring_capacity");
     bad = good;
     bad.settings.gains.delay = NT_SIM_DELAY_MAX + 1.0;
@@ -153,7 +153,7 @@ static double unseen(const nt_session *session, const nt_session_setup *setup)
 {
     const nt_plan *found = nt_session_plan(session);
     const nt_hazard seen = {
-        .slope = setup->slope, .snap_in_force = found->largest_pull_off_force, .stiffness = found->maximum_stiffness};
+        .slope = 0.0, .snap_in_force = found->largest_pull_off_force, .stiffness = found->maximum_stiffness};
     const nt_guarantee without = nt_guarantee_compute(&setup->rig, &setup->settings, &seen);
     return nt_session_guarantee(session).indentation - without.indentation;
 }

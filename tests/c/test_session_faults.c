@@ -144,7 +144,7 @@ static void a_lift_the_wrong_way_is_given_up(void **state)
     for (int stop = 0; stop < 300; stop += 10)
         for (int kind = 0; kind < 3; kind++) {
             start(&l, &turned, NULL);
-            const double began = (double)(l.sim.tick + (uint64_t)stop) * l.sim.period;
+            const double began = (double)(l.sim.slave.link.tick + (uint64_t)stop) * l.sim.slave.link.period;
             nt_fault fault = {NT_FAULT_EMERGENCY_STOP, NT_CHANNEL_RIG, began, FOREVER, 0.0};
             if (kind > 0) /* no stage position, and nothing but the stage position, to tell by */
                 fault = (nt_fault){NT_FAULT_NAN, kind == 1 ? NT_CHANNEL_STAGE_POSITION : NT_CHANNEL_DEFLECTION, began,
@@ -156,8 +156,8 @@ static void a_lift_the_wrong_way_is_given_up(void **state)
                 const double reference = l.state.reference;
                 move_hand(&l, i);
                 assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
-                before = i < stop ? larger(before, l.sim.truth.tip_force) : before;
-                worst = larger(worst, l.sim.truth.tip_force);
+                before = i < stop ? larger(before, l.sim.slave.truth.tip_force[NT_Z]) : before;
+                worst = larger(worst, l.sim.slave.truth.tip_force[NT_Z]);
                 moved = l.state.reference != reference ? i - stop : moved;
             }
             assert_int_equal(l.command.state, NT_LATCHED);
@@ -197,13 +197,13 @@ static void a_turned_stage_keeps_the_guarantee(void **state)
     double worst = 0.0;
     for (int hand = 0; hand < 20; hand++) {
         l = begun;
-        l.sim.plan = &begun.plan;
+        l.sim.slave.plan = &begun.plan;
         const nt_fault turned = {NT_FAULT_GAIN, NT_CHANNEL_STAGE, 0.0, FOREVER, -1.0};
         assert_int_equal(nt_sim_inject(&l.sim, &turned), NT_OK);
         loop_push(&l, hand % 5, 0.005 * pow(4.0, hand / 5));
         for (int i = 0; i < 3000; i++) {
             assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
-            worst = larger(worst, l.sim.truth.tip_force);
+            worst = larger(worst, l.sim.slave.truth.tip_force[NT_Z]);
         }
         assert_true(hand % 5 == 4 || l.command.state == NT_LATCHED);
     }
@@ -211,14 +211,14 @@ static void a_turned_stage_keeps_the_guarantee(void **state)
                   1e9 * promised(&l, 0.0));
     assert_true(worst > limit && worst < promised(&l, 0.0));
     l = begun; /* and lifted blindly, all the way into the sample */
-    l.sim.plan = &begun.plan;
+    l.sim.slave.plan = &begun.plan;
     const nt_fault both[] = {{NT_FAULT_GAIN, NT_CHANNEL_STAGE, 0.0, FOREVER, -1.0},
                              {NT_FAULT_DROPOUT, NT_CHANNEL_RIG, 0.0, FOREVER, 0.0}};
     for (int i = 0; i < 2; i++)
         assert_int_equal(nt_sim_inject(&l.sim, &both[i]), NT_OK);
     for (int i = 0; i < 3000; i++) {
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
-        worst = larger(worst, l.sim.truth.tip_force);
+        worst = larger(worst, l.sim.slave.truth.tip_force[NT_Z]);
     }
     print_message("... blindly: worst force %.0f nN, bound %.0f nN\n", 1e9 * worst, 1e9 * promise(&l, 0.0).with_faults);
     assert_true(worst > 0.9 * promise(&l, 0.0).with_faults && worst < promise(&l, 0.0).with_faults);
@@ -238,7 +238,7 @@ static void too_much_motor_does_not_reach_the_sample(void **state)
     for (int i = 0; i < 14; i++) {
         const loop *from = begun[i / 7];
         l = *from;
-        l.sim.plan = &from->plan;
+        l.sim.slave.plan = &from->plan;
         const nt_fault fault = {NT_FAULT_GAIN, NT_CHANNEL_MOTOR, 0.0, FOREVER, gains[i % 7]};
         assert_int_equal(nt_sim_inject(&l.sim, &fault), NT_OK);
         const int second = (int)round(1.0 / l.touch.period);
@@ -248,11 +248,12 @@ static void too_much_motor_does_not_reach_the_sample(void **state)
             move_hand(&l, tick * 10000 / second);
             assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
             held = held == 0 && l.command.state != NT_RUN ? tick : held;
-            worst = larger(worst, fabs(l.sim.truth.tip_force));
+            worst = larger(worst, fabs(l.sim.slave.truth.tip_force[NT_Z]));
             if (tick < 18 * second)
                 continue;
-            low = smaller(low, l.sim.master.position), high = larger(high, l.sim.master.position);
-            least = smaller(least, l.sim.truth.tip_force), most = larger(most, l.sim.truth.tip_force);
+            low = smaller(low, l.sim.master.arm[NT_Z].position), high = larger(high, l.sim.master.arm[NT_Z].position);
+            least = smaller(least, l.sim.slave.truth.tip_force[NT_Z]),
+            most = larger(most, l.sim.slave.truth.tip_force[NT_Z]);
         }
         print_message("| %.0f | %.0f | ", 1e-3 / l.touch.period, gains[i % 7]);
         if (held)
@@ -279,15 +280,15 @@ static void no_hand_can_break_the_force_limit(void **state)
     const double bound = promised(&begun, 0.0);
     for (int n = 0; n < 60; n++) {
         l = begun;
-        l.sim.plan = &begun.plan;
+        l.sim.slave.plan = &begun.plan;
         for (uint32_t stream = 0; stream < NT_SIM_NOISES; ++stream)
-            l.sim.noise[stream] = nt_noise_of((uint64_t)n, stream);
+            l.sim.master.link.noise[stream] = l.sim.slave.link.noise[stream] = nt_noise_of((uint64_t)n, stream);
         for (int i = 0; i < 20000; i++) {
             if (nt_random_uniform(&random) < 0.003)
                 loop_push(&l, 10.0 * nt_random_uniform(&random) - 5.0 + (n % 2 ? 2.0 : 0.0),
                           0.05 * nt_random_uniform(&random));
             assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
-            worst = larger(worst, l.sim.truth.tip_force);
+            worst = larger(worst, l.sim.slave.truth.tip_force[NT_Z]);
             stopped += l.command.state == NT_RETRACT && i % 1000 == 0 && nt_touch_arm(&l.state, 0) == NT_OK;
         }
         assert_int_equal(l.state.passivity.trips, 0); /* rough, but stable: the observer knows */
@@ -329,7 +330,7 @@ static void a_wall_does_not_break_the_force_limit(void **state)
     double worst = 0.0;
     for (int i = 0; i < 3000; i++) {
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
-        worst = larger(worst, l.sim.truth.tip_force);
+        worst = larger(worst, l.sim.slave.truth.tip_force[NT_Z]);
     }
     const double bound = promised(&l, slope);
     print_message("slope %.1f: worst force %.0f nN, limit %.0f nN, bound %.0f nN\n", slope, 1e9 * worst,

@@ -46,7 +46,7 @@ static void every_three_faults_keep_the_bounds(void **state)
                 outcome o;
                 start(&l, three[0], three[1]);
                 nt_fault third = three[2]->fault;
-                third.start = (double)l.sim.tick * l.sim.period;
+                third.start = (double)l.sim.slave.link.tick * l.sim.slave.link.period;
                 assert_int_equal(nt_sim_inject(&l.sim, &third), NT_OK);
                 assert_int_equal(observe(&l, 1500, &o), NT_OK);
                 const nt_guarantee bound = promise(&l, 0.0);

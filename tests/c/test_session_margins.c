@@ -54,8 +54,8 @@ static double ripple(loop *l, double force_gain, double time)
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (double t = 0.0; t < time; t += l->touch.period) {
         tick_with_gain(l, force_gain);
-        low = smaller(low, l->sim.truth.tip_force);
-        high = larger(high, l->sim.truth.tip_force);
+        low = smaller(low, l->sim.slave.truth.tip_force[NT_Z]);
+        high = larger(high, l->sim.slave.truth.tip_force[NT_Z]);
     }
     return high - low;
 }
@@ -66,7 +66,7 @@ static int is_stable(const loop *pressed, double force_gain)
 {
     static loop l;
     l = *pressed;
-    l.sim.plan = &l.plan;
+    l.sim.slave.plan = &l.plan;
     for (double t = 0.0; t < 0.1; t += l.touch.period) /* the force gain fades over, no kick of its own */
         tick_with_gain(&l, 2.0 + (force_gain - 2.0) * t / 0.1);
     loop_push(&l, 3.03, 0.0);
@@ -91,14 +91,14 @@ static void r1_is_on_the_safe_side_of_the_simulated_limit(void **state)
         loop_push(&l, 3.0, 0.3);
         for (double t = 0.0; t < 1.0; t += l.touch.period)
             tick_with_gain(&l, 2.0);
-        assert_true(fabs(l.sim.truth.tip_force * setup.settings.gains.alpha_f - 3.0) < 1e-3);
+        assert_true(fabs(l.sim.slave.truth.tip_force[NT_Z] * setup.settings.gains.alpha_f - 3.0) < 1e-3);
         double low = 2.0, high = 4000.0;
         assert_true(is_stable(&l, low) && !is_stable(&l, high));
         while (high - low > 2e-3 * low) {
             const double middle = 0.5 * (low + high);
             *(is_stable(&l, middle) ? &low : &high) = middle;
         }
-        const double force = l.sim.truth.tip_force, E = 5e12 / (1.0 - 0.35 * 0.35), R = 100e-9;
+        const double force = l.sim.slave.truth.tip_force[NT_Z], E = 5e12 / (1.0 - 0.35 * 0.35), R = 100e-9;
         const double k = cbrt(6.0 * E * E * R * force); /* Hertz */
         nt_gains gains = setup.settings.gains;
         gains.force_gain = low;
@@ -139,7 +139,7 @@ static void a_margin_of_one_and_a_half_is_calm(void **state)
         for (double t = 0.0; t < 5.0; t += l.touch.period) {
             assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
             assert_int_equal(l.command.state, NT_RUN);
-            assert_true(fabs(l.sim.truth.tip_force) < promised);
+            assert_true(fabs(l.sim.slave.truth.tip_force[NT_Z]) < promised);
         }
         assert_int_equal(l.state.passivity.trips, 0);
         assert_true(l.state.passivity.gain == 1.0);
@@ -173,12 +173,12 @@ static double speed_in_the_end(const brave_loop *brave)
     for (double t = 0.0; t < 20.0; t += l.touch.period) {
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
         if (t > 18.0 && l.command.state != NT_HOLD)
-            worst = larger(worst, fabs(l.sim.master.speed));
+            worst = larger(worst, fabs(l.sim.master.arm[NT_Z].speed));
     }
     assert_true(brave->watched == (l.state.passivity.trips > 0 && l.state.passivity.gain < 1.0));
-    print_message("%4.0f Hz, d = %.0f, K_f %3.0f, margin %.2f, %s: speed of the master %.4f m/s, gain %.2f\n", brave->rate,
-                  brave->delay, brave->force_gain, margins.margin, brave->watched ? "watched" : "not watched", worst,
-                  l.state.passivity.gain);
+    print_message("%4.0f Hz, d = %.0f, K_f %3.0f, margin %.2f, %s: speed of the master %.4f m/s, gain %.2f\n",
+                  brave->rate, brave->delay, brave->force_gain, margins.margin,
+                  brave->watched ? "watched" : "not watched", worst, l.state.passivity.gain);
     return worst;
 }
 
@@ -209,8 +209,8 @@ static double topography_ripple(const nt_session_setup *setup)
     for (double t = 0.0; t < 4.0; t += l.touch.period) {
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
         if (t > 3.0) {
-            low = smaller(low, l.sim.truth.tip_force);
-            high = larger(high, l.sim.truth.tip_force);
+            low = smaller(low, l.sim.slave.truth.tip_force[NT_Z]);
+            high = larger(high, l.sim.slave.truth.tip_force[NT_Z]);
         }
     }
     return (high - low) / setup->settings.gains.set_point;
@@ -270,8 +270,8 @@ static void topography_trips_nothing(void **state)
         assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
         assert_int_equal(l.command.state, NT_RUN);
         if (i > 20000) {
-            lowest = smaller(lowest, l.sim.master.position);
-            highest = larger(highest, l.sim.master.position);
+            lowest = smaller(lowest, l.sim.master.arm[NT_Z].position);
+            highest = larger(highest, l.sim.master.arm[NT_Z].position);
         }
     }
     assert_true(highest - lowest > 0.8 * 20e-9 / setup.settings.gains.alpha_p); /* the hand has felt the hills */

@@ -29,14 +29,14 @@ static void check_promise(const nt_session *session, long count)
 {
     const nt_guarantee promised = nt_session_guarantee(session);
     for (long k = 0; k < count; k++)
-        assert_true(fabs(records[k].tip_force) < promised.force && -records[k].gap < promised.indentation);
+        assert_true(fabs(records[k].tip_force[NT_Z]) < promised.force && -records[k].gap < promised.indentation);
 }
 
 /* The hand goes to `force` in `duration`; returns the records of the `time` from then on. */
 static long feel(nt_session *session, double force, double duration, double time)
 {
-    const nt_input input = {.operator_force = force, .duration = duration};
-    assert_int_equal(nt_session_aim(session, &input), NT_OK);
+    const nt_input input = {.operator_force[NT_Z] = force, .duration = duration};
+    assert_int_equal(nt_session_aim(session, &input, NULL), NT_OK);
     const long ticks = lround(time / nt_session_touch(session)->period);
     assert_int_equal(nt_session_advance(session, ticks), NT_OK);
     assert_int_equal(nt_session_read(session, records, MOST), ticks);
@@ -62,14 +62,14 @@ static void a_touch_from_approach_to_pull_off(void **state)
             assert_int_equal(r->state, NT_RUN);
             assert_int_equal(r->reasons & ~(uint32_t)NT_REASON_COMMAND_LIMITED, 0);
             if (!touching && r->contact_radius > 0.0)
-                contacts++, snap = -r->tip_force;
+                contacts++, snap = -r->tip_force[NT_Z];
             if (touching && r->contact_radius == 0.0)
                 releases++;
             touching = r->contact_radius > 0.0;
-            strongest_push = larger(strongest_push, r->tip_force);
-            strongest_pull = larger(strongest_pull, -r->tip_force);
+            strongest_push = larger(strongest_push, r->tip_force[NT_Z]);
+            strongest_pull = larger(strongest_pull, -r->tip_force[NT_Z]);
             read_pull = larger(read_pull, -r->slave_force);
-            last_force = r->tip_force;
+            last_force = r->tip_force[NT_Z];
         }
     }
     assert_true(contacts == 1 && releases == 1 && !touching);
@@ -107,8 +107,8 @@ static void forces_agree_at_rest_for_any_gain(void **state)
             const long count = feel(session, forces[j], 0.0, 0.8);
             double f_m = 0.0, f_s = 0.0;
             for (long k = 0; k < count; k++) {
-                f_m += records[k].operator_force / (double)count;
-                f_s += setup.settings.gains.alpha_f * records[k].tip_force / (double)count;
+                f_m += records[k].operator_force[NT_Z] / (double)count;
+                f_s += setup.settings.gains.alpha_f * records[k].tip_force[NT_Z] / (double)count;
             }
             print_message("K_f %4.1f: f_m %.4f N, alpha_f f_s %.4f N\n", gains[i], f_m, f_s);
             assert_true(fabs(f_m - f_s) < 0.0105); /* half a step of the gauge: 2.313 N is read as 2.32 N */
@@ -128,12 +128,12 @@ static void the_loop_is_quiet_at_its_defaults(void **state)
     const long count = feel(session, 1.0, 0.0, 2.0);
     double low = HUGE_VAL, high = -HUGE_VAL, mean = 0.0, square = 0.0;
     for (long k = 0; k < count; k++) {
-        low = smaller(low, records[k].master_position);
-        high = larger(high, records[k].master_position);
-        mean += records[k].motor_force / (double)count;
+        low = smaller(low, records[k].master_position[NT_Z]);
+        high = larger(high, records[k].master_position[NT_Z]);
+        mean += records[k].motor_force[NT_Z] / (double)count;
     }
     for (long k = 0; k < count; k++)
-        square += (records[k].motor_force - mean) * (records[k].motor_force - mean) / (double)count;
+        square += (records[k].motor_force[NT_Z] - mean) * (records[k].motor_force[NT_Z] - mean) / (double)count;
     assert_true(high - low < 3.1 * setup.rig.master.resolution);
     const nt_margins margins = nt_session_margins(session);
     print_message("motor noise %.4f N RMS, R5 says %.4f; margin %.1f\n", sqrt(square), margins.force_noise,
@@ -148,10 +148,10 @@ static void run_script(uint64_t seed, nt_record *out)
     nt_session_setup setup = nt_session_defaults();
     setup.seed = seed;
     nt_session *session = open_session(&setup);
-    const nt_input inputs[] = {{.operator_force = 1.0, .duration = 0.3},
-                               {.operator_force = -0.5, .x = 1e-6, .duration = 0.2}};
+    const nt_input inputs[] = {{.operator_force[NT_Z] = 1.0, .duration = 0.3},
+                               {.operator_force[NT_Z] = -0.5, .x = 1e-6, .duration = 0.2}};
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(nt_session_aim(session, &inputs[i]), NT_OK);
+        assert_int_equal(nt_session_aim(session, &inputs[i], NULL), NT_OK);
         assert_int_equal(nt_session_advance(session, 15000), NT_OK);
     }
     assert_int_equal(nt_session_read(session, out, 30000), 30000);
@@ -178,12 +178,12 @@ static void blocks_make_no_difference(void **state)
     run_script(1, records);
     setup.ring_capacity = 1000; /* 1024 */
     nt_session *session = open_session(&setup);
-    const nt_input inputs[] = {{.operator_force = 1.0, .duration = 0.3},
-                               {.operator_force = -0.5, .x = 1e-6, .duration = 0.2}};
+    const nt_input inputs[] = {{.operator_force[NT_Z] = 1.0, .duration = 0.3},
+                               {.operator_force[NT_Z] = -0.5, .x = 1e-6, .duration = 0.2}};
     long done = 0, got = 0;
     for (int block = 0; done < 30000; block++) {
         if (done == 0 || done == 15000)
-            assert_int_equal(nt_session_aim(session, &inputs[done / 15000]), NT_OK);
+            assert_int_equal(nt_session_aim(session, &inputs[done / 15000], NULL), NT_OK);
         long ticks = 1 + (block * 37) % 600;
         const long rest = (done < 15000 ? 15000 : 30000) - done;
         ticks = ticks < rest ? ticks : rest;
@@ -235,19 +235,20 @@ static void the_emergency_stop(void **state)
     nt_session *session = open_session(&setup);
     feel(session, 2.0, 0.5, 4.0);
     const nt_record before = records[39999];
-    assert_true(before.tip_force > 0.3e-6);
+    assert_true(before.tip_force[NT_Z] > 0.3e-6);
     nt_session_emergency_stop(session, 1);
     const long count = feel(session, 2.0, 0.0, 1.0);
     for (long k = 0; k < count; k++) {
         const nt_record *r = &records[k], *last = k ? &records[k - 1] : &before;
         assert_int_equal(r->state, NT_LATCHED);
         assert_int_equal(r->reasons, NT_REASON_EMERGENCY_STOP);
-        assert_true(fabs(r->motor_force - last->motor_force) <= limits->motor_rate * 1e-4 * (1.0 + 1e-12));
-        assert_true(fabs(r->stage_command - last->stage_command) <= 1.1 * limits->retract_speed * 1e-4);
+        assert_true(fabs(r->motor_force[NT_Z] - last->motor_force[NT_Z]) <= limits->motor_rate * 1e-4 * (1.0 + 1e-12));
+        assert_true(fabs(r->stage_command[NT_Z] - last->stage_command[NT_Z]) <= 1.1 * limits->retract_speed * 1e-4);
         if (k > 530) /* 50 ms, and the damping of the free master ends at the motor's rate */
-            assert_true(r->motor_force == 0.0);
+            assert_true(r->motor_force[NT_Z] == 0.0);
     }
-    assert_true(fabs(before.stage_command - records[count - 1].stage_command - limits->retract_distance) < 3e-9);
+    assert_true(fabs(before.stage_command[NT_Z] - records[count - 1].stage_command[NT_Z] - limits->retract_distance) <
+                3e-9);
     assert_true(records[count - 1].contact_radius == 0.0);
     assert_int_equal(nt_session_arm(session, 0), NT_E_STATE);
     assert_int_equal(nt_session_arm(session, 1), NT_OK);
@@ -256,16 +257,17 @@ static void the_emergency_stop(void **state)
     nt_session_emergency_stop(session, 0);
     feel(session, 0.0, 0.0, 0.1);
     assert_int_equal(records[999].state, NT_LATCHED);
-    const double stage = records[999].stage_command;
+    const double stage = records[999].stage_command[NT_Z];
     assert_int_equal(nt_session_arm(session, 1), NT_OK);
     feel(session, -0.2, 0.5, 1.0); /* the hand has pushed the uncoupled master to its end stop */
     assert_int_equal(records[0].state, NT_RUN);
-    assert_true(fabs(records[0].stage_command - stage) < 1e-10);
+    assert_true(fabs(records[0].stage_command[NT_Z] - stage) < 1e-10);
     for (int k = 1; k < 10000; k++) {
         assert_int_equal(records[k].state, NT_RUN);
-        assert_true(fabs(records[k].stage_command - records[k - 1].stage_command) < 1.1 * limits->stage_speed * 1e-4);
+        assert_true(fabs(records[k].stage_command[NT_Z] - records[k - 1].stage_command[NT_Z]) <
+                    1.1 * limits->stage_speed * 1e-4);
     }
-    assert_true(records[9999].stage_command < stage - 10e-9); /* and it goes on */
+    assert_true(records[9999].stage_command[NT_Z] < stage - 10e-9); /* and it goes on */
     nt_session_close(session);
 }
 
@@ -274,14 +276,14 @@ static void inputs_are_checked(void **state)
     (void)state;
     const nt_session_setup setup = nt_session_defaults();
     nt_session *session = open_session(&setup);
-    const nt_input not_finite[] = {{.operator_force = NAN}, {.x = HUGE_VAL}, {.y = NAN}, {.duration = NAN}};
+    const nt_input not_finite[] = {{.operator_force[NT_Z] = NAN}, {.x = HUGE_VAL}, {.y = NAN}, {.duration = NAN}};
     for (int i = 0; i < 4; i++)
-        assert_int_equal(nt_session_aim(session, &not_finite[i]), NT_E_NOT_FINITE);
+        assert_int_equal(nt_session_aim(session, &not_finite[i], NULL), NT_E_NOT_FINITE);
     const nt_input back_in_time = {.duration = -1.0};
-    assert_int_equal(nt_session_aim(session, &back_in_time), NT_E_RANGE);
+    assert_int_equal(nt_session_aim(session, &back_in_time, NULL), NT_E_RANGE);
     feel(session, 0.0, 0.0, 0.1);
     for (int k = 0; k < 1000; k++)
-        assert_true(records[k].x == 0.0 && fabs(records[k].operator_force) <= 0.021);
+        assert_true(records[k].stage_position[NT_X] == 0.0 && fabs(records[k].operator_force[NT_Z]) <= 0.021);
     nt_session_close(session);
 }
 

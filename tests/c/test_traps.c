@@ -28,9 +28,9 @@ static nt_session *session;
 static int press(void)
 {
     static nt_record records[1000];
-    const nt_input input = {.operator_force = 1.0, .duration = 0.05};
+    const nt_input input = {.operator_force[NT_Z] = 1.0, .duration = 0.05};
     long count = 0;
-    nt_status status = nt_session_aim(session, &input);
+    nt_status status = nt_session_aim(session, &input, NULL);
     for (int i = 0; i < 10 && status == NT_OK; i++) {
         status = nt_session_advance(session, 1000);
         count += nt_session_read(session, records, 1000);
@@ -42,9 +42,9 @@ static int request_everything(void)
 {
     const nt_gains *gains = &nt_session_touch(session)->settings.gains;
     const nt_scaling scaling = {gains->alpha_p, 0.5 * gains->alpha_f};
-    int failures = nt_session_rescale(session, &scaling) != NT_OK;
+    int failures = nt_session_rescale(session, &scaling, NULL) != NT_OK;
     nt_session_clutch(session, 1);
-    failures += nt_session_set_mode(session, NT_MODE_TOPOGRAPHY) != NT_OK;
+    failures += nt_session_set_mode(session, NT_MODE_TOPOGRAPHY, NULL) != NT_OK;
     nt_session_emergency_stop(session, 1);
     failures += nt_session_advance(session, 100) != NT_OK;
     nt_session_emergency_stop(session, 0);

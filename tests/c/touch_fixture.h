@@ -45,7 +45,7 @@ static inline nt_status bench_open(bench *b, const nt_rig *rig, const nt_setting
 static inline double bench_force(const bench *b)
 {
     const double k_c = b->touch.rig.probe.spring_constant;
-    return larger(0.0, b->sample.stage_position - b->surface) * k_c * b->stiffness / (k_c + b->stiffness);
+    return larger(0.0, b->sample.stage_position[NT_Z] - b->surface) * k_c * b->stiffness / (k_c + b->stiffness);
 }
 
 static inline void bench_advance_master(bench *b, double force)
@@ -61,15 +61,15 @@ static inline void bench_advance_master(bench *b, double force)
 static inline void bench_tick(bench *b)
 {
     const nt_command last = b->command;
-    b->sample.stage_position = b->command.stage_position;
-    b->sample.deflection = bench_force(b) / b->touch.rig.probe.spring_constant;
-    b->sample.master_position = b->x;
-    b->sample.operator_force = b->push;
+    b->sample.stage_position[NT_Z] = b->command.stage_position[NT_Z];
+    b->sample.deflection[NT_Z] = bench_force(b) / b->touch.rig.probe.spring_constant;
+    b->sample.master_position[NT_Z] = b->x;
+    b->sample.operator_force[NT_Z] = b->push;
     nt_touch_step(&b->touch, &b->state, &b->sample, &b->command);
-    bench_advance_master(b, b->push + b->command.motor_force);
+    bench_advance_master(b, b->push + b->command.motor_force[NT_Z]);
     b->largest_force = larger(b->largest_force, bench_force(b));
-    b->fastest_motor = larger(b->fastest_motor, fabs(b->command.motor_force - last.motor_force));
-    b->fastest_stage = larger(b->fastest_stage, fabs(b->command.stage_position - last.stage_position));
+    b->fastest_motor = larger(b->fastest_motor, fabs(b->command.motor_force[NT_Z] - last.motor_force[NT_Z]));
+    b->fastest_stage = larger(b->fastest_stage, fabs(b->command.stage_position[NT_Z] - last.stage_position[NT_Z]));
     ++b->sample.tick;
 }
 

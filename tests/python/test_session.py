@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from nanotouch import Input, Recording, Rig, Scene, Session, Settings, Surface, record, surface
 from nanotouch._core import Signals
+from nanotouch.columns import SIDEWAYS
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.session import Columns, settings_for_path
 
@@ -68,11 +69,11 @@ def test_run_equals_advance_bitwise() -> None:
 
 def test_columns_are_those_of_a_recording() -> None:
     block = Session().advance(0.01)
-    assert set(block) == set(record.COLUMNS)
+    assert set(block) == set(record.COLUMNS) - set(SIDEWAYS)
     assert {len(values) for values in block.values()} == {100}
     np.testing.assert_allclose(block["time"], np.arange(100) * 1e-4, rtol=1e-15)
     empty = Session().advance(0.0)
-    assert set(empty) == set(record.COLUMNS)
+    assert set(empty) == set(record.COLUMNS) - set(SIDEWAYS)
     assert all(values.size == 0 for values in empty.values())
 
 
@@ -136,9 +137,11 @@ def test_the_session_keeps_what_it_was_made_from() -> None:
 
 
 def test_pull_off_is_the_plans(pressed: tuple[Session, Recording]) -> None:
-    """A stiff lever (8 N/m) meets the load fold within one step of the stage: 1 % of 18 nN is 0.02 nm of travel."""
+    """A stiff lever (8 N/m) meets the load fold within one tick of the stage. Near the fold the force goes as the
+    square root of the travel that is left, so a tick of 0.1 nm is some per cent of it: 2 to 7 % in 12 runs with seeds
+    0 to 11, never more than the plan's."""
     session, recording = pressed
-    assert -recording.tip_force.min() == pytest.approx(session.plan.pull_off_force, rel=0.03)
+    assert 0.92 < -recording.tip_force.min() / session.plan.pull_off_force < 1.0
     assert (recording.state == RUN).all()
     assert recording.tip_force.max() > 0.3e-6
     assert recording.gap[0] == pytest.approx(session.clearance, rel=1e-3)
@@ -337,10 +340,10 @@ def test_bad_durations(duration: float) -> None:
 @pytest.mark.parametrize(
     ("step", "words"),
     [
-        (Input(math.nan, 1e-6, 1e-6, 1.0), "operator_force = nan is not finite"),
-        (Input(0.1, 1e-6, 1e-6, math.inf), "duration = inf is not finite"),
-        (Input(0.1, 1e-6, 1e-6, -1.0), "duration = -1.0 s"),
-        (Input(0.1, 9e-6, 1e-6, 1.0), r"\(9 um, 1 um\) is outside the surface"),
+        (Input(math.nan, 1e-6, 1e-6, 1.0), "operator_force = nan N: valid is -inf .. inf N"),
+        (Input(0.1, 1e-6, 1e-6, math.inf), "duration = inf s: valid is 0 .. inf s"),
+        (Input(0.1, 1e-6, 1e-6, -1.0), "duration = -1 s: valid is 0 .. inf s"),
+        (Input(0.1, 9e-6, 1e-6, 1.0), r"input.x = 9e-06 m: valid is 0 .. 6e-06 m"),
     ],
 )
 def test_bad_input(step: Input, words: str) -> None:

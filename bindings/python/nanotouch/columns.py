@@ -40,12 +40,21 @@ COLUMNS: dict[str, Column] = {
     "reasons": Column("<u4", "", "bits that explain the state"),
     "phase": Column("|u1", "", "of an approach or a curve: 0 down, 1 up, 2 done"),
     "age": Column("<f8", "s", "of the sample when it was used"),
+    "master_age": Column("<f8", "s", "of the master's reading when it was used"),
     "lateness": Column("<f8", "s", "of the tick against its deadline"),
     "flags": Column("<u4", "", "bits that the rig has set: 1 emergency stop, 2 limit switch, 4 invalid, 8, 16 lost"),
     "gap": Column("<f8", "m", "simulated truth: h = z_t - z_s of the undeformed bodies"),
     "tip_force": Column("<f8", "N", "simulated truth: force on the tip, + repulsive"),
     "contact_radius": Column("<f8", "m", "simulated truth: radius of the contact, 0 when apart"),
     "surface_height": Column("<f8", "m", "simulated truth: tip-dilated surface under the tip"),
+    "master_x": Column("<f8", "m", "lateral position of a master of three axes, to the right"),
+    "master_y": Column("<f8", "m", "lateral position of a master of three axes, up the image"),
+    "operator_force_x": Column("<f8", "N", "f_m sideways as measured"),
+    "operator_force_y": Column("<f8", "N", "f_m sideways as measured"),
+    "motor_force_x": Column("<f8", "N", "tau_m sideways"),
+    "motor_force_y": Column("<f8", "N", "tau_m sideways"),
+    "tip_force_x": Column("<f8", "N", "simulated truth: force on the tip, to the right"),
+    "tip_force_y": Column("<f8", "N", "simulated truth: force on the tip, up the image"),
 }
 
 
@@ -73,3 +82,7 @@ def _converted(name: str, values: ArrayLike) -> NDArray[Any]:
     if converted.dtype.kind == "u" and not np.array_equal(converted, array):
         raise InvalidValue(f"column {name!r} must hold integers from 0 to {np.iinfo(converted.dtype).max}")
     return converted
+
+
+SIDEWAYS = tuple(name for name in COLUMNS if name.endswith(("_x", "_y")))
+"""columns of a rig whose master has more than one axis, and of no other"""

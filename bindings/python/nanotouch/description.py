@@ -101,6 +101,7 @@ class Description(Mapping[str, float]):
     """tables of a file that are no section of fields"""
     fields: ClassVar[dict[str, Field]]
     core: Any
+    _instead: str | None
 
     def __init__(self, **sections: Mapping[str, float | str]) -> None:
         self._take(self._core_type())
@@ -141,6 +142,7 @@ class Description(Mapping[str, float]):
 
     def update_from_tables(self, tables: Mapping[str, Any]) -> None:
         """Set what the tables name; a section that no description has is refused."""
+        self._check_free(type(self).__name__)
         for section in tables:
             if section not in Description._all_sections:
                 raise InvalidValue(f"unknown section [{section}]; known are {', '.join(Description._all_sections)}")
@@ -192,8 +194,19 @@ class Description(Mapping[str, float]):
         made._take(self.core.copy())
         return made
 
+    def frozen(self, instead: str) -> Self:
+        """A copy that refuses every change and says what to do ``instead``."""
+        made = self.copy()
+        object.__setattr__(made, "_instead", instead)
+        return made
+
     def _take(self, core: Any) -> None:
         object.__setattr__(self, "core", core)
+        object.__setattr__(self, "_instead", None)
+
+    def _check_free(self, what: str) -> None:
+        if self._instead is not None:
+            raise InvalidValue(f"{what} is frozen: {self._instead}")
 
     def to_dict(self) -> dict[str, dict[str, Any]]:
         """Nested plain numbers in SI, and names of choices, for JSON."""
@@ -215,6 +228,7 @@ class Description(Mapping[str, float]):
     def __setitem__(self, name: str, value: float | str) -> None:
         if name not in self.fields:
             raise KeyError(name)
+        self._check_free(name)
         field = self.fields[name]
         number = field.number_of(value, name) if field.choices else _as_number(value, name)
         field.check(number, name, number)

@@ -9,6 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from nanotouch import _core
 from nanotouch._arrays import Floats
 from nanotouch._path import Mode
 from nanotouch.errors import InvalidValue
@@ -44,6 +45,27 @@ class Input(NamedTuple):
     x: float
     y: float
     duration: float
+
+
+class Hold(NamedTuple):
+    """The hand holds the master where it will, as a mouse does, and the tip goes there: on a straight line, then both
+    stay.
+
+    ``master_position`` x_m [m], + towards the sample, or three of them (x, y, x_m) for a master of three axes; ``x``,
+    ``y`` [m], NaN where the tip follows the master; ``duration`` [s].
+    """
+
+    master_position: float | tuple[float, float, float]
+    x: float
+    y: float
+    duration: float
+
+
+def core_input(input: Input | Hold) -> _core.Input:
+    """As the C library takes it."""
+    if isinstance(input, Hold):
+        return _core.Input(0.0, input.master_position, input.x, input.y, input.duration)
+    return _core.Input(input.operator_force, None, input.x, input.y, input.duration)
 
 
 class Touch(Protocol):

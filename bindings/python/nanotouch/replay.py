@@ -10,6 +10,7 @@ import numpy as np
 from nanotouch import _core
 from nanotouch._control import CONTROLS, Law
 from nanotouch._path import MODES, core_mode
+from nanotouch.columns import SIDEWAYS
 from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
 from nanotouch.errors import InvalidValue
@@ -19,8 +20,10 @@ from nanotouch.scene import Rig, Settings
 MEASURED = (
     "age", "lateness", "master_position", "operator_force", "stage_position", "deflection", "x", "y", "flags",
 )  # fmt: skip
-REQUESTS = {"aim": 3, "arm": 1, "mode": 1, "clutch": 1, "rescale": 2}
+REQUESTS = {"aim": 3, "arm": 1, "mode": 1, "clutch": 1, "rescale": 2, "setting": 2, "scene": 2, "stop": 1}
 """that a session may be asked for between two ticks, and how many numbers each has"""
+NAMED = ("mode", "setting", "scene")
+"""whose first one is a name"""
 
 
 def replay(recording: Recording, control: Law | None = None) -> Recording:
@@ -43,7 +46,9 @@ def replay(recording: Recording, control: Law | None = None) -> Recording:
         law_is = "a law of one's own: give it as control" if name == "own" else f"control {name!r}: give no other law"
         raise InvalidValue(f"the recording was made with {law_is}")
     law: Any = control if name == "own" else _resolved(name, rig)
-    columns = {column: recording.columns[column] for column in MEASURED}
+    columns = {
+        column: recording.columns[column] for column in (*MEASURED, *SIDEWAYS, "master_age") if column in recording
+    }
     found = _core.replay(rig.core, settings.core, law, start, columns)
     return Recording(recording.columns | found, metadata)
 
@@ -66,13 +71,15 @@ def _start(metadata: dict[str, Any]) -> dict[str, Any]:
     try:
         x, y = metadata["path"][0]
         events = [
-            (int(tick), str(name), list(numbers) if name == "mode" else [float(number) for number in numbers])
+            (int(tick), str(name), list(numbers) if name in NAMED else [float(number) for number in numbers])
             for tick, name, numbers in metadata["events"]
         ]
         start = {"mode": core_mode(metadata["mode"]), "master": float(metadata["master_start"]), "x": x, "y": y}
     except (TypeError, ValueError, LookupError) as error:
         raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
     for _, name, numbers in events:
+        if name == "rewind":
+            raise InvalidValue("the recording was rewound: it cannot be replayed")
         if name not in REQUESTS or len(numbers) != REQUESTS[name]:
             raise InvalidValue(f"the recording's metadata holds a request {name!r} with {len(numbers)} numbers")
         if name == "mode" and numbers[0] not in {core_mode(mode) for mode in MODES}:

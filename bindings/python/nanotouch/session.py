@@ -1,56 +1,43 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A whole touch on the simulated rig: simulated time, deterministic for a seed, driven block by block."""
+"""A whole touch: a scene, a rig of two halves, a loop. Simulated by default: the same record for the same seed."""
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Callable, Mapping, Sequence
-from operator import index
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch import _core, margins
-from nanotouch._arrays import check_between
 from nanotouch._control import CONTROLS, Law, choose_control
-from nanotouch._path import MODES, Mode, check_inside, checked_path, core_mode
+from nanotouch._path import MODES, Mode, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
+from nanotouch.columns import STATES
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
-from nanotouch.margins import ForceRange, Margins
-from nanotouch.operator import Input, script_for, stretched
-from nanotouch.plan import Plan, terrain_of
+from nanotouch.margins import Margins
+from nanotouch.operator import Hold, Input, core_input, script_for, stretched
+from nanotouch.options import INDENTATION_RANGE as INDENTATION_RANGE
+from nanotouch.options import PACES, Options, Pace, Progress, check_options, checked_seed, settings_with
+from nanotouch.options import settings_for_path as settings_for_path
+from nanotouch.plan import Plan
 from nanotouch.record import Recording, Writer
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
 __all__ = [
-    "CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "ProbeModel", "Session", "choose_control",
-    "settings_for_path",
+    "CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "Options", "Pace", "ProbeModel", "Progress",
+    "Session", "choose_control", "settings_for_path",
 ]  # fmt: skip
 
 BLOCK_TICKS = 500  # rows that a killed process may lose
-INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
-ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
-
+RING_CAPACITY = 65536
 Columns = dict[str, NDArray[Any]]
-
-
-def settings_for_path(
-    rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6, force_range: tuple[float, float] | None = None
-) -> Settings:
-    """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m] and forces
-    on the tip [N] from a plan or a test touch (:func:`nanotouch.margins.force_range`)."""
-    check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
-    check_between("relief", relief, "m", above=-1e-15, up_to=1e-3)
-    settings = Settings.for_rig(rig)
-    slave_path = clearance + INDENTATION_RANGE + relief
-    settings.gains.alpha_p, settings.gains.alpha_f = _core.scaling_heuristic(rig.core, slave_path, ATTRACTION_RANGE)
-    if force_range is not None:
-        settings.gains.alpha_f = margins.heuristic_alpha_f(rig, ForceRange(*force_range))
-    return settings
+FROZEN = "an open session is changed by session.change({!r}, field, value), which is recorded"
 
 
 class Session:
@@ -60,46 +47,21 @@ class Session:
     ----------
     scene, rig : Scene, Rig
         What is touched, and with what; the paper's by default.
-    rate : float, optional
-        Of the force loop [Hz]; by default that of the settings, 10 kHz.
-    control : {"default", "paper", "impedance"} or callable
-        The control law (docs/control.md), or one's own: a function of the signals of a period
-        (:class:`nanotouch._core.Signals`) that returns the motor force [N] and where the stage shall be [m], under the
-        same supervisor and limits; it is tried before the session opens, to know its margins (``minimum_margin=0``
-        arms without, and leaves it alone). A rig without a gauge has ``"impedance"`` as its default.
-    gains : mapping, optional
-        Fields of ``settings.gains`` in SI that differ, such as ``{"force_gain": 10}``.
+    surface : Surface, optional
+        The (dilated) surface; without it a flat at z = 0.
     mode : {"point", "scan", "topography", "approach", "curve"}
         Touch at a point; touch along a path; follow the path at constant force and feel the height only; find the
         surface and hold the set-point there; a force-distance curve.
     path : sequence of (x, y), optional
         Where the tip goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By default the
         middle of the surface, or a line across it at mid-height.
-    delay : float
-        Of the link between hand and probe [s], beside the rig's own.
-    seed : int
-        Of the sensors' noise.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path.
-    force_range : (lowest, highest), optional
-        Forces on the tip [N] that alpha_f is to fill the hand's range with (Eq. 19), where no settings are given.
-    surface : Surface, optional
-        The (dilated) surface; without it a flat at z = 0.
-    clearance : float
-        Height of the tip above the surface at the start [m].
-    rtol : float
-        Largest relative error of the planned force.
-    minimum_margin : float
-        Refuse to open closer to the stability limit than this.
-    preflight : bool
-        Tare the sensors and test the stage's sign before the first tick; refuse to open if they are off.
-    probe_model : {"auto", "quasi-static", "dynamic"}
-        How the cantilever is simulated: at rest at every tick, or by its equation of motion (docs/plant.md). ``"auto"``
-        takes the first where its error is small enough.
-    substep : float
-        Of the dynamic cantilever: the largest angle of its fastest oscillation in one sub-step [rad].
-    faults : Faults, optional
-        What fails in the simulated rig, and when.
+    **options
+        See :class:`Options`.
+
+    What is open is frozen: ``scene``, ``rig`` and ``settings`` of a session refuse changes. :meth:`change` makes them,
+    and records them.
     """
 
     def __init__(
@@ -107,58 +69,55 @@ class Session:
         scene: Scene | None = None,
         rig: Rig | None = None,
         *,
-        rate: float | None = None,
-        control: str | Law = "default",
-        gains: Mapping[str, float] | None = None,
+        surface: Surface | None = None,
         mode: Mode = "point",
         path: Sequence[tuple[float, float]] | None = None,
-        delay: float = 0.0,
-        seed: int = 1,
         settings: Settings | None = None,
-        force_range: tuple[float, float] | None = None,
-        surface: Surface | None = None,
-        clearance: float = 0.1e-6,
-        rtol: float = 0.01,
-        minimum_margin: float = 1.5,
-        preflight: bool = True,
-        probe_model: ProbeModel = "auto",
-        substep: float = 0.25,
-        faults: Faults | None = None,
+        **options: Unpack[Options],
     ) -> None:
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
-        self.scene = Scene() if scene is None else scene.copy()
-        self.rig = Rig() if rig is None else rig.copy()
+        check_options(options)
+        self.scene = (Scene() if scene is None else scene).frozen(FROZEN.format("scene"))
+        self.rig = (Rig() if rig is None else rig).frozen("the rig of an open session stays as it is: open another one")
         self.surface = surface
         self.mode: Mode = mode
-        self._mode: Mode = mode  # that it is in now
-        self.seed = _checked_seed(seed)
-        self.minimum_margin = float(minimum_margin)
-        self.clearance = clearance
+        self.seed = checked_seed(options.get("seed", 1))
+        self.minimum_margin = float(options.get("minimum_margin", 1.5))
+        self.clearance = options.get("clearance", 0.1e-6)
         self.path = checked_path(mode, path, surface)
-        distance, heights = self.path_heights()
+        heights = self.path_heights()[1]
         self.relief = float(np.ptp(heights))
-        if settings is not None and force_range is not None:
-            raise InvalidValue("force_range sets alpha_f, which the settings hold already: give one of them")
-        scaled = settings_for_path(self.rig, self.relief, clearance, force_range) if settings is None else settings
-        self.settings = scaled.copy()
-        _choose(self.settings, rate, gains, delay)
-        self.control = choose_control(self.settings, control)
+        wanted = settings_with(self.rig, self.relief, settings, options)
+        control = options.get("control", "default")
+        self.control = choose_control(wanted, control)
+        self.settings = wanted.frozen(FROZEN.format("settings"))
         self._events: list[tuple[int, str, list[Any]]] = []
-        self._scales = [self.settings.gains.alpha_p, self.settings.gains.alpha_f]
-        options = {
-            "mode": core_mode(mode), "x": self.path[0][0], "y": self.path[0][1], "seed": self.seed,
-            "clearance": clearance, "rise": float(heights.max() - heights[0]), "slope": _steepest(distance, heights),
-            "minimum_margin": self.minimum_margin, "relative_accuracy": rtol, "preflight": preflight,
-            "law": control if callable(control) else None,
-            **plant_options(probe_model, substep, faults),
-        }  # fmt: skip
-        self.core = _core.Session(
-            self.scene.core, self.rig.core, self.settings.core, terrain_of(self.scene, surface, rtol), options
-        )
+        self._scales = [wanted.gains.alpha_p, wanted.gains.alpha_f]
+        self._mode: Mode = mode  # that it is in now
+        faults = options.get("faults")
+        dilated = surface is not None and surface.tip_radius is not None
+        with self.scene.naming_terms():
+            self.core = _core.Session(
+                self.scene.core, self.rig.core, wanted.core, {
+                    "surface": None if surface is None else surface.core,
+                    "radii": surface.radius_map.core if surface is not None and dilated else None,
+                    "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
+                    "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
+                    "minimum_margin": self.minimum_margin, "relative_accuracy": options.get("rtol", 0.01),
+                    "preflight": options.get("preflight", True), "law": control if callable(control) else None,
+                    "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
+                    **plant_options(options.get("probe_model", "auto"), options.get("substep", 0.25), faults),
+                },
+            )  # fmt: skip
+        self._opened_with = self._descriptions()
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
+        self._begun = self.core.snapshot()
+
+    def _descriptions(self) -> dict[str, Any]:
+        return {"scene": self.scene.to_dict(), "rig": self.rig.to_dict(), "settings": self.settings.to_dict()}
 
     @property
     def plan(self) -> Plan:
@@ -205,28 +164,43 @@ class Session:
         x, y = (np.interp(distance, lengths, corners[:, axis]) for axis in (0, 1))
         return distance, self.surface.height(x, y)
 
-    def advance(self, duration: float, input: Input | None = None) -> Columns:
+    def advance(self, duration: float, input: Input | Hold | None = None) -> Columns:
         """Run for a time [s] and return what was recorded, as columns; ``input`` is where hand and tip go meanwhile."""
         if not 0.0 <= duration < math.inf:
             raise InvalidValue(f"duration = {duration} s: it must be a time of 0 s or more")
         if input is not None:
-            self._aim(input)
+            self.aim(input)
         left = round(duration * self.rate)
         blocks: list[Columns] = []
         while left > 0 or not blocks:
             ticks = min(left, BLOCK_TICKS)
             self.core.advance(ticks)
-            blocks.append(self.core.read(ticks))
+            blocks.append(self.read(ticks))
             left -= ticks
         return _joined(blocks)
+
+    def step(self, input: Input | Hold | None = None) -> _core.Frame:
+        """Run one period: some microseconds. The frame of that tick holds what was measured and what was true."""
+        return self.core.step(None if input is None else core_input(input))
+
+    def read(self, rows: int = BLOCK_TICKS) -> Columns:
+        """Up to so many rows of what was recorded and not read yet, as columns."""
+        columns: Columns = self.core.read(rows)
+        self._events += self.core.read_events()
+        return columns
+
+    def aim(self, input: Input | Hold) -> None:
+        """Where hand and tip go from the next tick on; from any thread, the newest counts."""
+        self.core.aim(core_input(input))
 
     def run(
         self,
         duration: float | None = None,
         *,
-        operator: Sequence[Input] | None = None,
+        operator: Sequence[Input | Hold] | None = None,
         writer: Writer | None = None,
         progress: Callable[[float], None] | None = None,
+        keep: bool = True,
     ) -> Recording:
         """Play an operator's script from here on.
 
@@ -234,24 +208,26 @@ class Session:
         ----------
         duration : float, optional
             Stretch the script to this time [s].
-        operator : sequence of Input, optional
+        operator : sequence of Input or Hold, optional
             What hand and tip do, one after another; by default approach, press (or follow the path) and retract.
         writer : Writer, optional
             Receives every block as it comes.
         progress : callable, optional
             Called with the fraction done.
+        keep : bool
+            False: the rows go to the writer alone, so that memory does not grow; the Recording has the last block.
         """
         script = stretched(list(operator) if operator is not None else script_for(self), duration)
         for step in script:
-            self._check(step)
+            self.core.check(core_input(step))
         ticks = [round(step.duration * self.rate) for step in script]
         blocks: list[Columns] = []
         done = told = 0
         for step, left in zip(script, ticks, strict=True):
-            self._aim(step)
+            self.aim(step)
             for length in _blocks_of(left):
                 block = self.advance(length / self.rate)
-                blocks.append(block)
+                blocks = [*blocks, block] if keep else [block]
                 done += length
                 if writer is not None:
                     if told < len(self._events):  # a recording that is cut short can be replayed, too
@@ -265,30 +241,73 @@ class Session:
             writer.update(recording.metadata)
         return recording
 
-    def _aim(self, input: Input) -> None:
-        self._check(input)
-        self._request("aim", self.core.aim, [input.x, input.y, input.duration], tuple(input))
+    def start(self, pace: Pace = "wall", duration: float | None = None) -> None:
+        """Run in a thread of its own, without the GIL, until :meth:`halt` or for a time [s] of the session.
 
-    def _request(self, name: str, call: Callable[..., None], numbers: list[Any], arguments: Sequence[Any]) -> None:
-        """Ask the touch step for something between two ticks, and keep it for a replay."""
-        tick = self.core.ticks
-        call(*arguments)
-        self._events.append((tick, name, numbers))
+        ``"free"``: as fast as it goes. ``"wall"``: at the pace of a clock; it slows down where the machine cannot keep
+        up, and never skips. ``"hard"``: each tick at its deadline, for halves that are real. Read what it records with
+        :meth:`read`: in free and wall pace it waits when the ring is full.
+        """
+        if pace not in PACES:
+            raise InvalidValue(f"pace {pace!r}: valid are {', '.join(PACES)}")
+        if duration is not None and not 0.0 < duration < math.inf:
+            raise InvalidValue(f"duration = {duration} s: it must be above 0 s")
+        self.core.start(PACES.index(pace), 0 if duration is None else max(1, round(duration * self.rate)))
 
-    def _check(self, input: Input) -> None:
-        """Refuse what the C library would, with the names and ranges it does not know."""
-        for name, value in input._asdict().items():
-            if not math.isfinite(value):
-                raise InvalidValue(f"operator input: {name} = {value} is not finite")
-        if input.duration < 0.0:
-            raise InvalidValue(f"operator input: duration = {input.duration} s: it must be 0 s or more")
-        check_inside(self.surface, input.x, input.y, "operator input")
+    def halt(self) -> None:
+        """End the thread between two ticks; raises what it has ended by itself with."""
+        self.core.halt()
+
+    def pause(self, paused: bool = True) -> None:
+        """Stop the clock of a running session, or let it go on; in free and wall pace."""
+        self.core.pause(paused)
+
+    def step_on(self, ticks: int = 1) -> None:
+        """Let a paused session do some ticks."""
+        self.core.step_on(ticks)
+
+    def set_speed(self, speed: float) -> None:
+        """Session time over time on the clock, 0.001 .. 1000: slow motion below 1."""
+        self.core.set_speed(speed)
+
+    @property
+    def progress(self) -> Progress:
+        """How a run in its own thread goes."""
+        return Progress(**self.core.progress)
+
+    def publish(self, name: str = "") -> None:
+        """Show every tick to observers of this name (:mod:`nanotouch.frames`), in any process of this user."""
+        self.core.publish(name)
+        self.core.describe(json.dumps(self.metadata()))
+
+    def snapshot(self) -> _core.Snapshot:
+        """All that a simulated session needs to go on from here."""
+        return self.core.snapshot()
+
+    def rewind(self, duration: float) -> None:
+        """Of a simulated session that runs: back by a time [s], to the nearest quarter of a second before that."""
+        self.core.rewind(duration)
+
+    def reset(self) -> None:
+        """Back to where it was opened."""
+        self.core.restore(self._begun)
+
+    @property
+    def state(self) -> str:
+        """RUN, HOLD, RETRACT or LATCHED after the last tick."""
+        return STATES[self.core.state]
+
+    def restore(self, snapshot: _core.Snapshot) -> None:
+        """Back to where a snapshot was taken. A recording that was rewound cannot be replayed."""
+        self.core.restore(snapshot)
 
     def metadata(self) -> dict[str, Any]:
-        """What a recording of this session has to be read with; JSON-able, SI."""
+        """What a recording of this session has to be read with; JSON-able, SI. Scene, rig and settings are those it was
+        opened with: what has changed since is in the events."""
+        self._events += self.core.read_events()
         return {
-            "alpha_p": self.settings.gains.alpha_p,
-            "alpha_f": self.settings.gains.alpha_f,
+            "alpha_p": self._opened_with["settings"]["gains"]["alpha_p"],
+            "alpha_f": self._opened_with["settings"]["gains"]["alpha_f"],
             "spring_constant": self.rig.probe.spring_constant,
             "start_height": self.core.start_height,
             "master_start": self.core.master_start,
@@ -302,24 +321,22 @@ class Session:
             "probe_model": self.probe_model,
             "faults": list(self._faults),
             "loop_rate": self.rate,
+            "clock": "virtual: ticks times period",
             "stability_margin": self.stability_margin if math.isfinite(self.stability_margin) else None,
-            "scene": self.scene.to_dict(),
-            "rig": self.rig.to_dict(),
-            "settings": self.settings.to_dict(),
+            **self._opened_with,
             "plan": str(self.plan).splitlines(),
             "version": _core.version,
         }
 
     def arm(self, confirmed: bool = False) -> None:
         """Back to RUN after RETRACT; after LATCHED only with ``confirmed``."""
-        self._request("arm", self.core.arm, [confirmed], [confirmed])
+        self.core.arm(confirmed)
 
     def set_mode(self, mode: Mode) -> None:
         """Go on in another mode from where the stage stands; the force fades out and in again."""
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
-        self._check_margin("mode", mode, self._scales)
-        self._request("mode", self.core.set_mode, [core_mode(mode)], [core_mode(mode)])
+        self.core.set_mode(core_mode(mode))
         self._mode = mode
 
     def rescale(self, alpha_p: float | None = None, alpha_f: float | None = None) -> None:
@@ -329,25 +346,28 @@ class Session:
         """
         now = self._scales
         pair = [now[0] if alpha_p is None else alpha_p, now[1] if alpha_f is None else alpha_f]
-        self._check_margin("rescale", self._mode, pair)
-        self._request("rescale", self.core.rescale, pair, pair)
+        self.core.rescale(*pair)
         self._scales = pair
 
-    def _check_margin(self, what: str, mode: Mode, scales: list[float]) -> None:
-        """Refuse what the C library would, by the rule that it does not name; only it can try a law of one's own again,
-        with other scales."""
-        asked, stiffness = self.settings.copy(), self.plan.maximum_stiffness
-        asked["gains.alpha_p"], asked["gains.alpha_f"] = scales
-        own = self.control == "own"
-        found = margins.of_own_law(self.rig, asked, self._amounts if own else asked, stiffness, mode)
-        if self.minimum_margin > 0.0 and not found.least >= self.minimum_margin:
-            raise InvalidValue(
-                f"{what}: {found.rule}: margin {found.least:.3g}, at least {self.minimum_margin:g} is needed"
-            )
+    def change(self, what: Literal["scene", "settings"], field: str, value: float | str) -> None:
+        """Change a field of the open session's scene or settings, such as ``("scene", "sample.youngs_modulus", 1e9)``.
+
+        Plan, margins and guarantee are made anew while the loop goes on, and take effect between two ticks. Refused
+        where the margin or the demand could not be kept. ``gains.alpha_p``, ``gains.alpha_f``: :meth:`rescale`.
+        """
+        if what not in ("scene", "settings"):
+            raise InvalidValue(f"change {what!r}: valid are scene, settings")
+        asked = (self.scene if what == "scene" else self.settings).copy()
+        asked[field] = value
+        self.core.change(what == "scene", field, asked[field])
+        if what == "scene":
+            self.scene = asked.frozen(FROZEN.format("scene"))
+        else:
+            self.settings = asked.frozen(FROZEN.format("settings"))
 
     def clutch(self, open: bool = True) -> None:
         """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
-        self._request("clutch", self.core.clutch, [open], [open])
+        self.core.clutch(open)
 
     def inject(self, faults: Faults) -> None:
         """Let the simulated rig fail; times count from the session's first tick."""
@@ -372,27 +392,3 @@ def _joined(blocks: Sequence[Columns]) -> Columns:
 
 def _blocks_of(ticks: int) -> list[int]:
     return [min(BLOCK_TICKS, ticks - start) for start in range(0, ticks, BLOCK_TICKS)]
-
-
-def _checked_seed(seed: int) -> int:
-    if not 0 <= index(seed) < 2**64:
-        raise InvalidValue(f"seed = {seed}: valid is 0 .. 2^64 - 1")
-    return index(seed)
-
-
-def _steepest(distance: NDArray[np.float64], heights: NDArray[np.float64]) -> float:
-    return float(np.max(np.abs(np.gradient(heights, distance)))) if distance[-1] > 0.0 else 0.0
-
-
-def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] | None, delay: float) -> None:
-    """What was given beside the settings goes into them."""
-    for name, value in (gains or {}).items():
-        if f"gains.{name}" not in settings.fields:
-            raise InvalidValue(f"gains has no field {name!r}; it has {', '.join(settings.keys_of('gains'))}")
-        settings[f"gains.{name}"] = value
-    if rate is not None:
-        settings["gains.rate"] = rate
-    if not 0.0 <= delay < math.inf:
-        raise InvalidValue(f"delay = {delay} s: it must be a time of 0 s or more")
-    if delay > 0.0:
-        settings["gains.delay"] = settings.gains.delay + delay * settings.gains.rate

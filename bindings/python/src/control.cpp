@@ -2,6 +2,7 @@
 // control.h: a law written in Python, the supervisor on plain numbers, and the touch step run again on a recording
 #include "control.h"
 
+static constexpr const char *modes[] = {"touch", "topography", "approach", "curve"};
 static constexpr const char *controls[] = {"default", "paper", "impedance"};
 
 static nt_effort effort_of(const py::object &answer)
@@ -46,11 +47,15 @@ void set_control(nt_settings &settings, OwnLaw &law)
 
 nt_mode mode_of(const std::string &name)
 {
-    static constexpr const char *names[] = {"touch", "topography", "approach", "curve"};
     for (int mode = 0; mode < 4; ++mode)
-        if (name == names[mode])
+        if (name == modes[mode])
             return static_cast<nt_mode>(mode);
     throw py::value_error(name);
+}
+
+const char *mode_name(nt_mode mode)
+{
+    return modes[mode];
 }
 
 struct Supervisor {
@@ -67,20 +72,22 @@ static py::tuple supervise(Supervisor &self, const nt_sample &sample, const nt_s
 static nt_sample sample_of(const py::dict &numbers)
 {
     nt_sample sample{};
-    sample.age = numbers["age"].cast<double>();
+    sample.age = sample.master_age = numbers["age"].cast<double>();
     sample.lateness = numbers["lateness"].cast<double>();
-    sample.master_position = numbers["master_position"].cast<double>();
-    sample.operator_force = numbers["operator_force"].cast<double>();
-    sample.stage_position = numbers["stage_position"].cast<double>();
-    sample.deflection = numbers["deflection"].cast<double>();
+    sample.master_position[NT_Z] = numbers["master_position"].cast<double>();
+    sample.operator_force[NT_Z] = numbers["operator_force"].cast<double>();
+    sample.stage_position[NT_Z] = numbers["stage_position"].cast<double>();
+    sample.deflection[NT_Z] = numbers["deflection"].cast<double>();
     sample.flags = numbers["flags"].cast<uint32_t>();
     return sample;
 }
 
-// What was measured, one array per number, and what comes out of it.
+// What was measured, one array per number, and what comes out of it. Of a master of one axis nothing lies sideways.
 struct Measured {
-    Array age, lateness, master_position, operator_force, stage_position, deflection, x, y;
+    Array age, master_age, lateness, master_position, operator_force, stage_position, deflection, x, y;
     py::array_t<uint32_t> flags;
+    Array master_x, master_y;
+    bool leads_sideways;
 };
 
 static nt_sample sample_at(const Measured &measured, py::ssize_t i)
@@ -88,13 +95,18 @@ static nt_sample sample_at(const Measured &measured, py::ssize_t i)
     nt_sample sample{};
     sample.tick = static_cast<uint64_t>(i);
     sample.age = measured.age.data()[i];
+    sample.master_age = measured.master_age.data()[i];
     sample.lateness = measured.lateness.data()[i];
-    sample.master_position = measured.master_position.data()[i];
-    sample.operator_force = measured.operator_force.data()[i];
-    sample.stage_position = measured.stage_position.data()[i];
-    sample.deflection = measured.deflection.data()[i];
-    sample.x = measured.x.data()[i];
-    sample.y = measured.y.data()[i];
+    sample.master_position[NT_Z] = measured.master_position.data()[i];
+    sample.operator_force[NT_Z] = measured.operator_force.data()[i];
+    sample.stage_position[NT_Z] = measured.stage_position.data()[i];
+    sample.deflection[NT_Z] = measured.deflection.data()[i];
+    sample.stage_position[NT_X] = measured.x.data()[i];
+    sample.stage_position[NT_Y] = measured.y.data()[i];
+    if (measured.leads_sideways) {
+        sample.master_position[NT_X] = measured.master_x.data()[i];
+        sample.master_position[NT_Y] = measured.master_y.data()[i];
+    }
     sample.flags = measured.flags.data()[i];
     return sample;
 }
@@ -102,7 +114,9 @@ static nt_sample sample_at(const Measured &measured, py::ssize_t i)
 static Measured measured_of(const py::dict &columns)
 {
     const auto column = [&](const char *name) { return columns[name].cast<Array>(); };
+    const bool leads_sideways = columns.contains("master_x");
     return {column("age"),
+            column(columns.contains("master_age") ? "master_age" : "age"), // one age stood for both once
             column("lateness"),
             column("master_position"),
             column("operator_force"),
@@ -110,54 +124,92 @@ static Measured measured_of(const py::dict &columns)
             column("deflection"),
             column("x"),
             column("y"),
-            columns["flags"].cast<py::array_t<uint32_t>>()};
+            columns["flags"].cast<py::array_t<uint32_t>>(),
+            leads_sideways ? column("master_x") : Array(),
+            leads_sideways ? column("master_y") : Array(),
+            leads_sideways};
 }
 
-// A request between two ticks: its name and up to three numbers.
-static nt_status request(const nt_touch &touch, nt_touch_state &state, const std::string &name, const py::list &n)
+// The touch step as a recording has run it: its settings may have changed on the way.
+struct Replay {
+    nt_rig rig;
+    nt_settings settings;
+    nt_mode mode;
+    nt_touch touch;
+    nt_touch_state state;
+
+    void make()
+    {
+        nt_problem problem{};
+        raise_on(nt_touch_make(&touch, &rig, &settings, mode, &problem), problem, "replay");
+    }
+};
+
+static nt_status change_setting(Replay &replay, const std::string &name, double value)
+{
+    int count = 0;
+    const nt_field *fields = nt_settings_fields(&count);
+    for (int i = 0; i < count; ++i)
+        if (name == fields[i].name) {
+            nt_field_set(&fields[i], &replay.settings, value);
+            replay.make();
+            return NT_OK;
+        }
+    return NT_E_ARGUMENT;
+}
+
+// A request between two ticks: its name and up to three numbers. A change of the scene, or a stop, shows in what was
+// measured.
+static nt_status request(Replay &replay, const std::string &name, const py::list &n)
 {
     const auto number = [&](size_t i) { return n[i].cast<double>(); };
+    nt_touch_state &state = replay.state;
     if (name == "aim")
-        return nt_touch_aim(&touch, &state, number(0), number(1), number(2));
+        return nt_touch_aim(&replay.touch, &state, number(0), number(1), number(2));
     if (name == "arm")
         return nt_touch_arm(&state, n[0].cast<bool>());
     if (name == "mode")
         return nt_touch_set_mode(&state, mode_of(n[0].cast<std::string>()));
+    if (name == "setting")
+        return change_setting(replay, n[0].cast<std::string>(), number(1));
     if (name == "clutch") {
         nt_touch_clutch(&state, n[0].cast<bool>());
         return NT_OK;
     }
+    if (name == "scene" || name == "stop")
+        return NT_OK;
     const nt_scaling scaling = {number(0), number(1)};
+    if (name == "rescale") { // a change of settings that comes later is made with these scales
+        replay.settings.gains.alpha_p = scaling.alpha_p;
+        replay.settings.gains.alpha_f = scaling.alpha_f;
+    }
     return name == "rescale" ? nt_touch_rescale(&state, &scaling) : NT_E_ARGUMENT;
 }
 
 // Those of this tick, the path last: a session takes it from its mailbox when the tick begins.
-static void replay_requests(const nt_touch &touch, nt_touch_state &state, const py::list &events, py::ssize_t tick)
+static void replay_requests(Replay &replay, const py::list &events, py::ssize_t tick)
 {
     for (const bool aims : {false, true})
         for (const py::handle item : events) {
             const auto event = item.cast<py::tuple>();
             const auto name = event[1].cast<std::string>();
             if (event[0].cast<py::ssize_t>() == tick && (name == "aim") == aims)
-                raise_on(request(touch, state, name, event[2].cast<py::list>()), "replay: " + name);
+                raise_on(request(replay, name, event[2].cast<py::list>()), "replay: " + name);
         }
 }
 
 static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings> &settings, const py::object &control,
                        const py::dict &start, const py::dict &columns)
 {
-    nt_settings chosen = settings.value;
+    Replay run{rig.value, settings.value, mode_of(start["mode"].cast<std::string>()), {}, {}};
     OwnLaw law{control, nullptr};
     if (py::isinstance<py::str>(control))
-        set_control(chosen, control.cast<std::string>());
+        set_control(run.settings, control.cast<std::string>());
     else
-        set_control(chosen, law);
-    nt_touch touch;
-    nt_problem problem{};
-    const nt_mode mode = mode_of(start["mode"].cast<std::string>());
-    raise_on(nt_touch_make(&touch, &rig.value, &chosen, mode, &problem), problem, "replay");
-    nt_touch_state state =
-        nt_touch_start(&touch, start["master"].cast<double>(), start["x"].cast<double>(), start["y"].cast<double>());
+        set_control(run.settings, law);
+    run.make();
+    run.state = nt_touch_start(&run.touch, start["master"].cast<double>(), start["x"].cast<double>(),
+                               start["y"].cast<double>());
     const auto events = start["events"].cast<py::list>();
     std::set<py::ssize_t> eventful;
     for (const py::handle event : events)
@@ -169,12 +221,12 @@ static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings
     py::array_t<uint32_t> reasons(count);
     for (py::ssize_t i = 0; i < count; ++i) {
         if (eventful.count(i) != 0)
-            replay_requests(touch, state, events, i);
+            replay_requests(run, events, i);
         const nt_sample sample = sample_at(measured, i);
         nt_command command;
-        nt_touch_step(&touch, &state, &sample, &command);
-        motor_force.mutable_data()[i] = command.motor_force;
-        stage_command.mutable_data()[i] = command.stage_position;
+        nt_touch_step(&run.touch, &run.state, &sample, &command);
+        motor_force.mutable_data()[i] = command.motor_force[NT_Z];
+        stage_command.mutable_data()[i] = command.stage_position[NT_Z];
         states.mutable_data()[i] = static_cast<uint8_t>(command.state);
         reasons.mutable_data()[i] = command.reasons;
     }

@@ -30,7 +30,7 @@ static const nt_fault_description descriptions[] = {
     [NT_FAULT_JUMP] = {"jump", "m", "the surface rises by the value at once", 5e-9, -1e-3, 1e-3, 6, ON(NT_CHANNEL_RIG)},
     [NT_FAULT_LATE] = {"late", "periods", "every tick is late by the value", 1.0, 0.0, NT_SIM_LOST_MAX, 11,
                        ON(NT_CHANNEL_RIG)},
-    [NT_FAULT_CLOCK] = {"clock", "s", "the clock jumps: the sample is this old", -3600.0, -1e12, 1e12, 12,
+    [NT_FAULT_CLOCK] = {"clock", "s", "the clock jumps: the sample is this old", -3600.0, -1e9, 1e9, 12,
                         ON(NT_CHANNEL_RIG)},
     [NT_FAULT_LIMIT] = {"limit", "m", "it goes no farther than the value beyond where it stands", 0.0, 0.0, 1e-3, 13,
                         ON(NT_CHANNEL_STAGE)},
@@ -82,62 +82,61 @@ nt_status nt_faults_add(nt_faults *faults, const nt_fault *fault)
 }
 
 /* Half a period of slack: a start that is a multiple of T begins in that tick, however it was rounded. */
-static double elapsed(const nt_sim *sim, const nt_fault *fault)
+static double elapsed(const nt_sim_link *link, const nt_fault *fault)
 {
-    return (double)sim->tick * sim->period - fault->start + 0.5 * sim->period;
+    return (double)link->tick * link->period - fault->start + 0.5 * link->period;
 }
 
-static int is_active(const nt_sim *sim, const nt_fault *fault)
+static int is_active(const nt_sim_link *link, const nt_fault *fault)
 {
-    const double since = elapsed(sim, fault);
+    const double since = elapsed(link, fault);
     return since >= 0.0 && since < fault->duration;
 }
 
 /* The next fault of this kind that acts now; from: where to go on. NULL: no more. */
-static const nt_fault *next_active(const nt_sim *sim, nt_fault_kind kind, int *from)
+static const nt_fault *next_active(const nt_sim_link *link, nt_fault_kind kind, int *from)
 {
-    while (*from < sim->faults.count) {
-        const nt_fault *fault = &sim->faults.list[(*from)++];
-        if (fault->kind == kind && is_active(sim, fault))
+    while (*from < link->faults.count) {
+        const nt_fault *fault = &link->faults.list[(*from)++];
+        if (fault->kind == kind && is_active(link, fault))
             return fault;
     }
     return NULL;
 }
 
-static double sum_of(const nt_sim *sim, nt_fault_kind kind)
+static double sum_of(const nt_sim_link *link, nt_fault_kind kind)
 {
     double sum = 0.0;
     const nt_fault *fault;
-    for (int i = 0; (fault = next_active(sim, kind, &i)) != NULL;)
+    for (int i = 0; (fault = next_active(link, kind, &i)) != NULL;)
         sum += fault->value;
     return sum;
 }
 
-static double *reading(nt_sample *sample, nt_channel channel)
+static nt_half half_of(nt_channel channel)
 {
-    double *const readings[SENSORS] = {&sample->deflection, &sample->stage_position, &sample->master_position,
-                                       &sample->operator_force};
-    return readings[channel];
+    return channel >= NT_CHANNEL_MASTER_POSITION ? NT_HALF_MASTER : NT_HALF_SLAVE;
 }
 
-static const nt_sensor *sensor_of(const nt_sim *sim, nt_channel channel)
+static int is_position(nt_channel channel)
 {
-    const nt_sensor *const sensors[SENSORS] = {&sim->deflection_sensor, &sim->stage_sensor, &sim->master_sensor,
-                                               &sim->gauge};
-    return sensors[channel];
+    return channel == NT_CHANNEL_STAGE_POSITION || channel == NT_CHANNEL_MASTER_POSITION;
 }
 
-static double noise_of(nt_sim *sim, const nt_fault *fault, double value)
+static double noise_of(nt_sim_link *link, const nt_fault *fault, const nt_sensor *sensor, double value)
 {
-    const nt_sensor *sensor = sensor_of(sim, fault->channel);
     const nt_sensor loud = {fault->value * fmax(sensor->noise, sensor->resolution), sensor->resolution, sensor->range};
-    return nt_sensor_read(&loud, value, nt_sim_noise_now(sim, NT_SIM_NOISE_FAULT + (int)fault->channel));
+    return nt_sensor_read(&loud, value, nt_sim_noise_now(link, NT_SIM_NOISE_FAULT + (int)fault->channel));
 }
 
 /* One reading of one sensor. */
-static void spoil_reading(nt_sim *sim, const nt_fault *fault, nt_sample *sample)
+static void spoil_channel(nt_sim_link *link, const nt_sim_sensors *sensors, const nt_fault *fault, nt_reading *reading)
 {
-    double *value = reading(sample, fault->channel);
+    if (half_of(fault->channel) != sensors->half)
+        return;
+    const int of_position = is_position(fault->channel);
+    double *value = of_position ? &reading->position[NT_Z] : &reading->felt[NT_Z];
+    const nt_sensor *sensor = of_position ? sensors->position : sensors->felt;
     const double sign = fault->value < 0.0 ? -1.0 : 1.0;
     switch (fault->kind) {
     case NT_FAULT_NAN:
@@ -147,136 +146,146 @@ static void spoil_reading(nt_sim *sim, const nt_fault *fault, nt_sample *sample)
         *value = sign * HUGE_VAL;
         break;
     case NT_FAULT_SATURATED:
-        *value = sign * sensor_of(sim, fault->channel)->range;
+        *value = sign * sensor->range;
         break;
     case NT_FAULT_STUCK:
-        *value = *reading(&sim->fault_memory.last, fault->channel);
+        *value = of_position ? link->last.position : link->last.felt;
         break;
     case NT_FAULT_NOISE:
-        *value = noise_of(sim, fault, *value);
+        *value = noise_of(link, fault, sensor, *value);
         break;
     case NT_FAULT_GAIN:
         *value *= fault->value;
         break;
     case NT_FAULT_DRIFT:
-        *value += fault->value * elapsed(sim, fault);
+        *value += fault->value * elapsed(link, fault);
         break;
     default:
         break;
     }
 }
 
-static void spoil_frame(nt_sim *sim, const nt_fault *fault, nt_sample *sample)
+static void spoil_frame(const nt_sim_link *link, const nt_fault *fault, nt_reading *reading, double *age)
 {
-    const uint32_t lines = sample->flags;
     switch (fault->kind) {
     case NT_FAULT_STALE:
-        sample->age = sim->fault_memory.fresh.age + (double)(sim->tick - sim->fault_memory.fresh.tick) * sim->period;
-        for (int channel = 0; channel < SENSORS; channel++)
-            *reading(sample, (nt_channel)channel) = *reading(&sim->fault_memory.fresh, (nt_channel)channel);
+        *age = link->fresh.age + (double)(link->tick - link->fresh.tick) * link->period;
+        reading->position[NT_Z] = link->fresh.position;
+        reading->felt[NT_Z] = link->fresh.felt;
+        reading->sequence = link->fresh.sequence;
         break;
     case NT_FAULT_DROPOUT:
-        for (int channel = 0; channel < SENSORS; channel++)
-            *reading(sample, (nt_channel)channel) = NAN;
-        sample->flags = lines | NT_SAMPLE_INVALID;
+        reading->position[NT_Z] = reading->felt[NT_Z] = NAN;
+        reading->flags |= NT_SAMPLE_INVALID;
         break;
     case NT_FAULT_CLOCK:
-        sample->age = fault->value;
+        *age = fault->value;
         break;
     case NT_FAULT_EMERGENCY_STOP:
-        sample->flags = lines | NT_SAMPLE_EMERGENCY_STOP;
+        reading->flags |= NT_SAMPLE_EMERGENCY_STOP;
         break;
     case NT_FAULT_LIMIT_SWITCH:
-        sample->flags = lines | NT_SAMPLE_LIMIT_SWITCH;
+        reading->flags |= NT_SAMPLE_LIMIT_SWITCH;
         break;
     case NT_FAULT_DEVICE_LOST:
-        sample->flags = lines | NT_SAMPLE_DEVICE_LOST;
+        reading->flags |= NT_SAMPLE_DEVICE_LOST;
         break;
     default:
         break;
     }
+}
+
+static void stamp(const nt_sim_link *link, nt_reading *reading, double age)
+{
+    const int64_t now = link->host ? link->host->now(link->host) : llround((double)link->tick * link->period * 1e9);
+    reading->time = now - llround(age * 1e9);
 }
 
 /* Sensors first, then the link that carries them. */
-void nt_sim_spoil(nt_sim *sim, nt_sample *sample)
+void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double age)
 {
-    sample->lateness = sim->fault_memory.lateness;
     int stale = 0;
-    for (int i = 0; i < sim->faults.count; i++) {
-        const nt_fault *fault = &sim->faults.list[i];
-        if ((int)fault->channel < SENSORS && is_active(sim, fault))
-            spoil_reading(sim, fault, sample);
+    reading->size = sizeof *reading;
+    reading->sequence = link->converted + 1u;
+    reading->valid = (1u << NT_READS) - 1u;
+    reading->lateness = link->lateness;
+    for (int i = 0; i < link->faults.count; i++) {
+        const nt_fault *fault = &link->faults.list[i];
+        if ((int)fault->channel < SENSORS && is_active(link, fault))
+            spoil_channel(link, sensors, fault, reading);
     }
-    for (int i = 0; i < sim->faults.count; i++) {
-        const nt_fault *fault = &sim->faults.list[i];
-        if (fault->channel == NT_CHANNEL_RIG && is_active(sim, fault)) {
-            spoil_frame(sim, fault, sample);
+    for (int i = 0; i < link->faults.count; i++) {
+        const nt_fault *fault = &link->faults.list[i];
+        if (fault->channel == NT_CHANNEL_RIG && is_active(link, fault)) {
+            spoil_frame(link, fault, reading, &age);
             stale |= fault->kind == NT_FAULT_STALE;
         }
     }
-    sim->fault_memory.last = *sample;
+    stamp(link, reading, age);
+    link->last = (nt_sim_memory){reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};
     if (!stale)
-        sim->fault_memory.fresh = *sample;
+        link->fresh = link->last;
 }
 
-int nt_sim_lost_periods(const nt_sim *sim)
+int nt_sim_lost_periods(const nt_sim_link *link)
 {
-    return (int)fmin(sum_of(sim, NT_FAULT_LATE), NT_SIM_LOST_MAX); /* of several faults */
+    return (int)fmin(sum_of(link, NT_FAULT_LATE), NT_SIM_LOST_MAX); /* of several faults */
 }
 
-double nt_sim_spoil_stage(nt_sim *sim, double drive)
+double nt_sim_spoil_stage(nt_sim_slave *slave, double drive)
 {
+    const nt_sim_link *link = &slave->link;
     double driven = drive;
     int spoilt = 0;
-    for (int i = 0; i < sim->faults.count; i++) {
-        const nt_fault *fault = &sim->faults.list[i];
-        if (fault->channel != NT_CHANNEL_STAGE || !is_active(sim, fault))
+    for (int i = 0; i < link->faults.count; i++) {
+        const nt_fault *fault = &link->faults.list[i];
+        if (fault->channel != NT_CHANNEL_STAGE || !is_active(link, fault))
             continue;
         spoilt |= fault->kind == NT_FAULT_GAIN || fault->kind == NT_FAULT_LIMIT;
-        const double stood = sim->fault_memory.stood;
+        const double stood = slave->stood;
         if (fault->kind == NT_FAULT_GAIN)
             driven = stood + fault->value * (driven - stood);
         if (fault->kind == NT_FAULT_LIMIT)
             driven = fmin(driven, stood + fault->value);
     }
     if (!spoilt)
-        sim->fault_memory.stood = drive;
+        slave->stood = drive;
     return driven;
 }
 
-double nt_sim_stage_hysteresis(const nt_sim *sim)
+double nt_sim_stage_hysteresis(const nt_sim_link *link)
 {
     int from = 0;
-    const nt_fault *fault = next_active(sim, NT_FAULT_HYSTERESIS, &from);
-    return fault != NULL ? fault->value : sim->rig.stage.hysteresis;
+    const nt_fault *fault = next_active(link, NT_FAULT_HYSTERESIS, &from);
+    return fault != NULL ? fault->value : link->rig.stage.hysteresis;
 }
 
-double nt_sim_spoil_motor(const nt_sim *sim, double force)
+double nt_sim_spoil_motor(const nt_sim_link *link, double force)
 {
     double pushed = force;
-    for (int i = 0; i < sim->faults.count; i++) {
-        const nt_fault *fault = &sim->faults.list[i];
-        if (fault->channel == NT_CHANNEL_MOTOR && is_active(sim, fault))
+    for (int i = 0; i < link->faults.count; i++) {
+        const nt_fault *fault = &link->faults.list[i];
+        if (fault->channel == NT_CHANNEL_MOTOR && is_active(link, fault))
             pushed *= fault->value;
     }
     return pushed;
 }
 
-double nt_sim_stage_drift(const nt_sim *sim)
+double nt_sim_stage_drift(const nt_sim_link *link)
 {
     double sum = 0.0;
     const nt_fault *fault;
-    for (int i = 0; (fault = next_active(sim, NT_FAULT_DRIFT, &i)) != NULL;)
-        sum += fault->channel == NT_CHANNEL_STAGE ? fault->value * elapsed(sim, fault) : 0.0;
+    for (int i = 0; (fault = next_active(link, NT_FAULT_DRIFT, &i)) != NULL;)
+        sum += fault->channel == NT_CHANNEL_STAGE ? fault->value * elapsed(link, fault) : 0.0;
     return sum;
 }
 
-double nt_sim_surface_jump(const nt_sim *sim)
+double nt_sim_surface_jump(const nt_sim_link *link)
 {
-    return sum_of(sim, NT_FAULT_JUMP);
+    return sum_of(link, NT_FAULT_JUMP);
 }
 
-double nt_sim_push(const nt_sim *sim)
+double nt_sim_push(const nt_sim_link *link)
 {
-    return sum_of(sim, NT_FAULT_PUSH);
+    return sum_of(link, NT_FAULT_PUSH);
 }

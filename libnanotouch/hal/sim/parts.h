@@ -9,34 +9,53 @@
 extern "C" {
 #endif
 
+/* --- link.c: what both halves have --- */
+
+nt_status nt_sim_check_setup(const nt_sim_setup *setup);
+/* own_rate: of this half's measurements beside the converters', 0: none [Hz]. */
+nt_status nt_sim_link_init(nt_sim_link *link, const nt_sim_setup *setup, double own_rate);
+/* Does a conversion end in this tick? */
+int nt_sim_is_converted(const nt_sim_link *link);
+/* A pair of values as it was a latency ago, between two ticks on a straight line. */
+void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double seen[2]);
+/* The command that acts in the first (0) or second (1) part of this period. */
+const double *nt_sim_acting(const nt_sim_link *link, double (*pending)[NT_AXES], int part);
+double nt_sim_in_steps(double value, double step);
+int nt_sim_is_finite(const nt_action *action);
+
 /* The stream of a channel at the beginning of this tick. */
-static inline nt_noise *nt_sim_noise_now(nt_sim *sim, int stream)
+static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
 {
-    nt_noise_seek(&sim->noise[stream], sim->tick);
-    return &sim->noise[stream];
+    nt_noise_seek(&link->noise[stream], link->tick);
+    return &link->noise[stream];
 }
 
 /* --- probe.c: one period of the cantilever, base and surface where they are now --- */
 
-double nt_sim_surface_height(const nt_sim *sim);
-nt_status nt_sim_move_probe(nt_sim *sim);
+double nt_sim_surface_height(const nt_sim_slave *slave);
+nt_status nt_sim_move_probe(nt_sim_slave *slave);
 
 /* --- faults.c: what each fault does, where it acts --- */
 
-/* What becomes of a sample on its way. */
-void nt_sim_spoil(nt_sim *sim, nt_sample *sample);
+/* The two sensors of a half: of its position, and of what it feels. */
+typedef struct nt_sim_sensors {
+    nt_half half;
+    const nt_sensor *position, *felt;
+} nt_sim_sensors;
+/* What becomes of a reading on its way; age: of what was measured [s]. Stamps it. */
+void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double age);
 /* Periods that are lost before this command arrives. */
-int nt_sim_lost_periods(const nt_sim *sim);
+int nt_sim_lost_periods(const nt_sim_link *link);
 /* What stage and motor make of what they are told [m], [N]. */
-double nt_sim_spoil_stage(nt_sim *sim, double drive);
-double nt_sim_spoil_motor(const nt_sim *sim, double force);
-double nt_sim_stage_hysteresis(const nt_sim *sim);
+double nt_sim_spoil_stage(nt_sim_slave *slave, double drive);
+double nt_sim_spoil_motor(const nt_sim_link *link, double force);
+double nt_sim_stage_hysteresis(const nt_sim_link *link);
 /* Of the whole frame, unseen by the read-out [m]. */
-double nt_sim_stage_drift(const nt_sim *sim);
+double nt_sim_stage_drift(const nt_sim_link *link);
 /* By how much the surface has risen [m]. */
-double nt_sim_surface_jump(const nt_sim *sim);
+double nt_sim_surface_jump(const nt_sim_link *link);
 /* The operator's own [N]. */
-double nt_sim_push(const nt_sim *sim);
+double nt_sim_push(const nt_sim_link *link);
 
 #ifdef __cplusplus
 }

@@ -47,33 +47,33 @@ static nt_law_value law_there(probe_context *probe, double gap)
     return law;
 }
 
-double nt_sim_surface_height(const nt_sim *sim)
+double nt_sim_surface_height(const nt_sim_slave *slave)
 {
-    return nt_interaction_place(sim->plan, sim->x, sim->y).surface.z + nt_sim_surface_jump(sim);
+    return nt_interaction_place(slave->plan, slave->x, slave->y).surface.z + nt_sim_surface_jump(&slave->link);
 }
 
-nt_status nt_sim_move_probe(nt_sim *sim)
+nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
-    const nt_place place = nt_interaction_place(sim->plan, sim->x, sim->y);
-    const double surface = place.surface.z + nt_sim_surface_jump(sim);
-    probe_context context = {sim->plan, &sim->interaction, place, sim->truth.gap, sim->law};
-    if (surface != sim->truth.surface_height)
+    const nt_place place = nt_interaction_place(slave->plan, slave->x, slave->y);
+    const double surface = place.surface.z + nt_sim_surface_jump(&slave->link);
+    probe_context context = {slave->plan, &slave->interaction, place, slave->truth.gap, slave->law};
+    if (surface != slave->truth.surface_height)
         context.gap = NAN; /* another place: nothing is known there */
-    const nt_force_field field = {force_at, moved_to, &context, sim->plan->length};
-    const double base = sim->start_height - sim->stage.position - nt_sim_stage_drift(sim) - surface;
-    const nt_status status =
-        sim->dynamic ? nt_cantilever_step(&sim->cantilever_model, &sim->cantilever, &field, base,
-                                          nt_sim_noise_now(sim, NT_SIM_NOISE_TIP))
-                     : nt_cantilever_settle(&sim->cantilever, &sim->rig.probe, &field, base, NULL);
-    const double gap = sim->cantilever.tip_height;
+    const nt_force_field field = {force_at, moved_to, &context, slave->plan->length};
+    const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
+    const nt_status status = slave->dynamic
+                                 ? nt_cantilever_step(&slave->cantilever_model, &slave->cantilever, &field, base,
+                                                      nt_sim_noise_now(&slave->link, NT_SIM_NOISE_TIP))
+                                 : nt_cantilever_settle(&slave->cantilever, &slave->link.rig.probe, &field, base, NULL);
+    const double gap = slave->cantilever.tip_height;
     const nt_law_value law = law_there(&context, gap);
-    sim->law = law;
-    sim->truth = (nt_truth){.gap = gap,
-                            .tip_force = law.F,
-                            .contact_radius = law.a,
-                            .surface_height = surface,
-                            .tip_height = gap + surface,
-                            .energy = law.U};
+    slave->law = law;
+    slave->truth = (nt_truth){.gap = gap,
+                              .tip_force = {[NT_Z] = law.F},
+                              .contact_radius = law.a,
+                              .surface_height = surface,
+                              .tip_height = gap + surface,
+                              .energy = law.U};
     return status;
 }
 

@@ -115,9 +115,10 @@ NT_API NT_REALTIME void nt_stage_step(const nt_stage_model *model, nt_stage_stat
  *     the master besides, and an adversary may add any force (nt_hand in rig.h) --- */
 
 typedef struct nt_hand_target {
-    double force;    /* operator force, + towards the sample [N] */
-    double x, y;     /* lateral position [m] */
-    double duration; /* time to get there [s], >= 0 */
+    double force[NT_AXES];    /* operator force, the third + towards the sample [N] */
+    double position[NT_AXES]; /* of a hand that holds the master where it will, whatever the motor does [m] */
+    int holds;                /* 1: by position, 0: by force */
+    double duration;          /* time to get there [s], >= 0 */
 } nt_hand_target;
 typedef struct nt_hand_state {
     nt_hand_target from, to;
@@ -128,7 +129,7 @@ typedef struct nt_hand_state {
 NT_API void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target);
 /* Where the hand is now (duration unused): the force is the script's. */
 NT_API NT_REALTIME nt_hand_target nt_hand_now(const nt_hand_state *hand);
-/* The force that the hand means to apply, before its impedance: the script's and the adversary's [N]. */
+/* The force that the hand means to apply along NT_Z, before its impedance: the script's and the adversary's [N]. */
 NT_API NT_REALTIME double nt_hand_effort(const nt_hand_state *hand);
 /* One period; the master stands at `position` [m]. noise may be NULL where random_force is 0. */
 NT_API NT_REALTIME void nt_hand_step(nt_hand_state *state, const nt_hand *hand, double position, double period,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The rig as the loop sees it: read a sample, write a command. The simulated rig (sim.h) keeps the same contract as
- * real devices and ships with the library. */
+ * The rig as the loop sees it: two halves, master and slave, each behind a backend (hal_backend.h). The simulated rig
+ * (sim.h) keeps the same contract as real devices and ships with the library. */
 #ifndef NANOTOUCH_HAL_H
 #define NANOTOUCH_HAL_H
 
@@ -10,18 +10,44 @@
 extern "C" {
 #endif
 
-/* A backend and its context. Both belong to whoever made them; nt_hal_close hands the context to the backend. */
+/* One half: a backend and its context. The context belongs to whoever made it until nt_hal_close hands it back. */
 typedef struct nt_hal {
-    const nt_hal_backend *backend;
+    const nt_backend *backend;
     void *context;
+    nt_capabilities capabilities;
+    nt_reading reading; /* the newest; it is held until a newer one comes */
+    int is_armed;
+    int is_lost; /* a write has failed: the next sample says so */
 } nt_hal;
 
-/* NT_E_ARGUMENT if an operation is missing, NT_E_UNSUPPORTED if the backend was written for another version. */
-NT_API nt_status nt_hal_open(nt_hal *hal, const nt_hal_backend *backend, void *context);
-NT_API NT_REALTIME nt_status nt_hal_read(nt_hal *hal, nt_sample *sample);
-NT_API NT_REALTIME nt_status nt_hal_write(nt_hal *hal, const nt_command *command);
-/* Accepts NULL and a closed hal. */
+/* Which backend, and its context; NULL takes that of the backend itself. */
+typedef struct nt_hal_choice {
+    const nt_backend *backend;
+    void *context;
+} nt_hal_choice;
+
+/* Opens a half and asks what it can do. NT_E_ARGUMENT if read or write is missing, NT_E_UNSUPPORTED if the backend was
+ * written for another version or the other half, NT_E_RANGE with a problem if what it says of itself cannot be; or what
+ * its open says. host may be NULL. */
+NT_API nt_status nt_hal_open(nt_hal *hal, nt_half half, const nt_hal_choice *choice, const nt_host *host,
+                             nt_problem *problem);
+NT_API nt_status nt_hal_configure(nt_hal *hal, const nt_configuration *configuration, nt_problem *problem);
+NT_API nt_status nt_hal_arm(nt_hal *hal);
+/* A new reading into hal->reading, or the last one held. A half that is gone, whose sequence runs backwards or that
+ * gives what it does not call valid shows that in hal->reading.flags and as NaN: NT_OK; else what the backend says. */
+NT_API NT_REALTIME nt_status nt_hal_read(nt_hal *hal);
+/* A device that fails is NT_OK here and shows with the next reading. */
+NT_API NT_REALTIME nt_status nt_hal_write(nt_hal *hal, const nt_action *action);
+/* Accepts a half that is not armed. */
+NT_API void nt_hal_disarm(nt_hal *hal);
+/* Accepts NULL and a closed half. */
 NT_API void nt_hal_close(nt_hal *hal);
+
+/* What both halves read, as one sample of tick `tick` at time `now` [ns]. */
+NT_API NT_REALTIME nt_sample nt_hal_sample(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now);
+/* The command to both halves at time `now` [ns]; the first status that is not NT_OK. */
+NT_API NT_REALTIME nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command,
+                                            nt_action *action);
 
 /* --- the loop: calls a step at a fixed rate on the monotonic clock (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * For those who write a backend: one const table of operations. */
+ * For those who write a backend: a rig has two halves, master and slave, and a backend is one of them. Include only
+ * this header; a shared object links nothing and exports NT_BACKEND_ENTRY. The guide is docs/hal.md. */
 #ifndef NANOTOUCH_HAL_BACKEND_H
 #define NANOTOUCH_HAL_BACKEND_H
 
@@ -9,17 +10,108 @@
 extern "C" {
 #endif
 
-#define NT_HAL_API_VERSION 1
+#define NT_HAL_API_VERSION 2
+/* Of a shared object: `const nt_backend *nanotouch_backend(void)`. */
+#define NT_BACKEND_ENTRY "nanotouch_backend"
 
-/* read and write are called once per period, in this order, by one thread; both must be real-time safe. A missing
- * operation is NULL. What cannot be measured is NaN with NT_SAMPLE_INVALID set, never 0. */
-typedef struct nt_hal_backend {
+typedef enum nt_half { NT_HALF_MASTER, NT_HALF_SLAVE } nt_half;
+
+/* The six channels that a half may read: three of position, three of what it feels. */
+enum { NT_READS_POSITION = 0, NT_READS_FELT = NT_AXES, NT_READS = 2 * NT_AXES };
+
+/* One channel, read or driven. */
+typedef struct nt_channel_row {
+    const char *name; /* "deflection", "motor force x", ... */
+    const char *unit; /* SI: "m", "N" */
+    int driven;       /* 0: it is read; 1: it is driven */
+    int axis;         /* NT_X, NT_Y, NT_Z */
+    double minimum;   /* of its range */
+    double maximum;
+    double step;    /* of its converter, 0: none is known */
+    double noise;   /* standard deviation */
+    double latency; /* from the moment measured to the reading, or from the write to its effect [s] */
+    double safe;    /* driven: what it is left at by disarm; read: NaN */
+} nt_channel_row;
+
+/* What a half can do. */
+enum {
+    NT_CAN_FEEL = 1u << 0,         /* master: measures the operator's force; slave: measures deflections */
+    NT_CAN_PUSH = 1u << 1,         /* master: has motors. Without them it is a position device: a mouse */
+    NT_CAN_SERVO = 1u << 2,        /* slave: owns its z servo; what is written is its set-point */
+    NT_LEADS_CLOCK = 1u << 3,      /* read waits for the half's own next period; one half at most may */
+    NT_IS_REAL = 1u << 4,          /* an actuator can move something: needs the hard pace */
+    NT_IS_EVENT_DRIVEN = 1u << 5,  /* readings come when something happens; a heartbeat comes every period */
+    NT_KEEPS_OWN_SAFETY = 1u << 6, /* stops by itself when writes stay away */
+    NT_IS_SLOW = 1u << 7           /* its calls are not real-time safe (a Python class): free or wall pace only */
+};
+
+typedef struct nt_capabilities {
+    uint32_t size; /* sizeof(nt_capabilities), set by the host; a backend fills no more */
+    uint32_t can;  /* the bits above */
+    int axes;      /* that it has: 1 (NT_Z alone), 2 (x and y too are positions) or 3 */
+    int rows;      /* number of channels */
+    const nt_channel_row *channels;
+    double period; /* between its own measurements, 0: a new one in every period of the loop [s] */
+} nt_capabilities;
+
+/* What the host tells a half before it is armed. */
+typedef struct nt_configuration {
+    uint32_t size;      /* sizeof(nt_configuration) */
+    uint32_t reserved;  /* 0 */
+    double period;      /* of the loop [s] */
+    double lift;        /* slave: how far close has to lift the tip, at the least [m] */
+    const char *option; /* what the user gave for this backend, "" if nothing */
+} nt_configuration;
+
+/* What a half measured. What cannot be measured is NaN and not in `valid`; it is never 0. */
+typedef struct nt_reading {
+    uint32_t size;            /* sizeof(nt_reading), set by the host */
+    uint32_t flags;           /* NT_SAMPLE_* */
+    uint64_t sequence;        /* of the measurement, rising; the same number again: nothing new */
+    int64_t time;             /* of the measurement, on the clock of nt_host.now [ns] */
+    double position[NT_AXES]; /* of hand or stage, x, y and towards the sample [m] */
+    double felt[NT_AXES];     /* master: the operator's force [N]; slave: deflections, the third + upwards [m] */
+    double lateness;          /* of this period, where the half leads the clock; else 0 [s] */
+    uint32_t valid;           /* bit 1 << channel: position 0 .. 2, felt 3 .. 5 */
+    uint32_t buttons;         /* of the master, bit by bit */
+} nt_reading;
+
+/* What a half shall do. */
+typedef struct nt_action {
+    uint32_t size;          /* sizeof(nt_action) */
+    uint32_t state;         /* nt_state after this tick */
+    uint64_t tick;          /* of the loop */
+    int64_t time;           /* of this tick [ns] */
+    double target[NT_AXES]; /* master: motor force [N]; slave: x, y and travel towards the sample [m] */
+} nt_action;
+
+/* What the host offers a shared object. */
+typedef struct nt_host {
+    uint32_t size;
+    uint32_t version;                                          /* NT_HAL_API_VERSION */
+    int64_t (*now)(const struct nt_host *host);                /* the loop's clock [ns] */
+    void (*say)(const struct nt_host *host, const char *text); /* a line for the user; not from read and write */
+    void *context;
+} nt_host;
+
+/* One table of operations. open, configure, arm come in this order, then read and write once a period each, by one
+ * thread and real-time safe where the pace is hard; then disarm, close. A failed open or configure is followed by
+ * close. Operations that a backend does not need are NULL, but read and write. */
+typedef struct nt_backend {
+    uint32_t size;    /* sizeof(nt_backend) */
+    uint32_t version; /* NT_HAL_API_VERSION */
     const char *name; /* "sim", "spidev", ... */
-    int api_version;  /* NT_HAL_API_VERSION */
-    nt_status (*read)(void *context, nt_sample *sample);
-    nt_status (*write)(void *context, const nt_command *command);
-    void (*close)(void *context); /* leaves the rig safe: motor force 0, stage where it is */
-} nt_hal_backend;
+    nt_half half;
+    nt_status (*open)(void *context, const nt_host *host, nt_problem *problem);
+    nt_status (*describe)(void *context, nt_capabilities *capabilities); /* NULL: 1 axis, feels, pushes */
+    nt_status (*configure)(void *context, const nt_configuration *configuration, nt_problem *problem);
+    nt_status (*arm)(void *context);
+    nt_status (*read)(void *context, nt_reading *reading);
+    nt_status (*write)(void *context, const nt_action *action);
+    void (*disarm)(void *context); /* driven channels go to their safe values; a slave lifts */
+    void (*close)(void *context);  /* disarm, and everything is given back */
+    void *context;                 /* of a shared object; else the caller gives one to nt_hal_open */
+} nt_backend;
 
 #ifdef __cplusplus
 }

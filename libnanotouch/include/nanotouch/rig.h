@@ -50,6 +50,9 @@ typedef struct nt_master {
     double gauge_range;      /* strain gauge, +- [N] */
     double gauge_noise;      /* standard deviation of the strain gauge [N] */
     double gauge_resolution; /* step of the strain gauge [N] */
+    double motor;            /* "no|yes": it can push back; without, it is a position device, as a mouse is */
+    double rate;             /* of its own measurements, 0: that of the loop [Hz] */
+    double axes;             /* that it has: 1 (it presses), or 3 (it moves the tip sideways, too) [-] */
 } nt_master;
 
 /* What holds the master, beside the force that it means to apply: f_m = force - m x'' - b x' - k (x - rest), moving

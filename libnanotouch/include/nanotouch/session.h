@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A whole touch: plan, simulated rig, touch step and ring, composed once, for C and for Python. Simulated time: it runs
- * as fast as the machine allows and gives the same record for the same seed. */
+ * A whole touch: scene, plan, two halves of a rig, touch step and ring, composed once, for C and for Python. By default
+ * both halves are simulated: it runs as fast as the machine allows and gives the same record for the same seed. A half
+ * of one's own takes the place of either (hal_backend.h). */
 #ifndef NANOTOUCH_SESSION_H
 #define NANOTOUCH_SESSION_H
 
+#include "nanotouch/commands.h"
 #include "nanotouch/control.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/sim.h"
+#include "nanotouch/terrain.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -14,105 +17,219 @@ extern "C" {
 
 typedef struct nt_session nt_session;
 
-/* What a session is made of; everything is copied but surface, radii and bank. */
+/* What a session is made of; everything is copied but surface and radii, which are borrowed until nt_session_close, and
+ * the backends' contexts. */
 typedef struct nt_session_setup {
-    nt_scene scene;
+    nt_scene scene; /* its tip is the one that touches */
     nt_rig rig;
     nt_demand demand;
     nt_settings settings;
     nt_mode mode;
-    const nt_surface *surface;  /* dilated by the tip; borrowed until nt_session_close; NULL: flat at z = 0 */
-    const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not felt */
-    const nt_maugis_bank *bank; /* for the contact with the radius of each place, borrowed */
+    nt_height_map map;          /* heights, read by nt_session_open only; map.heights NULL: none */
+    int dilated;                /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
+    const nt_surface *surface;  /* dilated by this tip; NULL: flat at z = 0, or the map */
+    const nt_radius_map *radii; /* of `surface`; NULL: its curvature is not felt */
     double x, y;                /* where it starts [m] */
-    double clearance;           /* L, height of the tip above the surface there [m] */
-    double rise;                /* how far the surface rises above the start along the path [m], >= 0 */
-    double slope;               /* of the surface where it is steepest along the path [-], >= 0 */
+    const double *path;         /* path_count points (x, y) that the tip will follow [m]; NULL: it may go anywhere */
+    long path_count;
+    double clearance; /* L, height of the tip above the surface at the start [m] */
+    double rise; /* how far the master shall be able to draw back from a rising surface [m]; NaN: what is reached */
     uint64_t seed;
-    long ring_capacity; /* records held between two reads; rounded up to a power of two */
+    long ring_capacity; /* records held between two reads, rounded up to a power of two; 0: nothing is recorded */
     double
         minimum_margin; /* refuse to open below this stability margin; 0: never, and a law of one's own is not tried */
     int preflight;      /* 1: tare and sign test before the first tick (preflight.h) */
     nt_probe_model probe_model;
     double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
-    const nt_faults *faults; /* of the rig from its switching on, before preflight; copied; NULL: none */
+    const nt_faults *faults; /* of the simulated halves from their switching on, before preflight; NULL: none */
+    nt_hal_choice master;    /* backend NULL: simulated */
+    nt_hal_choice slave;
+    const char *master_option, *slave_option; /* for the backends' configure; NULL: "" */
 } nt_session_setup;
 
 /* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with
  * preflight. */
 NT_API nt_session_setup nt_session_defaults(void);
 
-/* What the operator does next: hand force and tip position go there on a straight line, then stay. */
+/* What the operator does next: a simulated hand and the tip go there on a straight line, then stay. */
 typedef struct nt_input {
-    double operator_force; /* f_m, + towards the sample [N] */
-    double x, y;           /* [m] */
-    double duration;       /* [s], >= 0 */
+    double operator_force[NT_AXES];  /* f_m of a hand that pushes [N] */
+    double master_position[NT_AXES]; /* of a hand that holds the master where it will [m] */
+    int holds;                       /* 1: the hand holds by position, 0: it pushes */
+    double x, y;     /* where the path goes [m]; NaN: the tip stays where it is sent, or follows a master of 3 axes */
+    double duration; /* [s], >= 0 */
 } nt_input;
 
-/* One tick as it is recorded: what was measured, what was commanded, and what was true. */
+/* One tick as it is recorded: what was measured, what was commanded, and what was true (NaN where nobody knows). */
 typedef struct nt_record {
     uint64_t tick;
-    double time;            /* [s] */
-    double x, y;            /* lateral position [m] */
-    double master_position; /* x_m measured [m] */
-    double operator_force;  /* f_m measured, tared [N] */
-    double stage_position;  /* x_s measured, travel towards the sample [m] */
-    double stage_command;   /* [m] */
-    double deflection;      /* zeta measured, tared [m] */
-    double slave_force;     /* f_s = k_c zeta [N] */
-    double motor_force;     /* tau_m commanded [N] */
-    double gap;             /* truth: h [m] */
-    double tip_force;       /* truth: F [N] */
-    double contact_radius;  /* truth: a [m] */
-    double surface_height;  /* truth: z_s under the tip, dilated [m] */
-    double age;             /* of the sample [s] */
-    double lateness;        /* of the tick [s] */
-    uint32_t flags;         /* NT_SAMPLE_* */
-    uint32_t phase;         /* nt_phase, of an approach or a curve */
-    uint32_t state;         /* nt_state */
-    uint32_t reasons;       /* NT_REASON_* */
+    double time;                     /* [s] */
+    double master_position[NT_AXES]; /* x_m measured [m] */
+    double operator_force[NT_AXES];  /* f_m measured, tared [N] */
+    double stage_position[NT_AXES];  /* measured: x and y of the tip, and x_s [m] */
+    double stage_command[NT_AXES];   /* [m] */
+    double deflection[NT_AXES];      /* measured, tared [m] */
+    double slave_force;              /* f_s = k_c zeta [N] */
+    double motor_force[NT_AXES];     /* tau_m commanded [N] */
+    double gap;                      /* truth: h [m] */
+    double tip_force[NT_AXES];       /* truth: F in the world frame, z away from the sample [N] */
+    double contact_radius;           /* truth: a [m] */
+    double surface_height;           /* truth: z_s under the tip, dilated [m] */
+    double age;                      /* of the slave's measurement [s] */
+    double master_age;               /* of the master's [s] */
+    double lateness;                 /* of the tick [s] */
+    uint32_t flags;                  /* NT_SAMPLE_* */
+    uint32_t phase;                  /* nt_phase, of an approach or a curve */
+    uint32_t state;                  /* nt_state */
+    uint32_t reasons;                /* NT_REASON_* */
 } nt_record;
 
-/* Opens a session. NT_E_RANGE with nt_verdict.field if the loop would run closer to its stability limit than
- * minimum_margin, or with what preflight has found; NT_E_NOT_FINITE if the margin of a law of one's own is not known.
- * The session belongs to the caller: nt_session_close. */
+/* What was asked of a session and done, with the tick from which it holds: with the records it is all that a replay
+ * needs. */
+typedef enum nt_event_kind {
+    NT_EVENT_STOP = NT_REQUEST_STOP, /* value[0]: 1 pressed, 0 released; it shows in the records' flags */
+    NT_EVENT_AIM,                    /* x, y [m], duration [s] */
+    NT_EVENT_ARM,                    /* confirmed */
+    NT_EVENT_MODE,                   /* nt_mode */
+    NT_EVENT_RESCALE,                /* alpha_p, alpha_f */
+    NT_EVENT_CLUTCH,                 /* open */
+    NT_EVENT_SETTING,                /* field: of nt_settings_fields; its value */
+    NT_EVENT_SCENE,                  /* field: of nt_scene_fields; its value */
+    NT_EVENT_REWIND,                 /* the tick that it goes back to */
+    NT_EVENT_KINDS
+} nt_event_kind;
+typedef struct nt_event {
+    uint64_t tick;
+    uint32_t kind; /* nt_event_kind */
+    uint32_t field;
+    double value[4];
+} nt_event;
+
+/* Opens a session, its halves armed. On failure *problem names what is wrong: a field of the setup, nt_verdict.field if
+ * the loop would run closer to its stability limit than minimum_margin, what preflight has found, or what a backend
+ * says. NT_E_NOT_FINITE if the margin of a law of one's own is not known. The session belongs to the caller:
+ * nt_session_close. */
 NT_API nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, nt_problem *problem);
-/* Accepts NULL. */
+/* Ends a run, disarms and closes both halves. Accepts NULL. */
 NT_API void nt_session_close(nt_session *session);
 
-/* Mailbox: the newest input counts from the next tick on. May be called from another thread than advance. */
-NT_API NT_REALTIME nt_status nt_session_aim(nt_session *session, const nt_input *input);
-/* Runs `ticks` periods. A device that fails (NT_E_DEVICE) is no error of this function: the state is LATCHED with
- * NT_REASON_DEVICE in the same tick. NT_E_CAPACITY, with nothing run, if the ring could not hold them: nothing is ever
- * dropped. */
-NT_API NT_REALTIME nt_status nt_session_advance(nt_session *session, long ticks);
-/* Moves up to `count` records out of the ring; returns how many. */
-NT_API NT_REALTIME long nt_session_read(nt_session *session, nt_record *records, long count);
+/* --- in --- */
+
+/* Mailbox: the newest input counts from the next tick on. From one thread at a time, which may be another than that
+ * which runs. NT_E_NOT_FINITE, NT_E_RANGE with the field in *problem (NULL allowed); NT_E_UNSUPPORTED for a force or a
+ * position where the hand is real. */
+NT_API NT_REALTIME nt_status nt_session_aim(nt_session *session, const nt_input *input, nt_problem *problem);
+/* Would it be taken? */
+NT_API nt_status nt_session_check_input(const nt_session *session, const nt_input *input, nt_problem *problem);
+/* Presses or releases the emergency stop. Any thread may call it, a signal handler too, while another advances; it
+ * never waits. Each press shows in the next sample, even if the release comes before it. */
+NT_API NT_REALTIME void nt_session_emergency_stop(nt_session *session, int pressed);
+
+/* Requests. Each is prepared by the calling thread, applied between two ticks and kept as an event. While the session
+ * runs in its thread (nt_session_start) the call returns when that has happened; else it is done at once. */
+
 /* Back to RUN after a stop (nt_touch_arm). */
 NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
-/* Requests to the touch step between two ticks (touch.h). A new scale with which the loop would run closer to its limit
- * than minimum_margin is refused with NT_E_RANGE, and so is a mode. */
-NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode);
-NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling);
+/* NT_E_RANGE with the rule and the margin in *problem (NULL allowed) where the loop would run closer to its limit than
+ * minimum_margin. */
+NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *problem);
+NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling, nt_problem *problem);
 NT_API void nt_session_clutch(nt_session *session, int open);
-/* Presses or releases the simulated emergency stop. Any thread may call it, a signal handler too, while another
- * advances; it never waits. Each press shows in the next sample, even if the release comes before it. */
-NT_API NT_REALTIME void nt_session_emergency_stop(nt_session *session, int pressed);
-/* Adds a fault of the simulated rig; its start counts from the session's first tick (faults.h). */
+/* Changes one field of nt_settings_fields (NT_EVENT_SETTING) or nt_scene_fields (NT_EVENT_SCENE), by its name. Plan,
+ * bank, margins and guarantee are made anew outside the loop, which runs on meanwhile, and take the place of the old
+ * ones at once. NT_E_ARGUMENT for a name that there is not, or that cannot change while open ("gains.rate",
+ * "gains.delay", "gains.alpha_p", "gains.alpha_f": rescale; "tip.radius", "tip.half_angle" over a surface); else as
+ * nt_session_open. The cantilever's model stays. */
+NT_API nt_status nt_session_change(nt_session *session, nt_event_kind kind, const char *field, double value,
+                                   nt_problem *problem);
+/* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED
+ * where none is simulated. */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
-/* Is the cantilever computed as dynamic (1) or quasi-static (0)? */
-NT_API int nt_session_is_dynamic(const nt_session *session);
 
-/* Read-only views, valid until close. */
+/* --- run, as fast as it goes --- */
+
+/* Runs `ticks` periods. A device that fails (NT_E_DEVICE) is no error of this function: the state is LATCHED with
+ * NT_REASON_DEVICE in the same tick. NT_E_CAPACITY, with nothing run, if the ring could not hold them: nothing is ever
+ * dropped. NT_E_STATE while the session runs in its thread; NT_E_UNSUPPORTED with a half that is real. */
+NT_API NT_REALTIME nt_status nt_session_advance(nt_session *session, long ticks);
+/* Aims (input may be NULL) and runs one period; the frame of that tick. */
+NT_API NT_REALTIME nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *frame);
+
+/* --- run, in a thread of its own (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
+
+typedef enum nt_pace {
+    NT_PACE_FREE, /* as fast as it goes; where the ring is full it waits for a reader */
+    NT_PACE_WALL, /* at the pace of a clock: wakes each millisecond and runs the ticks that are due. It slows down where
+                     it cannot keep up, and never skips; nothing real may be driven */
+    NT_PACE_HARD  /* each tick at its deadline; lateness reaches the supervisor; a full ring is counted */
+} nt_pace;
+
+/* What a run has been so far. */
+typedef struct nt_progress {
+    uint64_t ticks;     /* run in all */
+    uint64_t dropped;   /* records that a full ring has lost; hard pace only */
+    double slowdown;    /* wall pace: time on the clock over time in the session, lately; 1 where it keeps up [-] */
+    double worst_delay; /* hard pace: of a wake-up [s] */
+    int runs;           /* 1: in its thread */
+    int paused;
+    nt_status status; /* why it has ended by itself, NT_OK otherwise */
+} nt_progress;
+
+/* Starts the thread; `ticks` 0: until nt_session_halt. NT_E_STATE if it runs already; NT_E_UNSUPPORTED for a real half
+ * in a pace other than hard, or a Python one in hard pace; NT_E_NO_MEMORY. */
+NT_API nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks);
+/* Ends the thread between two ticks and waits for it. What it ended by itself with, NT_OK otherwise. */
+NT_API nt_status nt_session_halt(nt_session *session);
+/* Free and wall pace; from any thread. Speed: session time over time on the clock, 1e-3 .. 1e3; below 1 is slow motion.
+ */
+NT_API nt_status nt_session_pause(nt_session *session, int paused);
+NT_API nt_status nt_session_step_on(nt_session *session, long ticks); /* of a paused one */
+NT_API nt_status nt_session_set_speed(nt_session *session, double speed, nt_problem *problem);
+/* Of a session whose halves are simulated, while it runs: back by a duration [s], to the nearest quarter of a second
+ * before that, half a minute at most. NT_E_NO_SOLUTION if that is too long ago or before a change; NT_E_UNSUPPORTED
+ * with a half that is not simulated. Kept as NT_EVENT_REWIND. */
+NT_API nt_status nt_session_rewind(nt_session *session, double duration, nt_problem *problem);
+NT_API nt_progress nt_session_progress(const nt_session *session);
+
+/* --- out --- */
+
+/* Moves up to `count` records, or events, out of their ring; returns how many. One reader each. */
+NT_API NT_REALTIME long nt_session_read(nt_session *session, nt_record *records, long count);
+NT_API NT_REALTIME long nt_session_read_events(nt_session *session, nt_event *events, long count);
+/* From now on each tick is published as a frame, in shared memory under this name or, with NULL, in private memory.
+ * Clients of these frames may post requests: the kinds of nt_event_kind. As nt_frames_create; not while it runs. */
+NT_API nt_status nt_session_publish(nt_session *session, const char *name);
+NT_API nt_frames *nt_session_frames(nt_session *session); /* NULL: none */
+
+/* --- state of a session whose halves are simulated --- */
+
+typedef struct nt_snapshot nt_snapshot;
+/* All that a session will need to go on from here: NT_E_UNSUPPORTED with a half that is not simulated, NT_E_STATE while
+ * it runs, NT_E_NO_MEMORY. The snapshot belongs to the caller: nt_snapshot_close. */
+NT_API nt_status nt_session_snapshot(const nt_session *session, nt_snapshot **snapshot);
+/* Back to where it was taken, of this session or of one that was opened with the same setup: a copy. What was changed
+ * since must be changed back first (NT_E_STATE). Kept as NT_EVENT_REWIND. */
+NT_API nt_status nt_session_restore(nt_session *session, const nt_snapshot *snapshot);
+/* Accepts NULL. */
+NT_API void nt_snapshot_close(nt_snapshot *snapshot);
+
+/* Is the cantilever computed as dynamic (1) or quasi-static (0)? 0 where the slave is not simulated. */
+NT_API int nt_session_is_dynamic(const nt_session *session);
+/* What a half can do. */
+NT_API const nt_capabilities *nt_session_capabilities(const nt_session *session, nt_half half);
+
+/* Read-only views: valid until the next change or close, from the thread that makes requests. */
+NT_API const nt_session_setup *nt_session_setup_of(const nt_session *session); /* as it runs now */
 NT_API const nt_plan *nt_session_plan(const nt_session *session);
 NT_API const nt_touch *nt_session_touch(const nt_session *session);
 NT_API const nt_touch_state *nt_session_touch_state(const nt_session *session);
 NT_API nt_margins nt_session_margins(const nt_session *session);
+NT_API nt_reach nt_session_reach(const nt_session *session);
 /* What holds whatever the operator does; to be read before the first tick. */
 NT_API nt_guarantee nt_session_guarantee(const nt_session *session);
 /* What preflight has taken off the sensors. */
 NT_API nt_tare nt_session_tare(const nt_session *session);
-/* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. */
+/* Height of the cantilever base at x_s = 0 [m]: z_b = start_height - x_s. NaN where the slave is not simulated. */
 NT_API double nt_session_start_height(const nt_session *session);
 /* x_m at the start [m]: the stage shall be at alpha_p (x_m - master_start). */
 NT_API double nt_session_master_start(const nt_session *session);

@@ -80,7 +80,7 @@ typedef struct nt_settings {
 /* 10 kHz, K_f = 2, scaling by the heuristic rule for a slave path of 0.4 um, limits inside the rig's ranges; the
  * impedance law if the rig has no gauge. */
 NT_API nt_settings nt_settings_defaults(const nt_rig *rig);
-/* The table of gains and limits. */
+/* The table of gains and limits; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_settings_fields(int *count);
 NT_API nt_status nt_settings_check(const nt_settings *settings, nt_problem *problem);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The simulated rig: hand, master, stage, probe, surface and sensors behind the same contract as real devices. */
+ * The simulated rig behind the same contract as real devices: a master (hand, arm, gauge) and a slave (stage, probe,
+ * surface), which know nothing of each other. */
 #ifndef NANOTOUCH_SIM_H
 #define NANOTOUCH_SIM_H
 
@@ -40,22 +41,16 @@ enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {
-    double gap;            /* h between tip and (dilated) surface [m] */
-    double tip_force;      /* F [N] */
-    double contact_radius; /* a [m] */
-    double surface_height; /* z_s under the tip [m] */
-    double tip_height;     /* z_t [m] */
-    double energy;         /* U of the interaction [J] */
+    double gap;                /* h between tip and (dilated) surface [m] */
+    double tip_force[NT_AXES]; /* F in the world frame [N] */
+    double contact_radius;     /* a [m] */
+    double surface_height;     /* z_s under the tip [m] */
+    double tip_height;         /* z_t [m] */
+    double energy;             /* U of the interaction [J] */
 } nt_truth;
 
-/* What the sensors would read without noise, steps and delay. */
-typedef struct nt_moment {
-    double deflection, stage_position, master_position; /* [m] */
-    double operator_force;                              /* [N] */
-} nt_moment;
-
-/* What is random, a stream each (random.h): a half of the rig draws nothing from the other's. The sensors come first, in
- * the order of nt_channel, then what a fault adds to each. */
+/* What is random, a stream each (random.h): no half draws from the other's. The four sensors come first, in the order
+ * of nt_channel, then what a fault adds to each. */
 typedef enum nt_sim_noise {
     NT_SIM_NOISE_FAULT = NT_CHANNEL_OPERATOR_FORCE + 1,
     NT_SIM_NOISE_HAND = 2 * NT_SIM_NOISE_FAULT,
@@ -63,64 +58,93 @@ typedef enum nt_sim_noise {
     NT_SIM_NOISES
 } nt_sim_noise;
 
-/* What lasting faults have to remember. */
-typedef struct nt_fault_memory {
-    nt_sample last;  /* as it was given away */
-    nt_sample fresh; /* the last one of a living link */
-    double stood;    /* of the stage's drive when its fault began [m] */
-    double lateness; /* of this tick [s] */
-} nt_fault_memory;
+/* What a lasting fault goes back to, along NT_Z. */
+typedef struct nt_sim_memory {
+    double position, felt;
+    double age; /* [s] */
+    uint64_t sequence, tick;
+} nt_sim_memory;
 
-/* A part of a period under one command. */
-typedef struct nt_sim_part {
-    double length; /* [s], 0 if there is no such part */
-    nt_stage_model stage;
-    nt_master_model master;
-} nt_sim_part;
-
-typedef struct nt_sim {
-    const nt_plan *plan;
+/* What both halves have: their clock, converters, delay and faults. */
+typedef struct nt_sim_link {
     nt_rig rig;
-    double period, start_height; /* z_b at x_s = 0 [m] */
-    int delay;                   /* whole periods until a command acts ... */
-    double fraction;             /* ... and the part of one [periods] */
-    nt_sim_part parts[2];        /* before and after a command begins to act */
-    nt_sensor deflection_sensor, stage_sensor, master_sensor, gauge;
+    double period;
+    uint64_t tick;
+    double per_tick; /* measurements in a period, 0: one [-] */
+    int delay;       /* whole periods until a command acts ... */
+    double fraction; /* ... and the part of one [periods] */
+    nt_noise noise[NT_SIM_NOISES];
+    uint64_t converted; /* the tick of the newest conversion */
+    double lateness;    /* of this tick [s] */
+    nt_faults faults;
+    nt_sim_memory last;  /* as it was given away */
+    nt_sim_memory fresh; /* the last one of a living link */
+    const nt_host *host; /* whose clock stamps the readings; NULL: ticks times period */
+} nt_sim_link;
+
+/* --- the master: hand, arm, gauge --- */
+
+typedef struct nt_sim_master {
+    nt_sim_link link;
+    nt_master_model models[2]; /* before and after a command begins to act within a period; length 0: none */
+    nt_sensor position_sensor, gauge;
+    nt_hand_state hand;
+    nt_master_state arm[NT_AXES];
+    double pending[NT_SIM_SLOTS][NT_AXES]; /* motor forces [N] */
+    double moments[NT_SIM_SLOTS][2];       /* position [m] and grip force [N] along NT_Z */
+    nt_reading converted;                  /* the newest, before faults */
+} nt_sim_master;
+
+/* --- the slave: stage, probe, surface --- */
+
+typedef struct nt_sim_slave {
+    nt_sim_link link;
+    const nt_plan *plan;
+    double start_height;      /* z_b at x_s = 0 [m] */
+    nt_stage_model models[2]; /* as above */
+    nt_sensor deflection_sensor, stage_sensor;
     double command_step; /* of the stage [m] */
     nt_cantilever_model cantilever_model;
     int dynamic; /* the cantilever is */
-    /* state */
-    uint64_t tick;
-    nt_noise noise[NT_SIM_NOISES];
-    nt_hand_state hand;
     nt_stage_state stage;
-    double stage_drive; /* the command as far as the driver has slewed [m] */
-    nt_master_state master;
+    double stage_drive;             /* the command as far as the driver has slewed [m] */
+    double stood;                   /* the same, when a fault of the stage began [m] */
     nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
     double x, y;
-    uint32_t flags; /* NT_SAMPLE_* put into every sample: faults and buttons */
-    nt_command pending[NT_SIM_SLOTS];
-    nt_moment moments[NT_SIM_SLOTS];
-    nt_sample converted; /* the newest, before faults */
-    nt_faults faults;
-    nt_fault_memory fault_memory;
+    double pending[NT_SIM_SLOTS][NT_AXES]; /* stage commands [m] */
+    double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */
+    nt_reading converted;
     nt_truth truth;
     nt_law_value law; /* of the interaction, at truth.gap */
+} nt_sim_slave;
+
+/* Both. All state is inside: copying one, or a half, is a snapshot. */
+typedef struct nt_sim {
+    nt_sim_master master;
+    nt_sim_slave slave;
 } nt_sim;
 
-/* A rig at rest, clear of the surface. All state is inside *sim: copying it is a snapshot. */
+/* Halves at rest, the tip clear of the surface. */
+NT_API nt_status nt_sim_master_init(nt_sim_master *master, const nt_sim_setup *setup);
+NT_API nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup);
 NT_API nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup);
-/* The operation table; the context is a nt_sim. */
-NT_API const nt_hal_backend *nt_sim_backend(void);
+/* The operation tables; the context is a nt_sim_master, a nt_sim_slave. */
+NT_API const nt_backend *nt_sim_master_backend(void);
+NT_API const nt_backend *nt_sim_slave_backend(void);
+NT_API NT_REALTIME nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading);
+NT_API NT_REALTIME nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading);
+/* Takes what it shall do and lets one period pass; it acts `delay` periods later, within the motor's force or the
+ * stage's travel and speed. NT_E_NOT_FINITE, with no time passed, for what is not a number; NT_E_NO_CONVERGENCE if the
+ * probe does not come to rest. */
+NT_API NT_REALTIME nt_status nt_sim_master_write(nt_sim_master *master, const nt_action *action);
+NT_API NT_REALTIME nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action);
+/* Both halves by hand, as one rig: for tests, and for loops of one's own. */
 NT_API NT_REALTIME nt_status nt_sim_read(nt_sim *sim, nt_sample *sample);
-/* Takes the command and lets one period pass; it acts `delay` periods later, within the motor's force and the stage's
- * travel and speed. NT_E_NOT_FINITE, with no time passed, for a command that is not a number; NT_E_NO_CONVERGENCE if
- * the probe does not come to rest. */
 NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command);
 /* What the simulated operator does next. */
-NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim *sim, const nt_hand_target *target);
-/* Adds a fault, from now on if its start has passed. As nt_faults_add. */
+NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim_master *master, const nt_hand_target *target);
+/* Adds a fault to both halves, from now on if its start has passed. As nt_faults_add. */
 NT_API nt_status nt_sim_inject(nt_sim *sim, const nt_fault *fault);
 /* Is the quasi-static cantilever not good enough? Its lag may be what the plan's demand allows of the pull-off force,
  * the demand's floor or the standard deviation of the force read-out, whichever is most; and it has to ring out with a

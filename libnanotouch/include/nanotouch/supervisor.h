@@ -26,13 +26,15 @@ enum {
     NT_REASON_DEVICE = 1u << 12,          /* a device is gone */
     NT_REASON_INDENTATION = 1u << 13,     /* the indentation is at its limit */
     NT_REASON_LAW = 1u << 14,             /* the control law gave no number */
-    NT_REASON_BACKED_OFF = 1u << 15       /* the passivity observer has taken gain away: a flag */
+    NT_REASON_BACKED_OFF = 1u << 15,      /* the passivity observer has taken gain away: a flag */
+    NT_REASON_MASTER_STALE = 1u << 16     /* the master's reading is older than two of its own periods */
 };
 /* "force limit", ... of one reason bit; "" for none. */
 NT_API const char *nt_reason_name(uint32_t reason);
 
 /* All that does not change while it runs. */
 typedef struct nt_supervisor {
+    double master_period;    /* between two readings of the master [s] */
     double period;           /* T [s] */
     double spring_constant;  /* k_c [N/m] */
     double deflection_range; /* [m] */

@@ -23,13 +23,15 @@ typedef struct nt_touch {
     double period; /* T [s] */
     nt_servo_law law;
     nt_stage_loop stage_loop;
-    double force_filter; /* of the low-pass of f_m, per period [-] */
-    uint32_t delay;      /* after which a motor force acts, as far as it is remembered [periods] */
-    double speed_filter; /* of the master's speed estimate, per period [-] */
-    double stage_step;   /* largest, in a period [m] */
-    double stage_end;    /* of its travel, either way [m] */
-    double motor_step;   /* largest, in a period [N] */
-    double spike;        /* a deflection that jumps by more than this may be a wrong reading [m] */
+    int leads_sideways;   /* the master has more than one axis: x and y follow it, not a path ... */
+    double borders[2][2]; /* ... within these, of x and of y; infinite where nothing borders it [m] */
+    double force_filter;  /* of the low-pass of f_m, per period [-] */
+    uint32_t delay;       /* after which a motor force acts, as far as it is remembered [periods] */
+    double speed_filter;  /* of the master's speed estimate, per period [-] */
+    double stage_step;    /* largest, in a period [m] */
+    double stage_end;     /* of its travel, either way [m] */
+    double motor_step;    /* largest, in a period [N] */
+    double spike;         /* a deflection that jumps by more than this may be a wrong reading [m] */
     nt_passivity passivity;
     nt_rescale rescale;
     nt_supervisor supervisor;
@@ -58,6 +60,8 @@ typedef struct nt_touch_state {
     double motor_force;                     /* last command [N] */
     double coupled_force;                   /* what is left of the last command given while coupled [N] */
     double retracted;                       /* lifted so far [m] */
+    double hand_at[2];                      /* x and y of the master when it was last seen [m] */
+    double sideways[2];                     /* how far it has gone since that the tip has not followed yet [m] */
     double target_x, target_y, target_time; /* lateral set-point [m], time left to get there [s] */
     double sent[NT_TOUCH_SENT];             /* motor forces of the last ticks, by their number [N] */
     nt_command command;                     /* last command */

@@ -49,6 +49,10 @@ typedef struct nt_pose {
     double x, y, z; /* [m] */
 } nt_pose;
 
+/* Components of what has three of them. x and y are the world's; the third one of master and stage presses: + towards
+ * the sample. Deflections have the third one upwards, away from the sample. */
+enum { NT_X, NT_Y, NT_Z, NT_AXES };
+
 /* Flags of a sample. */
 enum {
     NT_SAMPLE_EMERGENCY_STOP = 1u << 0, /* pressed, or its line is lost */
@@ -60,15 +64,15 @@ enum {
 
 /* What the rig measured in one tick. */
 typedef struct nt_sample {
-    uint64_t tick;          /* counts control periods [-] */
-    double age;             /* time since the measurement [s] */
-    double lateness;        /* of this tick against its deadline, 0 where nobody measures it [s] */
-    double master_position; /* x_m, + towards the sample [m] */
-    double operator_force;  /* f_m, + towards the sample [N] */
-    double stage_position;  /* x_s, travel towards the sample [m] */
-    double deflection;      /* zeta, + away from the sample [m] */
-    double x, y;            /* lateral position of the tip [m] */
-    uint32_t flags;         /* NT_SAMPLE_* */
+    uint64_t tick;                   /* counts control periods [-] */
+    double age;                      /* time since the slave's measurement [s] */
+    double master_age;               /* since the master's [s] */
+    double lateness;                 /* of this tick against its deadline, 0 where nobody measures it [s] */
+    double master_position[NT_AXES]; /* x_m [m] */
+    double operator_force[NT_AXES];  /* f_m [N] */
+    double stage_position[NT_AXES];  /* x and y of the tip, and x_s, the travel towards the sample [m] */
+    double deflection[NT_AXES];      /* of the cantilever: sideways where it is measured, and zeta [m] */
+    uint32_t flags;                  /* NT_SAMPLE_* */
 } nt_sample;
 
 /* Safety state of the loop, in rising order of severity. */
@@ -76,11 +80,10 @@ typedef enum nt_state { NT_RUN, NT_HOLD, NT_RETRACT, NT_LATCHED } nt_state;
 
 /* What the rig is told to do in one tick. */
 typedef struct nt_command {
-    double motor_force;    /* tau_m, + towards the sample [N] */
-    double stage_position; /* x_s command, travel towards the sample [m] */
-    double x, y;           /* lateral position command [m] */
-    uint32_t state;        /* nt_state after this tick */
-    uint32_t reasons;      /* NT_REASON_* bits (control.h) that explain the state */
+    double motor_force[NT_AXES];    /* tau_m [N] */
+    double stage_position[NT_AXES]; /* x and y of the tip, and x_s [m] */
+    uint32_t state;                 /* nt_state after this tick */
+    uint32_t reasons;               /* NT_REASON_* bits (control.h) that explain the state */
 } nt_command;
 
 #ifdef __cplusplus

@@ -23,7 +23,7 @@ static nt_status tabulate(void *law, const nt_scene *scene, int place, nt_proble
     nt_problem found = {fields[place][0], "", 0.0, 0.0, 0.0};
     nt_status status = NT_E_ARGUMENT;
     if (custom->law && custom->bound && memchr(custom->name, '\0', NT_CUSTOM_NAME)) {
-        (void)strcpy(table->name, custom->name);
+        memcpy(table->name, custom->name, strlen(custom->name) + 1u);
         table->radius = scene->tip.radius;
         status = nt_custom_tabulate(table, custom, scene->adhesion.equilibrium_distance, &found);
     }

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a session may be given besides scene, rig, surface, mode, path and settings, and the settings for its path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from operator import index
+from typing import Any, Literal, NamedTuple, TypedDict, get_args
+
+from nanotouch import _core, margins
+from nanotouch._arrays import check_between
+from nanotouch._control import Law
+from nanotouch._plant import ProbeModel
+from nanotouch.errors import InvalidValue
+from nanotouch.faults import Faults
+from nanotouch.margins import ForceRange
+from nanotouch.scene import Rig, Settings
+
+INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
+ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
+
+Pace = Literal["free", "wall", "hard"]
+RING_CAPACITY = 65536
+PACES: tuple[Pace, ...] = get_args(Pace)
+
+
+class Options(TypedDict, total=False):
+    """What a session may be given besides scene, rig, surface, mode, path and settings."""
+
+    rate: float
+    """of the force loop [Hz]; by default that of the settings, 10 kHz"""
+    control: str | Law
+    """the control law (docs/control.md): "default", "paper", "impedance"; or one's own, a function of the signals of a
+    period (:class:`nanotouch._core.Signals`) that returns the motor force [N] and where the stage shall be [m], under
+    the same supervisor and limits. It is tried before the session opens, to know its margins (``minimum_margin=0`` arms
+    without, and leaves it alone). A rig without a gauge has "impedance" as its default"""
+    gains: Mapping[str, float]
+    """fields of ``settings.gains`` in SI that differ, such as ``{"force_gain": 10}``"""
+    delay: float
+    """of the link between hand and probe, beside the rig's own [s]"""
+    seed: int
+    """of all that is random in the simulated halves; 1"""
+    force_range: tuple[float, float]
+    """lowest and highest force on the tip [N] that alpha_f is to fill the hand's range with (Eq. 19), where no settings
+    are given"""
+    clearance: float
+    """height of the tip above the surface at the start; 0.1 um [m]"""
+    rtol: float
+    """largest relative error of the planned force; 0.01"""
+    minimum_margin: float
+    """refuse to open closer to the stability limit than this; 1.5"""
+    preflight: bool
+    """tare the sensors and test the stage's sign before the first tick; refuse to open if they are off"""
+    probe_model: ProbeModel
+    """how the cantilever is simulated: at rest at every tick, or by its equation of motion (docs/plant.md). "auto"
+    takes the first where its error is small enough"""
+    substep: float
+    """of the dynamic cantilever: the largest angle of its fastest oscillation in one sub-step; 0.25 [rad]"""
+    faults: Faults
+    """what fails in the simulated halves, and when"""
+    recorded: bool
+    """False: no records are kept; for :meth:`Session.step`"""
+
+
+class Progress(NamedTuple):
+    """What a run in its own thread has been so far."""
+
+    ticks: int
+    """run in all"""
+    dropped: int
+    """records that a full ring has lost; hard pace only"""
+    slowdown: float
+    """wall pace: time on the clock over time in the session, lately; 1 where it keeps up"""
+    worst_delay: float
+    """hard pace: of a wake-up [s]"""
+    runs: bool
+    paused: bool
+    status: str
+    """why it has ended by itself"""
+
+
+def settings_for_path(
+    rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6, force_range: tuple[float, float] | None = None
+) -> Settings:
+    """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m] and forces
+    on the tip [N] from a plan or a test touch (:func:`nanotouch.margins.force_range`)."""
+    check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
+    check_between("relief", relief, "m", above=-1e-15, up_to=1e-3)
+    settings = Settings.for_rig(rig)
+    slave_path = clearance + INDENTATION_RANGE + relief
+    settings.gains.alpha_p, settings.gains.alpha_f = _core.scaling_heuristic(rig.core, slave_path, ATTRACTION_RANGE)
+    if force_range is not None:
+        settings.gains.alpha_f = margins.heuristic_alpha_f(rig, ForceRange(*force_range))
+    return settings
+
+
+def settings_with(rig: Rig, relief: float, settings: Settings | None, options: Options) -> Settings:
+    """The settings that are given, or those for a path with this relief [m], with what the options say beside them."""
+    force_range = options.get("force_range")
+    if settings is not None and force_range is not None:
+        raise InvalidValue("force_range sets alpha_f, which the settings hold already: give one of them")
+    if settings is None:
+        settings = settings_for_path(rig, relief, options.get("clearance", 0.1e-6), force_range)
+    wanted = settings.copy()
+    _choose(wanted, options.get("rate"), options.get("gains"), options.get("delay", 0.0))
+    return wanted
+
+
+def checked_seed(seed: int) -> int:
+    """In its range, as an int."""
+    if not 0 <= index(seed) < 2**64:
+        raise InvalidValue(f"seed = {seed}: valid is 0 .. 2^64 - 1")
+    return index(seed)
+
+
+def check_options(options: Mapping[str, Any]) -> None:
+    """Refuse what there is not."""
+    unknown = set(options) - set(Options.__annotations__)
+    if unknown:
+        raise TypeError(f"Session has no option {min(unknown)!r}; it has {', '.join(Options.__annotations__)}")
+
+
+def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] | None, delay: float) -> None:
+    """What was given beside the settings goes into them."""
+    for name, value in (gains or {}).items():
+        if f"gains.{name}" not in settings.fields:
+            raise InvalidValue(f"gains has no field {name!r}; it has {', '.join(settings.keys_of('gains'))}")
+        settings[f"gains.{name}"] = value
+    if rate is not None:
+        settings["gains.rate"] = rate
+    if not 0.0 <= delay < math.inf:
+        raise InvalidValue(f"delay = {delay} s: it must be a time of 0 s or more")
+    if delay > 0.0:
+        settings["gains.delay"] = settings.gains.delay + delay * settings.gains.rate

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An open session, and what has to outlive it.
+#pragma once
+#include <memory>
+#include <mutex>
+
+#include "control.h"
+#include "surface.h"
+
+struct Session {
+    nt_session *handle = nullptr;
+    std::shared_ptr<Surface> surface; // these outlive the handle, as the law does
+    std::shared_ptr<RadiusMap> radii;
+    OwnLaw law;
+    std::unique_ptr<Described<nt_settings>> amounts; // what the law amounts to, where that is known
+    std::mutex one_at_a_time;
+    ~Session()
+    {
+        const py::gil_scoped_release release; // its thread may be in a law or a backend written in Python
+        nt_session_close(handle);
+    }
+};
+
+// Python threads may share a session: one call at a time, waiting without the GIL.
+template <class Call> auto alone(Session &self, Call call)
+{
+    py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(self.one_at_a_time);
+    return call(self.handle);
+}
+
+void bind_session_run(py::module_ &module, py::class_<Session> &type);

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// session.h: a session running, and what comes out of it: records, events, frames, snapshots
+#include "frames.h"
+#include "session.h"
+
+// A column of numbers: where it lies in a record, and for vectors along which axis.
+struct Column {
+    const char *name;
+    size_t offset;
+};
+#define SCALAR(name) {#name, offsetof(nt_record, name)}
+#define ALONG(name, member, axis) {name, offsetof(nt_record, member) + (axis) * sizeof(double)}
+static constexpr Column columns[] = {
+    SCALAR(time),
+    ALONG("x", stage_position, NT_X),
+    ALONG("y", stage_position, NT_Y),
+    ALONG("master_position", master_position, NT_Z),
+    ALONG("operator_force", operator_force, NT_Z),
+    ALONG("stage_position", stage_position, NT_Z),
+    ALONG("stage_command", stage_command, NT_Z),
+    ALONG("deflection", deflection, NT_Z),
+    SCALAR(slave_force),
+    ALONG("motor_force", motor_force, NT_Z),
+    SCALAR(gap),
+    ALONG("tip_force", tip_force, NT_Z),
+    SCALAR(contact_radius),
+    SCALAR(surface_height),
+    SCALAR(age),
+    SCALAR(master_age),
+    SCALAR(lateness),
+};
+// Where the master has more than one axis.
+static constexpr Column sideways[] = {
+    ALONG("master_x", master_position, NT_X),        ALONG("master_y", master_position, NT_Y),
+    ALONG("operator_force_x", operator_force, NT_X), ALONG("operator_force_y", operator_force, NT_Y),
+    ALONG("motor_force_x", motor_force, NT_X),       ALONG("motor_force_y", motor_force, NT_Y),
+    ALONG("tip_force_x", tip_force, NT_X),           ALONG("tip_force_y", tip_force, NT_Y),
+};
+
+using Records = std::vector<nt_record>;
+
+static py::array_t<double> column_of(const Records &records, long count, const Column &column)
+{
+    py::array_t<double> values(count);
+    double *out = values.mutable_data();
+    for (long i = 0; i < count; ++i)
+        std::memcpy(&out[i], reinterpret_cast<const char *>(&records[static_cast<size_t>(i)]) + column.offset,
+                    sizeof(double));
+    return values;
+}
+
+template <class T> static py::array_t<T> bits_of(const Records &records, long count, uint32_t nt_record::*member)
+{
+    py::array_t<T> values(count);
+    for (long i = 0; i < count; ++i)
+        values.mutable_data()[i] = static_cast<T>(records[static_cast<size_t>(i)].*member);
+    return values;
+}
+
+static py::dict read_records(Session &self, long count)
+{
+    Records records(static_cast<size_t>(count));
+    const long got = alone(self, [&](nt_session *handle) { return nt_session_read(handle, records.data(), count); });
+    py::dict out;
+    for (const Column &column : columns)
+        out[column.name] = column_of(records, got, column);
+    if (nt_session_touch(self.handle)->leads_sideways)
+        for (const Column &column : sideways)
+            out[column.name] = column_of(records, got, column);
+    out["state"] = bits_of<uint8_t>(records, got, &nt_record::state);
+    out["reasons"] = bits_of<uint32_t>(records, got, &nt_record::reasons);
+    out["flags"] = bits_of<uint32_t>(records, got, &nt_record::flags);
+    out["phase"] = bits_of<uint8_t>(records, got, &nt_record::phase);
+    return out;
+}
+
+static std::string field_of(const nt_event &event)
+{
+    int count = 0;
+    const nt_field *fields = event.kind == NT_EVENT_SCENE ? nt_scene_fields(&count) : nt_settings_fields(&count);
+    return event.field < static_cast<uint32_t>(count) ? fields[event.field].name : "";
+}
+
+// An event as a recording keeps it: [tick, name, numbers].
+static py::tuple tuple_of(const nt_event &event)
+{
+    const double *n = event.value;
+    const auto as = [&](const char *name, const py::list &numbers) {
+        return py::make_tuple(event.tick, name, numbers);
+    };
+    py::list numbers;
+    const auto take = [&](int count) {
+        for (int i = 0; i < count; ++i)
+            numbers.append(n[i]);
+        return numbers;
+    };
+    switch (static_cast<nt_event_kind>(event.kind)) {
+    case NT_EVENT_AIM:
+        return as("aim", take(3));
+    case NT_EVENT_RESCALE:
+        return as("rescale", take(2));
+    case NT_EVENT_MODE:
+        numbers.append(mode_name(static_cast<nt_mode>(n[0])));
+        return as("mode", numbers);
+    case NT_EVENT_ARM:
+    case NT_EVENT_CLUTCH:
+    case NT_EVENT_STOP:
+        numbers.append(n[0] != 0.0);
+        return as(event.kind == NT_EVENT_ARM ? "arm" : event.kind == NT_EVENT_CLUTCH ? "clutch" : "stop", numbers);
+    case NT_EVENT_SETTING:
+    case NT_EVENT_SCENE:
+        numbers.append(field_of(event));
+        numbers.append(n[0]);
+        return as(event.kind == NT_EVENT_SCENE ? "scene" : "setting", numbers);
+    case NT_EVENT_REWIND:
+        return as("rewind", take(1));
+    case NT_EVENT_KINDS:
+        break;
+    }
+    return as("unknown", numbers);
+}
+
+static py::list read_events(Session &self)
+{
+    py::list out;
+    nt_event event;
+    const auto next = [&] { return alone(self, [&](nt_session *h) { return nt_session_read_events(h, &event, 1); }); };
+    while (next() == 1)
+        out.append(tuple_of(event));
+    return out;
+}
+
+static void advance_session(Session &self, long ticks)
+{
+    const nt_status status = alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); });
+    self.law.rethrow();
+    raise_on(status, "advance");
+}
+
+// Short: the GIL stays, and so does the caller.
+static nt_frame step_session(Session &self, const nt_input *input)
+{
+    nt_frame frame;
+    const std::lock_guard<std::mutex> lock(self.one_at_a_time);
+    const nt_status status = nt_session_step(self.handle, input, &frame);
+    self.law.rethrow();
+    raise_on(status, "step");
+    return frame;
+}
+
+static void start(Session &self, int pace, uint64_t ticks)
+{
+    const nt_status status =
+        alone(self, [=](nt_session *handle) { return nt_session_start(handle, static_cast<nt_pace>(pace), ticks); });
+    raise_on(status, "start");
+}
+
+static void halt(Session &self)
+{
+    const nt_status status = alone(self, [](nt_session *handle) { return nt_session_halt(handle); });
+    self.law.rethrow();
+    raise_on(status, "halt");
+}
+
+static py::dict progress_of(const Session &self)
+{
+    const nt_progress found = nt_session_progress(self.handle);
+    py::dict out;
+    out["ticks"] = found.ticks;
+    out["dropped"] = found.dropped;
+    out["slowdown"] = found.slowdown;
+    out["worst_delay"] = found.worst_delay;
+    out["runs"] = found.runs != 0;
+    out["paused"] = found.paused != 0;
+    out["status"] = nt_status_message(found.status);
+    return out;
+}
+
+// A snapshot keeps its session alive.
+struct Snapshot {
+    nt_snapshot *handle = nullptr;
+    ~Snapshot()
+    {
+        nt_snapshot_close(handle);
+    }
+};
+
+static std::unique_ptr<Snapshot> snapshot(Session &self)
+{
+    auto made = std::make_unique<Snapshot>();
+    raise_on(alone(self, [&](nt_session *handle) { return nt_session_snapshot(handle, &made->handle); }), "snapshot");
+    return made;
+}
+
+static py::tuple vector(const double (&values)[3])
+{
+    return py::make_tuple(values[0], values[1], values[2]);
+}
+
+static void bind_frame(py::module_ &module)
+{
+    py::class_<nt_frame>(module, "Frame")
+        .def_readonly("sequence", &nt_frame::sequence)
+        .def_readonly("time", &nt_frame::time)
+        .def_property_readonly("tip_position", [](const nt_frame &self) { return vector(self.tip_position); })
+        .def_property_readonly("tip_force", [](const nt_frame &self) { return vector(self.tip_force); })
+        .def_property_readonly("master_position", [](const nt_frame &self) { return vector(self.master_position); })
+        .def_property_readonly("motor_force", [](const nt_frame &self) { return vector(self.motor_force); })
+        .def_readonly("base_height", &nt_frame::base_height)
+        .def_readonly("deflection", &nt_frame::deflection)
+        .def_readonly("gap", &nt_frame::gap)
+        .def_readonly("contact_radius", &nt_frame::contact_radius)
+        .def_readonly("state", &nt_frame::state)
+        .def_readonly("reasons", &nt_frame::reasons)
+        .def_readonly("phase", &nt_frame::phase)
+        .def_readonly("changes", &nt_frame::changes);
+}
+
+static void bind_thread(py::class_<Session> &type)
+{
+    type.def("start", &start, py::arg("pace"), py::arg("ticks"))
+        .def("halt", &halt)
+        .def("pause", [](Session &self, bool paused) { raise_on(nt_session_pause(self.handle, paused), "pause"); })
+        .def("step_on", [](Session &self, long ticks) { raise_on(nt_session_step_on(self.handle, ticks), "step"); })
+        .def("set_speed",
+             [](Session &self, double speed) {
+                 nt_problem problem{};
+                 raise_on(nt_session_set_speed(self.handle, speed, &problem), problem, "speed");
+             })
+        .def_property_readonly("progress", &progress_of);
+}
+
+void bind_session_run(py::module_ &module, py::class_<Session> &type)
+{
+    bind_frame(module);
+    py::class_<Snapshot>(module, "Snapshot");
+    bind_thread(type);
+    type.def("advance", &advance_session)
+        .def("step", &step_session, py::arg("input").none(true))
+        .def("read", &read_records)
+        .def("read_events", &read_events)
+        .def("publish",
+             [](Session &self, const std::string &name) {
+                 const char *given = name.empty() ? nullptr : name.c_str();
+                 raise_on(alone(self, [=](nt_session *h) { return nt_session_publish(h, given); }), "publish");
+             })
+        .def("describe",
+             [](Session &self, const std::string &text) {
+                 nt_frames *frames = nt_session_frames(self.handle);
+                 if (frames)
+                     raise_on(nt_frames_describe(frames, text.c_str()), "description");
+             })
+        .def("snapshot", &snapshot, py::keep_alive<0, 1>())
+        .def("rewind",
+             [](Session &self, double duration) {
+                 nt_problem problem{};
+                 const nt_status status =
+                     alone(self, [&](nt_session *h) { return nt_session_rewind(h, duration, &problem); });
+                 raise_on(status, problem, "rewind");
+             })
+        .def_property_readonly(
+            "state",
+            [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->supervisor.state); })
+        .def("restore",
+             [](Session &self, const Snapshot &kept) {
+                 raise_on(alone(self, [&](nt_session *h) { return nt_session_restore(h, kept.handle); }), "restore");
+             })
+        .def_property_readonly("ticks", [](const Session &self) { return nt_session_progress(self.handle).ticks; })
+        .def_property_readonly(
+            "phase", [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->phase); });
+}

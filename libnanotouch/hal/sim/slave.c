@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The simulated slave: stage, probe, surface and their sensors. The stage is exact under the held command, from the
+ * moment within the period at which it begins to act; what the sensors read is from the moment that their converters'
+ * latency says. */
+#include <math.h>
+#include <stddef.h>
+
+#include "parts.h"
+
+#define SUBSTEP 0.25 /* of the dynamic cantilever [rad] */
+
+/* The coarser of a sensor's own step and that of its converter, over +- range. */
+static void init_sensors(nt_sim_slave *slave)
+{
+    const nt_rig real = nt_rig_with_steps(&slave->link.rig);
+    const nt_probe *probe = &real.probe;
+    const double metres_per_volt = probe->sensitivity;
+    slave->deflection_sensor = (nt_sensor){metres_per_volt * probe->noise / 6.0, metres_per_volt * probe->resolution,
+                                           nt_probe_deflection_range(probe)};
+    slave->stage_sensor = (nt_sensor){real.stage.noise, real.stage.resolution, 0.5 * real.stage.travel};
+    slave->command_step = real.stage.command_resolution;
+}
+
+static nt_status init_models(nt_sim_slave *slave)
+{
+    const nt_sim_link *link = &slave->link;
+    const double lengths[] = {link->fraction * link->period, (1.0 - link->fraction) * link->period};
+    nt_status status = NT_OK;
+    for (int i = 0; i < 2 && status == NT_OK; i++)
+        if (lengths[i] > 0.0)
+            status = nt_stage_model_init(&slave->models[i], &link->rig.stage, lengths[i]);
+    return status;
+}
+
+static void moment_now(const nt_sim_slave *slave, double moment[2])
+{
+    moment[0] = slave->stage.position;
+    moment[1] = slave->cantilever.deflection;
+}
+
+static int is_dynamic(const nt_sim_slave *slave, nt_probe_model model)
+{
+    return model == NT_PROBE_DYNAMIC ||
+           (model == NT_PROBE_AUTO && nt_sim_needs_dynamics(slave->plan, &slave->link.rig, slave->link.period));
+}
+
+static nt_status begin(nt_sim_slave *slave, const nt_sim_setup *setup)
+{
+    init_sensors(slave);
+    slave->start_height = nt_sim_surface_height(slave) + setup->clearance;
+    slave->cantilever = nt_cantilever_at(setup->clearance);
+    slave->truth.gap = NAN;                      /* nothing is known yet */
+    nt_status status = nt_sim_move_probe(slave); /* at rest, whatever the model */
+    slave->dynamic = is_dynamic(slave, setup->probe_model);
+    if (status == NT_OK && slave->dynamic)
+        status = nt_cantilever_model_init(&slave->cantilever_model, &slave->link.rig.probe, slave->link.period,
+                                          setup->substep > 0.0 ? setup->substep : SUBSTEP);
+    double now[2];
+    moment_now(slave, now);
+    for (int i = 0; i < NT_SIM_SLOTS; ++i) {
+        slave->pending[i][NT_X] = setup->x;
+        slave->pending[i][NT_Y] = setup->y;
+        slave->moments[i][0] = now[0];
+        slave->moments[i][1] = now[1];
+    }
+    return status;
+}
+
+nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup)
+{
+    nt_status status = nt_sim_check_setup(setup);
+    if (status != NT_OK)
+        return status;
+    nt_sim_slave made = {.plan = setup->plan, .x = setup->x, .y = setup->y};
+    status = nt_sim_link_init(&made.link, setup, 0.0);
+    if (status == NT_OK)
+        status = init_models(&made);
+    if (status == NT_OK)
+        status = begin(&made, setup);
+    if (status == NT_OK)
+        *slave = made;
+    return status;
+}
+
+static double convert(nt_sim_slave *slave, const nt_sensor *sensor, nt_channel channel, double value)
+{
+    return nt_sensor_read(sensor, value, nt_sim_noise_now(&slave->link, (int)channel));
+}
+
+nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
+{
+    nt_sim_link *link = &slave->link;
+    moment_now(slave, slave->moments[link->tick % NT_SIM_SLOTS]);
+    nt_reading *converted = &slave->converted;
+    if (nt_sim_is_converted(link)) {
+        double seen[2];
+        nt_sim_moment_before(link, slave->moments, seen);
+        converted->position[NT_Z] = convert(slave, &slave->stage_sensor, NT_CHANNEL_STAGE_POSITION, seen[0]);
+        converted->felt[NT_Z] = convert(slave, &slave->deflection_sensor, NT_CHANNEL_DEFLECTION, seen[1]);
+        link->converted = link->tick;
+    }
+    const double age = link->rig.converters.adc_latency + (double)(link->tick - link->converted) * link->period;
+    *reading = *converted;
+    reading->position[NT_X] = slave->x;
+    reading->position[NT_Y] = slave->y;
+    nt_sim_spoil(link, &(nt_sim_sensors){NT_HALF_SLAVE, &slave->stage_sensor, &slave->deflection_sensor}, reading, age);
+    return NT_OK;
+}
+
+static double limit(double value, double minimum, double maximum)
+{
+    return fmin(fmax(value, minimum), maximum);
+}
+
+/* What the stage's driver makes of a command: travel, slew, steps. */
+static double drive_stage(nt_sim_slave *slave, double command, double time)
+{
+    const nt_stage *stage = &slave->link.rig.stage;
+    const double slew = stage->max_speed * time, half = 0.5 * stage->travel;
+    const double reached = limit(command, slave->stage_drive - slew, slave->stage_drive + slew);
+    slave->stage_drive = limit(reached, -half, half);
+    return nt_sim_in_steps(slave->stage_drive, slave->command_step);
+}
+
+/* How the tip force grows as the stage goes on [N/m]; where it pulls the more, it is the probe that jumps. */
+static double tip_stiffness(const nt_sim_slave *slave)
+{
+    const double k = slave->law.k, spring = slave->link.rig.probe.spring_constant;
+    return k > 0.0 ? spring / (1.0 + spring / k) : 0.0;
+}
+
+static void move_stage(nt_sim_slave *slave, nt_stage_model *model, const double *command)
+{
+    const double hysteresis = nt_sim_stage_hysteresis(&slave->link);
+    if (model->stage.hysteresis == 0.0 && hysteresis > 0.0)
+        nt_stage_set_plays(&slave->stage, slave->stage_drive); /* begins without a jump */
+    model->stage.hysteresis = hysteresis;
+    const double drive = drive_stage(slave, command[NT_Z], model->period);
+    const nt_stage_load load = {slave->truth.tip_force[NT_Z], tip_stiffness(slave)};
+    nt_stage_step(model, &slave->stage, nt_sim_spoil_stage(slave, drive), &load);
+    slave->x = command[NT_X];
+    slave->y = command[NT_Y];
+}
+
+static nt_status pass_period(nt_sim_slave *slave, const double *target)
+{
+    nt_sim_link *link = &slave->link;
+    for (int i = 0; i < NT_AXES; i++)
+        slave->pending[link->tick % NT_SIM_SLOTS][i] = target[i];
+    for (int part = 0; part < 2; part++)
+        if (slave->models[part].period > 0.0)
+            move_stage(slave, &slave->models[part], nt_sim_acting(link, slave->pending, part));
+    ++link->tick;
+    return nt_sim_move_probe(slave);
+}
+
+nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action)
+{
+    if (!nt_sim_is_finite(action))
+        return NT_E_NOT_FINITE;
+    nt_sim_link *link = &slave->link;
+    const int lost = nt_sim_lost_periods(link);
+    link->lateness = lost * link->period;
+    nt_status status = NT_OK;
+    for (int i = 0; i < lost && status == NT_OK; i++) {
+        double before[NT_AXES];
+        for (int axis = 0; axis < NT_AXES; axis++)
+            before[axis] = slave->pending[(link->tick + NT_SIM_SLOTS - 1u) % NT_SIM_SLOTS][axis];
+        status = pass_period(slave, before);
+        moment_now(slave, slave->moments[link->tick % NT_SIM_SLOTS]);
+    }
+    return status == NT_OK ? pass_period(slave, action->target) : status;
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Requests are prepared outside the loop: checked against range and margin, and for a change everything that follows
+ * from it is composed anew. */
+#include <math.h>
+#include <string.h>
+
+#include "core/problem.h"
+#include "session/state.h"
+
+/* Would the loop be armed in this mode, with these scales? */
+static nt_status check_margin(const nt_session *session, nt_mode mode, const nt_scaling *scaling, nt_problem *problem)
+{
+    const nt_composition *now = session->now;
+    nt_settings settings = now->setup.settings;
+    settings.gains.alpha_p = scaling->alpha_p;
+    settings.gains.alpha_f = scaling->alpha_f;
+    nt_margins margins;
+    const nt_verdict verdict = nt_composition_judge(now, &settings, mode, &margins);
+    if (nt_composition_allows(now, verdict.margin))
+        return NT_OK;
+    (void)nt_problem_set(problem, verdict.field, "", verdict.margin, now->setup.minimum_margin, INFINITY);
+    return NT_E_RANGE;
+}
+
+static nt_status check_mode(const nt_session *session, double mode, nt_problem *problem)
+{
+    if (!(mode >= 0.0 && mode <= NT_MODE_CURVE && mode == floor(mode))) {
+        (void)nt_problem_set(problem, "mode", "touch|topography|approach|curve", mode, 0.0, NT_MODE_CURVE);
+        return NT_E_ARGUMENT;
+    }
+    return check_margin(session, (nt_mode)mode, &session->asked_scaling, problem);
+}
+
+static nt_status check_scaling(const nt_session *session, const nt_scaling *scaling, nt_problem *problem)
+{
+    if (!(scaling->alpha_p > 0.0 && isfinite(scaling->alpha_p)))
+        return nt_problem_set(problem, "alpha_p", "m/m", scaling->alpha_p, 0.0, INFINITY);
+    if (!(scaling->alpha_f > 0.0 && isfinite(scaling->alpha_f)))
+        return nt_problem_set(problem, "alpha_f", "N/N", scaling->alpha_f, 0.0, INFINITY);
+    return check_margin(session, session->asked_mode, scaling, problem);
+}
+
+/* What cannot change while a session is open: the clock, the delay that the rig was built with, scales (rescale), and
+ * the tip that a surface was dilated with. */
+static int is_fixed(const nt_session *session, const char *field)
+{
+    static const char *const fixed[] = {"gains.rate", "gains.delay", "gains.alpha_p", "gains.alpha_f"};
+    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; ++i)
+        if (strcmp(field, fixed[i]) == 0)
+            return 1;
+    return nt_terrain_surface(session->now->terrain) && strncmp(field, "tip.", 4) == 0;
+}
+
+static const nt_field *fields_of(uint32_t kind, int *count)
+{
+    return kind == NT_EVENT_SETTING ? nt_settings_fields(count) : nt_scene_fields(count);
+}
+
+/* The setup with one field changed, in the mode and at the scales that were asked for last, composed anew. */
+static nt_status compose_change(const nt_session *session, nt_call *call, nt_problem *problem)
+{
+    int count;
+    const nt_field *fields = fields_of(call->event.kind, &count);
+    if (call->event.field >= (uint32_t)count || is_fixed(session, fields[call->event.field].name))
+        return NT_E_ARGUMENT;
+    nt_session_setup setup = session->now->setup;
+    setup.mode = session->asked_mode;
+    setup.settings.gains.alpha_p = session->asked_scaling.alpha_p;
+    setup.settings.gains.alpha_f = session->asked_scaling.alpha_f;
+    const int is_setting = call->event.kind == NT_EVENT_SETTING;
+    void *object = is_setting ? (void *)&setup.settings : (void *)&setup.scene;
+    nt_field_set(&fields[call->event.field], object, call->event.value[0]);
+    const nt_status status =
+        is_setting ? nt_settings_check(&setup.settings, problem) : nt_scene_check(&setup.scene, problem);
+    return status == NT_OK ? nt_compose(&call->next, &setup, session->now, problem) : status;
+}
+
+nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_problem *problem)
+{
+    const double *value = call->event.value;
+    const nt_scaling scaling = {value[0], value[1]};
+    switch ((nt_event_kind)call->event.kind) {
+    case NT_EVENT_STOP:
+    case NT_EVENT_ARM:
+    case NT_EVENT_CLUTCH:
+        return NT_OK;
+    case NT_EVENT_AIM:
+        return nt_session_check_place(session, value[0], value[1], value[2], problem);
+    case NT_EVENT_MODE:
+        return check_mode(session, value[0], problem);
+    case NT_EVENT_RESCALE:
+        return check_scaling(session, &scaling, problem);
+    case NT_EVENT_SETTING:
+    case NT_EVENT_SCENE:
+        return compose_change(session, call, problem);
+    case NT_EVENT_REWIND:
+        return session->history && value[0] >= 0.0 ? NT_OK : NT_E_UNSUPPORTED;
+    case NT_EVENT_KINDS:
+        break;
+    }
+    return NT_E_ARGUMENT;
+}
+
+static nt_status request(nt_session *session, const nt_event *event, nt_problem *problem)
+{
+    nt_call call = {.event = *event};
+    nt_session_lock(session);
+    nt_status status = nt_session_prepare(session, &call, problem);
+    if (status == NT_OK)
+        status = nt_session_ask(session, &call);
+    nt_session_unlock(session);
+    return status;
+}
+
+nt_status nt_session_arm(nt_session *session, int confirmed)
+{
+    return request(session, &(nt_event){.kind = NT_EVENT_ARM, .value = {confirmed != 0}}, NULL);
+}
+
+void nt_session_clutch(nt_session *session, int open)
+{
+    (void)request(session, &(nt_event){.kind = NT_EVENT_CLUTCH, .value = {open != 0}}, NULL);
+}
+
+nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *problem)
+{
+    return request(session, &(nt_event){.kind = NT_EVENT_MODE, .value = {(double)mode}}, problem);
+}
+
+nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling, nt_problem *problem)
+{
+    const nt_event event = {.kind = NT_EVENT_RESCALE, .value = {scaling->alpha_p, scaling->alpha_f}};
+    return request(session, &event, problem);
+}
+
+nt_status nt_session_change(nt_session *session, nt_event_kind kind, const char *field, double value,
+                            nt_problem *problem)
+{
+    nt_event event = {.kind = (uint32_t)kind, .value = {value}};
+    if (kind != NT_EVENT_SETTING && kind != NT_EVENT_SCENE)
+        return NT_E_ARGUMENT;
+    int count;
+    const nt_field *fields = fields_of(event.kind, &count);
+    while (event.field < (uint32_t)count && strcmp(fields[event.field].name, field) != 0)
+        ++event.field;
+    return request(session, &event, problem);
+}
+
+nt_status nt_session_rewind(nt_session *session, double duration, nt_problem *problem)
+{
+    if (!(duration >= 0.0 && isfinite(duration)))
+        return nt_problem_set(problem, "rewind", "s", duration, 0.0, INFINITY);
+    return request(session, &(nt_event){.kind = NT_EVENT_REWIND, .value = {duration}}, problem);
+}
+
+nt_status nt_session_inject(nt_session *session, const nt_fault *fault)
+{
+    nt_fault shifted = *fault;
+    if (fault->start < 0.0)
+        return NT_E_RANGE;
+    shifted.start += (double)session->flights * session->now->touch.period;
+    nt_status status = NT_E_UNSUPPORTED;
+    if (session->simulates[NT_HALF_MASTER])
+        status = nt_faults_add(&session->sim.master.link.faults, &shifted);
+    if (session->simulates[NT_HALF_SLAVE] && status != NT_E_ARGUMENT)
+        status = nt_faults_add(&session->sim.slave.link.faults, &shifted);
+    return status;
+}

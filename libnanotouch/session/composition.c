@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a session is made of: terrain and plan, touch step, how far it is from its stability limit and what it promises.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/problem.h"
+#include "session/state.h"
+
+#define DEEPEST 10e-6 /* an indentation that nobody reaches [m] */
+
+/* A law of one's own is not tried where the margin is overridden: it may have a memory. */
+nt_verdict nt_composition_judge(const nt_composition *composition, const nt_settings *settings, nt_mode mode,
+                                nt_margins *margins)
+{
+    nt_settings judged = *settings;
+    if (!(composition->setup.minimum_margin > 0.0) && judged.control.choice == NT_CONTROL_OWN)
+        judged.control.law = NULL;
+    const double stiffness = nt_terrain_plan(composition->terrain)->maximum_stiffness;
+    return nt_margins_judge(&composition->touch.rig, &judged, stiffness, mode, margins);
+}
+
+int nt_composition_allows(const nt_composition *composition, double margin)
+{
+    const double minimum = composition->setup.minimum_margin;
+    return minimum <= 0.0 || margin >= minimum;
+}
+
+/* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be
+ * off by all of it [m]. */
+static double unseen_indentation(const nt_plan *plan, double free_force)
+{
+    const nt_interaction_state attached = {.attached = 1};
+    double shallow = 0.0, deep = DEEPEST;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (shallow + deep);
+        const double force = nt_interaction_eval_gap(plan, &attached, NULL, -middle).F;
+        if (force > 2.0 * free_force)
+            deep = middle;
+        else
+            shallow = middle;
+    }
+    return deep;
+}
+
+static nt_status promise(nt_composition *made, nt_problem *problem)
+{
+    const nt_session_setup *setup = &made->setup;
+    const nt_verdict verdict = nt_composition_judge(made, &setup->settings, setup->mode, &made->margins);
+    if (!nt_composition_allows(made, verdict.margin))
+        return nt_problem_set(problem, verdict.field, "", verdict.margin, setup->minimum_margin, INFINITY);
+    const nt_plan *plan = nt_terrain_plan(made->terrain);
+    const nt_hazard hazard = {.slope = made->reach.slope,
+                              .snap_in_force = plan->largest_pull_off_force,
+                              .stiffness = plan->maximum_stiffness,
+                              .unseen = unseen_indentation(plan, made->touch.supervisor.free_force)};
+    made->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
+    return NT_OK;
+}
+
+/* What plan and bank depend on. The map was dilated when the first one was made: its surface serves from then on. */
+static nt_status make_terrain(nt_composition *made, const nt_composition *before, nt_problem *problem)
+{
+    nt_session_setup *setup = &made->setup;
+    nt_terrain_setup wanted = nt_terrain_defaults();
+    wanted.scene = setup->scene;
+    wanted.scene.range.maximum_load = setup->settings.limits.force;
+    wanted.demand = setup->demand;
+    wanted.probe = &setup->rig.probe;
+    wanted.map = setup->map;
+    wanted.dilated = setup->dilated;
+    wanted.surface = setup->surface;
+    wanted.radii = setup->radii;
+    if (before) {
+        wanted.map = (nt_height_map){0};
+        wanted.surface = nt_terrain_surface(before->terrain);
+        wanted.radii = nt_terrain_radii(before->terrain);
+    }
+    return nt_terrain_make(&made->terrain, &wanted, problem);
+}
+
+static nt_status find_reach(nt_composition *made, nt_problem *problem)
+{
+    const nt_session_setup *setup = &made->setup;
+    if (setup->path)
+        return nt_terrain_reach_path(made->terrain, setup->path, setup->path_count, &made->reach, problem);
+    const nt_area area = nt_terrain_whole(made->terrain, setup->x, setup->y);
+    return nt_terrain_reach_area(made->terrain, &area, &made->reach, problem);
+}
+
+static void set_borders(nt_composition *made)
+{
+    const nt_surface *surface = nt_terrain_surface(made->terrain);
+    if (!surface)
+        return;
+    const double ends[] = {(double)(surface->nx - 1) * surface->dx, (double)(surface->ny - 1) * surface->dy};
+    for (int i = NT_X; i < NT_Z; ++i) {
+        made->touch.borders[i][0] = 0.0;
+        made->touch.borders[i][1] = ends[i];
+    }
+}
+
+static int is_same(const nt_field *fields, int count, const void *a, const void *b)
+{
+    for (int i = 0; i < count; ++i)
+        if (nt_field_get(&fields[i], a) != nt_field_get(&fields[i], b))
+            return 0;
+    return 1;
+}
+
+static int has_same_scene(const nt_session_setup *a, const nt_session_setup *b)
+{
+    int count;
+    const nt_field *fields = nt_scene_fields(&count);
+    return is_same(fields, count, &a->scene, &b->scene);
+}
+
+int nt_composition_is_same(const nt_session_setup *a, const nt_session_setup *b)
+{
+    int count;
+    const nt_field *fields = nt_settings_fields(&count);
+    if (!is_same(fields, count, &a->settings, &b->settings) || a->settings.control.choice != b->settings.control.choice)
+        return 0;
+    fields = nt_rig_fields(&count);
+    return has_same_scene(a, b) && is_same(fields, count, &a->rig, &b->rig) && a->surface == b->surface &&
+           a->map.heights == b->map.heights;
+}
+
+static int keeps_terrain(const nt_session_setup *setup, const nt_composition *before)
+{
+    return before && setup->settings.limits.force == before->setup.settings.limits.force &&
+           has_same_scene(setup, &before->setup);
+}
+
+nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const nt_composition *before,
+                     nt_problem *problem)
+{
+    nt_composition *next = calloc(1, sizeof *next);
+    if (!next)
+        return NT_E_NO_MEMORY;
+    next->setup = *setup;
+    nt_status status = nt_touch_make(&next->touch, &setup->rig, &setup->settings, setup->mode, problem);
+    if (status == NT_OK && keeps_terrain(setup, before))
+        next->terrain = before->terrain;
+    else if (status == NT_OK)
+        status = make_terrain(next, before, problem);
+    next->ground = before ? before->ground : next->terrain;
+    if (status == NT_OK)
+        set_borders(next);
+    if (before)
+        next->reach = before->reach;
+    else if (status == NT_OK)
+        status = find_reach(next, problem);
+    if (status == NT_OK)
+        status = promise(next, problem);
+    if (status == NT_OK)
+        *made = next;
+    else
+        nt_composition_close(next, before);
+    return status;
+}
+
+void nt_composition_close(nt_composition *composition, const nt_composition *other)
+{
+    if (!composition)
+        return;
+    nt_terrain *terrain = composition->terrain, *ground = composition->ground;
+    if (!other || (other->terrain != terrain && other->ground != terrain))
+        nt_terrain_close(terrain);
+    if (ground != terrain && (!other || other->ground != ground))
+        nt_terrain_close(ground);
+    free(composition);
+}

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The two halves of a session's rig: those that the setup names, or simulated ones. */
+#include <math.h>
+#include <stddef.h>
+
+#include "core/problem.h"
+#include "session/state.h"
+
+static int64_t session_now(const nt_host *host)
+{
+    return ((const nt_session *)host->context)->time;
+}
+
+static void say_nothing(const nt_host *host, const char *text)
+{
+    (void)host, (void)text;
+}
+
+/* Room to press, and room to draw back: a margin, and what the surface rises above the clearance. */
+static double master_start(const nt_composition *composition)
+{
+    const nt_session_setup *setup = &composition->setup;
+    const double rise = isnan(setup->rise) ? composition->reach.rise : setup->rise;
+    const double climb = fmax(0.0, rise - setup->clearance) / setup->settings.gains.alpha_p;
+    return -0.4 * setup->rig.master.travel + climb;
+}
+
+static nt_sim_setup sim_setup_of(const nt_session *session)
+{
+    const nt_session_setup *setup = &session->now->setup;
+    return (nt_sim_setup){.plan = nt_terrain_plan(session->now->terrain),
+                          .rig = &setup->rig,
+                          .period = session->now->touch.period,
+                          .x = setup->x,
+                          .y = setup->y,
+                          .clearance = setup->clearance,
+                          .master_position = master_start(session->now),
+                          .seed = setup->seed,
+                          .delay = setup->settings.gains.delay,
+                          .probe_model = setup->probe_model,
+                          .substep = setup->substep,
+                          .faults = setup->faults};
+}
+
+static nt_status open_master(nt_session *session, nt_problem *problem)
+{
+    const nt_sim_setup sim = sim_setup_of(session);
+    nt_hal_choice choice = session->now->setup.master;
+    nt_status status = NT_OK;
+    session->simulates[NT_HALF_MASTER] = choice.backend == NULL;
+    if (!choice.backend) {
+        status = nt_sim_master_init(&session->sim.master, &sim);
+        choice = (nt_hal_choice){nt_sim_master_backend(), &session->sim.master};
+    }
+    return status == NT_OK ? nt_hal_open(&session->master, NT_HALF_MASTER, &choice, &session->host, problem) : status;
+}
+
+static nt_status open_slave(nt_session *session, nt_problem *problem)
+{
+    const nt_sim_setup sim = sim_setup_of(session);
+    nt_hal_choice choice = session->now->setup.slave;
+    nt_status status = NT_OK;
+    session->simulates[NT_HALF_SLAVE] = choice.backend == NULL;
+    if (!choice.backend) {
+        status = nt_sim_slave_init(&session->sim.slave, &sim);
+        choice = (nt_hal_choice){nt_sim_slave_backend(), &session->sim.slave};
+    }
+    return status == NT_OK ? nt_hal_open(&session->slave, NT_HALF_SLAVE, &choice, &session->host, problem) : status;
+}
+
+/* What the halves say of themselves against what the rig says of them: margins and stale limits count with the rig. */
+static nt_status check_halves(const nt_session *session, nt_problem *problem)
+{
+    const nt_master *described = &session->now->setup.rig.master;
+    const nt_capabilities *master = &session->master.capabilities, *slave = &session->slave.capabilities;
+    const double period = session->now->touch.period, declared = described->rate > 0.0 ? 1.0 / described->rate : 0.0;
+    if (master->can & slave->can & NT_LEADS_CLOCK)
+        return nt_problem_set(problem, "halves that lead the clock", "", 2.0, 0.0, 1.0);
+    if (master->period > 1.001 * fmax(declared, period))
+        return nt_problem_set(problem, "master.rate", "Hz", described->rate, 0.0, 1.0 / master->period);
+    if (slave->period > 1.001 * period)
+        return nt_problem_set(problem, "gains.rate", "Hz", 1.0 / period, 0.0, 1.0 / slave->period);
+    if (!(slave->can & NT_CAN_FEEL))
+        return nt_problem_set(problem, "slave that measures its deflection", "no|yes", 0.0, 1.0, 1.0);
+    if (described->gauge != 0.0 && !(master->can & NT_CAN_FEEL))
+        return nt_problem_set(problem, "master.gauge", "no|yes", described->gauge, 0.0, 0.0);
+    if (described->motor != 0.0 && !(master->can & NT_CAN_PUSH))
+        return nt_problem_set(problem, "master.motor", "no|yes", described->motor, 0.0, 0.0);
+    if (described->axes > master->axes)
+        return nt_problem_set(problem, "master.axes", "", described->axes, 1.0, master->axes);
+    return NT_OK;
+}
+
+static const char *option_of(const char *option)
+{
+    return option ? option : "";
+}
+
+static nt_status configure(nt_session *session, nt_problem *problem)
+{
+    const nt_session_setup *setup = &session->now->setup;
+    nt_configuration configuration = {.size = sizeof configuration,
+                                      .period = session->now->touch.period,
+                                      .lift = setup->settings.limits.retract_distance,
+                                      .option = option_of(setup->master_option)};
+    nt_status status = nt_hal_configure(&session->master, &configuration, problem);
+    configuration.option = option_of(setup->slave_option);
+    if (status == NT_OK)
+        status = nt_hal_configure(&session->slave, &configuration, problem);
+    if (status == NT_OK)
+        status = nt_hal_arm(&session->slave);
+    return status == NT_OK ? nt_hal_arm(&session->master) : status;
+}
+
+/* A real master is where it is; the stage follows from there. */
+static nt_status find_master(nt_session *session)
+{
+    nt_sample sample;
+    const nt_status status = nt_session_sample(session, 0, &sample);
+    if (status != NT_OK)
+        return status;
+    session->master_start = sample.master_position[NT_Z];
+    return isfinite(session->master_start) ? NT_OK : NT_E_DEVICE;
+}
+
+nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
+{
+    session->host = (nt_host){sizeof session->host, NT_HAL_API_VERSION, session_now, say_nothing, session};
+    nt_status status = open_master(session, problem);
+    if (status == NT_OK)
+        status = open_slave(session, problem);
+    if (status == NT_OK)
+        status = check_halves(session, problem);
+    if (status == NT_OK && (session->master.capabilities.can | session->slave.capabilities.can) & NT_IS_REAL)
+        session->clock = nt_session_machine_time;
+    if (status == NT_OK)
+        status = configure(session, problem);
+    session->master_start = session->sim.master.arm[NT_Z].position;
+    if (status == NT_OK && !session->simulates[NT_HALF_MASTER])
+        status = find_master(session);
+    return status;
+}
+
+nt_status nt_session_check_pace(const nt_session *session, nt_pace pace)
+{
+    const uint32_t can = session->master.capabilities.can | session->slave.capabilities.can;
+    if (pace != NT_PACE_HARD && can & NT_IS_REAL)
+        return NT_E_UNSUPPORTED;
+    return pace == NT_PACE_HARD && can & NT_IS_SLOW ? NT_E_UNSUPPORTED : NT_OK;
+}

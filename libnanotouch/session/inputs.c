@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the operator does next: checked here, taken by the loop from the mailbox. */
+#include <math.h>
+
+#include "core/problem.h"
+#include "session/state.h"
+
+nt_status nt_session_check_place(const nt_session *session, double x, double y, double duration, nt_problem *problem)
+{
+    const double (*borders)[2] = session->borders;
+    if (!(duration >= 0.0 && isfinite(duration)))
+        return nt_problem_set(problem, "input.duration", "s", duration, 0.0, INFINITY);
+    if (!isfinite(x) || x < borders[NT_X][0] || x > borders[NT_X][1])
+        return nt_problem_set(problem, "input.x", "m", x, borders[NT_X][0], borders[NT_X][1]);
+    if (!isfinite(y) || y < borders[NT_Y][0] || y > borders[NT_Y][1])
+        return nt_problem_set(problem, "input.y", "m", y, borders[NT_Y][0], borders[NT_Y][1]);
+    return NT_OK;
+}
+
+static nt_status check_hand(const nt_session *session, const nt_input *input, nt_problem *problem)
+{
+    const double travel = 0.5 * session->master_travel;
+    for (int i = 0; i < NT_AXES; ++i) {
+        if (!isfinite(input->operator_force[i]))
+            return nt_problem_set(problem, "input.operator_force", "N", input->operator_force[i], -INFINITY, INFINITY);
+        if (input->holds && !(fabs(input->master_position[i]) <= travel))
+            return nt_problem_set(problem, "input.master_position", "m", input->master_position[i], -travel, travel);
+        if (!session->simulates[NT_HALF_MASTER] && (input->holds || input->operator_force[i] != 0.0)) {
+            (void)nt_problem_set(problem, "input.operator_force", "N", input->operator_force[i], 0.0, 0.0);
+            return NT_E_UNSUPPORTED;
+        }
+    }
+    return NT_OK;
+}
+
+nt_status nt_session_check_input(const nt_session *session, const nt_input *input, nt_problem *problem)
+{
+    if (!(input->duration >= 0.0 && isfinite(input->duration)))
+        return nt_problem_set(problem, "input.duration", "s", input->duration, 0.0, INFINITY);
+    const nt_status status = check_hand(session, input, problem);
+    if (status != NT_OK || (isnan(input->x) && isnan(input->y)))
+        return status;
+    return nt_session_check_place(session, input->x, input->y, input->duration, problem);
+}
+
+nt_status nt_session_aim(nt_session *session, const nt_input *input, nt_problem *problem)
+{
+    const nt_status status = nt_session_check_input(session, input, problem);
+    if (status == NT_OK)
+        nt_mailbox_post(&session->mailbox, input);
+    return status;
+}
