@@ -22,7 +22,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/nanotouchConfig.cmake ${CMAKE_CURRENT_
 
 file(RELATIVE_PATH include_from_lib ${CMAKE_INSTALL_FULL_LIBDIR} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 if(CMAKE_SYSTEM_NAME STREQUAL Linux)
-  set(libraries_private -lrt)
+  set(libraries_private "-lrt -ldl")
 endif()
 configure_file(cmake/nanotouch.pc.in nanotouch.pc @ONLY)
 set(package_files ${CMAKE_CURRENT_BINARY_DIR}/nanotouch.pc)

@@ -95,7 +95,7 @@ set(nanotouch_sources_scene
     scene/yield_solve.c
     scene/yield_table.c
     scene/yielding.c)
-set(nanotouch_sources_hal hal/hal.c)
+set(nanotouch_sources_hal hal/hal.c hal/rehearsal.c)
 set(nanotouch_sources_dynamics
     dynamics/cantilever.c
     dynamics/cantilever_dynamic.c
@@ -129,7 +129,7 @@ set(nanotouch_sources_control
 set(nanotouch_sources_sim hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
-set(nanotouch_sources_hosted hal/loop.c)
+set(nanotouch_sources_hosted hal/load.c hal/loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
 set(nanotouch_sources_session
     session/arming.c

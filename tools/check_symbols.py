@@ -3,6 +3,7 @@
 
 check_symbols.py exported NM LIBRARY...   what shared libraries export begins with nt_
 check_symbols.py portable NM ARCHIVE      what the core calls is its own, libm's, <string.h>'s, or snprintf
+check_symbols.py backend NM OBJECT...     a backend as a shared object calls nothing of this library
 """
 
 import re
@@ -37,6 +38,10 @@ def main() -> int:
         if job == "exported":
             found = symbols(nm, "--dynamic", "--defined-only", file)
             wrong |= {name for name in found if not name.startswith("nt_")}
+        elif job == "backend":
+            found = symbols(nm, "--dynamic", file)
+            called = symbols(nm, "--dynamic", "--undefined-only", file)
+            wrong |= {name for name in called if name.startswith("nt_")} | ({"nanotouch_backend"} - (found - called))
         else:
             found = symbols(nm, "--undefined-only", file) - symbols(nm, "--defined-only", file)
             wrong |= {name for name in found if not PORTABLE.fullmatch(name)}

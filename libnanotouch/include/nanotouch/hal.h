@@ -49,6 +49,45 @@ NT_API NT_REALTIME nt_sample nt_hal_sample(const nt_hal *master, const nt_hal *s
 NT_API NT_REALTIME nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command,
                                             nt_action *action);
 
+/* --- a half in a shared object, by its path (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
+
+typedef struct nt_module {
+    void *handle;
+    const nt_backend *backend; /* for nt_hal_choice; NULL: nothing is loaded */
+    char text[1024];           /* what is wrong with it, in words; empty if nothing */
+} nt_module;
+
+/* Loads the object (a path, with a slash) and checks its table: size, version, half. *module is written unless the
+ * arguments are refused (NT_E_ARGUMENT); its text says what is wrong. NT_E_DEVICE if the file cannot be loaded,
+ * NT_E_ARGUMENT if it has no NT_BACKEND_ENTRY or no table, NT_E_UNSUPPORTED for another version or the other half. */
+NT_API nt_status nt_hal_load(nt_module *module, const char *path, nt_half half);
+/* Once the half is closed: its code goes. Accepts NULL and one that is not loaded. */
+NT_API void nt_hal_unload(nt_module *module);
+
+/* --- a rehearsal: does a backend keep the contract? --- */
+
+typedef struct nt_rehearsal {
+    nt_half half;
+    nt_hal_choice choice;
+    const nt_host *host;                     /* whose now counts for stamps and ages */
+    nt_configuration configuration;          /* what it is told; its period is that of the rehearsal */
+    long periods;                            /* to read and write, at least 1 */
+    void (*pass)(const nt_host *host, double period); /* lets a period pass on the host's clock */
+} nt_rehearsal;
+
+/* What has been seen. */
+typedef struct nt_rehearsed {
+    nt_capabilities capabilities; /* its channels belong to the backend: read them before it is unloaded */
+    uint64_t readings;            /* new ones */
+    double oldest;                /* largest age of a valid reading [s] */
+} nt_rehearsed;
+
+/* Opens and closes a half, then goes twice through its whole life: open, describe, configure, arm, some periods, disarm,
+ * close. A master's motor is told 0 N, a slave to stay where it reads. Not real-time safe. seen and problem may be NULL.
+ * NT_OK; what an operation returned, with its name as problem->field; or NT_E_RANGE with the broken rule (docs/hal.md
+ * lists them). */
+NT_API nt_status nt_hal_rehearse(const nt_rehearsal *rehearsal, nt_rehearsed *seen, nt_problem *problem);
+
 /* --- the loop: calls a step at a fixed rate on the monotonic clock (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
 
 typedef struct nt_loop_statistics {

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A half in a shared object (POSIX): loaded, asked for its table, and checked before anything else of it is called. */
+#if defined(__linux__)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include "nanotouch/hal.h"
+
+#include <stdio.h>
+
+static nt_status refuse(nt_module *module, nt_status status, const char *path, const char *why)
+{
+    nt_hal_unload(module);
+    (void)snprintf(module->text, sizeof module->text, "%.400s: %.400s", path, why);
+    return status;
+}
+
+#if defined(__linux__)
+
+#include <dlfcn.h>
+#include <string.h>
+
+typedef const nt_backend *(*entry_point)(void);
+
+/* Size and version come first in every version of the table; nothing behind them is looked at before they fit. */
+static nt_status check_table(nt_module *module, const char *path, nt_half half)
+{
+    static const char *const halves[] = {"master", "slave"};
+    const nt_backend *backend = module->backend;
+    char why[128];
+    if (!backend)
+        return refuse(module, NT_E_ARGUMENT, path, NT_BACKEND_ENTRY " returns no table");
+    if (backend->version != NT_HAL_API_VERSION || backend->size != sizeof *backend) {
+        (void)snprintf(why, sizeof why, "written for version %u of the contract (%u bytes), this is version %u (%u)",
+                       (unsigned)backend->version, (unsigned)backend->size, (unsigned)NT_HAL_API_VERSION,
+                       (unsigned)sizeof *backend);
+        return refuse(module, NT_E_UNSUPPORTED, path, why);
+    }
+    if (backend->half != half) {
+        const int is_known = (unsigned)backend->half <= NT_HALF_SLAVE;
+        (void)snprintf(why, sizeof why, "is a %s, a %s is wanted", is_known ? halves[backend->half] : "half unknown here",
+                       halves[half]);
+        return refuse(module, NT_E_UNSUPPORTED, path, why);
+    }
+    if (!backend->read || !backend->write)
+        return refuse(module, NT_E_ARGUMENT, path, "its table has no read or no write");
+    return NT_OK;
+}
+
+static const char *last_error(void)
+{
+    const char *text = dlerror();
+    return text ? text : "unknown error";
+}
+
+nt_status nt_hal_load(nt_module *module, const char *path, nt_half half)
+{
+    if (!module || !path || (unsigned)half > NT_HALF_SLAVE)
+        return NT_E_ARGUMENT;
+    *module = (nt_module){.handle = dlopen(path, RTLD_NOW | RTLD_LOCAL)};
+    if (!module->handle)
+        return refuse(module, NT_E_DEVICE, path, last_error());
+    void *symbol = dlsym(module->handle, NT_BACKEND_ENTRY);
+    if (!symbol)
+        return refuse(module, NT_E_ARGUMENT, path, "has no function " NT_BACKEND_ENTRY);
+    entry_point entry;
+    memcpy(&entry, &symbol, sizeof entry); /* what POSIX promises of dlsym, and C has no cast for */
+    module->backend = entry();
+    return check_table(module, path, half);
+}
+
+void nt_hal_unload(nt_module *module)
+{
+    if (!module || !module->handle)
+        return;
+    (void)dlclose(module->handle);
+    module->handle = NULL;
+    module->backend = NULL;
+}
+
+#else
+
+nt_status nt_hal_load(nt_module *module, const char *path, nt_half half)
+{
+    if (!module || !path || (unsigned)half > NT_HALF_SLAVE)
+        return NT_E_ARGUMENT;
+    *module = (nt_module){0};
+    return refuse(module, NT_E_UNSUPPORTED, path, "this system loads no shared objects here");
+}
+
+void nt_hal_unload(nt_module *module)
+{
+    (void)module;
+}
+
+#endif

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Does a backend keep the contract of hal_backend.h? Each rule is one line here and one in docs/hal.md. The backend is
+ * called as it is, without what hal.c makes good. */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "core/problem.h"
+#include "nanotouch/hal.h"
+
+#define STALE_PERIODS 2.0 /* of the slower of loop and half: older is stale (supervisor.c) */
+#define ALL_FLAGS (2u * NT_SAMPLE_DEVICE_LOST - 1u)
+
+typedef struct play {
+    const nt_rehearsal *asked;
+    nt_hal hal; /* opened by hal.c, which checks table and capabilities */
+    nt_reading last;
+    nt_rehearsed *seen;
+    nt_problem *problem;
+} play;
+
+static nt_status broken(play *p, const char *rule, double value, double minimum, double maximum)
+{
+    const nt_status status = nt_problem_set(p->problem, rule, "", value, minimum, maximum);
+    return status == NT_E_NOT_FINITE ? NT_E_RANGE : status;
+}
+
+/* An operation that fails says why, or at least which one it was. */
+static nt_status named(play *p, nt_status status, const char *operation)
+{
+    if (status != NT_OK && p->problem && !p->problem->field)
+        *p->problem = (nt_problem){operation, "nt_status", (double)status, NT_OK, NT_OK};
+    return status;
+}
+
+/* --- what it says of itself --- */
+
+static nt_status check_row(play *p, const nt_channel_row *row)
+{
+    if (!row->name || !row->name[0])
+        return broken(p, "channels without a name", 1.0, 0.0, 0.0);
+    if (!row->unit || (strcmp(row->unit, "m") != 0 && strcmp(row->unit, "N") != 0))
+        return broken(p, "channels with a unit other than m and N", 1.0, 0.0, 0.0);
+    if (row->axis < NT_X || row->axis > NT_Z)
+        return broken(p, "axis of a channel", row->axis, NT_X, NT_Z);
+    if (!(row->minimum < row->maximum))
+        return broken(p, "minimum of a channel", row->minimum, -HUGE_VAL, row->maximum);
+    if (!(row->step >= 0.0) || !(row->noise >= 0.0) || !(row->latency >= 0.0))
+        return broken(p, "step, noise or latency of a channel", fmin(row->step, fmin(row->noise, row->latency)), 0.0,
+                      HUGE_VAL);
+    if (row->driven && !(row->safe >= row->minimum && row->safe <= row->maximum))
+        return broken(p, "safe value of a driven channel", row->safe, row->minimum, row->maximum);
+    if (!row->driven && !isnan(row->safe))
+        return broken(p, "safe values of channels that are read", 1.0, 0.0, 0.0);
+    return NT_OK;
+}
+
+static nt_status check_channels(play *p)
+{
+    const nt_capabilities *has = &p->hal.capabilities;
+    nt_status status = NT_OK;
+    if (has->size != sizeof *has)
+        return broken(p, "capabilities.size", has->size, sizeof *has, sizeof *has);
+    for (int i = 0; i < has->rows && status == NT_OK; ++i)
+        status = check_row(p, &has->channels[i]);
+    return status;
+}
+
+/* --- one reading --- */
+
+/* What it may call valid: the axes that it has, and what it feels along them. */
+static uint32_t may_be_valid(const nt_capabilities *has)
+{
+    const uint32_t axes = has->axes == 1 ? 1u << NT_Z : (1u << NT_AXES) - 1u;
+    return axes << NT_READS_POSITION | (has->can & NT_CAN_FEEL ? axes << NT_READS_FELT : 0u);
+}
+
+static nt_status check_numbers(play *p, const nt_reading *reading)
+{
+    const uint32_t stray = reading->valid & ~may_be_valid(&p->hal.capabilities);
+    if (stray)
+        return broken(p, "valid bits of what it cannot measure", stray, 0.0, 0.0);
+    for (int i = 0; i < NT_READS; ++i) {
+        const int axis = i % NT_AXES, is_valid = reading->valid >> i & 1u;
+        const double value = i < NT_AXES ? reading->position[axis] : reading->felt[axis];
+        if (is_valid && !isfinite(value))
+            return broken(p, "valid bits of what is no number", i, -1.0, -1.0);
+        if (!is_valid && !isnan(value))
+            return broken(p, "numbers without a valid bit", i, -1.0, -1.0);
+    }
+    return NT_OK;
+}
+
+static nt_status check_time(play *p, const nt_reading *reading, int64_t now)
+{
+    const nt_reading *last = &p->last;
+    const double age = 1e-9 * (double)(now - reading->time);
+    if (reading->sequence < last->sequence)
+        return broken(p, "steps of the sequence", -(double)(last->sequence - reading->sequence), 0.0, HUGE_VAL);
+    if (age < 0.0)
+        return broken(p, "age of a reading [s]", age, 0.0, HUGE_VAL);
+    if (reading->sequence > last->sequence && last->sequence > 0 && reading->time < last->time)
+        return broken(p, "time between two readings [s]", 1e-9 * (double)(reading->time - last->time), 0.0, HUGE_VAL);
+    const double stale = STALE_PERIODS * fmax(p->asked->configuration.period, p->hal.capabilities.period);
+    if (!(age <= stale))
+        return broken(p, "age of a reading [s]", age, 0.0, stale);
+    if (reading->valid && age > p->seen->oldest)
+        p->seen->oldest = age;
+    return NT_OK;
+}
+
+static nt_status check_reading(play *p, const nt_reading *reading)
+{
+    const int leads = (p->hal.capabilities.can & NT_LEADS_CLOCK) != 0;
+    if (reading->size != sizeof *reading)
+        return broken(p, "reading.size", reading->size, sizeof *reading, sizeof *reading);
+    if (reading->flags & ~ALL_FLAGS)
+        return broken(p, "unknown flags", reading->flags, 0.0, ALL_FLAGS);
+    if (reading->flags & NT_SAMPLE_DEVICE_LOST && reading->valid)
+        return broken(p, "valid bits of a lost device", reading->valid, 0.0, 0.0);
+    if (!(reading->lateness >= 0.0) || (!leads && reading->lateness > 0.0))
+        return broken(p, "reading.lateness", reading->lateness, 0.0, leads ? HUGE_VAL : 0.0);
+    const nt_status status = check_numbers(p, reading);
+    return status == NT_OK ? check_time(p, reading, p->asked->host->now(p->asked->host)) : status;
+}
+
+/* --- a life --- */
+
+/* Nothing shall move: no force, and the stage where it reads. */
+static nt_action harmless(const play *p, uint64_t tick)
+{
+    nt_action action = {.size = sizeof action, .tick = tick, .time = p->asked->host->now(p->asked->host)};
+    for (int i = 0; i < NT_AXES && p->asked->half == NT_HALF_SLAVE; ++i)
+        action.target[i] = isfinite(p->last.position[i]) ? p->last.position[i] : 0.0;
+    return action;
+}
+
+static nt_status play_period(play *p, uint64_t tick)
+{
+    nt_reading reading = p->last;
+    nt_status status = named(p, p->hal.backend->read(p->hal.context, &reading), "read");
+    if (status == NT_OK && tick == 0 && !(reading.valid >> NT_Z & 1u))
+        return broken(p, "valid first readings of the position along z", 0.0, 1.0, 1.0);
+    if (status == NT_OK)
+        status = check_reading(p, &reading);
+    if (status != NT_OK)
+        return status;
+    p->seen->readings += tick == 0 || reading.sequence > p->last.sequence;
+    p->last = reading;
+    const nt_action action = harmless(p, tick);
+    return named(p, p->hal.backend->write(p->hal.context, &action), "write");
+}
+
+static nt_status play_armed(play *p)
+{
+    nt_status status = nt_hal_configure(&p->hal, &p->asked->configuration, p->problem);
+    if (named(p, status, "configure") == NT_OK)
+        status = named(p, nt_hal_arm(&p->hal), "arm");
+    for (long i = 0; i < p->asked->periods && status == NT_OK; ++i) {
+        status = play_period(p, (uint64_t)i);
+        p->asked->pass(p->asked->host, p->asked->configuration.period);
+    }
+    nt_hal_disarm(&p->hal);
+    return status;
+}
+
+/* Armed once or not at all; closed in any case. */
+static nt_status play_life(play *p, int is_armed)
+{
+    p->last = (nt_reading){.size = sizeof p->last, .position = {NAN, NAN, NAN}, .felt = {NAN, NAN, NAN}};
+    nt_status status = nt_hal_open(&p->hal, p->asked->half, &p->asked->choice, p->asked->host, p->problem);
+    if (status != NT_OK)
+        return named(p, status, "open");
+    p->seen->capabilities = p->hal.capabilities;
+    status = check_channels(p);
+    if (status == NT_OK && is_armed)
+        status = play_armed(p);
+    nt_hal_close(&p->hal);
+    return status;
+}
+
+nt_status nt_hal_rehearse(const nt_rehearsal *rehearsal, nt_rehearsed *seen, nt_problem *problem)
+{
+    if (!rehearsal || !rehearsal->choice.backend || !rehearsal->host || !rehearsal->host->now || !rehearsal->pass)
+        return NT_E_ARGUMENT;
+    if (rehearsal->periods < 1)
+        return nt_problem_set(problem, "periods", "", (double)rehearsal->periods, 1.0, HUGE_VAL);
+    nt_rehearsed found = {.readings = 0};
+    nt_problem wrong = {0};
+    play p = {.asked = rehearsal, .seen = &found, .problem = &wrong};
+    nt_status status = play_life(&p, 0); /* opened and closed again */
+    for (int i = 0; i < 2 && status == NT_OK; ++i)
+        status = play_life(&p, 1);
+    if (seen)
+        *seen = found;
+    if (status != NT_OK && problem)
+        *problem = wrong;
+    return status;
+}
