@@ -38,8 +38,8 @@ static nt_status check_table(nt_module *module, const char *path, nt_half half)
     }
     if (backend->half != half) {
         const int is_known = (unsigned)backend->half <= NT_HALF_SLAVE;
-        (void)snprintf(why, sizeof why, "is a %s, a %s is wanted", is_known ? halves[backend->half] : "half unknown here",
-                       halves[half]);
+        (void)snprintf(why, sizeof why, "is a %s, a %s is wanted",
+                       is_known ? halves[backend->half] : "half unknown here", halves[half]);
         return refuse(module, NT_E_UNSUPPORTED, path, why);
     }
     if (!backend->read || !backend->write)
@@ -47,10 +47,14 @@ static nt_status check_table(nt_module *module, const char *path, nt_half half)
     return NT_OK;
 }
 
-static const char *last_error(void)
+/* Without the path, with which the linker's words may begin. */
+static const char *last_error(const char *path)
 {
     const char *text = dlerror();
-    return text ? text : "unknown error";
+    const size_t length = strlen(path);
+    if (!text)
+        return "cannot be loaded";
+    return strncmp(text, path, length) == 0 && strncmp(text + length, ": ", 2) == 0 ? text + length + 2 : text;
 }
 
 nt_status nt_hal_load(nt_module *module, const char *path, nt_half half)
@@ -59,7 +63,7 @@ nt_status nt_hal_load(nt_module *module, const char *path, nt_half half)
         return NT_E_ARGUMENT;
     *module = (nt_module){.handle = dlopen(path, RTLD_NOW | RTLD_LOCAL)};
     if (!module->handle)
-        return refuse(module, NT_E_DEVICE, path, last_error());
+        return refuse(module, NT_E_DEVICE, path, last_error(path));
     void *symbol = dlsym(module->handle, NT_BACKEND_ENTRY);
     if (!symbol)
         return refuse(module, NT_E_ARGUMENT, path, "has no function " NT_BACKEND_ENTRY);

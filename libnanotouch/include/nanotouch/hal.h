@@ -69,9 +69,9 @@ NT_API void nt_hal_unload(nt_module *module);
 typedef struct nt_rehearsal {
     nt_half half;
     nt_hal_choice choice;
-    const nt_host *host;                     /* whose now counts for stamps and ages */
-    nt_configuration configuration;          /* what it is told; its period is that of the rehearsal */
-    long periods;                            /* to read and write, at least 1 */
+    const nt_host *host;                              /* whose now counts for stamps and ages */
+    nt_configuration configuration;                   /* what it is told; its period is that of the rehearsal */
+    long periods;                                     /* to read and write, at least 1 */
     void (*pass)(const nt_host *host, double period); /* lets a period pass on the host's clock */
 } nt_rehearsal;
 
@@ -82,10 +82,10 @@ typedef struct nt_rehearsed {
     double oldest;                /* largest age of a valid reading [s] */
 } nt_rehearsed;
 
-/* Opens and closes a half, then goes twice through its whole life: open, describe, configure, arm, some periods, disarm,
- * close. A master's motor is told 0 N, a slave to stay where it reads. Not real-time safe. seen and problem may be NULL.
- * NT_OK; what an operation returned, with its name as problem->field; or NT_E_RANGE with the broken rule (docs/hal.md
- * lists them). */
+/* Opens and closes a half, then goes twice through its whole life: open, describe, configure, arm, some periods,
+ * disarm, close. A master's motor is told 0 N, a slave to stay where it reads. Not real-time safe. seen and problem may
+ * be NULL. NT_OK; what an operation returned, with its name as problem->field; or NT_E_RANGE with the broken rule
+ * (docs/hal.md lists them). */
 NT_API nt_status nt_hal_rehearse(const nt_rehearsal *rehearsal, nt_rehearsed *seen, nt_problem *problem);
 
 /* --- the loop: calls a step at a fixed rate on the monotonic clock (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
