@@ -1,12 +1,228 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What real rigs this machine could drive: the lines of its GPIO chips."""
+"""The halves of a rig: write one in Python, load one from a shared object, rehearse it; and what this machine has.
+
+::
+
+    class Mouse(nanotouch.hal.Master):
+        def describe(self):
+            return nanotouch.hal.Capabilities(period=1 / 125, event_driven=True)
+
+        def read(self):
+            return nanotouch.hal.Reading(position=(math.nan, math.nan, self.z))
+
+The guide is docs/hal.md. A half in Python runs at free and wall pace.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
 from typing import NamedTuple
 
 from nanotouch import _core
-from nanotouch.errors import DeviceError
+from nanotouch.errors import DeviceError, InvalidValue
+
+Vector = Sequence[float]
+"""x, y and towards the sample; a tuple, a list or an array of three"""
+
+NONE = (math.nan, math.nan, math.nan)
+"""three numbers that are not measured"""
+
+
+class Channel(NamedTuple):
+    """One channel of a half, read or driven; all numbers in its unit."""
+
+    name: str
+    unit: str
+    """``"m"`` or ``"N"``"""
+    driven: bool = False
+    axis: int = 2
+    """0, 1, 2: x, y, z"""
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    step: float = 0.0
+    """of its converter; 0: none is known"""
+    noise: float = 0.0
+    """standard deviation"""
+    latency: float = 0.0
+    """from the moment measured to the reading, or from the write to its effect [s]"""
+    safe: float = math.nan
+    """what a driven channel is left at; of one that is read: NaN"""
+
+
+class Capabilities(NamedTuple):
+    """What a half can do. The default is a position device of one axis."""
+
+    axes: int = 1
+    """1 (z alone), 2 (x and y are positions, too) or 3"""
+    period: float = 0.0
+    """between its own measurements; 0: a new one in every period of the loop [s]"""
+    feels: bool = False
+    """a master measures the operator's force, a slave its deflections"""
+    pushes: bool = False
+    """a master has motors"""
+    servos: bool = False
+    """a slave owns its z servo; what is written is its set-point"""
+    event_driven: bool = False
+    """readings come when something happens, and a heartbeat every period"""
+    channels: Sequence[Channel] = ()
+
+
+class Configuration(NamedTuple):
+    """What a half is told before it is armed."""
+
+    period: float
+    """of the loop [s]"""
+    lift: float
+    """slave: how far close has to lift the tip, at the least [m]"""
+    option: str
+    """what the user gave for it"""
+
+
+class Reading(NamedTuple):
+    """What a half measured. NaN where nothing was: never 0."""
+
+    position: Vector = NONE
+    """of hand or stage [m]"""
+    felt: Vector = NONE
+    """master: the operator's force [N]; slave: deflections, the third one upwards [m]"""
+    time: int | None = None
+    """of the measurement, on the clock of ``host.now`` [ns]; None: now"""
+    sequence: int | None = None
+    """rising with each measurement; None: one more than the last"""
+    flags: Sequence[str] = ()
+    """of ``emergency_stop``, ``limit_switch``, ``invalid``, ``saturated``, ``device_lost``"""
+    buttons: int = 0
+    """of a master, bit by bit"""
+
+
+class Action(NamedTuple):
+    """What a half shall do."""
+
+    tick: int
+    time: int
+    """of this tick [ns]"""
+    state: str
+    """RUN, HOLD, RETRACT or LATCHED"""
+    target: tuple[float, float, float]
+    """master: motor force [N]; slave: x, y and travel towards the sample [m]"""
+
+
+class _Half:
+    """The life of a half: open, describe, configure, arm; read and write once a period; disarm, close.
+
+    What a method raises is a failed device for the loop (LATCHED, or refused to open) and reaches the caller after it.
+    """
+
+    option: str = ""
+    """for :meth:`configure`"""
+
+    def open(self, host: _core.Host) -> None:
+        """Find the device. ``host.now()`` is the loop's clock [ns], ``host.say(text)`` a line for the user."""
+
+    def describe(self) -> Capabilities:
+        """What it can do."""
+        return Capabilities()
+
+    def configure(self, configuration: Configuration) -> None:
+        """Take what the loop says."""
+
+    def arm(self) -> None:
+        """Get ready: the next :meth:`read` has a position."""
+
+    def read(self) -> Reading | None:
+        """The newest measurement; None: nothing new. Never waits."""
+        raise NotImplementedError(f"{type(self).__name__} has no read")
+
+    def write(self, action: Action) -> None:
+        """Do what is asked; never waits."""
+
+    def disarm(self) -> None:
+        """Leave every driven channel at its safe value; a slave lifts."""
+
+    def close(self) -> None:
+        """Give everything back."""
+
+
+class Master(_Half):
+    """Base of a master written in Python: a mouse, a haptic device, a script."""
+
+
+class Slave(_Half):
+    """Base of a slave written in Python: a stage and a probe."""
+
+    def describe(self) -> Capabilities:
+        """What it can do: by default all three axes and the deflection."""
+        return Capabilities(axes=3, feels=True)
+
+    def write(self, action: Action) -> None:
+        """Go to ``action.target``; never waits."""
+        raise NotImplementedError(f"{type(self).__name__} has no write")
+
+
+@dataclass(frozen=True)
+class SharedObject:
+    """A half in a shared object, by its path. It includes ``nanotouch/hal_backend.h`` and links nothing."""
+
+    path: str
+    option: str = ""
+    """for its ``configure``"""
+
+    def __init__(self, path: str | PathLike[str], option: str = "") -> None:
+        object.__setattr__(self, "path", str(Path(fspath(path)).absolute()))
+        object.__setattr__(self, "option", option)
+
+
+class Rehearsed(NamedTuple):
+    """What was seen in a rehearsal."""
+
+    readings: int
+    """new ones"""
+    oldest: float
+    """largest age of a valid reading [s]"""
+    said: list[str]
+    """what it told the user"""
+
+
+def rehearse(
+    half: Master | Slave | SharedObject,
+    *,
+    slave: bool = False,
+    period: float = 1e-3,
+    duration: float = 0.2,
+    real_time: bool = True,
+) -> Rehearsed:
+    """Does it keep the contract (docs/hal.md)? Opened and closed, then twice its whole life; nothing is moved.
+
+    Parameters
+    ----------
+    half : Master, Slave or SharedObject
+        What to try.
+    slave : bool
+        Which half a shared object is.
+    period : float
+        Of the loop [s].
+    duration : float
+        How long it is read and written in each life [s].
+    real_time : bool
+        Periods pass on the clock; without, they take no time, which suits a half that makes its own readings.
+
+    Raises
+    ------
+    InvalidValue
+        The rule that it breaks, what was found and what is allowed.
+    Exception
+        What a method of a Python half has raised.
+    """
+    if not 1e-6 <= period <= 1.0:
+        raise InvalidValue(f"period = {period} s: valid is 1e-06 .. 1 s")
+    if not period <= duration <= 3600.0:
+        raise InvalidValue(f"duration = {duration} s: valid is {period:g} .. 3600 s")
+    is_master = not (slave or isinstance(half, Slave))
+    return Rehearsed(*_core.rehearse(half, is_master, period, round(duration / period), real_time))
 
 
 class GpioLine(NamedTuple):

@@ -26,11 +26,14 @@ void bind_terrain(py::module_ &module);
 void bind_interaction(py::module_ &module);
 void bind_control(py::module_ &module);
 void bind_faults(py::module_ &module);
+void bind_hal(py::module_ &module);
 void bind_session(py::module_ &module);
 void bind_frames(py::module_ &module);
 void bind_commands(py::module_ &module);
 void bind_linux(py::module_ &module);
 
+// Raises the Python exception of a status, with this message.
+[[noreturn]] void raise(nt_status status, const std::string &message);
 // Raises the Python exception of a status; `what` says what was attempted. Returns only for NT_OK.
 void raise_on(nt_status status, const std::string &what);
 // The same with the offending field, its value, unit and range.

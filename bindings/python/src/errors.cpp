@@ -19,7 +19,7 @@ static const char *exception_name(nt_status status)
     }
 }
 
-[[noreturn]] static void raise(nt_status status, const std::string &message)
+void raise(nt_status status, const std::string &message)
 {
     py::object type = py::module_::import("nanotouch.errors").attr(exception_name(status));
     PyErr_SetString(type.ptr(), message.c_str());

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, module)
     bind_interaction(module);
     bind_control(module);
     bind_faults(module);
+    bind_hal(module);
     bind_session(module);
     bind_frames(module);
     bind_commands(module);

@@ -4,6 +4,23 @@
 
 #include "faults.h"
 
+static void take_halves(Session &made, nt_session_setup &setup, const py::dict &options)
+{
+    const auto given = [&](const char *name) -> py::object {
+        return options.contains(name) ? py::object(options[name]) : py::object(py::none());
+    };
+    made.master = half_of(given("master"), NT_HALF_MASTER);
+    made.slave = half_of(given("slave"), NT_HALF_SLAVE);
+    if (made.master) {
+        setup.master = made.master->choice;
+        setup.master_option = made.master->option.c_str();
+    }
+    if (made.slave) {
+        setup.slave = made.slave->choice;
+        setup.slave_option = made.slave->option.c_str();
+    }
+}
+
 static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
                                              const Described<nt_settings> &settings, const py::dict &options)
 {
@@ -39,9 +56,10 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     }
     if (py::len(path) > 1 && rig.value.master.axes > 1.0)
         setup.path = nullptr; // the hand leads the tip anywhere
+    take_halves(*made, setup, options);
     nt_problem problem{};
     const nt_status status = nt_session_open(&made->handle, &setup, &problem);
-    made->law.rethrow(); // it has been tried
+    made->rethrow(); // it has been tried
     raise_on(status, problem, "session");
     if (setup.settings.control.choice == NT_CONTROL_OWN && setup.minimum_margin > 0.0) {
         Described<nt_settings> amounts{};
@@ -73,7 +91,7 @@ template <class Call> static void ask(Session &self, const std::string &what, Ca
 {
     nt_problem problem{};
     const nt_status status = alone(self, [&](nt_session *handle) { return call(handle, &problem); });
-    self.law.rethrow();
+    self.rethrow();
     raise_on(status, problem, what);
 }
 

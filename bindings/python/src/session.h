@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "control.h"
+#include "hal.h"
 #include "surface.h"
 
 struct Session {
@@ -12,12 +13,22 @@ struct Session {
     std::shared_ptr<Surface> surface; // these outlive the handle, as the law does
     std::shared_ptr<RadiusMap> radii;
     OwnLaw law;
+    std::shared_ptr<Half> master, slave; // null: simulated
     std::unique_ptr<Described<nt_settings>> amounts; // what the law amounts to, where that is known
     std::mutex one_at_a_time;
     ~Session()
     {
         const py::gil_scoped_release release; // its thread may be in a law or a backend written in Python
         nt_session_close(handle);
+    }
+    // Raises what a law or a half written in Python has raised meanwhile.
+    void rethrow()
+    {
+        law.rethrow();
+        if (master)
+            master->rethrow();
+        if (slave)
+            slave->rethrow();
     }
 };
 

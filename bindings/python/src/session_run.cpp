@@ -133,17 +133,21 @@ static py::list read_events(Session &self)
 static void advance_session(Session &self, long ticks)
 {
     const nt_status status = alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); });
-    self.law.rethrow();
+    self.rethrow();
     raise_on(status, "advance");
 }
 
-// Short: the GIL stays, and so does the caller.
+// Short: the GIL stays, unless another thread is in the session, whose half in Python may wait for it.
 static nt_frame step_session(Session &self, const nt_input *input)
 {
     nt_frame frame;
-    const std::lock_guard<std::mutex> lock(self.one_at_a_time);
+    std::unique_lock<std::mutex> lock(self.one_at_a_time, std::try_to_lock);
+    if (!lock) {
+        const py::gil_scoped_release release;
+        lock.lock();
+    }
     const nt_status status = nt_session_step(self.handle, input, &frame);
-    self.law.rethrow();
+    self.rethrow();
     raise_on(status, "step");
     return frame;
 }
@@ -158,7 +162,7 @@ static void start(Session &self, int pace, uint64_t ticks)
 static void halt(Session &self)
 {
     const nt_status status = alone(self, [](nt_session *handle) { return nt_session_halt(handle); });
-    self.law.rethrow();
+    self.rethrow();
     raise_on(status, "halt");
 }
 

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hal.h: halves of a rig from Python, and the rehearsal of one
+#include "hal.h"
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <thread>
+#include <utility>
+#include <vector>
+
+static py::object hal_name(const char *name)
+{
+    return py::module_::import("nanotouch.hal").attr(name);
+}
+
+// --- a shared object ---
+
+struct ModuleHalf : Half {
+    nt_module module{};
+
+    ModuleHalf(const py::object &given, nt_half half)
+    {
+        option = given.attr("option").cast<std::string>();
+        const nt_status status = nt_hal_load(&module, given.attr("path").cast<std::string>().c_str(), half);
+        if (status != NT_OK)
+            raise(status, module.text);
+        choice = {module.backend, nullptr};
+    }
+    ~ModuleHalf() override
+    {
+        nt_hal_unload(&module);
+    }
+};
+
+// --- an object of a Python class ---
+
+// What open is given; the half is cut off from it by close.
+struct Host {
+    const nt_host *host;
+    const nt_host &get() const
+    {
+        if (!host)
+            throw py::value_error("this half is closed: its host is gone");
+        return *host;
+    }
+};
+
+struct PythonHalf : Half {
+    py::object self, reading_type, action_type, states;
+    std::string name;
+    nt_backend backend{};
+    std::shared_ptr<Host> host = std::make_shared<Host>(Host{nullptr});
+    uint64_t sequence = 0;
+    std::vector<std::string> words; // names and units of the channels
+    std::vector<nt_channel_row> rows;
+    std::exception_ptr error; // the first one that a method has raised
+
+    PythonHalf(py::object given, nt_half half);
+    ~PythonHalf() override // what close has raised has no caller any more
+    {
+        try {
+            rethrow();
+        } catch (py::error_already_set &last) {
+            last.discard_as_unraisable(name.c_str());
+        } catch (...) { // nothing else comes from Python
+        }
+    }
+    void rethrow() final
+    {
+        if (error)
+            std::rethrow_exception(std::exchange(error, nullptr));
+    }
+};
+
+// The loop learns that the device has failed; the caller, later, why.
+template <class Call> static nt_status guarded(void *context, Call call)
+{
+    auto &half = *static_cast<PythonHalf *>(context);
+    const py::gil_scoped_acquire gil;
+    try {
+        call(half);
+        return NT_OK;
+    } catch (...) {
+        if (!half.error)
+            half.error = std::current_exception();
+        return NT_E_DEVICE;
+    }
+}
+
+static nt_status open_python(void *context, const nt_host *host, nt_problem *)
+{
+    return guarded(context, [host](PythonHalf &half) {
+        half.host->host = host;
+        half.sequence = 0;
+        half.self.attr("open")(half.host);
+    });
+}
+
+static nt_channel_row row_of(PythonHalf &half, const py::handle &channel)
+{
+    const auto word = [&](const char *attribute) {
+        half.words.push_back(channel.attr(attribute).cast<std::string>());
+        return half.words.back().c_str();
+    };
+    const auto number = [&](const char *attribute) { return channel.attr(attribute).cast<double>(); };
+    return {word("name"),
+            word("unit"),
+            channel.attr("driven").cast<bool>(),
+            channel.attr("axis").cast<int>(),
+            number("minimum"),
+            number("maximum"),
+            number("step"),
+            number("noise"),
+            number("latency"),
+            number("safe")};
+}
+
+static nt_status describe_python(void *context, nt_capabilities *capabilities)
+{
+    return guarded(context, [capabilities](PythonHalf &half) {
+        const py::object found = half.self.attr("describe")();
+        const auto bit = [&](const char *name, uint32_t value) { return found.attr(name).cast<bool>() ? value : 0u; };
+        capabilities->can = bit("feels", NT_CAN_FEEL) | bit("pushes", NT_CAN_PUSH) | bit("servos", NT_CAN_SERVO) |
+                            bit("event_driven", NT_IS_EVENT_DRIVEN) | NT_IS_SLOW;
+        capabilities->axes = found.attr("axes").cast<int>();
+        capabilities->period = found.attr("period").cast<double>();
+        const auto channels = found.attr("channels").cast<py::list>();
+        half.words.clear();
+        half.words.reserve(2 * channels.size()); // so that none of them moves
+        half.rows.clear();
+        for (const py::handle channel : channels)
+            half.rows.push_back(row_of(half, channel));
+        capabilities->rows = static_cast<int>(half.rows.size());
+        capabilities->channels = half.rows.data();
+    });
+}
+
+static nt_status configure_python(void *context, const nt_configuration *configuration, nt_problem *)
+{
+    return guarded(context, [configuration](PythonHalf &half) {
+        half.self.attr("configure")(
+            hal_name("Configuration")(configuration->period, configuration->lift, configuration->option));
+    });
+}
+
+static nt_status arm_python(void *context)
+{
+    return guarded(context, [](PythonHalf &half) { half.self.attr("arm")(); });
+}
+
+// Three numbers, NaN where one is not measured; returns their valid bits.
+static uint32_t numbers_of(const py::object &reading, const char *name, double (&numbers)[NT_AXES])
+{
+    const py::object given = reading.attr(name);
+    if (!PySequence_Check(given.ptr()) || py::len(given) != NT_AXES)
+        throw py::type_error(std::string("read: ") + name + " must be three numbers, not " +
+                             py::repr(given).cast<std::string>());
+    uint32_t valid = 0;
+    for (int i = 0; i < NT_AXES; ++i) {
+        numbers[i] = given[py::int_(i)].cast<double>();
+        valid |= std::isnan(numbers[i]) ? 0u : 1u << i;
+    }
+    return valid;
+}
+
+static uint32_t flags_of(const py::object &names)
+{
+    static constexpr const char *known[] = {"emergency_stop", "limit_switch", "invalid", "saturated", "device_lost"};
+    uint32_t flags = 0;
+    for (const py::handle item : names) {
+        const auto name = item.cast<std::string>();
+        uint32_t bit = 0;
+        for (int i = 0; i < 5; ++i)
+            bit |= name == known[i] ? 1u << i : 0u;
+        if (bit == 0)
+            throw py::value_error("read: no flag '" + name +
+                                  "': valid are emergency_stop, limit_switch, invalid, saturated, device_lost");
+        flags |= bit;
+    }
+    return flags;
+}
+
+static void fill(PythonHalf &half, const py::object &found, nt_reading &reading)
+{
+    if (!py::isinstance(found, half.reading_type))
+        throw py::type_error("read: it must return a nanotouch.hal.Reading or None, not " +
+                             py::repr(found).cast<std::string>());
+    nt_reading made{};
+    made.size = reading.size;
+    made.valid = numbers_of(found, "position", made.position) << NT_READS_POSITION;
+    made.valid |= numbers_of(found, "felt", made.felt) << NT_READS_FELT;
+    made.flags = flags_of(found.attr("flags"));
+    made.buttons = found.attr("buttons").cast<uint32_t>();
+    const py::object number = found.attr("sequence"), time = found.attr("time");
+    made.sequence = half.sequence = number.is_none() ? half.sequence + 1u : number.cast<uint64_t>();
+    made.time = time.is_none() ? half.host->get().now(half.host->host) : time.cast<int64_t>();
+    reading = made;
+}
+
+static nt_status read_python(void *context, nt_reading *reading)
+{
+    return guarded(context, [reading](PythonHalf &half) {
+        const py::object found = half.self.attr("read")();
+        if (!found.is_none())
+            fill(half, found, *reading);
+    });
+}
+
+static nt_status write_python(void *context, const nt_action *action)
+{
+    return guarded(context, [action](PythonHalf &half) {
+        half.self.attr("write")(
+            half.action_type(action->tick, action->time, half.states[py::int_(action->state)],
+                             py::make_tuple(action->target[0], action->target[1], action->target[2])));
+    });
+}
+
+static void disarm_python(void *context)
+{
+    (void)guarded(context, [](PythonHalf &half) { half.self.attr("disarm")(); });
+}
+
+static void close_python(void *context)
+{
+    (void)guarded(context, [](PythonHalf &half) { half.self.attr("close")(); });
+    static_cast<PythonHalf *>(context)->host->host = nullptr;
+}
+
+PythonHalf::PythonHalf(py::object given, nt_half half)
+    : self(std::move(given)), reading_type(hal_name("Reading")), action_type(hal_name("Action")),
+      states(py::module_::import("nanotouch.columns").attr("STATES")),
+      name(py::type::of(self).attr("__name__").cast<std::string>())
+{
+    backend = {sizeof backend,  NT_HAL_API_VERSION, name.c_str(), half,        open_python,
+               describe_python, configure_python,   arm_python,   read_python, write_python,
+               disarm_python,   close_python,       nullptr};
+    choice = {&backend, this};
+    option = self.attr("option").cast<std::string>();
+}
+
+std::shared_ptr<Half> half_of(const py::object &given, nt_half half)
+{
+    static constexpr const char *names[] = {"master", "slave"};
+    if (given.is_none())
+        return nullptr;
+    if (py::isinstance(given, hal_name("SharedObject")))
+        return std::make_shared<ModuleHalf>(given, half);
+    if (py::isinstance(given, hal_name(half == NT_HALF_MASTER ? "Master" : "Slave")))
+        return std::make_shared<PythonHalf>(given, half);
+    throw py::type_error(std::string(names[half]) + ": " + py::repr(given).cast<std::string>() +
+                         " is neither a nanotouch.hal." + (half == NT_HALF_MASTER ? "Master" : "Slave") +
+                         " nor a nanotouch.hal.SharedObject");
+}
+
+// --- the rehearsal ---
+
+using Clock = std::chrono::steady_clock;
+
+// Its clock, that of the machine or one that only passes with the periods, and what the backend has said.
+struct Stage {
+    bool real;
+    int64_t time; // [ns]
+    std::vector<std::string> said;
+};
+
+static Stage &stage_of(const nt_host *host)
+{
+    return *static_cast<Stage *>(host->context);
+}
+
+static int64_t stage_now(const nt_host *host)
+{
+    const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch());
+    return stage_of(host).real ? now.count() : stage_of(host).time;
+}
+
+static void stage_pass(const nt_host *host, double period)
+{
+    if (stage_of(host).real)
+        std::this_thread::sleep_for(std::chrono::duration<double>(period));
+    stage_of(host).time += std::llround(1e9 * period);
+}
+
+static void stage_say(const nt_host *host, const char *text)
+{
+    stage_of(host).said.emplace_back(text);
+}
+
+static void raise_rehearsed(nt_status status, const nt_problem &problem, const std::string &what)
+{
+    const bool is_operation = problem.unit && std::string(problem.unit) == "nt_status";
+    if (is_operation)
+        raise_on(status, what + ": " + problem.field);
+    raise_on(status, problem, what);
+}
+
+static py::tuple rehearse(const py::object &given, bool is_master, double period, long periods, bool real)
+{
+    const nt_half half = is_master ? NT_HALF_MASTER : NT_HALF_SLAVE;
+    const std::shared_ptr<Half> made = half_of(given, half);
+    Stage stage{real, 0, {}};
+    const nt_host host = {sizeof host, NT_HAL_API_VERSION, stage_now, stage_say, &stage};
+    const nt_configuration configuration = {sizeof configuration, 0, period, 1e-6, made->option.c_str()};
+    const nt_rehearsal rehearsal = {half, made->choice, &host, configuration, periods, stage_pass};
+    nt_rehearsed seen{};
+    nt_problem problem{};
+    nt_status status;
+    {
+        const py::gil_scoped_release release;
+        status = nt_hal_rehearse(&rehearsal, &seen, &problem);
+    }
+    made->rethrow();
+    raise_rehearsed(status, problem, std::string("rehearsal of ") + made->choice.backend->name);
+    return py::make_tuple(seen.readings, seen.oldest, stage.said);
+}
+
+void bind_hal(py::module_ &module)
+{
+    py::class_<Host, std::shared_ptr<Host>>(module, "Host")
+        .def("now", [](const Host &self) { return self.get().now(&self.get()); })
+        .def("say", [](const Host &self, const std::string &text) { self.get().say(&self.get(), text.c_str()); });
+    module.def("rehearse", &rehearse);
+}

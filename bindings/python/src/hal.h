@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A half of a rig for a session: a shared object, or an object of a Python class.
+#pragma once
+#include <memory>
+
+#include "chapters.h"
+
+// Lives at least as long as what was opened with its choice.
+struct Half {
+    nt_hal_choice choice{};
+    std::string option; // for the backend's configure
+    Half() = default;
+    Half(const Half &) = delete;
+    Half &operator=(const Half &) = delete;
+    virtual ~Half() = default;
+    // Raises what a method of a Python half has raised meanwhile, once; with the GIL.
+    virtual void rethrow()
+    {
+    }
+};
+
+// given: None (a null pointer: simulated), nanotouch.hal.SharedObject, or an object of a class derived from
+// nanotouch.hal.Master or Slave; raises if it is none of them, is the other half, or cannot be loaded.
+std::shared_ptr<Half> half_of(const py::object &given, nt_half half);
