@@ -14,6 +14,7 @@ from nanotouch._control import Law
 from nanotouch._plant import ProbeModel
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
+from nanotouch.hal import Master, SharedObject, Slave
 from nanotouch.margins import ForceRange
 from nanotouch.scene import Rig, Settings
 
@@ -59,6 +60,10 @@ class Options(TypedDict, total=False):
     """of the dynamic cantilever: the largest angle of its fastest oscillation in one sub-step; 0.25 [rad]"""
     faults: Faults
     """what fails in the simulated halves, and when"""
+    master: Master | SharedObject
+    """one's own half instead of the simulated hand and master (:mod:`nanotouch.hal`, docs/hal.md)"""
+    slave: Slave | SharedObject
+    """one's own half instead of the simulated stage, probe and sample"""
     recorded: bool
     """False: no records are kept; for :meth:`Session.step`"""
 

@@ -16,7 +16,7 @@ from nanotouch._control import CONTROLS, Law, choose_control
 from nanotouch._path import MODES, Mode, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.columns import STATES
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import DeviceError, InvalidValue
 from nanotouch.faults import Faults
 from nanotouch.margins import Margins
 from nanotouch.operator import Hold, Input, core_input, script_for, stretched
@@ -106,6 +106,7 @@ class Session:
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
                     "minimum_margin": self.minimum_margin, "relative_accuracy": options.get("rtol", 0.01),
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
+                    "master": options.get("master"), "slave": options.get("slave"),
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
                     **plant_options(options.get("probe_model", "auto"), options.get("substep", 0.25), faults),
                 },
@@ -114,7 +115,8 @@ class Session:
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
-        self._begun = self.core.snapshot()
+        own = options.get("master") is not None or options.get("slave") is not None
+        self._begun = None if own else self.core.snapshot()
 
     def _descriptions(self) -> dict[str, Any]:
         return {"scene": self.scene.to_dict(), "rig": self.rig.to_dict(), "settings": self.settings.to_dict()}
@@ -289,7 +291,9 @@ class Session:
         self.core.rewind(duration)
 
     def reset(self) -> None:
-        """Back to where it was opened."""
+        """Back to where it was opened; of a session whose halves are simulated."""
+        if self._begun is None:
+            raise DeviceError("a session with a half of one's own cannot go back")
         self.core.restore(self._begun)
 
     @property
