@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reference recordings: scripted sessions with explicit seeds, so that a rebuilt session can be held against the old.
 
-``python tests/reference/recordings.py FILE.npz`` makes them anew. Made once, right after the noise became
-counter-based; a change of bits is a change of behaviour and has to be meant. Each column is kept as a digest of all its
+``python tests/reference/recordings.py FILE.npz`` makes them anew. Made right after the noise became
+counter-based, and every column but the ages (whole nanoseconds now) came out of the rebuilt session to the last bit.
+Made anew when a plan no longer depended on the probe: the simulated samples have forces since that it left out. A
+change of bits is a change of behaviour and has to be meant. Each column is kept as a digest of all its
 bytes (the same machine and build: equal) and as every ``STRIDE``-th row (another libm may round differently)."""
 
 from __future__ import annotations
