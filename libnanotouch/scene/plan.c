@@ -84,7 +84,6 @@ static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, nt_
     plan->demand.relative_accuracy = demanded;
     if (status != NT_OK || plan->on_count == 0)
         return status;
-    plan->terms[NT_PLAN_CONTACT].error += rigid;
     plan->bound.force_error += rigid;
     return NT_OK;
 }
