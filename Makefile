@@ -29,7 +29,7 @@ damage:  ## 2000 damaged files through the readers of images and curves; some mi
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/mutations.py
 
-heavy:  ## 10 000 random scenes, energy of 1.5 million closed paths, recordings under 50 kills, fits without memory; half an hour
+heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/energy.py

@@ -13,13 +13,15 @@
 
 #define DEFAULT_REACH 1000.0 /* reduced */
 
-enum { MAX_CELLS_PER_OCTAVE = 64, MANTISSA_BITS = 52, CHECKS = 3 };
+enum { MAX_CELLS_PER_OCTAVE = 64, MANTISSA_BITS = 52, CHECKS = 3, SLOPE_CHECKS = 7 };
 
 /* The worst of CHECKS states per cell is measured; between them the error can be a little larger. */
 #define BETWEEN_CHECKS 1.25
 
 /* Indentation scales from a fold, within which its conditioning and not the polish is measured. */
 #define AWAY_FROM_FOLD 1e-4
+/* And within which rounding of the indentation, and not the table, is measured in k: it does eps/(2 of this) there. */
+#define BESIDE_FOLD 1e-8
 
 /* Maugis-Dugdale to Lennard-Jones, in pull-off force, worst over lambda (docs/contact.md). */
 #define MODEL_ERROR 0.056
@@ -99,6 +101,7 @@ static void measure(nt_maugis_table *table)
 {
     const nt_maugis *maugis = &table->maugis;
     const double pull_off = nt_maugis_pull_off_force(maugis), unit = maugis->indentation_scale;
+    const nt_maugis_grid grid = nt_maugis_grid_of(table, NT_BRANCH_STABLE);
     double worst[2] = {0.0, 0.0};
     for (int i = NT_CELL_CONTACT; i < table->count - 1; i++)
         for (int j = 0; j < CHECKS; j++) {
@@ -107,7 +110,8 @@ static void measure(nt_maugis_table *table)
             nt_maugis_equilibrium point;
             nt_maugis_equilibrium_at(maugis->lambda, maugis->fold_y + nt_cubic_y(cell->y, s), &point);
             const double exact = point.P * maugis->load_scale, indentation = point.d * unit;
-            const double force[2] = {nt_maugis_table_force(table, indentation),
+            const nt_maugis_place place = nt_maugis_place_of(&grid, indentation); /* the last cell may go deeper */
+            const double force[2] = {nt_cubic(table->cells[place.cell].F, place.s),
                                      nt_maugis_table_polish(table, indentation)};
             const int away = indentation - table->start > AWAY_FROM_FOLD * unit;
             for (int tier = NT_TIER_TABLE; tier <= (away ? NT_TIER_POLISHED : NT_TIER_TABLE); tier++)
@@ -136,4 +140,33 @@ nt_status nt_maugis_table_init(nt_maugis_table *table, const nt_maugis *maugis, 
     }
     *table = made;
     return NT_OK;
+}
+
+/* Stiffness and radius of the table, where a cubic that takes value and slope at both ends of its cell has them worst:
+ * k at its start (divided by Z, which is 0 there in the first cell), at (1 -+ 1/sqrt 3)/2 and at its end, a in its
+ * middle. At a fold k goes as 1/Z and both divide by the same Z, so that its relative error is that of dF/dZ. */
+nt_table_error nt_maugis_table_error(const nt_maugis_table *table)
+{
+    static const double within[SLOPE_CHECKS] = {0.01, 0.2113, 0.35, 0.5, 0.65, 0.7887, 0.99};
+    const nt_maugis *maugis = &table->maugis;
+    const nt_maugis_grid grid = nt_maugis_grid_of(table, NT_BRANCH_STABLE);
+    const double unit = maugis->indentation_scale, hardness = maugis->load_scale / unit;
+    const double least_a = maugis->folds.zero_load_radius * maugis->radius_scale;
+    double k_worst = 0.0, a_worst = 0.0;
+    for (int i = NT_CELL_CONTACT; i < table->count - 1; i++)
+        for (int j = 0; j < SLOPE_CHECKS; j++) {
+            const nt_maugis_cell *cell = &table->cells[i];
+            nt_maugis_equilibrium point;
+            nt_maugis_equilibrium_at(maugis->lambda,
+                                     maugis->fold_y + nt_cubic_y(cell->y, within[j] * (cell[1].u - cell->u)), &point);
+            const double k = point.P1 / point.d1 * hardness, a = point.a * maugis->radius_scale, d = point.d * unit;
+            const nt_maugis_place place = nt_maugis_place_of(&grid, d);
+            const nt_law_value value =
+                nt_maugis_cell_value(&table->cells[place.cell], place, table->rate, table->start);
+            if (d - table->start < BESIDE_FOLD * fabs(table->start))
+                continue;
+            k_worst = fmax(k_worst, fabs(value.k - k) / fmax(fabs(k), hardness));
+            a_worst = fmax(a_worst, fabs(value.a - a) / fmax(a, least_a));
+        }
+    return (nt_table_error){BETWEEN_CHECKS * k_worst, BETWEEN_CHECKS * a_worst};
 }

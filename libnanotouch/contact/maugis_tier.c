@@ -27,7 +27,10 @@ static nt_maugis_rough rough_of(const nt_maugis_polish *polish, const nt_maugis_
     return rough;
 }
 
-/* All of it at rounding level takes a second evaluation, at the corrected y; what is left of d goes to first order. */
+#define RESOLVED 1e-2 /* the Z above which what is left of it is no rounding */
+
+/* All of it at rounding level takes a second evaluation, at the corrected y; what is left of d goes to first order:
+ * dk/dZ = (P_ZZ/2 - k)/Z of k = P_Z/(2 Z). */
 static nt_law_value polished_value(const nt_maugis_table *table, const nt_maugis_cell *cell, nt_maugis_place place,
                                    double indentation)
 {
@@ -42,11 +45,12 @@ static nt_law_value polished_value(const nt_maugis_table *table, const nt_maugis
     const double y = rough.y + dZ * (y_Z + 0.5 * y_ZZ * dZ);
     nt_maugis_equilibrium_at(polish.lambda, y, &at);
     const double rest = nt_maugis_polish_step(&polish, &rough, &at);
-    const double slope = rough.Z < polish.near ? rough.P_Z : 2.0 * (rough.Z - rest) * at.P1 / at.d1;
+    const double k = at.P1 / at.d1, k_Z = rough.Z < RESOLVED ? 0.0 : (0.5 * rough.P_ZZ - k) / rough.Z;
+    const double slope = rough.Z < polish.near ? rough.P_Z : 2.0 * (rough.Z - rest) * k;
     const nt_law_value reduced = {
         .U = nt_maugis_equilibrium_energy(polish.lambda, &at) + at.P * (rough.d - at.d),
         .F = at.P + slope * rest,
-        .k = at.P1 / at.d1,
+        .k = k + k_Z * rest,
         .a = at.a + at.a1 * y_Z * rest,
     };
     const nt_reduced_units units = {table->maugis.load_scale, table->maugis.radius_scale, polish.unit};

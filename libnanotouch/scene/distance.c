@@ -23,6 +23,10 @@ static double pull_of(const nt_plan *plan)
 /* What small forces are measured by where nothing pulls. */
 #define SMALL_LOAD 1e-3 /* of the largest load */
 
+/* From here on the bound holds, in release gaps: nearer, k errs by half of what rounding and interpolation do to the
+ * place of its fold over the distance to it. */
+#define AWAY_FROM_FOLDS 1e-4
+
 double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
 {
     const double pull = pull_of(plan);
@@ -61,11 +65,6 @@ static nt_law_value series_at(const nt_plan *plan, double indentation)
     return nt_plan_contact_eval(plan, NT_FORM_SERIES, indentation);
 }
 
-static nt_law_value table_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_contact_eval(plan, NT_FORM_TABLE, indentation);
-}
-
 static nt_law_value dmt_at(const nt_plan *plan, double indentation)
 {
     return nt_dmt_eval(&plan->contact, indentation);
@@ -88,44 +87,71 @@ static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
     return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum, indentation).law;
 }
 
-/* The largest difference between two laws of contact over max(|truth|, scale), over all indentations from the release
- * gap to the largest load; denser near the fold, where they differ most. `lowest`: nothing below this is visited. S is
- * that of the demanded quantity; of a force that is not the one demanded, the pull-off force. */
-static double distance(const nt_plan *plan, contact_law *truth_at, contact_law *other, double lowest,
-                       nt_quantity quantity)
+/* The difference between two laws of contact over max(|truth|, scale). S is that of the demanded quantity; of a force
+ * that is not the one demanded, the pull-off force. */
+typedef struct rivals {
+    contact_law *truth, *other;
+    nt_quantity quantity;
+} rivals;
+
+static double difference(const nt_plan *plan, const rivals *laws, double indentation)
+{
+    const double scale = laws->quantity == (nt_quantity)(int)plan->demand.quantity ? plan->scale : pull_of(plan);
+    const double truth = nt_plan_pick(laws->truth(plan, indentation), laws->quantity);
+    return fabs(nt_plan_pick(laws->other(plan, indentation), laws->quantity) - truth) / fmax(fabs(truth), scale);
+}
+
+/* The largest of it over all indentations from the release gap to the largest load; denser near the fold, where they
+ * differ most. `lowest`: nothing below this is visited. */
+static double distance(const nt_plan *plan, const rivals *laws, double lowest)
 {
     enum { SAMPLES = 96 };
-    const double fold = -plan->release_gap;
-    const double deepest = plan->largest_indentation;
-    const double scale = quantity == (nt_quantity)(int)plan->demand.quantity ? plan->scale : pull_of(plan);
+    const double fold = -plan->release_gap, deepest = plan->largest_indentation;
     double largest = 0.0;
     for (int i = 1; i <= SAMPLES; ++i) {
         const double t = (double)i / SAMPLES, d = fold + t * t * (deepest - fold);
-        if (d < lowest)
-            continue;
-        const double truth = nt_plan_pick(truth_at(plan, d), quantity);
-        largest = fmax(largest, fabs(nt_plan_pick(other(plan, d), quantity) - truth) / fmax(fabs(truth), scale));
+        if (d >= lowest)
+            largest = fmax(largest, difference(plan, laws, d));
     }
     return largest;
 }
 
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 {
-    contact_law *const law = form == NT_FORM_SERIES ? series_at : form == NT_FORM_TABLE ? table_at : hertz_at;
-    return distance(plan, full_at, law, -INFINITY, (nt_quantity)(int)plan->demand.quantity);
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    return distance(plan, &(rivals){full_at, form == NT_FORM_SERIES ? series_at : hertz_at, quantity}, -INFINITY);
+}
+
+double nt_plan_away_from_folds(const nt_plan *plan)
+{
+    const double longest = fmax(fabs(plan->release_gap), plan->length);
+    return plan->source == NT_ADHESION_NONE ? 0.0 : AWAY_FROM_FOLDS * longest * cbrt(nt_plan_largest_ratio(plan));
+}
+
+/* Stiffness and radius begin as roots of the distance to the fold or to first touch, which move with the radius: they
+ * differ most where the bound begins. */
+static double curvature_distance(const nt_plan *plan, const rivals *laws)
+{
+    if (laws->quantity == NT_QUANTITY_FORCE)
+        return distance(plan, laws, -INFINITY);
+    const double begins = 2.0 * nt_plan_curvature_shift(plan) + nt_plan_away_from_folds(plan);
+    const double fold = begins - plan->release_gap;
+    const double touch = begins + plan->maugis.folds.touch_indentation * plan->maugis.indentation_scale;
+    const double largest = fmax(distance(plan, laws, fold), difference(plan, laws, fold));
+    return touch > fold ? fmax(largest, difference(plan, laws, touch)) : largest;
 }
 
 double nt_plan_curvature_distance(const nt_plan *plan)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    return fmax(distance(plan, sharpest_at, full_at, -INFINITY, quantity),
-                distance(plan, bluntest_at, full_at, -INFINITY, quantity));
+    return fmax(curvature_distance(plan, &(rivals){sharpest_at, full_at, quantity}),
+                curvature_distance(plan, &(rivals){bluntest_at, full_at, quantity}));
 }
 
 void nt_plan_rivals_of(nt_plan *plan)
 {
     const double last = 0.9 * plan->maugis.folds.pull_off_indentation * plan->maugis.indentation_scale;
-    plan->rivals.hertz = distance(plan, full_at, hertz_at, 0.0, NT_QUANTITY_FORCE);
-    plan->rivals.dmt = distance(plan, full_at, dmt_at, 0.0, NT_QUANTITY_FORCE);
-    plan->rivals.jkr = distance(plan, full_at, jkr_at, last, NT_QUANTITY_FORCE);
+    plan->rivals.hertz = distance(plan, &(rivals){full_at, hertz_at, NT_QUANTITY_FORCE}, 0.0);
+    plan->rivals.dmt = distance(plan, &(rivals){full_at, dmt_at, NT_QUANTITY_FORCE}, 0.0);
+    plan->rivals.jkr = distance(plan, &(rivals){full_at, jkr_at, NT_QUANTITY_FORCE}, last);
 }

@@ -23,11 +23,15 @@ nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, doubl
     return form == NT_FORM_OFF ? none : nt_term_rows[term]->eval(nt_term_law(plan, term), form, gap);
 }
 
-double nt_plan_beside_at(const nt_plan *plan, double gap)
+nt_law_value nt_plan_beside_at(const nt_plan *plan, double gap)
 {
-    double sum = 0.0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        sum += nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap).F;
+    nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
+        sum.U += value.U;
+        sum.F += value.F;
+        sum.k += value.k;
+    }
     return sum;
 }
 

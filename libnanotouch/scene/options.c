@@ -11,7 +11,9 @@
 /* Measured cost of a surface, in evaluations of an inlined Hertz law (tests/bench/bench_plan.c). */
 #define COST_HEIGHT 15.0 /* height and slopes */
 #define COST_PLACE 28.0  /* and the effective radius */
-#define LAST_BITS 1e-15  /* of each term beside contact: large ones can cancel to a small sum */
+#define LAST_BITS                                                                                                      \
+    5e-15 /* of each term beside contact, within which a difference loses some, too; large ones can cancel to a small  \
+             sum */
 
 void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_form form, double error)
 {
@@ -26,20 +28,25 @@ double nt_plan_share(const nt_plan *plan, double error)
     return error == 0.0 ? 0.0 : error / plan->scale;
 }
 
-/* The largest difference of a form to the fullest one, over the gaps of the range. */
+static double difference(const nt_plan *plan, int term, nt_form form, double gap)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    return fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
+                nt_plan_pick(nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap), quantity));
+}
+
+/* The largest difference of a form to the fullest one, over the gaps of the range; as a rule it is just outside the
+ * hold, where both are steepest. */
 static double form_distance(const nt_plan *plan, int term, nt_form form, double nearest)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    const nt_form full = nt_plan_full_form(plan, term);
-    if (form == full || quantity == NT_QUANTITY_RADIUS || quantity == NT_QUANTITY_FOLDS)
+    if (form == nt_plan_full_form(plan, term) || quantity == NT_QUANTITY_RADIUS || quantity == NT_QUANTITY_FOLDS)
         return 0.0;
-    double largest = 0.0;
+    const double outside = fmax(nearest, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12));
+    double largest = fmax(difference(plan, term, form, nearest), difference(plan, term, form, outside));
     for (double gap = fmax(nearest, 1e-13); gap < 1e-1; gap *= 1.1)
-        largest = fmax(largest, fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
-                                     nt_plan_pick(nt_plan_law_eval(plan, term, full, gap), quantity)));
-    const double held = fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, nearest), quantity) -
-                             nt_plan_pick(nt_plan_law_eval(plan, term, full, nearest), quantity));
-    return NT_SAMPLED * fmax(largest, held);
+        largest = fmax(largest, difference(plan, term, form, gap));
+    return NT_SAMPLED * largest;
 }
 
 /* Beside contact every term grows with the effective radius, as for gaps that are small against it. */

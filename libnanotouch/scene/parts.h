@@ -43,9 +43,9 @@ void nt_plan_local_facts(nt_plan *plan, double maximum_load);
 nt_status nt_plan_tabulate(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* ... then what depends on the contact, and what it leaves of w. */
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
-/* One of these terms in a form at a gap; the sum of all of them in full [N]. */
+/* One of these terms in a form at a gap; the sum of all of them in full. */
 nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, double gap);
-double nt_plan_beside_at(const nt_plan *plan, double gap);
+nt_law_value nt_plan_beside_at(const nt_plan *plan, double gap);
 /* What is taken out of w, because a tail pulls it already (E5b) [J/m^2]. */
 double nt_plan_tail_share(const nt_plan *plan);
 /* The largest |F| or |k| of a term at all gaps from `gap` on; signs that could cancel are not trusted. */
@@ -69,6 +69,8 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load);
  * tip's own radius to the radii of the surface. */
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form);
 double nt_plan_curvature_distance(const nt_plan *plan);
+/* From which distance to a fold or to first touch on the bound holds where the folds are in place [m]. */
+double nt_plan_away_from_folds(const nt_plan *plan);
 /* What Hertz, DMT and JKR would err by, on what load control can hold, away from its fold; Hertz and DMT know contact
  * only from first touch on. */
 void nt_plan_rivals_of(nt_plan *plan);

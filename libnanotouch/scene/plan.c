@@ -50,10 +50,12 @@ static void finish(nt_plan *plan, double maximum_load)
         nt_plan_local_facts(plan, maximum_load);
     else
         plan->bound.fold_shift += nt_plan_curvature_shift(plan);
+    plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift;
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
         plan->capture_gap = plan->release_gap = plan->capture_energy = plan->release_energy = 0.0;
         plan->source = NT_ADHESION_NONE;
+        plan->fold_distance = plan->bound.fold_shift;
     }
 }
 

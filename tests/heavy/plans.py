@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random scenes: is the planned force ever farther from the reference than the plan says? ``make heavy``
+"""Random scenes: is what a plan computes ever farther from the truth than the plan says? ``make heavy``
 
-Every second scene is near a preset, every second one extreme (tests/python/random_scenes.py); demands are spread evenly
-over the decades from 1e-6 to 0.3. A violation prints the seed that makes the scene again.
+Every second scene is near a preset, every second one extreme (tests/python/random_scenes.py); the quantity is
+drawn, too, and demands are spread evenly over the decades from 1e-6 to 0.3. The truth shares nothing with the library
+(tests/python/oracle.py). A violation prints the seed that makes the scene again. With ``--rows FILE`` every row is
+written there when it is measured, and one that is there already is not measured again.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
@@ -29,7 +31,9 @@ from nanotouch.errors import Error
 class Row(NamedTuple):
     """One scene."""
 
+    surface: str
     seed: int
+    quantity: str
     refusal: str = ""
     error: float = 0.0
     bound: float = 0.0
@@ -43,29 +47,26 @@ class Row(NamedTuple):
         return not self.refusal and not (self.error <= self.bound <= self.demand and self.folds_hold)
 
 
-def on_a_flat(seed: int) -> Row:
-    """Plan, compare, and what came of it."""
+def measure(job: tuple[str, int]) -> Row:
+    """Plan, compare, and what came of it; over bumps for tips whose contact follows the radius of each place."""
+    surface, seed = job
     rng = np.random.default_rng(seed)
     scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
+    quantity = str(rng.choice(random_scenes.QUANTITIES))
     demand = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
-    return row_of(seed, demand, random_scenes.compare(scene, demand))
-
-
-def on_bumps(seed: int) -> Row:
-    """The same over a random surface, for tips whose contact follows the radius of each place."""
-    rng = np.random.default_rng(seed)
-    scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
-    scene.tip.shape = "paraboloid"
-    demand = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
-    return row_of(seed, demand, random_scenes.compare_over(scene, cycles.bumpy(scene, seed), demand, rng))
-
-
-def row_of(seed: int, demand: float, outcome: random_scenes.Outcome | Error) -> Row:
+    if surface == "flat":
+        outcome = random_scenes.compare(scene, demand, quantity)
+    else:
+        scene.tip.shape = "paraboloid"
+        outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed), demand, rng, quantity)
     if isinstance(outcome, Error):
-        return Row(seed, refusal=re.split(r"[ =:]", str(outcome).removeprefix("plan: "), maxsplit=1)[0])
+        refusal = re.split(r"[ =:]", str(outcome).removeprefix("plan: "), maxsplit=1)[0]
+        return Row(surface, seed, quantity, refusal)
     plan = outcome.plan
+    if plan.explain()["yields"]:
+        return Row(surface, seed, quantity, "yields, which has a sampler of its own")
     full = float(plan.explain()["full_cost"])
-    return Row(seed, "", outcome.error, plan.bound, demand, outcome.folds_hold, plan.cost, full)
+    return Row(surface, seed, quantity, "", outcome.error, plan.bound, demand, outcome.folds_hold, plan.cost, full)
 
 
 def report(rows: list[Row]) -> int:
@@ -76,35 +77,58 @@ def report(rows: list[Row]) -> int:
     for field, count in Counter(row.refusal for row in rows if row.refusal).most_common():
         print(f"  refused, {field}: {count}")
     for row in violations:
-        print(f"  VIOLATION: seed {row.seed}: {row}")
+        print(f"  VIOLATION: {row}")
     print(f"violations: {len(violations)}")
-    ratios = np.array([row.error / row.bound for row in planned if row.bound > 0.0])
-    quantiles = np.quantile(ratios, [0.1, 0.25, 0.5, 0.75, 0.9, 1.0])
-    print("true error / bound, 10 25 50 75 90 100 %: " + " ".join(f"{q:.3g}" for q in quantiles))
-    coarse = max(row.cost for row in planned if row.demand >= 1e-4)
-    print(f"largest cost: {max(row.cost for row in planned):.3g} Hertz evaluations, for 1e-4 and above {coarse:.3g}")
+    for quantity in random_scenes.QUANTITIES:
+        chosen = [row for row in planned if row.quantity == quantity and row.bound > 0.0]
+        if not chosen:
+            continue
+        quantiles = np.quantile([row.error / row.bound for row in chosen], [0.1, 0.25, 0.5, 0.75, 0.9, 1.0])
+        text = " ".join(f"{q:.3g}" for q in quantiles)
+        print(f"{quantity}, {len(chosen)}: true error / bound, 10 25 50 75 90 100 %: {text}")
+    coarse = max((row.cost for row in planned if row.demand >= 1e-4), default=0.0)
+    largest = max((row.cost for row in planned), default=0.0)
+    print(f"largest cost: {largest:.3g} Hertz evaluations, for 1e-4 and above {coarse:.3g}")
     print(f"dearer than everything exact: {sum(row.cost > row.exact_cost for row in planned)}")
     return len(violations)
 
 
-def run(measure: Callable[[int], Row], seeds: range, jobs: int) -> int:
-    if jobs == 1:
-        return report([measure(seed) for seed in seeds])
+def rows_of(path: Path | None) -> list[Row]:
+    """What has been measured before; a last line that was cut off is not among it."""
+    if path is None or not path.exists():
+        return []
+    rows = []
+    for line in path.read_text().splitlines(keepends=True):
+        if line.endswith("\n"):
+            rows.append(Row(*json.loads(line)))
+    return rows
+
+
+def run(surface: str, seeds: range, jobs: int, path: Path | None) -> int:
+    rows = [row for row in rows_of(path) if row.surface == surface and row.seed in seeds]
+    done = {row.seed for row in rows}
+    missing = [(surface, seed) for seed in seeds if seed not in done]
     with ProcessPoolExecutor(jobs) as pool:
-        return report(list(pool.map(measure, seeds, chunksize=20)))
+        for row in pool.map(measure, missing, chunksize=20):
+            rows.append(row)
+            if path is not None:
+                with path.open("a") as stream:
+                    print(json.dumps(row), file=stream)
+    return report(rows)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=10_000)
-    parser.add_argument("--surfaces", type=int, default=1000, help="of them again over a surface")
+    parser.add_argument("--scenes", type=int, default=20_000)
+    parser.add_argument("--surfaces", type=int, default=2000, help="of them again over a surface")
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--rows", type=Path, help="file of what has been measured")
     options = parser.parse_args()
     first = options.first
-    failed = run(on_a_flat, range(first, first + options.scenes), options.jobs)
+    failed = run("flat", range(first, first + options.scenes), options.jobs, options.rows)
     print("over bumpy surfaces:")
-    failed += run(on_bumps, range(first, first + options.surfaces), options.jobs)
+    failed += run("bumpy", range(first, first + options.surfaces), options.jobs, options.rows)
     return failed > 0
 
 

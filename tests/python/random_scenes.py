@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random scenes over the presets' neighbourhoods and the extremes, and how a plan stands to the reference there."""
+"""Random scenes over the presets' neighbourhoods and the extremes, and how a plan stands to the oracle there."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import cycles
 import numpy as np
-from nanotouch import Interaction, Scene, Surface, presets, reference
+from nanotouch import Interaction, Scene, Surface, presets
+from nanotouch._arrays import Floats
 from nanotouch.errors import Error
 from nanotouch.plan import Plan
+from oracle import Oracle
 
 PRESETS = (
     "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots", "cell_in_liquid",
@@ -67,88 +71,115 @@ def _fill(scene: Scene, rng: np.random.Generator) -> None:
 
 
 class Outcome(NamedTuple):
-    """A plan beside the reference."""
+    """A plan beside the oracle."""
 
     plan: Plan
     error: float
-    """largest |dF| over max(|F|, scale), away from folds"""
+    """largest error of the demanded quantity over max(|it|, scale), as far from folds as the plan says"""
     folds_hold: bool
-    """whether the reference has its folds where the plan has, within the stated shift"""
+    """whether the folds are where the oracle has them, within the stated shift"""
 
 
-def gaps_of(plan: Plan, scene: Scene, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """From 1 cm to the largest load, denser where the force changes."""
+QUANTITIES = ("force", "stiffness", "radius", "folds")
+
+
+def oracle_of(scene: Scene, plan: Plan) -> Oracle:
+    """With the w of the plan where that is to be found for a measured pull-off force, which it has to pull off with."""
+    truth = Oracle(scene)
+    if scene.adhesion.given == "pull_off_force" and truth.adhesion.work == 0.0 and plan.explain()["release_gap"] != 0.0:
+        planned = plan.explain()["work_of_adhesion"]
+        truth = Oracle(scene, planned)
+        truth = Oracle(scene, planned + truth.tail)
+        np.testing.assert_allclose(truth.pull_off(), scene.adhesion.pull_off_force, rtol=1e-8)
+    return truth
+
+
+def gaps_of(plan: Plan, scene: Scene, count: int, roots: Sequence[float] = ()) -> Floats:
+    """From 1 cm to the largest load, denser where the force changes; as near to the roots as the bound holds."""
     facts = plan.explain()
     lowest = scene.range.minimum_gap
     near = max(abs(facts["release_gap"]), abs(facts["capture_gap"]), 1e-12)
     deepest = -max(facts["largest_indentation"], 1e-15)
+    beside = np.geomspace(max(1.001 * plan.fold_distance_m, 1e-15), max(near, 1e-14), count // 3)
     gaps = np.concatenate([
         np.geomspace(1e-2, 1e-3 * near, count),
         np.linspace(1.2 * near, -1.2 * near, count),
         np.geomspace(1e-3 * deepest, deepest, count),
+        *(root + sign * beside for root in roots for sign in (-1.0, 1.0)),
+        *(edge * (1.0 + np.array([1e-9, 1e-3])) for edge in (near, scene.adhesion.equilibrium_distance)),
     ])  # fmt: skip
-    return gaps[(gaps >= lowest) & (gaps >= deepest)]
+    return np.asarray(gaps[(gaps >= lowest) & (gaps >= deepest)])
 
 
-def compare(scene: Scene, rtol: float, count: int = 40) -> Outcome | Error:
+def largest_error(value: Any, truth: Any, quantity: str, scale: float) -> float:
+    """Over max(|truth|, scale); infinite for what is no number."""
+    name = {"force": ("Fz", "F"), "stiffness": ("k", "k"), "radius": ("a", "a")}[quantity]
+    planned, true = getattr(value, name[0]), getattr(truth, name[1])
+    share = np.abs(planned - true) / np.maximum(np.maximum(np.abs(true), scale), 1e-300)
+    return float(share.max(initial=0.0)) if np.isfinite(share).all() else math.inf
+
+
+def compare(scene: Scene, rtol: float, quantity: str = "force", count: int = 40) -> Outcome | Error:
     """Plan and measure; a refusal is an answer, too."""
     try:
-        plan = scene.plan(rtol)
+        plan = scene.plan(rtol, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
         return refusal
-    gaps = gaps_of(plan, scene, count)
-    worst = 0.0
-    facts = plan.explain()
-    if facts["yields"]:  # measured against its own truth, which is slow: test_yielding, tests/heavy/yielding.py
+    if plan.explain()["yields"]:  # has a truth of its own, which is slow: test_yielding, tests/heavy/yielding.py
         return Outcome(plan, 0.0, True)
-    folds = np.array([facts["capture_gap"], facts["release_gap"]])
-    for history in ("approach", "retract"):
-        # far from a fold by more than rounding and the stated shift: on its two sides the forces differ by all of it
-        away = np.abs(gaps[:, None] - folds).min(axis=1) > 1e-9 * np.abs(folds).max() + plan.fold_shift_m
-        truth = np.asarray(reference.force(scene, gaps, history=history))[away]
-        planned = np.array([plan.force(gap, history) for gap in gaps[away]])
-        error = np.abs(planned - truth)
-        scale = np.maximum(np.abs(truth), plan.scale)
-        if not np.isfinite(planned).all():
-            return Outcome(plan, np.inf, False)
-        share = np.divide(error, scale, out=np.zeros_like(error), where=error != 0)
-        worst = float(np.maximum(worst, share.max(initial=0.0)))  # max() may lose a NaN
-    return Outcome(plan, worst, _folds_hold(plan, scene))
+    truth = oracle_of(scene, plan)
+    return _compare_at(Place(0.0, 0.0, 0.0, None), plan, truth, gaps_of(plan, scene, count, truth.roots()))
 
 
-def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Generator) -> Outcome | Error:
-    """A plan over a surface, and its largest error against the reference with the radius of each place."""
+def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Generator, quantity: str = "force") -> Any:
+    """A plan over a surface, and its largest error against the oracle with the radius of each place."""
     try:
-        plan = scene.plan(rtol, surface=body)
+        plan = scene.plan(rtol, surface=body, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
         return refusal
-    gaps = gaps_of(plan, scene, 12)
-    width, worst = body.size[0], 0.0
+    truth, worst, hold = oracle_of(scene, plan), 0.0, True
     for _ in range(5):
-        x, y = rng.uniform(0.1 * width, 0.8 * width, 2)
-        radius = body.radius_map.radius(x, y).radius
-        poses = np.column_stack([np.full_like(gaps, x), np.full_like(gaps, y), body.height(x, y) + gaps])
-        release = cycles.release_gaps(plan, poses[:1] - [0.0, 0.0, gaps[0]])[0]
-        folds = np.array([plan.explain()["capture_gap"], release])
-        away = np.abs(gaps[:, None] - folds).min(axis=1) > 1e-6 * np.abs(folds).max() + plan.fold_shift_m
-        # heights of a surface beside small gaps: the gap that is felt is rounded
-        away &= np.abs(gaps) > 1e-5 * np.abs(folds).max()
-        for history in ("approach", "retract"):
-            value = Interaction(plan, history).eval(poses)  # type: ignore[arg-type]
-            truth = np.asarray(reference.force(scene, value.gap, history=history, radius=radius))  # type: ignore[arg-type]
-            error = np.abs(value.Fz - truth) / np.maximum(np.maximum(np.abs(truth), plan.scale), 1e-300)
-            worst = float(np.maximum(worst, error[away].max(initial=0.0)))
-    return Outcome(plan, worst, True)
+        x, y = rng.uniform(0.1 * body.size[0], 0.8 * body.size[0], 2)
+        place = Place(x, y, float(body.height(x, y)), float(body.radius_map.radius(x, y).radius))
+        outcome = _compare_at(place, plan, truth, gaps_of(plan, scene, 12, truth.roots(place.radius)))
+        worst, hold = float(np.maximum(worst, outcome.error)), hold and outcome.folds_hold
+    return Outcome(plan, worst, hold)
 
 
-def _folds_hold(plan: Plan, scene: Scene) -> bool:
-    """The reference is in contact just inside the planned capture and release gaps, and not just outside."""
+class Place(NamedTuple):
+    """Of a surface [m]; no radius: the tip's own."""
+
+    x: float
+    y: float
+    z: float
+    radius: float | None
+
+
+def _compare_at(place: Place, plan: Plan, truth: Oracle, gaps: Floats) -> Outcome:
+    roots, worst = np.array(truth.roots(place.radius)), 0.0
+    poses = np.column_stack([np.full_like(gaps, place.x), np.full_like(gaps, place.y), place.z + gaps])
+    shift, hold = _shift_of_folds(place, plan, truth)
+    if plan.quantity == "folds":
+        return Outcome(plan, shift / plan.scale if shift > 0.0 else 0.0, hold)
+    for history in ("approach", "retract"):
+        value = Interaction(plan, history).eval(poses)  # type: ignore[arg-type]
+        away = np.abs(value.gap[:, None] - roots).min(axis=1) > plan.fold_distance_m
+        value = type(value)(*(column[away] for column in value))
+        exact = truth.values(value.gap, history, place.radius)
+        worst = float(np.maximum(worst, largest_error(value, exact, plan.quantity, plan.scale)))
+    return Outcome(plan, worst, hold)
+
+
+def _shift_of_folds(place: Place, plan: Plan, truth: Oracle) -> tuple[float, bool]:
+    """How far capture and release are off [m], but for rounding; whether the plan says so."""
     facts = plan.explain()
-    if not np.isfinite(facts["lambda"]) or facts["adhesion_source"] == "none":
-        return True
-    for history, name in (("approach", "capture_gap"), ("retract", "release_gap")):
-        margin = plan.fold_shift_m + 1e-9 * abs(facts[name])
-        inside, outside = reference.forces(scene, facts[name] + np.array([-margin, margin]), history=history).contact
-        if inside == 0.0 or outside != 0.0:
-            return False
-    return True
+    if truth.left == 0.0 or facts["terms"][0]["form"] == "off":
+        return 0.0, True
+    release, capture = -max(truth.contact(place.radius).roots(), key=abs), truth.adhesion.capture
+    planned = facts["release_gap"]
+    if place.radius is not None:
+        ground = np.array([[place.x, place.y, place.z]])
+        planned = float(cycles.release_gaps(plan, ground)[0])
+    shift = max(abs(planned - release), abs(facts["capture_gap"] - capture))
+    rounding = 1e-9 * max(abs(release), capture)
+    return max(shift - rounding, 0.0), shift <= plan.fold_shift_m + rounding

@@ -162,18 +162,35 @@ def test_what_is_left_out_is_named_with_its_bound() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_planned_forces_keep_the_bound(seed: int) -> None:
-    """60 scenes near presets and at the extremes; ``make heavy`` does 10 000 (tests/heavy/plans.py)."""
+def test_plans_keep_the_bound(seed: int) -> None:
+    """60 scenes near presets and at the extremes, any quantity; ``make heavy`` does 20 000 (tests/heavy/plans.py)."""
     rng = np.random.default_rng(seed)
     for index in range(60):
         scene = (random_scenes.near_preset if index % 2 else random_scenes.extreme)(rng)
         rtol = 10.0 ** rng.uniform(-6, math.log10(0.3))
-        outcome = random_scenes.compare(scene, rtol)
+        outcome = random_scenes.compare(scene, rtol, str(rng.choice(random_scenes.QUANTITIES)))
         if isinstance(outcome, Error):
             assert any(name in str(outcome) for name in (*scene.fields, "demand.")), outcome
             continue
         assert outcome.error <= outcome.plan.bound <= rtol, (index, repr(outcome.plan))
         assert outcome.folds_hold, (index, repr(outcome.plan))
+
+
+@pytest.mark.parametrize("quantity", ["force", "stiffness", "radius"])
+@pytest.mark.parametrize("name", ["mica_in_air", "polyester", "silicone_rubber", "lambda 0.7", "lambda 0.93"])
+def test_bounds_hold_beside_the_folds(name: str, quantity: str) -> None:
+    """3000 gaps crowding at capture, release and first touch, where k goes to infinity or has a kink."""
+    if name in PRESETS:
+        scene = getattr(presets, name)()[0]
+    else:
+        modulus = {"lambda 0.7": 4.54e9, "lambda 0.93": 2.964e9}[name]
+        scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.05, "hamaker_constant": 1e-20},
+                      sample={"youngs_modulus": modulus})  # fmt: skip
+    for rtol in (1e-6, 1e-4, 1e-2):
+        outcome = random_scenes.compare(scene, rtol, quantity, count=1000)
+        assert not isinstance(outcome, Error)
+        assert outcome.plan.fold_distance_m < 2e-4 * outcome.plan.explain()["release_gap"]
+        assert outcome.error <= outcome.plan.bound <= rtol
 
 
 def test_large_terms_that_cancel_lose_bits() -> None:

@@ -123,7 +123,10 @@ def _folds(facts: dict[str, Any]) -> str:
     without = facts["adhesion_source"] == "none" and facts["fold_shift"] == 0.0
     if without or not _terms(facts)[0].included:
         return "no folds"
-    return "folds in place" if shift < _IN_PLACE else f"folds within {in_words(shift, 'm', 2)}"
+    text = "folds in place" if shift < _IN_PLACE else f"folds within {in_words(shift, 'm', 2)}"
+    if facts["quantity"] == "folds":
+        return text
+    return f"{text}, bound from {in_words(facts['fold_distance'], 'm', 2)} beside them on"
 
 
 def _numbers(contact: Term, facts: dict[str, Any]) -> str:

@@ -63,7 +63,8 @@ class Plan:
 
     @property
     def bound(self) -> float:
-        """Largest error of the demanded quantity over max(\\|it\\|, its scale), away from folds: all terms together."""
+        """Largest error of the demanded quantity over max(\\|it\\|, its scale), all terms together, at gaps that are
+        farther than :attr:`fold_distance_m` from a fold and from first touch."""
         return float(self._facts["bound"])
 
     @property
@@ -81,6 +82,12 @@ class Plan:
     def fold_shift_m(self) -> float:
         """How far the folds (jump-in, pull-off under grips) may be off, as a gap [m]."""
         return float(self._facts["fold_shift"])
+
+    @property
+    def fold_distance_m(self) -> float:
+        """How far from a fold, and from the gap where contact begins with no radius, the bound holds [m]: nearer, force
+        and radius change as the root of the distance and stiffness as its inverse root."""
+        return float(self._facts["fold_distance"])
 
     @property
     def model_error(self) -> float:

@@ -28,6 +28,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
 {
     out["bound"] = plan.bound.force_error;
     out["fold_shift"] = plan.bound.fold_shift;
+    out["fold_distance"] = plan.fold_distance;
     out["model_error"] = plan.bound.model_error;
     out["cost"] = plan.cost;
     out["full_cost"] = plan.full_cost;

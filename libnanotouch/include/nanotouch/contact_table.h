@@ -58,6 +58,15 @@ NT_API int nt_maugis_table_cells(const nt_maugis *maugis, const nt_maugis_table_
 NT_API nt_status nt_maugis_table_init(nt_maugis_table *table, const nt_maugis *maugis,
                                       const nt_maugis_table_options *options, nt_maugis_cell *cells, int capacity);
 
+/* How far NT_TIER_TABLE is from the exact law, as near to a fold as rounding leaves it. */
+typedef struct nt_table_error {
+    double stiffness; /* over max(|k|, P/delta of the units of the contact) [-] */
+    double radius;    /* over max(a, a at zero load) [-] */
+} nt_table_error;
+
+/* Measures it, which takes as long as making the table. */
+NT_API nt_table_error nt_maugis_table_error(const nt_maugis_table *table);
+
 /* As nt_maugis_eval, in a tier. */
 NT_API nt_status nt_maugis_table_eval(const nt_maugis_table *table, nt_tier tier, double indentation, nt_branch branch,
                                       nt_law_value *value);

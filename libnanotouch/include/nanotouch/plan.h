@@ -87,10 +87,11 @@ typedef struct nt_yield_table {
 /* Immutable after nt_plan_make. It refers to itself: share it by pointer; copy it with nt_plan_copy only. */
 typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
-    nt_accuracy bound; /* force_error: of the demanded quantity; model_error: of Maugis-Dugdale beside Lennard-Jones,
-                          NaN where not known */
-    double cost;       /* of one evaluation [Hertz evaluations] */
-    double full_cost;  /* of everything on, exact [Hertz evaluations] */
+    nt_accuracy bound;    /* force_error: of the demanded quantity; model_error: of Maugis-Dugdale beside Lennard-Jones,
+                             NaN where not known */
+    double fold_distance; /* from this far from a fold and from first touch on the bound holds [m] */
+    double cost;          /* of one evaluation [Hertz evaluations] */
+    double full_cost;     /* of everything on, exact [Hertz evaluations] */
     double scale; /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy), a thousandth of the
                    * largest load where nothing pulls [N, N/m, m] */
     nt_demand demand;   /* as given */

@@ -3,15 +3,16 @@
  * scene/contact.c's.
  *
  * Contact is off by at most e max(|X_c|, S), X_c its part of the demanded quantity X. With T the largest that the terms
- * beside contact come to, |X_c| <= |X| + T, so that its share is e (1 + T/S); of a force T need only be their largest
- * attraction, since X_c <= |X| + T then, and X_c >= -S. */
+ * beside contact come to where there can be contact, |X_c| <= |X| + T, so that its share is e (1 + T/S); of a force T
+ * need only be their largest attraction, since X_c <= |X| + T then, and X_c >= -S. */
 #include <math.h>
 #include <stddef.h>
 
 #include "scene/terms/term.h"
 
 #define TABLED 2.0     /* the error of a table oscillates within its cells: what was sampled may be half of it */
-#define ROUNDING 1e-12 /* polished and exact tiers, away from folds (docs/contact.md) */
+#define ROUNDING 1e-12 /* of a force in polished and exact tiers, away from folds (docs/contact.md) */
+#define ROOTS 4e-11    /* and of stiffness and radius, which go as a root there: 32 DBL_EPSILON over twice 1e-4 */
 
 /* The rows of `forms` whose words and cost depend on more than the form; before them those of nt_shape_kind. */
 enum { IN_PLACE_OF_SPHERE = 6, IN_PLACE_OF_BLUNTED, LOCAL_HERTZ, LOCAL_MAUGIS, OTHERS };
@@ -59,9 +60,11 @@ static void offer(const nt_plan *plan, nt_plan_options *options, nt_form form, d
 }
 
 /* Of contact, which other terms may hide; of what hides contact there is no less. */
-static double rounding(double more)
+static double rounding(const nt_plan *plan, double more)
 {
-    return ROUNDING * fmax(more, 1.0);
+    const int is_root = plan->source != NT_ADHESION_NONE &&
+                        (plan->demand.quantity == NT_QUANTITY_STIFFNESS || plan->demand.quantity == NT_QUANTITY_RADIUS);
+    return (is_root ? ROOTS : ROUNDING) * fmax(more, 1.0);
 }
 
 /* What leaving out the curvature of the surface costs beside contact. */
@@ -89,57 +92,102 @@ static void offer_local(const nt_plan *plan, nt_plan_options *options, double mo
     if (!nt_plan_is_curved(plan))
         return;
     if (plan->source == NT_ADHESION_NONE) {
-        offer(plan, options, NT_FORM_LOCAL, rounding(more));
+        offer(plan, options, NT_FORM_LOCAL, rounding(plan, more));
         return;
     }
     if (plan->bank) {
         const double error = nt_plan_bank_error(plan, (nt_quantity)(int)plan->demand.quantity);
-        offer(plan, options, NT_FORM_LOCAL, more * (error + ROUNDING));
+        offer(plan, options, NT_FORM_LOCAL, more * error + rounding(plan, more));
     }
-    offer(plan, options, NT_FORM_LOCAL_EXACT, more * ROUNDING);
+    offer(plan, options, NT_FORM_LOCAL_EXACT, rounding(plan, more));
+}
+
+/* Of the table. Its units of stiffness and its radius at zero load are the scale S of these. */
+static double table_error(const nt_plan *plan, nt_quantity quantity)
+{
+    const nt_accuracy *accuracy = &plan->table.accuracy[NT_TIER_TABLE];
+    switch (quantity) {
+    case NT_QUANTITY_STIFFNESS:
+        return nt_maugis_table_error(&plan->table).stiffness;
+    case NT_QUANTITY_RADIUS:
+        return nt_maugis_table_error(&plan->table).radius;
+    case NT_QUANTITY_FOLDS:
+        return nt_plan_share(plan, accuracy->fold_shift);
+    default:
+        return TABLED * accuracy->force_error * fmax(1.0, nt_plan_share(plan, nt_maugis_pull_off_force(&plan->maugis)));
+    }
 }
 
 /* Contact of tips that adhesion makes Maugis-Dugdale's. */
 static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    double table = TABLED * plan->table.accuracy[NT_TIER_TABLE].force_error;
-    if (quantity == NT_QUANTITY_FOLDS)
-        table = nt_plan_share(plan, plan->table.accuracy[NT_TIER_TABLE].fold_shift);
-    else if (quantity != NT_QUANTITY_FORCE)
-        table = TABLED * nt_plan_contact_distance(plan, NT_FORM_TABLE);
-    else
-        table *= fmax(1.0, nt_plan_share(plan, nt_maugis_pull_off_force(&plan->maugis)));
+    const double table = table_error(plan, quantity);
     const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
     if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)
         offer(plan, options, NT_FORM_SHAPE,
               NT_SAMPLED * more * nt_plan_contact_distance(plan, NT_FORM_PARABOLOID) + plan->curvature_error);
-    offer(plan, options, NT_FORM_TABLE, more * table + ROUNDING + plan->curvature_error);
-    offer(plan, options, NT_FORM_POLISHED, more * 2.0 * ROUNDING + plan->curvature_error);
-    offer(plan, options, NT_FORM_EXACT, more * ROUNDING + plan->curvature_error);
+    const double bits = rounding(plan, more);
+    offer(plan, options, NT_FORM_TABLE, more * table + bits + plan->curvature_error);
+    offer(plan, options, NT_FORM_POLISHED, 2.0 * bits + plan->curvature_error);
+    offer(plan, options, NT_FORM_EXACT, bits + plan->curvature_error);
     offer_local(plan, options, more);
+}
+
+/* The largest gap at which there can be contact. */
+static double reach_of(const nt_plan *plan)
+{
+    const double reach = fmax(plan->capture_gap, plan->release_gap);
+    if (!nt_plan_is_curved(plan))
+        return reach;
+    return fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum));
 }
 
 /* The largest attraction of all beside contact, at the gaps where there can be contact; all is held inside 0. */
 static double opposing(const nt_plan *plan)
 {
-    double reach = fmax(plan->capture_gap, plan->release_gap), pull = fmax(-nt_plan_beside_at(plan, 0.0), 0.0);
-    if (nt_plan_is_curved(plan))
-        reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum));
-    for (double gap = reach; gap > 1e-13; gap *= 0.9)
-        pull = fmax(pull, -NT_SAMPLED * nt_plan_beside_at(plan, gap));
+    double pull = fmax(-nt_plan_beside_at(plan, 0.0).F, 0.0);
+    for (double gap = reach_of(plan); gap > 1e-13; gap *= 0.9)
+        pull = fmax(pull, -NT_SAMPLED * nt_plan_beside_at(plan, gap).F);
     return pull * nt_plan_largest_ratio(plan);
 }
 
-/* How much larger the share of contact is than its own error, 1 + T/S; `beside`: all that the other terms come to.
+/* max(|k_c|, S)/max(|k|, S) at a gap, at most: |k| >= |k_c| - T. Over a surface k_c is that of no one radius, and the
+ * worst of all k_c is S + T. */
+static double more_stiffness_at(const nt_plan *plan, double gap)
+{
+    const double T = NT_SAMPLED * nt_plan_largest_ratio(plan) * fabs(nt_plan_beside_at(plan, gap).k), S = plan->scale;
+    const nt_form full = nt_plan_contact_form(plan);
+    if (nt_plan_is_curved(plan))
+        return 1.0 + T / S;
+    const double k = fabs(nt_plan_contact_eval(plan, full == NT_FORM_EXACT ? NT_FORM_POLISHED : full, -gap).k);
+    return fmax(k, S) / fmax(k - T, S);
+}
+
+/* The largest of it at the gaps where there can be contact; terms that are held have no stiffness. */
+static double more_stiffness(const nt_plan *plan)
+{
+    const double reach = reach_of(plan);
+    double more = 1.0;
+    for (double gap = reach; gap > 1e-13; gap *= 0.95)
+        more = fmax(more, more_stiffness_at(plan, gap));
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (nt_plan_hold_gap(plan, term) < reach)
+            more = fmax(more, more_stiffness_at(plan, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12)));
+    return more;
+}
+
+/* How much larger the share of contact is than its own error, at most 1 + T/S.
  * Where contact without adhesion begins the others are held: X = X_c + their sum, 0 <= X_c <= P. If that pushes,
  * max(X_c, S)/max(X, S) is largest at either end of X_c. */
-static double more_than_contact(const nt_plan *plan, const nt_scene *scene, double beside)
+static double more_than_contact(const nt_plan *plan, const nt_scene *scene)
 {
+    if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+        return more_stiffness(plan);
     if (plan->demand.quantity != NT_QUANTITY_FORCE)
-        return 1.0 + nt_plan_share(plan, nt_plan_largest_ratio(plan) * beside);
+        return 1.0;
     const double pull = opposing(plan), sharpest = plan->radii ? plan->radii->minimum / plan->contact.radius : 1.0;
-    const double push = nt_plan_beside_at(plan, 0.0) * fmin(sharpest, 1.0), S = plan->scale;
+    const double push = nt_plan_beside_at(plan, 0.0).F * fmin(sharpest, 1.0), S = plan->scale;
     if (plan->source != NT_ADHESION_NONE || pull > 0.0)
         return 1.0 + nt_plan_share(plan, pull);
     const double load = fmax(scene->range.maximum_load, S);
@@ -150,7 +198,7 @@ static double more_than_contact(const nt_plan *plan, const nt_scene *scene, doub
 static void offer_simpler(const nt_plan *plan, nt_plan_options *options, nt_form form, double more)
 {
     const double error = plan->demand.quantity == NT_QUANTITY_FOLDS ? 0.0 : nt_plan_contact_distance(plan, form);
-    offer(plan, options, form, more * NT_SAMPLED * error + rounding(more));
+    offer(plan, options, form, more * NT_SAMPLED * error + rounding(plan, more));
 }
 
 static void offer_shape(const nt_plan *plan, nt_plan_options *options, double more)
@@ -160,7 +208,7 @@ static void offer_shape(const nt_plan *plan, nt_plan_options *options, double mo
         offer_simpler(plan, options, NT_FORM_PARABOLOID, more);
     if (kind == NT_SHAPE_SPHERE && plan->largest_indentation < plan->shape.radius)
         offer_simpler(plan, options, NT_FORM_SERIES, more);
-    offer(plan, options, NT_FORM_SHAPE, rounding(more) + plan->curvature_error);
+    offer(plan, options, NT_FORM_SHAPE, rounding(plan, more) + plan->curvature_error);
     offer_local(plan, options, more);
 }
 
@@ -179,11 +227,11 @@ static void offer_none(nt_plan *plan, nt_plan_options *options, double beside)
 
 static void offer_all(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)
 {
-    const double more = more_than_contact(plan, scene, beside);
+    const double more = more_than_contact(plan, scene);
     const nt_form full = nt_plan_contact_form(plan);
     if (full == NT_FORM_EXACT)
         nt_plan_rivals_of(plan);
-    if (scene->range.minimum_gap > fmax(fmax(plan->capture_gap, plan->release_gap), 0.0)) {
+    if (scene->range.minimum_gap > fmax(reach_of(plan), 0.0)) {
         offer_none(plan, options, beside);
         return;
     }
@@ -192,7 +240,7 @@ static void offer_all(nt_plan *plan, const nt_scene *scene, nt_plan_options *opt
     if (full == NT_FORM_EXACT)
         offer_maugis(plan, options, more);
     else if (full == NT_FORM_JKR)
-        offer(plan, options, full, ROUNDING);
+        offer(plan, options, full, rounding(plan, more));
     else
         offer_shape(plan, options, more);
 }
