@@ -7,7 +7,7 @@
 
 static const uint64_t gamma64 = UINT64_C(0x9e3779b97f4a7c15); /* 2^64 over the golden ratio, odd */
 
-static uint64_t mix64(uint64_t z)
+static inline uint64_t mix64(uint64_t z)
 {
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
@@ -45,7 +45,7 @@ nt_random nt_random_seed(uint64_t seed)
     return random;
 }
 
-static double to_uniform(uint64_t bits)
+static inline double to_uniform(uint64_t bits)
 {
     return (double)(bits >> 11) * 0x1p-53;
 }
@@ -53,7 +53,7 @@ static double to_uniform(uint64_t bits)
 enum { TRIES = 32 }; /* of Marsaglia's polar method; each is accepted with probability pi/4 */
 
 /* Of two uniform numbers: 1 and a standard normal one, or 0 where the point is outside the circle. */
-static int to_normal(double first, double second, double *normal)
+static inline int to_normal(double first, double second, double *normal)
 {
     const double u = 2.0 * first - 1.0, v = 2.0 * second - 1.0, s = u * u + v * v;
     if (!(s > 0.0 && s < 1.0))
@@ -88,17 +88,22 @@ void nt_noise_seek(nt_noise *noise, uint64_t tick)
     noise->position = tick << 32;
 }
 
-double nt_noise_uniform(nt_noise *noise)
+static inline double next_uniform(nt_noise *noise)
 {
     return to_uniform(mix64(noise->key + gamma64 * ++noise->position));
+}
+
+double nt_noise_uniform(nt_noise *noise)
+{
+    return next_uniform(noise);
 }
 
 double nt_noise_normal(nt_noise *noise)
 {
     double normal = 0.0;
     for (int i = 0; i < TRIES; i++) {
-        const double first = nt_noise_uniform(noise);
-        if (to_normal(first, nt_noise_uniform(noise), &normal))
+        const double first = next_uniform(noise);
+        if (to_normal(first, next_uniform(noise), &normal))
             break;
     }
     return normal;

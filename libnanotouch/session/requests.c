@@ -90,6 +90,8 @@ static void answer(nt_session *session, const nt_call *call, nt_status status)
 void nt_session_take_calls(nt_session *session)
 {
     nt_call call;
+    if (nt_ring_count(&session->calls) == 0)
+        return;
     while (nt_ring_pop(&session->calls, &call, 1) == 1)
         answer(session, &call, apply(session, &call));
 }

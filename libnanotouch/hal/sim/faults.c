@@ -106,6 +106,8 @@ static const nt_fault *next_active(const nt_sim_link *link, nt_fault_kind kind, 
 
 static double sum_of(const nt_sim_link *link, nt_fault_kind kind)
 {
+    if (link->faults.count == 0)
+        return 0.0;
     double sum = 0.0;
     const nt_fault *fault;
     for (int i = 0; (fault = next_active(link, kind, &i)) != NULL;)
@@ -198,7 +200,7 @@ static void spoil_frame(const nt_sim_link *link, const nt_fault *fault, nt_readi
 static void stamp(const nt_sim_link *link, nt_reading *reading, double age)
 {
     const int64_t now = link->host ? link->host->now(link->host) : llround((double)link->tick * link->period * 1e9);
-    reading->time = now - llround(age * 1e9);
+    reading->time = age == 0.0 ? now : now - llround(age * 1e9);
 }
 
 /* Sensors first, then the link that carries them. */
@@ -229,6 +231,8 @@ void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *
 
 int nt_sim_lost_periods(const nt_sim_link *link)
 {
+    if (link->faults.count == 0)
+        return 0;
     return (int)fmin(sum_of(link, NT_FAULT_LATE), NT_SIM_LOST_MAX); /* of several faults */
 }
 
