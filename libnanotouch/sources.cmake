@@ -75,6 +75,7 @@ set(nanotouch_sources_scene
     scene/local.c
     scene/options.c
     scene/plan.c
+    scene/plastic.c
     scene/pull_off.c
     scene/scene.c
     scene/terms/capillary.c

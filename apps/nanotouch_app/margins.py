@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         return _recorded(args)
     tables = read_tables(args.scene) if args.scene else {}
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
-    settings = settings_for_path(rig, clearance=CLEARANCE)
+    settings = settings_for_path(rig, clearance=CLEARANCE, load=scene.range.maximum_load)
     plan = scene.plan()
     loop.scale_force(args.force_range, plan, rig, settings)
     settings.update_from_tables(tables)

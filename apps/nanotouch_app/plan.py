@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Say what has to be computed for a scene, at which cost and with which error bound.
 
-The scene is a TOML file or a preset of the paper. The demand may stand in the file ([demand]); what is given here
+The scene is a TOML file or a preset. The demand may stand in the file ([demand]); what is given here
 replaces it.
 """
 
@@ -17,13 +17,15 @@ from typing import Any
 import nanotouch as nt
 from nanotouch import presets
 from nanotouch.errors import InvalidValue
-from nanotouch.scene import Demand, Rig, Scene, read_tables
+from nanotouch.scene import Demand, Rig, Scene, Settings, read_tables
 
 from nanotouch_app.quantity import number, parse_quantity
 
-PRESETS = (
-    "silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "silicone_rubber", "inas_dots", "cell_in_liquid",
+PRESETS = tuple(presets.FELT)
+PAPER = (
+    "paper_silicon", "paper_gold", "paper_mica", "paper_polyester", "paper_silicone_rubber", "paper_inas",
 )  # fmt: skip
+"""the scenes of the paper as they stand there, up to the largest load of its rig"""
 
 OPTIONS = {"demand.relative_accuracy": "--rtol", "demand.budget": "--budget"}
 
@@ -36,7 +38,7 @@ def add_parser(subparsers: Any) -> None:
         description=__doc__,
         epilog="Exit status 2: the description is wrong, or the demand cannot be kept; the sentence says what can.",
     )
-    parser.add_argument("scene", metavar="SCENE", help=f"TOML file, or a preset: {', '.join(PRESETS)}")
+    parser.add_argument("scene", metavar="SCENE", help=f"TOML file, or a preset: {', '.join(PRESETS + PAPER)}")
     parser.add_argument(
         "--rtol", metavar="SHARE", help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6; 0: exact"
     )
@@ -72,6 +74,8 @@ def run(args: argparse.Namespace) -> int:
             sentence = sentence.replace(f"{field} =", f"{field} ({option}) =")
         raise InvalidValue(sentence) from refusal
     print(json.dumps(as_json(plan.explain()), indent=2, allow_nan=False) if args.json else plan)
+    if args.scene in PRESETS and not args.json:
+        print(f"felt: {presets.FELT[args.scene]}")
     return 0
 
 
@@ -87,11 +91,16 @@ def as_json(value: Any) -> Any:
 
 
 def _descriptions(name: str) -> tuple[Scene, Rig, Demand]:
-    if name in PRESETS:
+    if name in PRESETS + PAPER:
         return *getattr(presets, name)(), Demand()
     if not name.endswith(".toml") and not os.path.isfile(name):
-        close = difflib.get_close_matches(name, PRESETS, n=1)
+        close = difflib.get_close_matches(name, PRESETS + PAPER, n=1)
         hint = f"; did you mean {close[0]}" if close else ""
         raise InvalidValue(f"{name!r} is neither a TOML file nor a preset{hint}; presets are {', '.join(PRESETS)}")
     tables = read_tables(name)
-    return Scene.from_tables(tables), Rig.from_tables(tables), Demand.from_tables(tables)
+    scene, rig = Scene.from_tables(tables), Rig.from_tables(tables)
+    if "limits" in tables:  # as a session does, up to its force limit
+        settings = Settings.for_rig(rig)
+        settings.update_from_tables(tables)
+        scene.range.maximum_load = settings.limits.force
+    return scene, rig, Demand.from_tables(tables)

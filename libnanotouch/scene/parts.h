@@ -105,6 +105,10 @@ nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
 
+/* plastic.c: refuses a load at which the contact is plastic; warns where it begins to be. */
+nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene);
+
 /* warnings.c: what the bound does not cover. */
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene);
 void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning);

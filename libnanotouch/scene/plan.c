@@ -140,7 +140,9 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     plan->bank = inputs->bank;
-    const nt_status status = choose(plan, inputs->scene, problem);
+    nt_status status = choose(plan, inputs->scene, problem);
+    if (status == NT_OK)
+        status = nt_plan_check_plastic(plan, inputs->scene, problem);
     if (status != NT_OK)
         return status;
     finish(plan, inputs->scene->range.maximum_load);

@@ -19,12 +19,14 @@ static const nt_field scene_fields[] = {
     FIELD(tip.height, "m", 0.0, 1e-3, "height L of that cone, for long-range forces; 0: a sphere alone"),
     FIELD(tip.youngs_modulus, "Pa", 1e2, 1e13, "Young's modulus of the tip"),
     FIELD(tip.poisson_ratio, "", -0.99, 0.5, "Poisson ratio of the tip"),
+    FIELD(tip.yield_strength, "Pa", 0.0, 1e12, "yield strength of the tip; 0: not known"),
     CHOICE(tip.conducting, NO_YES, 1.0, "whether the tip conducts"),
     FIELD(tip.work_function, "V", 0.0, 10.0, "work function over e; 0: not known"),
     FIELD(tip.surface_potential, "V", -0.5, 0.5, "potential of the tip's surface in the liquid, where no pH is given"),
     FIELD(tip.isoelectric_point, "", 0.0, 14.0, "pH at which the tip's surface bears no charge"),
     FIELD(sample.youngs_modulus, "Pa", 1e2, 1e13, "Young's modulus of the sample"),
     FIELD(sample.poisson_ratio, "", -0.99, 0.5, "Poisson ratio of the sample"),
+    FIELD(sample.yield_strength, "Pa", 0.0, 1e12, "yield strength of the sample; 0: not known"),
     FIELD(sample.thickness, "m", 0.0, 1.0, "thickness of the layer that is pressed; 0: a half-space"),
     FIELD(sample.roughness, "m", 0.0, 1e-6, "roughness b, peak to peak, below what the surface map shows"),
     CHOICE(sample.conducting, NO_YES, 1.0, "whether the sample conducts"),
@@ -68,7 +70,8 @@ nt_scene nt_scene_defaults(void)
 {
     /* Fig. 9 and 17: Si on Si, 40 % humidity, gamma_L = 72 mJ/m^2. e: van der Waals film of water at 40 % (erratum E4).
      * w, z0, H are those of dry silicon; they matter outside the meniscus. Same material on both sides: U = 0. The
-     * liquid's numbers are those of water; gases are as viscous as air. */
+     * liquid's numbers are those of water; gases are as viscous as air. The largest load presses with up to 10.6 GPa;
+     * silicon begins to yield at 11 (1.6 Y). Y itself is not known: a modulus of one's own is another material. */
     nt_scene scene = {
         .tip = {.radius = 20e-9,
                 .half_angle = 0.30,
@@ -92,7 +95,7 @@ nt_scene nt_scene_defaults(void)
                    .hydration_length = 0.3e-9,
                    .brush_spacing = 10e-9 NT_TERM_FIELDS(USUAL)},
         .adhesion = {.work_of_adhesion = 0.10, .equilibrium_distance = 0.2e-9, .hamaker_constant = 1e-19},
-        .range = {.minimum_gap = -1e-3, .maximum_load = 2.2e-6, .viscosity = 1.8e-5},
+        .range = {.minimum_gap = -1e-3, .maximum_load = 0.4e-6, .viscosity = 1.8e-5},
     };
     return scene;
 }

@@ -87,6 +87,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->warn)
             nt_term_rows[term]->warn(plan, scene);
+    nt_plan_warn_plastic(plan, scene);
     check_drag(plan, scene);
     check_surface(plan);
     check_yielding(plan);

@@ -66,6 +66,7 @@ static void warnings_are_of_what_is_visited(void **state)
 {
     (void)state;
     nt_scene scene = dry_silicon();
+    scene.range.maximum_load = 2.2e-6;
     make(&scene);
     assert_int_equal(warns_of("at the largest load"), 1);
     scene.range.minimum_gap = 10e-9;
@@ -73,7 +74,7 @@ static void warnings_are_of_what_is_visited(void **state)
     assert_int_equal(warns_of("at the largest load"), 0);
     scene = dry_silicon();
     scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
-    scene.range.speed = 1e-6; /* 6 pi eta R^2 v/z0 = 0.7 fN; 1 % of a thousandth of 2.2 uN is 22 pN */
+    scene.range.speed = 1e-6; /* 6 pi eta R^2 v/z0 = 0.7 fN; 1 % of a thousandth of 0.4 uN is 4 pN */
     make(&scene);
     assert_int_equal(warns_of("drag"), 0);
     scene.range.speed = 1.0; /* 0.7 nN */

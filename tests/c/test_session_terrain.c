@@ -89,6 +89,7 @@ static void is_what_python_composed(void **state)
         nt_terrain_setup setup = nt_terrain_defaults();
         setup.scene.tip.radius = cases[i].radius;
         setup.scene.medium.relative_humidity = cases[i].humidity;
+        setup.scene.range.maximum_load = 2.2e-6;
         setup.demand.relative_accuracy = cases[i].accuracy;
         setup.map = cases[i].map();
         nt_terrain *terrain = made(&setup);

@@ -24,10 +24,11 @@ def near_preset(rng: np.random.Generator) -> Scene:
     """A preset with every length, modulus and energy changed by up to a factor of 3."""
     scene, _ = getattr(presets, str(rng.choice(PRESETS)))()
     for name, field in scene.fields.items():
-        if field.choices or scene[name] == 0.0 or name.startswith("range.") or "ratio" in name:
+        if field.choices or scene[name] == 0.0 or name.startswith("range.") or "ratio" in name or "yield" in name:
             continue
         if field.unit in ("m", "Pa", "J/m^2", "J", "N/m", "V"):
             scene[name] = float(np.clip(scene[name] * 3.0 ** rng.uniform(-1, 1), field.minimum, field.maximum))
+    scene.tip.yield_strength = scene.sample.yield_strength = 0.0  # not known: nothing is refused as plastic
     return scene
 
 

@@ -58,7 +58,7 @@ def test_walks_of_the_gap(name: str) -> None:
     balance = cycles.random_walks(scene.plan(), scene, np.random.default_rng(1), 1000)
     assert balance.net_out < QUADRATURE
     assert balance.imbalance < QUADRATURE
-    if name not in ("silicon_on_gold", "cell_in_liquid"):  # which have no hysteresis that would show
+    if name not in ("silicon_on_gold", "mica_in_air", "cell_in_liquid"):  # which have no hysteresis that would show
         assert balance.dissipated.max() > 1e-6 * balance.scale
 
 

@@ -49,7 +49,7 @@ def test_validity_is_of_the_largest_load() -> None:
 
 
 def test_plans_are_copied_and_pickled() -> None:
-    scene, rig = presets.polyester()
+    scene, rig = presets.paper_polyester()
     plan = scene.plan(rtol=1e-4, probe=rig)
     assert copy.copy(plan) is plan
     assert copy.deepcopy([plan])[0] is plan  # immutable

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from nanotouch import Demand, Plan, Scene, presets
 from nanotouch_app.main import main
-from nanotouch_app.plan import PRESETS, as_json
+from nanotouch_app.plan import PAPER, PRESETS, as_json
 
 FILE = """
 [tip]
@@ -61,7 +61,7 @@ def file(tmp_path: Path) -> str:
 def test_presets_in_words_and_as_data(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", name]) == 0
     plan = getattr(presets, name)()[0].plan()
-    assert capsys.readouterr().out == f"{plan}\n"
+    assert capsys.readouterr().out == f"{plan}\nfelt: {presets.FELT[name]}\n"
     data = ask(capsys, name)
     assert data == as_json(plan.explain())
     assert [term["name"] for term in data["terms"] if term["form"] != "off"] == [term.name for term in plan.terms]
@@ -71,8 +71,8 @@ def test_presets_in_words_and_as_data(name: str, capsys: pytest.CaptureFixture[s
 
 
 def test_every_preset_is_named() -> None:
-    functions = {name for name in vars(presets) if not name.startswith("_")} - {"annotations", "math", "Rig", "Scene"}
-    assert set(PRESETS) == functions
+    functions = {name for name in vars(presets) if not name.startswith("_") and name.islower()}
+    assert {*PRESETS, *PAPER} == functions - {"annotations", "math"}
 
 
 def test_numbers_that_json_has_not(capsys: pytest.CaptureFixture[str]) -> None:

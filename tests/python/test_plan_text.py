@@ -34,7 +34,7 @@ def lines_of(plan: Plan) -> dict[str, str]:
 
 def test_words_name_what_the_bound_is_measured_by() -> None:
     """Scale and unit are those of the quantity; what the quantity does not know is told so."""
-    scene = presets.silicon_on_gold()[0]
+    scene = presets.paper_gold()[0]
     force = str(scene.plan())
     assert "force within 0.64 % of the larger of itself and 27.29 nN, the pull-off; folds in place" in force
     floor = str(scene.plan(rtol=0.01, atol=2e-9))
@@ -63,7 +63,7 @@ def test_words_of_what_is_not_there() -> None:
     dry = Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0})
     assert "100 % of the pull-off" in str(dry.plan())  # not 1e+02 %
     dry.adhesion.hamaker_constant = 0.0
-    assert "no pull-off; no jump-in; stiffest contact 1.16 kN/m" in str(dry.plan())
+    assert "no pull-off; no jump-in; stiffest contact 657 N/m" in str(dry.plan())
     unfelt = str(Scene().plan(atol=1e-6))
     assert "no adhesion that could be felt" in unfelt
     assert "folds within 1.1 nm" in unfelt

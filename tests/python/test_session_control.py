@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nanotouch import Faults, Input, Recording, Rig, Session, Supervisor, Surface, record, surface
+from nanotouch import Faults, Input, Recording, Rig, Scene, Session, Supervisor, Surface, record, surface
 from nanotouch._core import Signals
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.margins import resolution
@@ -256,7 +256,7 @@ def test_a_curve_is_one_for_the_curves_module() -> None:
 
 
 def test_a_new_scale_while_it_runs() -> None:
-    session = Session()
+    session = Session(Scene(range={"maximum_load": 2e-6}))
     gains = session.settings.gains
     session.run(operator=PRESS)
     session.rescale(alpha_f=0.5 * gains.alpha_f)
@@ -363,7 +363,8 @@ def test_a_declared_hysteresis_is_no_fault(hysteresis: float, integral: float) -
         assert session.is_done  # what no integral takes away of 30 % is much of the way
     # it is no room for a stage that turns: it stops, and the force keeps its bound
     faults = Faults().add("gain", "stage", at=2.0, value=-1.0)
-    turned = Session(rig=rig, gains={"stage_integral": integral}, faults=faults)
+    hard = Scene(range={"maximum_load": 2.2e-6})
+    turned = Session(hard, rig, gains={"stage_integral": integral}, faults=faults)
     recording = turned.run(operator=[Input(2.0, 0.0, 0.0, 0.5), Input(2.0, 0.0, 0.0, 2.0), Input(-0.5, 0.0, 0.0, 4.0)])
     assert recording.state[-1] != RUN
     assert recording.tip_force.max() < turned.guarantee().force

@@ -20,6 +20,7 @@ from nanotouch.faults import Faults
 from nanotouch.operator import Input, adversary
 
 STRIDE = 199
+HARD = {"maximum_load": 1.0}  # all that the rig can press with
 Columns = dict[str, np.ndarray[Any, Any]]
 
 
@@ -28,34 +29,38 @@ def _joined(blocks: list[Columns]) -> Columns:
 
 
 def _point() -> Columns:
-    return nt.Session(seed=1).run(1.5).columns
+    return nt.Session(nt.Scene(range=HARD), seed=1).run(1.5).columns
 
 
 def _scan() -> Columns:
     surface = nt.Surface(nt.surface.grating(), tip_radius=20e-9)
-    scene = nt.Scene(tip={"radius": 20e-9})
+    scene = nt.Scene(tip={"radius": 20e-9}, range=HARD)
     return nt.Session(scene, surface=surface, mode="scan", seed=2).run(2.0).columns
 
 
 def _topography() -> Columns:
     surface = nt.Surface(nt.surface.dots(seed=3), tip_radius=20e-9)
-    scene = nt.Scene(tip={"radius": 20e-9})
+    scene = nt.Scene(tip={"radius": 20e-9}, range=HARD)
     return nt.Session(scene, surface=surface, mode="topography", seed=3).run(2.0).columns
 
 
 def _curve() -> Columns:
     rig = nt.Rig(probe={"spring_constant": 1.0})
-    return nt.Session(rig=rig, mode="curve", seed=4, probe_model="dynamic", rate=5000.0).run(0.8).columns
+    return (
+        nt.Session(nt.Scene(range=HARD), rig=rig, mode="curve", seed=4, probe_model="dynamic", rate=5000.0)
+        .run(0.8)
+        .columns
+    )
 
 
 def _converters() -> Columns:
     rig = nt.Rig(converters={"adc_bits": 16, "adc_rate": 7000.0, "adc_latency": 50e-6, "dac_bits": 16,
                              "dac_latency": 30e-6}, stage={"hysteresis": 0.1, "creep": 0.01})  # fmt: skip
-    return nt.Session(rig=rig, seed=5, delay=150e-6).run(1.0).columns
+    return nt.Session(nt.Scene(range=HARD), rig=rig, seed=5, delay=150e-6).run(1.0).columns
 
 
 def _requests() -> Columns:
-    session = nt.Session(rig=nt.Rig(hand=adversary(1.0)), seed=6)
+    session = nt.Session(nt.Scene(range=HARD), rig=nt.Rig(hand=adversary(1.0)), seed=6)
     x, y = session.path[0]
     blocks = [session.advance(0.4, Input(0.6, x, y, 0.3))]
     session.rescale(alpha_f=0.5 * session.settings.gains.alpha_f)
@@ -82,7 +87,7 @@ def _faults() -> Columns:
         ("push", "rig", 0.01), ("gain", "stage", 0.005),
     ]):  # fmt: skip
         faults.add(kind, channel, at=0.1 + 0.15 * number, duration=duration)
-    session = nt.Session(seed=7, faults=faults, clearance=20e-9)
+    session = nt.Session(nt.Scene(range=HARD), seed=7, faults=faults, clearance=20e-9)
     x, y = session.path[0]
     blocks = [session.advance(0.3, Input(1.5, x, y, 0.05))]
     for _ in range(4):

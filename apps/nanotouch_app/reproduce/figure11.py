@@ -20,9 +20,9 @@ from nanotouch_app.reproduce.unloading import Path, unload
 
 DEEPEST, APART = Parameter("largest displacement", 100e-9, "m", "not in the text"), -100e-9
 SCENES: dict[str, nt.Scene] = {
-    "silicon": presets.silicon_in_air()[0],
-    "polyester": presets.polyester()[0],
-    "silicone rubber": presets.silicone_rubber()[0],
+    "silicon": presets.paper_silicon()[0],
+    "polyester": presets.paper_polyester()[0],
+    "silicone rubber": presets.paper_silicone_rubber()[0],
 }
 RUBBER_WORK = Parameter(
     "work of adhesion of silicone rubber", SCENES["silicone rubber"].adhesion.work_of_adhesion, "J/m^2",

@@ -34,7 +34,7 @@ CONVERGED = 0.1
 
 def session(alpha_p: float, rate: float, minimum_margin: float = margins.MINIMUM) -> nt.Session:
     """The paper's simulation: of all noise only the gauge's; literally Eq. 17 and a stage without dynamics."""
-    scene, rig = presets.mica_in_air()
+    scene, rig = presets.paper_mica()
     rig["probe.noise"] = rig["probe.temperature"] = 0.0
     if minimum_margin == 0.0:
         rig["stage.resonance"], rig["stage.quality"] = 1e5, 0.5

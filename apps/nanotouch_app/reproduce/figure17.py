@@ -35,7 +35,7 @@ TRACKED = 0.05
 
 def session(alpha_p: float, rate: float, control: str, minimum_margin: float = 1.5) -> nt.Session:
     """The paper's silicon under the given scale, rate and law."""
-    scene, rig = presets.silicon_in_air()
+    scene, rig = presets.paper_silicon()
     chosen = touching.settings(
         rig, rate, alpha_p=alpha_p, alpha_f=ALPHA_F.value, force_gain=GAIN.value, stage_proportional=PROPORTIONAL.value
     )

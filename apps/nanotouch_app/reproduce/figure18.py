@@ -27,7 +27,7 @@ LINE = (0.3e-6, 5.7e-6)
 
 def session() -> nt.Session:
     """Silicon tip on the silicon grating, the paper's force scale and gain."""
-    scene, rig = presets.silicon_in_air()
+    scene, rig = presets.paper_silicon()
     surface = nt.Surface(nt.surface.grating(), scene.tip.radius, scene.tip.half_angle)
     chosen = touching.settings(
         rig, touching.RATE.value, alpha_p=REPAIRED.value, alpha_f=ALPHA_F.value, force_gain=GAIN.value

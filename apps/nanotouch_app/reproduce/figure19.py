@@ -23,7 +23,7 @@ FELT = 0.2
 
 def session() -> nt.Session:
     """Silicon tip on the InAs dots, along the middle."""
-    scene, rig = presets.inas_dots()
+    scene, rig = presets.paper_inas()
     surface = nt.Surface(nt.surface.dots(), scene.tip.radius, scene.tip.half_angle)
     chosen = touching.settings(rig, touching.RATE.value, alpha_p=SCALE.value, set_point=SET.value)
     return nt.Session(

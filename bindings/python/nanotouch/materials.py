@@ -27,6 +27,8 @@ class Material:
     """gamma [J/m^2]"""
     hamaker_constant: float
     """H of the material against itself across vacuum [J]"""
+    yield_strength: float = math.nan
+    """Y [Pa]"""
 
 
 _TABLE = tuple(Material(*row) for row in _core.materials())

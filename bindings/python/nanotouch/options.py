@@ -86,10 +86,15 @@ class Progress(NamedTuple):
 
 
 def settings_for_path(
-    rig: Rig, relief: float = 0.0, clearance: float = 0.1e-6, force_range: tuple[float, float] | None = None
+    rig: Rig,
+    relief: float = 0.0,
+    clearance: float = 0.1e-6,
+    force_range: tuple[float, float] | None = None,
+    load: float = math.inf,
 ) -> Settings:
     """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m] and forces
-    on the tip [N] from a plan or a test touch (:func:`nanotouch.margins.force_range`)."""
+    on the tip [N] from a plan or a test touch (:func:`nanotouch.margins.force_range`). The force limit is at most the
+    largest ``load`` of the scene [N], and half of it is held in topography, approach and curve."""
     check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
     check_between("relief", relief, "m", above=-1e-15, up_to=1e-3)
     settings = Settings.for_rig(rig)
@@ -97,16 +102,19 @@ def settings_for_path(
     settings.gains.alpha_p, settings.gains.alpha_f = _core.scaling_heuristic(rig.core, slave_path, ATTRACTION_RANGE)
     if force_range is not None:
         settings.gains.alpha_f = margins.heuristic_alpha_f(rig, ForceRange(*force_range))
+    settings.limits.force = min(settings.limits.force, load)
+    settings.gains.set_point = min(settings.gains.set_point, 0.5 * load)
     return settings
 
 
-def settings_with(rig: Rig, relief: float, settings: Settings | None, options: Options) -> Settings:
-    """The settings that are given, or those for a path with this relief [m], with what the options say beside them."""
+def settings_with(rig: Rig, relief: float, load: float, settings: Settings | None, options: Options) -> Settings:
+    """The settings that are given, or those for a path with this relief [m] and largest load [N], with what the options
+    say beside them."""
     force_range = options.get("force_range")
     if settings is not None and force_range is not None:
         raise InvalidValue("force_range sets alpha_f, which the settings hold already: give one of them")
     if settings is None:
-        settings = settings_for_path(rig, relief, options.get("clearance", 0.1e-6), force_range)
+        settings = settings_for_path(rig, relief, options.get("clearance", 0.1e-6), force_range, load)
     wanted = settings.copy()
     _choose(wanted, options.get("rate"), options.get("gains"), options.get("delay", 0.0))
     return wanted

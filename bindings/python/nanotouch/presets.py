@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes and rigs of the paper (Sitti and Hashimoto, Teleoperated Touch Feedback from the Surfaces at the Nanoscale).
+"""Scenes with the rigs to touch them: seven that a first touch may begin with, and the paper's own.
 
-Numbers are the paper's unless a comment says otherwise. What is soft is pressed beyond the validity of the
-small-contact laws at the rig's largest load, in the paper as here (erratum E13): the plan warns of it.
+The seven keep to loads and tips that the laws of contact hold for, so that their plans warn of nothing but what they
+say. What is felt of each is in :data:`FELT`. Those that begin with ``paper_`` have the numbers of the paper (Sitti and
+Hashimoto, Teleoperated Touch Feedback from the Surfaces at the Nanoscale) and the largest load of its rig. What is soft
+is pressed beyond small contacts there, in the paper as here (erratum E13): the plan warns of it.
 """
 
 from __future__ import annotations
@@ -11,70 +13,119 @@ import math
 
 from nanotouch.scene import Rig, Scene
 
+PAPER_LOAD = 2.2e-6  # what the paper's rig can press with [N]
+
+FELT: dict[str, str] = {
+    "silicon_in_air": (
+        "A wall of 665 N/m: nothing before the water films touch 0.7 nm away; the water lets go at 18 "
+        "nN, eight times the noise of the lever."
+    ),
+    "silicon_on_gold": (
+        "A wall of 439 N/m behind a bridge: the water snaps in 0.86 nm away and lets go at 27 nN. The "
+        "potential's 0.26 nN drown in the noise of the lever."
+    ),
+    "mica_in_air": (
+        "The lever snaps in 0.6 nm away, meets a wall of 366 N/m, and sticks with 3.4 nN, twelve times its noise."
+    ),
+    "polyester": (
+        "The tip snaps in 1.4 nm away, sinks in by 3.6 nm under 600 nN, and sticks with 460 nN: the "
+        "strongest pull of the hard samples."
+    ),
+    "silicone_rubber": (
+        "Soft and sticky: the ball snaps in 2.1 nm away, sinks in by 150 nm under 1.5 uN at 21 N/m, and "
+        "lets go only when 1 uN pulls."
+    ),
+    "inas_dots": (
+        "Hills as hard as a wall of 359 N/m: the hand follows their heights, not their give, and the "
+        "water lets go at 18 nN."
+    ),
+    "cell_in_liquid": (
+        "Fur: 10 pN come 360 nm away, 1 nN at 44 nm, and nothing pulls on the way out. The brush holds "
+        "the tip off the cell."
+    ),
+}
+"""What the hand feels of each preset, in a sentence."""
+
 
 def silicon_in_air() -> tuple[Scene, Rig]:
-    """Silicon tip (20 nm, 8 N/m) on silicon in air of 40 % humidity: Fig. 9 and 17."""
-    return Scene(), Rig()
+    """Silicon tip (20 nm, 8 N/m) on silicon in air of 40 % humidity."""
+    # moduli: the paper's; Y of silicon here and below: core/materials.c
+    return Scene(tip={"yield_strength": 7e9}, sample={"yield_strength": 7e9}), Rig()
 
 
 def silicon_on_gold() -> tuple[Scene, Rig]:
-    """Silicon tip on gold under a thick water film, at 0.25 V of contact potential: Fig. 6."""
-    hamaker, distance = 2.03e-19, 1.98e-10
+    """Silicon tip (30 nm) on gold in air of 61 % humidity, at 0.25 V of contact potential."""
+    hamaker, distance = 2.03e-19, 1.98e-10  # those of Fig. 6
     scene = Scene(
-        tip={"radius": 30e-9},
-        sample={"youngs_modulus": 79e9, "poisson_ratio": 0.42},  # gold, handbook
-        # r1 and e as given, though they do not belong to one humidity (erratum E4); r1 is that of 61 % (Kelvin)
-        medium={
-            "relative_humidity": 0.61,
-            "meniscus_radius": 1.06e-9,
-            "film_thickness": 5e-9,
-            "surface_tension": 0.072,
-        },
+        tip={"radius": 30e-9, "yield_strength": 7e9},
+        sample={"material": "gold"},
+        # a film of van der Waals' thickness, e ~ ln(1/RH)^(-1/3): 0.35 nm at 40 % (erratum E4)
+        medium={"relative_humidity": 0.61, "film_thickness": 0.43e-9},
         adhesion={
             "hamaker_constant": hamaker,
             "equilibrium_distance": distance,
             "work_of_adhesion": _work_of_adhesion(hamaker, distance),
             "contact_potential": 0.25,
         },
+        # below 1.5 GPa of shear, where terraces without steps begin to yield (Kiely, Houston, PRB 57 (1998) 12588)
+        range={"maximum_load": 0.11e-6},
     )
     return scene, Rig()
 
 
 def mica_in_air() -> tuple[Scene, Rig]:
-    """The simulation of Fig. 16: no meniscus, 30 N/m, and a modulus far too low for mica (erratum E19)."""
-    hamaker, distance = 1e-19, 3.49e-10
+    """Silicon tip (25 nm) on mica in dry air, with the softer of the paper's cantilevers, 1 N/m."""
+    hamaker, distance = 1e-19, 3.49e-10  # those of Fig. 16
     scene = Scene(
-        tip={"radius": 25e-9},
-        sample={"youngs_modulus": 0.05e9, "poisson_ratio": 0.3},
+        tip={"radius": 25e-9, "yield_strength": 7e9},
+        sample={"material": "mica"},  # 54 GPa; the paper's 0.05 GPa is no mica (erratum E19)
         medium={"relative_humidity": 0.0, "film_thickness": 0.0},
         adhesion={
             "hamaker_constant": hamaker,
             "equilibrium_distance": distance,
             "work_of_adhesion": _work_of_adhesion(hamaker, distance),
         },
-    )
-    return scene, Rig(probe={"spring_constant": 30.0}, master={"gauge_noise": math.sqrt(0.001)})
-
-
-def polyester() -> tuple[Scene, Rig]:
-    """Silicon tip on polyester (2 GPa) in humid air: Fig. 11."""
-    return Scene(sample={"youngs_modulus": 2e9, "poisson_ratio": 0.4}), Rig()  # Poisson ratio: handbook
-
-
-def silicone_rubber() -> tuple[Scene, Rig]:
-    """Silicon tip on silicone rubber (0.6 MPa), with the softer of the paper's cantilevers, 1 N/m: Fig. 11."""
-    scene = Scene(
-        sample={"youngs_modulus": 0.6e6, "poisson_ratio": 0.5},  # incompressible, as rubbers are
-        medium={"surface_tension": 0.0, "film_thickness": 0.0},  # water does not wet it: no meniscus
-        # twice the surface energy of silicone, 22 mJ/m2 (Chaudhury and Whitesides, 1991); z0 as for silicon
-        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": 6e-20},
+        range={"maximum_load": 0.2e-6},
     )
     return scene, Rig(probe={"spring_constant": 1.0})
 
 
+def polyester() -> tuple[Scene, Rig]:
+    """Blunt methylated silicon tip (1.5 um) on polyester (2 GPa) in dry air."""
+    scene = Scene(
+        # blunt and without water: that alone would press a sharp tip in for good
+        tip={"radius": 1.5e-6, "yield_strength": 7e9},
+        # E as in Fig. 11; Poisson ratio and Y of PET: core/materials.c
+        sample={"youngs_modulus": 2e9, "poisson_ratio": 0.4, "yield_strength": 0.07e9},
+        medium={"relative_humidity": 0.0, "film_thickness": 0.0},
+        # 22 mJ/m2 of methyl groups (Chaudhury and Whitesides, 1991), 44.6 of PET (core/materials.c); H = 12 pi z0^2 w
+        adhesion={
+            "given": "surface_energies", "tip_surface_energy": 0.022, "sample_surface_energy": 0.0446,
+            "equilibrium_distance": 0.165e-9, "hamaker_constant": 6.4e-20,
+        },
+        range={"maximum_load": 0.6e-6},
+    )  # fmt: skip
+    return scene, Rig()
+
+
+def silicone_rubber() -> tuple[Scene, Rig]:
+    """Silica ball (5 um) on hard silicone rubber (9 MPa) in air."""
+    scene = Scene(
+        tip={"radius": 5e-6, "material": "silica"},
+        # h-PDMS: Schmid, Michel, Macromolecules 33 (2000) 3042; incompressible, as rubbers are
+        sample={"youngs_modulus": 9e6, "poisson_ratio": 0.5},
+        medium={"surface_tension": 0.0, "film_thickness": 0.0},  # water does not wet it: no meniscus
+        # twice the surface energy of silicone, 22 mJ/m2 (Chaudhury and Whitesides, 1991); z0 as for silicon
+        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": 6e-20},
+        range={"maximum_load": 1.5e-6},
+    )
+    return scene, Rig()
+
+
 def inas_dots() -> tuple[Scene, Rig]:
-    """Silicon tip on InAs quantum dots in humid air, for ``surface.dots()``: Fig. 19."""
-    return Scene(sample={"youngs_modulus": 51.4e9, "poisson_ratio": 0.35}), Rig()  # InAs, handbook
+    """Silicon tip on InAs quantum dots in humid air, for ``surface.dots()``."""
+    scene = Scene(tip={"yield_strength": 7e9}, sample={"material": "indium arsenide"}, range={"maximum_load": 0.2e-6})
+    return scene, Rig()
 
 
 def cell_in_liquid() -> tuple[Scene, Rig]:
@@ -94,6 +145,77 @@ def cell_in_liquid() -> tuple[Scene, Rig]:
         range={"maximum_load": 2e-9, "viscosity": 0.7e-3, "speed": 1e-6},
     )  # fmt: skip
     return scene, Rig(probe={"spring_constant": 0.06})
+
+
+def paper_silicon() -> tuple[Scene, Rig]:
+    """Silicon tip (20 nm, 8 N/m) on silicon in air of 40 % humidity: Fig. 9 and 17."""
+    return Scene(range={"maximum_load": PAPER_LOAD}), Rig()
+
+
+def paper_gold() -> tuple[Scene, Rig]:
+    """Silicon tip on gold under a thick water film, at 0.25 V of contact potential: Fig. 6."""
+    hamaker, distance = 2.03e-19, 1.98e-10
+    scene = Scene(
+        tip={"radius": 30e-9},
+        sample={"youngs_modulus": 79e9, "poisson_ratio": 0.42},  # gold, handbook
+        # r1 and e as given, though they do not belong to one humidity (erratum E4); r1 is that of 61 % (Kelvin)
+        medium={
+            "relative_humidity": 0.61,
+            "meniscus_radius": 1.06e-9,
+            "film_thickness": 5e-9,
+            "surface_tension": 0.072,
+        },
+        adhesion={
+            "hamaker_constant": hamaker,
+            "equilibrium_distance": distance,
+            "work_of_adhesion": _work_of_adhesion(hamaker, distance),
+            "contact_potential": 0.25,
+        },
+        range={"maximum_load": PAPER_LOAD},
+    )
+    return scene, Rig()
+
+
+def paper_mica() -> tuple[Scene, Rig]:
+    """The simulation of Fig. 16: no meniscus, 30 N/m, and a modulus far too low for mica (erratum E19)."""
+    hamaker, distance = 1e-19, 3.49e-10
+    scene = Scene(
+        tip={"radius": 25e-9},
+        sample={"youngs_modulus": 0.05e9, "poisson_ratio": 0.3},
+        medium={"relative_humidity": 0.0, "film_thickness": 0.0},
+        adhesion={
+            "hamaker_constant": hamaker,
+            "equilibrium_distance": distance,
+            "work_of_adhesion": _work_of_adhesion(hamaker, distance),
+        },
+        range={"maximum_load": PAPER_LOAD},
+    )
+    return scene, Rig(probe={"spring_constant": 30.0}, master={"gauge_noise": math.sqrt(0.001)})
+
+
+def paper_polyester() -> tuple[Scene, Rig]:
+    """Silicon tip on polyester (2 GPa) in humid air: Fig. 11."""
+    sample = {"youngs_modulus": 2e9, "poisson_ratio": 0.4}  # Poisson ratio: handbook
+    return Scene(sample=sample, range={"maximum_load": PAPER_LOAD}), Rig()
+
+
+def paper_silicone_rubber() -> tuple[Scene, Rig]:
+    """Silicon tip on silicone rubber (0.6 MPa), with the softer of the paper's cantilevers, 1 N/m: Fig. 11."""
+    scene = Scene(
+        sample={"youngs_modulus": 0.6e6, "poisson_ratio": 0.5},  # incompressible, as rubbers are
+        medium={"surface_tension": 0.0, "film_thickness": 0.0},  # water does not wet it: no meniscus
+        # twice the surface energy of silicone, 22 mJ/m2 (Chaudhury and Whitesides, 1991); z0 as for silicon
+        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": 6e-20},
+        range={"maximum_load": PAPER_LOAD},
+    )
+    return scene, Rig(probe={"spring_constant": 1.0})
+
+
+def paper_inas() -> tuple[Scene, Rig]:
+    """Silicon tip on InAs quantum dots in humid air, for ``surface.dots()``: Fig. 19."""
+    return Scene(
+        sample={"youngs_modulus": 51.4e9, "poisson_ratio": 0.35}, range={"maximum_load": PAPER_LOAD}
+    ), Rig()  # handbook
 
 
 def _work_of_adhesion(hamaker_constant: float, equilibrium_distance: float) -> float:

@@ -142,12 +142,13 @@ class Scene(Description, core_type=_core.Scene):
         return cls.from_tables(read_tables(path))
 
     def _set(self, section: str, key: str, value: object) -> bool:
-        """``material``: the moduli, and the surface energy where the table has it, of a named material."""
+        """``material``: moduli and yield strength, and the surface energy where the table has it, of a named one."""
         if section not in ("tip", "sample") or key != "material":
             return False
         material = materials.find(value if isinstance(value, str) else told(value))
         self[f"{section}.youngs_modulus"] = material.youngs_modulus
         self[f"{section}.poisson_ratio"] = material.poisson_ratio
+        self[f"{section}.yield_strength"] = material.yield_strength if math.isfinite(material.yield_strength) else 0.0
         if math.isfinite(material.surface_energy):
             self[f"adhesion.{section}_surface_energy"] = material.surface_energy
         return True

@@ -56,7 +56,8 @@ class Session:
         Where the tip goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By default the
         middle of the surface, or a line across it at mid-height.
     settings : Settings, optional
-        Gains and limits; by default those of :func:`settings_for_path` for the relief along the path.
+        Gains and limits; by default those of :func:`settings_for_path` for the relief along the path, and
+        up to the largest load of the scene.
     **options
         See :class:`Options`.
 
@@ -88,7 +89,7 @@ class Session:
         self.path = checked_path(mode, path, surface)
         heights = self.path_heights()[1]
         self.relief = float(np.ptp(heights))
-        wanted = settings_with(self.rig, self.relief, settings, options)
+        wanted = settings_with(self.rig, self.relief, self.scene.range.maximum_load, settings, options)
         control = options.get("control", "default")
         self.control = choose_control(wanted, control)
         self.settings = wanted.frozen(FROZEN.format("settings"))

@@ -29,6 +29,7 @@ typedef struct nt_material_entry {
     nt_material elastic;     /* at room temperature; of crystals, across the face that is usually touched */
     double surface_energy;   /* gamma of the clean surface [J/m^2]; in air and water it is often far less */
     double hamaker_constant; /* H of the material against itself across vacuum [J], not retarded */
+    double yield_strength;   /* Y, of one-dimensional compression [Pa] */
 } nt_material_entry;
 
 /* The material of that name or symbol, exactly as written; NULL if there is none. The table with its sources, and how

@@ -22,6 +22,7 @@ typedef struct nt_tip {
     double height;            /* L of that cone, for long-range forces; 0: a sphere alone [m] */
     double youngs_modulus;    /* E_t [Pa] */
     double poisson_ratio;     /* nu_t [-] */
+    double yield_strength;    /* Y_t [Pa]; 0: not known */
     double conducting;        /* "no|yes" */
     double work_function;     /* phi_t/e [V]; 0: not known */
     double surface_potential; /* psi_t in the liquid, where no pH is given [V] */
@@ -31,6 +32,7 @@ typedef struct nt_tip {
 typedef struct nt_specimen {
     double youngs_modulus;    /* E_s [Pa] */
     double poisson_ratio;     /* nu_s [-] */
+    double yield_strength;    /* Y_s [Pa]; 0: not known */
     double thickness;         /* t of the layer that is pressed; 0: a half-space [m] */
     double roughness;         /* b, peak to peak, below what the surface map shows [m] */
     double conducting;        /* "no|yes" */

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Where elastic laws end: a round tip begins to yield at a peak pressure of 1.6 Y, and at a mean pressure of 3 Y all
+ * of the contact is plastic (Tabor 1951; Johnson, Contact Mechanics, 1985, Sec. 6.2 and 6.3). Pressures are those of
+ * the tip's own radius at the largest load. */
+#include <math.h>
+#include <string.h>
+
+#include "scene/parts.h"
+
+#define ONSET 1.6
+#define PLASTIC 3.0
+
+/* Y of the weaker body; 0 where neither is known [Pa]. */
+static double weaker(const nt_scene *scene, int *is_tip)
+{
+    const double tip = scene->tip.yield_strength, sample = scene->sample.yield_strength;
+    *is_tip = tip > 0.0 && (!(sample > 0.0) || tip < sample);
+    return *is_tip ? tip : sample;
+}
+
+static nt_law_value at(const nt_plan *plan, double indentation)
+{
+    const nt_form form = nt_plan_contact_form(plan);
+    return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
+}
+
+static double mean_pressure(const nt_law_value *law)
+{
+    return law->F / (NT_PI * law->a * law->a);
+}
+
+/* Hertz's 2 E* a/(pi R), of which adhesion takes away; of tips that are not round 1.5 times the mean. */
+static double peak_pressure(const nt_plan *plan, const nt_law_value *law)
+{
+    const nt_shape_kind kind = plan->shape.kind;
+    const double hertz = 2.0 * plan->contact.effective_modulus * law->a / (NT_PI * plan->contact.radius);
+    const double round = kind == NT_SHAPE_PARABOLOID || kind == NT_SHAPE_SPHERE ? hertz : 0.0;
+    return fmax(1.5 * mean_pressure(law), round);
+}
+
+/* The largest load up to that mean pressure, which nowhere falls with the depth [N]. */
+static double load_at(const nt_plan *plan, double pressure)
+{
+    double low = 0.0, high = plan->largest_indentation;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        const nt_law_value law = at(plan, middle);
+        if (mean_pressure(&law) > pressure)
+            high = middle;
+        else
+            low = middle;
+    }
+    return at(plan, low).F;
+}
+
+nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    static const char *const reasons[] = {
+        "range.maximum_load (mean pressure above 3 times the yield strength of the sample, where no elastic law holds)",
+        "range.maximum_load (mean pressure above 3 times the yield strength of the tip, where no elastic law holds)"};
+    int is_tip = 0, count = 0;
+    const double limit = PLASTIC * weaker(scene, &is_tip);
+    const nt_law_value law = at(plan, plan->largest_indentation);
+    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) || !(mean_pressure(&law) > limit))
+        return NT_OK;
+    const nt_field *field = nt_scene_fields(&count);
+    while (strcmp(field->name, "range.maximum_load") != 0)
+        ++field;
+    if (problem)
+        *problem = (nt_problem){reasons[is_tip], field->unit, scene->range.maximum_load, field->minimum,
+                                fmax(load_at(plan, limit), field->minimum)};
+    return NT_E_RANGE;
+}
+
+void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene)
+{
+    static const char *const texts[] = {"peak pressure at the largest load, where the sample begins to yield",
+                                        "peak pressure at the largest load, where the tip begins to yield"};
+    int is_tip = 0;
+    const double limit = ONSET * weaker(scene, &is_tip);
+    const nt_law_value law = at(plan, plan->largest_indentation);
+    const double peak = peak_pressure(plan, &law);
+    if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF && limit > 0.0 && peak > limit)
+        nt_plan_add_warning(plan, (nt_plan_warning){texts[is_tip], "Pa", peak, limit});
+}

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The presets: a first touch warns of nothing that can be helped, and what is said to be felt is felt."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from nanotouch import Session, presets
+from nanotouch.errors import InvalidValue
+from nanotouch_app.main import main
+from nanotouch_app.plan import PAPER, PRESETS
+
+SCENE_PAGE = Path(__file__).resolve().parents[2] / "docs" / "scene.md"
+
+
+@pytest.mark.parametrize("name", [name for name in PRESETS if name != "cell_in_liquid"])
+def test_a_first_touch_warns_of_nothing(name: str) -> None:
+    """Neither as planned nor in a session; the session keeps to the largest load, and its plan is that of the scene."""
+    scene, rig = getattr(presets, name)()
+    assert scene.plan().warnings == []
+    session = Session(scene, rig)
+    assert session.plan.warnings == []
+    assert session.settings.limits.force == scene.range.maximum_load
+    assert session.settings.gains.set_point <= 0.5 * scene.range.maximum_load
+    assert str(session.plan) == str(scene.plan(probe=rig))
+
+
+def test_the_default_touch_warns_of_nothing() -> None:
+    session = Session()
+    assert session.plan.warnings == []
+    recording = session.run()
+    assert np.max(recording.tip_force) < session.settings.limits.force
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_what_is_felt_is_told(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plan", name]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"felt: {presets.FELT[name]}"
+    assert f"| `{name}` | {presets.FELT[name]} |" in SCENE_PAGE.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", PAPER)
+def test_the_papers_scenes_stay(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Up to the 2.2 uN of the paper's rig, beyond small contacts."""
+    scene, _ = getattr(presets, name)()
+    assert scene.range.maximum_load == 2.2e-6
+    assert main(["plan", name]) == 0
+    assert "warning: contact radius over tip radius at the largest load" in capsys.readouterr().out
+
+
+def test_plastic_contact_is_refused_and_names_the_load() -> None:
+    """The paper's polyester with the Y of PET: 2.2 uN on a tip of 20 nm press with far more than 3 Y."""
+    scene, _ = presets.paper_polyester()
+    scene.sample.yield_strength = 0.07e9
+    with pytest.raises(InvalidValue, match=r"range.maximum_load \(mean pressure above 3 times the yield strength"):
+        scene.plan()
+
+
+class Facts(NamedTuple):
+    """What the sentences say."""
+
+    snap: float
+    """where the probe's spring gives way on approach [m]"""
+    pull_off: float
+    """[N]"""
+    stiffness: float
+    """at the largest load [N/m]"""
+    depth: float
+    """there [m]"""
+
+
+FACTS = {
+    "silicon_in_air": Facts(0.7e-9, 18e-9, 665.0, 0.93e-9),
+    "silicon_on_gold": Facts(0.86e-9, 27.3e-9, 439.0, 0.447e-9),
+    "mica_in_air": Facts(0.59e-9, 3.4e-9, 366.0, 0.83e-9),
+    "polyester": Facts(1.42e-9, 460e-9, 350.0, 3.65e-9),
+    "silicone_rubber": Facts(2.12e-9, 1.03e-6, 21.0, 150e-9),
+    "inas_dots": Facts(0.7e-9, 17.9e-9, 359.0, 0.89e-9),
+}
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_the_numbers_of_what_is_felt(name: str) -> None:
+    """By the plan that is exact, everything on."""
+    scene, rig = getattr(presets, name)()
+    plan, facts = scene.plan(rtol=0.0), FACTS[name]
+    gaps = np.geomspace(1e-7, 1e-10, 20001)
+    law = plan.run(gaps)
+    gives_way = (-law.k > rig.probe.spring_constant) | (np.diff(law.F, prepend=0.0) < -0.2 * plan.pull_off_force)
+    assert gaps[np.argmax(gives_way)] == pytest.approx(facts.snap, rel=0.02)
+    assert plan.pull_off_force == pytest.approx(facts.pull_off, rel=0.01)
+    assert plan.maximum_stiffness == pytest.approx(facts.stiffness, rel=0.01)
+    assert plan.explain()["largest_indentation"] == pytest.approx(facts.depth, rel=0.02)
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_a_touch_from_air_to_air(name: str) -> None:
+    """The default script presses, is held by all of the adhesion, comes free, and nothing stops it."""
+    session = Session(*getattr(presets, name)())
+    recording = session.run()
+    limit = session.settings.limits.force
+    assert not recording.columns["state"].any()
+    assert 0.4 * limit < np.max(recording.tip_force) < limit
+    assert -np.min(recording.tip_force) == pytest.approx(session.plan.pull_off_force, rel=0.05)
+    assert abs(recording.tip_force[-1]) < 1e-3 * limit
+
+
+def test_the_noise_of_the_lever_is_as_said() -> None:
+    for name, times in (("silicon_in_air", 8.2), ("mica_in_air", 12.3)):
+        scene, rig = getattr(presets, name)()
+        plan = scene.plan(probe=rig)
+        assert plan.pull_off_force / plan.explain()["probe_noise"] == pytest.approx(times, abs=0.1)
+    gold = presets.silicon_on_gold()[0].plan(rtol=0.0)
+    assert -float(gold.law("electrostatic", 0.0).F) == pytest.approx(0.26e-9, rel=0.01)
+
+
+def test_the_cell_feels_as_fur() -> None:
+    plan = presets.cell_in_liquid()[0].plan(rtol=0.0)
+    assert float(plan.force(362e-9)) == pytest.approx(10e-12, rel=0.02)
+    assert float(plan.force(44.2e-9)) == pytest.approx(1e-9, rel=0.02)
+    assert plan.pull_off_force < 1e-14
+    assert float(plan.force(0.0)) > 2e-9  # the largest load does not reach the body
