@@ -28,20 +28,20 @@ FELT: dict[str, str] = {
         "The lever snaps in 0.6 nm away, meets a wall of 366 N/m, and sticks with 3.4 nN, twelve times its noise."
     ),
     "polyester": (
-        "The tip snaps in 1.4 nm away, sinks in by 3.6 nm under 600 nN, and sticks with 460 nN: the "
+        "The tip takes hold 0.2 nm away, sinks in by 3.9 nm under 600 nN, and sticks with 444 nN: the "
         "strongest pull of the hard samples."
     ),
     "silicone_rubber": (
-        "Soft and sticky: the ball snaps in 2.1 nm away, sinks in by 150 nm under 1.5 uN at 21 N/m, and "
-        "lets go only when 1 uN pulls."
+        "Soft and sticky: the ball takes hold at the touch, sinks in by 150 nm under 1.2 uN at 19 N/m, "
+        "and lets go only when 0.83 uN pull."
     ),
     "inas_dots": (
         "Hills as hard as a wall of 359 N/m: the hand follows their heights, not their give, and the "
         "water lets go at 18 nN."
     ),
     "cell_in_liquid": (
-        "Fur: 10 pN come 360 nm away, 1 nN at 44 nm, and nothing pulls on the way out. The brush holds "
-        "the tip off the cell."
+        "Fur over jelly: 10 pN come 360 nm away, 0.3 nN where the cell begins, 1 nN another 260 nm deep. "
+        "Nothing pulls on the way out."
     ),
 }
 """What the hand feels of each preset, in a sentence."""
@@ -98,10 +98,11 @@ def polyester() -> tuple[Scene, Rig]:
         # E as in Fig. 11; Poisson ratio and Y of PET: core/materials.c
         sample={"youngs_modulus": 2e9, "poisson_ratio": 0.4, "yield_strength": 0.07e9},
         medium={"relative_humidity": 0.0, "film_thickness": 0.0},
-        # 22 mJ/m2 of methyl groups (Chaudhury and Whitesides, 1991), 44.6 of PET (core/materials.c); H = 12 pi z0^2 w
+        # 22 mJ/m2 of methyl groups (Chaudhury and Whitesides, 1991), 44.6 of PET (core/materials.c); all of it acts in
+        # contact, for before it a tail would draw up the polymer, which is left out
         adhesion={
             "given": "surface_energies", "tip_surface_energy": 0.022, "sample_surface_energy": 0.0446,
-            "equilibrium_distance": 0.165e-9, "hamaker_constant": 6.4e-20,
+            "hamaker_constant": 0.0,
         },
         range={"maximum_load": 0.6e-6},
     )  # fmt: skip
@@ -109,15 +110,16 @@ def polyester() -> tuple[Scene, Rig]:
 
 
 def silicone_rubber() -> tuple[Scene, Rig]:
-    """Silica ball (5 um) on hard silicone rubber (9 MPa) in air."""
+    """Silica ball (4 um) on hard silicone rubber (9 MPa) in air."""
     scene = Scene(
-        tip={"radius": 5e-6, "material": "silica"},
+        tip={"radius": 4e-6, "material": "silica"},
         # h-PDMS: Schmid, Michel, Macromolecules 33 (2000) 3042; incompressible, as rubbers are
         sample={"youngs_modulus": 9e6, "poisson_ratio": 0.5},
         medium={"surface_tension": 0.0, "film_thickness": 0.0},  # water does not wet it: no meniscus
         # twice the surface energy of silicone, 22 mJ/m2 (Chaudhury and Whitesides, 1991); z0 as for silicon
-        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": 6e-20},
-        range={"maximum_load": 1.5e-6},
+        # all of it in contact, as for polyester
+        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": 0.0},
+        range={"maximum_load": 1.2e-6},
     )
     return scene, Rig()
 
