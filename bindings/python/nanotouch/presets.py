@@ -32,8 +32,8 @@ FELT: dict[str, str] = {
         "strongest pull of the hard samples."
     ),
     "silicone_rubber": (
-        "Soft and sticky: the ball takes hold at the touch, sinks in by 150 nm under 1.2 uN at 19 N/m, "
-        "and lets go only when 0.83 uN pull."
+        "Soft and sticky: the ball takes hold at the touch, sinks in by 144 nm under 1.2 uN at 18 N/m, "
+        "and lets go only when 0.75 uN pull."
     ),
     "inas_dots": (
         "Hills as hard as a wall of 359 N/m: the hand follows their heights, not their give, and the "
@@ -116,9 +116,9 @@ def silicone_rubber() -> tuple[Scene, Rig]:
         # h-PDMS: Schmid, Michel, Macromolecules 33 (2000) 3042; incompressible, as rubbers are
         sample={"youngs_modulus": 9e6, "poisson_ratio": 0.5},
         medium={"surface_tension": 0.0, "film_thickness": 0.0},  # water does not wet it: no meniscus
-        # twice the surface energy of silicone, 22 mJ/m2 (Chaudhury and Whitesides, 1991); z0 as for silicon
+        # twice the surface energy of silicone, 19.8 mJ/m2 (Wu: core/materials.c); z0 as for silicon
         # all of it in contact, as for polyester
-        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": 0.0},
+        adhesion={"work_of_adhesion": 0.0396, "hamaker_constant": 0.0},
         range={"maximum_load": 1.2e-6},
     )
     return scene, Rig()
