@@ -43,7 +43,8 @@ def test_touch_simulated() -> None:
     said = run("02_touch_simulated.py")
     assert re.search(r"contact law +Maugis-Dugdale table, lambda 0\.0401\n", said)
     attraction = number(r"attraction +([\d.]+) nN", said)
-    assert attraction == pytest.approx(number(r"pull-off: ([\d.]+) nN", said), rel=0.03)
+    share = attraction / number(r"pull-off: ([\d.]+) nN", said)
+    assert 0.92 < share < 1.0  # what a tick of the stage leaves of it: test_session.py
     assert number(r"RMS +([\d.]+) N at rest", said) < 0.05
     assert number(r"steps +(\d+)", said) == 100_000
 

@@ -11,6 +11,8 @@ import numpy as np
 from nanotouch._arrays import Floats
 from nanotouch.errors import InvalidValue
 
+LARGEST_EXPONENT = 700.0  # of e, that a double holds
+
 
 @dataclass(frozen=True)
 class Pressure:
@@ -55,9 +57,12 @@ def exponential(pressure: float, decay_length: float) -> Pressure:
     """P = p0 exp(-g/l): hydration, a double layer far out."""
     if not decay_length > 0.0:
         raise InvalidValue(f"decay_length = {decay_length:g} m: it must be above 0")
-    return Pressure(
-        lambda g: pressure * np.exp(-g / decay_length), lambda g: pressure * decay_length * np.exp(-g / decay_length)
-    )
+
+    def share(gap: Floats) -> Floats:  # within what a double holds: a trial may lie deep inside
+        shares: Floats = np.exp(np.minimum(-gap / decay_length, LARGEST_EXPONENT))
+        return shares
+
+    return Pressure(lambda g: pressure * share(g), lambda g: pressure * decay_length * share(g))
 
 
 def power(constant: float, exponent: float, shift: float = 0.0) -> Pressure:
