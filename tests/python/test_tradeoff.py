@@ -236,7 +236,8 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
     headers, rows = read(tmp_path / "plant.csv")
     assert all(header.endswith(("]", "(name)")) for header in headers)
     cost = {(float(row[0]), row[1], float(row[2])): float(row[3]) for row in rows}
-    assert all(float(row[4]) < 1e-3 for row in rows)  # pressed at rest: no sub-step and no model matters
+    # pressed at rest no sub-step and no model matters: but a stage step of 0.1 nm may fall the other way, 0.8 nN of 100
+    assert all(float(row[4]) < 1e-2 for row in rows)
     for rate in (1e3, 1e4):  # measured 300 and 8: sub-steps are what the dynamic probe costs
         at_rest = next(value for (at, probe, _), value in cost.items() if at == rate and probe == "quasi-static")
         assert cost[rate, "dynamic", 0.25] > 10.0 * at_rest
