@@ -39,7 +39,7 @@ class Mouse(nt.hal.Master):
         self.every, self.calls, self.actions = every, [], []
 
     def path(self, seconds: float) -> float:
-        return -8e-3 + min(1.2e-2, 6e-3 * seconds)
+        return -8e-3 + min(6.8e-3, 6e-3 * seconds)
 
     def open(self, host: Any) -> None:
         self.calls.append("open")

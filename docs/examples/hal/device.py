@@ -27,8 +27,8 @@ def report(run: int, sequence: int, stamp: int, position: tuple[float, float, fl
 
 
 def where(elapsed: float) -> tuple[float, float, float]:
-    """The hand goes 14 mm towards the sample and back again, every 4 s."""
-    return 0.0, 0.0, -8e-3 + 7e-3 * (1.0 - math.cos(2.0 * math.pi * elapsed / 4.0))
+    """The hand goes 6.8 mm towards the sample and back again, every 4 s."""
+    return 0.0, 0.0, -8e-3 + 3.4e-3 * (1.0 - math.cos(2.0 * math.pi * elapsed / 4.0))
 
 
 def serve(port: int = 0) -> None:
