@@ -89,7 +89,7 @@ class Touch(Protocol):
         """Distance along the path and height of the surface there [m]."""
 
 
-def stretched(script: list[Input], duration: float | None) -> list[Input]:
+def stretched(script: Sequence[Input | Hold], duration: float | None) -> Sequence[Input | Hold]:
     """The script over another time [s]."""
     if duration is None:
         return script

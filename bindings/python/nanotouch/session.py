@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, Unpack
+from typing import Any, Literal, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,7 @@ __all__ = [
 BLOCK_TICKS = 500  # rows that a killed process may lose
 RING_CAPACITY = 65536
 Columns = dict[str, NDArray[Any]]
+Frozen = TypeVar("Frozen", Scene, Settings)
 FROZEN = "an open session is changed by session.change({!r}, field, value), which is recorded"
 
 
@@ -112,15 +113,13 @@ class Session:
                     **plant_options(options.get("probe_model", "auto"), options.get("substep", 0.25), faults),
                 },
             )  # fmt: skip
-        self._opened_with = self._descriptions()
+        described = {"scene": self.scene, "rig": self.rig, "settings": self.settings}
+        self._opened_with: dict[str, Any] = {name: one.to_dict() for name, one in described.items()}
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
-        own = options.get("master") is not None or options.get("slave") is not None
+        own = options.get("master") or options.get("slave")
         self._begun = None if own else self.core.snapshot()
-
-    def _descriptions(self) -> dict[str, Any]:
-        return {"scene": self.scene.to_dict(), "rig": self.rig.to_dict(), "settings": self.settings.to_dict()}
 
     @property
     def plan(self) -> Plan:
@@ -220,7 +219,7 @@ class Session:
         keep : bool
             False: the rows go to the writer alone, so that memory does not grow; the Recording has the last block.
         """
-        script = stretched(list(operator) if operator is not None else script_for(self), duration)
+        script = stretched(operator if operator is not None else script_for(self), duration)
         for step in script:
             self.core.check(core_input(step))
         ticks = [round(step.duration * self.rate) for step in script]
@@ -228,9 +227,12 @@ class Session:
         done = told = 0
         for step, left in zip(script, ticks, strict=True):
             self.aim(step)
-            for length in _blocks_of(left):
+            for start in range(0, left, BLOCK_TICKS):
+                length = min(BLOCK_TICKS, left - start)
                 block = self.advance(length / self.rate)
-                blocks = [*blocks, block] if keep else [block]
+                if not keep:
+                    blocks.clear()
+                blocks.append(block)
                 done += length
                 if writer is not None:
                     if told < len(self._events):  # a recording that is cut short can be replayed, too
@@ -247,15 +249,14 @@ class Session:
     def start(self, pace: Pace = "wall", duration: float | None = None) -> None:
         """Run in a thread of its own, without the GIL, until :meth:`halt` or for a time [s] of the session.
 
-        ``"free"``: as fast as it goes. ``"wall"``: at the pace of a clock; it slows down where the machine cannot keep
-        up, and never skips. ``"hard"``: each tick at its deadline, for halves that are real. Read what it records with
-        :meth:`read`: in free and wall pace it waits when the ring is full.
+        ``"free"``: as fast as it goes. ``"wall"``: at the pace of a clock, slower where the machine lags. Both
+        wait for :meth:`read` when the ring is full. ``"hard"``: each tick at its deadline, for halves that are real.
         """
         if pace not in PACES:
             raise InvalidValue(f"pace {pace!r}: valid are {', '.join(PACES)}")
         if duration is not None and not 0.0 < duration < math.inf:
             raise InvalidValue(f"duration = {duration} s: it must be above 0 s")
-        self.core.start(PACES.index(pace), 0 if duration is None else max(1, round(duration * self.rate)))
+        self.core.start(PACES.index(pace), max(1, round(duration * self.rate)) if duration else 0)
 
     def halt(self) -> None:
         """End the thread between two ticks; raises what it has ended by itself with."""
@@ -362,13 +363,16 @@ class Session:
         """
         if what not in ("scene", "settings"):
             raise InvalidValue(f"change {what!r}: valid are scene, settings")
-        asked = (self.scene if what == "scene" else self.settings).copy()
+        if what == "scene":
+            self.scene = self._changed(self.scene, what, field, value)
+        else:
+            self.settings = self._changed(self.settings, what, field, value)
+
+    def _changed(self, old: Frozen, what: str, field: str, value: float | str) -> Frozen:
+        asked = old.copy()
         asked[field] = value
         self.core.change(what == "scene", field, asked[field])
-        if what == "scene":
-            self.scene = asked.frozen(FROZEN.format("scene"))
-        else:
-            self.settings = asked.frozen(FROZEN.format("settings"))
+        return asked.frozen(FROZEN.format(what))
 
     def clutch(self, open: bool = True) -> None:
         """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
@@ -393,7 +397,3 @@ class Session:
 
 def _joined(blocks: Sequence[Columns]) -> Columns:
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-
-
-def _blocks_of(ticks: int) -> list[int]:
-    return [min(BLOCK_TICKS, ticks - start) for start in range(0, ticks, BLOCK_TICKS)]

@@ -13,7 +13,7 @@ struct Session {
     std::shared_ptr<Surface> surface; // these outlive the handle, as the law does
     std::shared_ptr<RadiusMap> radii;
     OwnLaw law;
-    std::shared_ptr<Half> master, slave; // null: simulated
+    std::shared_ptr<Half> master, slave;             // null: simulated
     std::unique_ptr<Described<nt_settings>> amounts; // what the law amounts to, where that is known
     std::mutex one_at_a_time;
     ~Session()
