@@ -117,9 +117,9 @@ nt_status nt_session_arm(nt_session *session, int confirmed)
     return request(session, &(nt_event){.kind = NT_EVENT_ARM, .value = {confirmed != 0}}, NULL);
 }
 
-void nt_session_clutch(nt_session *session, int open)
+nt_status nt_session_clutch(nt_session *session, int open)
 {
-    (void)request(session, &(nt_event){.kind = NT_EVENT_CLUTCH, .value = {open != 0}}, NULL);
+    return request(session, &(nt_event){.kind = NT_EVENT_CLUTCH, .value = {open != 0}}, NULL);
 }
 
 nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *problem)

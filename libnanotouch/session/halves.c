@@ -11,9 +11,11 @@ static int64_t session_now(const nt_host *host)
     return ((const nt_session *)host->context)->time;
 }
 
-static void say_nothing(const nt_host *host, const char *text)
+static void session_say(const nt_host *host, const char *text)
 {
-    (void)host, (void)text;
+    const nt_session_setup *setup = &((const nt_session *)host->context)->now->setup;
+    if (setup->say)
+        setup->say(setup->say_context, text);
 }
 
 /* Room to press, and room to draw back: a margin, and what the surface rises above the clearance. */
@@ -125,7 +127,7 @@ static nt_status find_master(nt_session *session)
 
 nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
 {
-    session->host = (nt_host){sizeof session->host, NT_HAL_API_VERSION, session_now, say_nothing, session};
+    session->host = (nt_host){sizeof session->host, NT_HAL_API_VERSION, session_now, session_say, session};
     nt_status status = open_master(session, problem);
     if (status == NT_OK)
         status = open_slave(session, problem);

@@ -46,6 +46,8 @@ nt_status nt_session_check_input(const nt_session *session, const nt_input *inpu
 nt_status nt_session_aim(nt_session *session, const nt_input *input, nt_problem *problem)
 {
     const nt_status status = nt_session_check_input(session, input, problem);
+    if (status == NT_OK && nt_session_events_are_full(session))
+        return NT_E_CAPACITY; /* it could not be replayed */
     if (status == NT_OK)
         nt_mailbox_post(&session->mailbox, input);
     return status;

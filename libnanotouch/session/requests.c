@@ -8,9 +8,16 @@
 
 nt_status nt_session_keep_event(nt_session *session, const nt_event *event)
 {
+    if (!session->records)
+        return NT_OK; /* there is nothing to replay */
     nt_event kept = *event;
     kept.tick = session->touch_state.ticks;
     return nt_ring_push(&session->events, &kept);
+}
+
+int nt_session_events_are_full(const nt_session *session)
+{
+    return session->records && nt_ring_count(&session->events) == session->events.capacity;
 }
 
 /* --- the loop's side --- */
@@ -60,14 +67,14 @@ static nt_status rewind_to(nt_session *session, const nt_event *event)
     nt_event done = {.tick = now, .kind = NT_EVENT_REWIND};
     const nt_status status = nt_history_back(session, back < (double)now ? now - (uint64_t)back : 0u);
     done.value[0] = (double)session->touch_state.ticks;
-    return status == NT_OK ? nt_ring_push(&session->events, &done) : status;
+    return status == NT_OK && session->records ? nt_ring_push(&session->events, &done) : status;
 }
 
 static nt_status apply(nt_session *session, const nt_call *call)
 {
     if (call->refused != NT_OK)
         return call->refused;
-    if (nt_ring_count(&session->events) == session->events.capacity)
+    if (nt_session_events_are_full(session))
         return NT_E_CAPACITY;
     if (call->event.kind == NT_EVENT_REWIND)
         return rewind_to(session, &call->event);

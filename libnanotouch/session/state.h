@@ -116,6 +116,7 @@ nt_status nt_session_ask(nt_session *session, const nt_call *call);
 /* The loop: what has been asked since the last tick is done now. */
 void nt_session_take_calls(nt_session *session);
 nt_status nt_session_keep_event(nt_session *session, const nt_event *event);
+int nt_session_events_are_full(const nt_session *session);
 /* The loop: hands a client's request on. And the thread that prepares: does it. */
 void nt_session_take_clients(nt_session *session);
 void nt_session_serve_clients(nt_session *session);

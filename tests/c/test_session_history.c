@@ -140,13 +140,37 @@ static void a_running_session_goes_back(void **state)
     nt_session_close(session);
 }
 
+/* Events that nobody reads are never lost in silence: an input is refused. Where nothing is recorded none is kept, and
+ * a loop may go on for ever. */
+static void events_are_kept_or_refused(void **state)
+{
+    (void)state;
+    for (int recorded = 0; recorded < 2; recorded++) {
+        nt_session_setup setup = nt_session_defaults();
+        setup.ring_capacity = recorded ? 65536 : 0;
+        nt_session *session = open_session(&setup);
+        const nt_input input = {.duration = 0.1};
+        nt_frame frame;
+        nt_status status = NT_OK;
+        int steps = 0;
+        for (; steps < 6000 && status == NT_OK; steps++)
+            status = nt_session_step(session, &input, &frame);
+        assert_int_equal(status, recorded ? NT_E_CAPACITY : NT_OK);
+        assert_int_equal(steps, recorded ? 4097 : 6000);
+        assert_int_equal(nt_session_clutch(session, 1), recorded ? NT_E_CAPACITY : NT_OK);
+        nt_event event;
+        assert_int_equal(nt_session_read_events(session, &event, 1), recorded);
+        assert_int_equal(nt_session_clutch(session, 1), NT_OK); /* there is room again */
+        nt_session_close(session);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_goes_on_to_the_last_bit),
-        cmocka_unit_test(changes_have_to_be_taken_back),
-        cmocka_unit_test(a_snapshot_makes_a_copy),
-        cmocka_unit_test(a_running_session_goes_back),
+        cmocka_unit_test(it_goes_on_to_the_last_bit), cmocka_unit_test(changes_have_to_be_taken_back),
+        cmocka_unit_test(a_snapshot_makes_a_copy),    cmocka_unit_test(a_running_session_goes_back),
+        cmocka_unit_test(events_are_kept_or_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,8 +131,10 @@ static void bind_requests(py::class_<Session> &type)
                  const nt_scaling scaling = {alpha_p, alpha_f};
                  ask(self, "rescale", [&](nt_session *h, nt_problem *p) { return nt_session_rescale(h, &scaling, p); });
              })
-        .def("clutch", [](Session &self,
-                          bool open) { alone(self, [=](nt_session *handle) { nt_session_clutch(handle, open); }); })
+        .def("clutch",
+             [](Session &self, bool open) {
+                 raise_on(alone(self, [=](nt_session *handle) { return nt_session_clutch(handle, open); }), "clutch");
+             })
         .def("change", &change, py::arg("is_scene"), py::arg("field"), py::arg("value"))
         .def("inject",
              [](Session &self, const py::tuple &entry) {

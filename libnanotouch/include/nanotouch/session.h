@@ -44,7 +44,9 @@ typedef struct nt_session_setup {
     const nt_faults *faults; /* of the simulated halves from their switching on, before preflight; NULL: none */
     nt_hal_choice master;    /* backend NULL: simulated */
     nt_hal_choice slave;
-    const char *master_option, *slave_option; /* for the backends' configure; NULL: "" */
+    const char *master_option, *slave_option;     /* for the backends' configure; NULL: "" */
+    void (*say)(void *context, const char *text); /* takes the lines of backends for the user; NULL: nobody does */
+    void *say_context;
 } nt_session_setup;
 
 /* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with
@@ -117,7 +119,7 @@ NT_API void nt_session_close(nt_session *session);
 
 /* Mailbox: the newest input counts from the next tick on. From one thread at a time, which may be another than that
  * which runs. NT_E_NOT_FINITE, NT_E_RANGE with the field in *problem (NULL allowed); NT_E_UNSUPPORTED for a force or a
- * position where the hand is real. */
+ * position where the hand is real; NT_E_CAPACITY where records are kept and 4096 events wait to be read. */
 NT_API NT_REALTIME nt_status nt_session_aim(nt_session *session, const nt_input *input, nt_problem *problem);
 /* Would it be taken? */
 NT_API nt_status nt_session_check_input(const nt_session *session, const nt_input *input, nt_problem *problem);
@@ -134,7 +136,7 @@ NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
  * minimum_margin. */
 NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *problem);
 NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling, nt_problem *problem);
-NT_API void nt_session_clutch(nt_session *session, int open);
+NT_API nt_status nt_session_clutch(nt_session *session, int open);
 /* Changes one field of nt_settings_fields (NT_EVENT_SETTING) or nt_scene_fields (NT_EVENT_SCENE), by its name. Plan,
  * bank, margins and guarantee are made anew outside the loop, which runs on meanwhile, and take the place of the old
  * ones at once. NT_E_ARGUMENT for a name that there is not, or that cannot change while open ("gains.rate",
