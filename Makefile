@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test fuzz damage heavy bench lint format clean
+.PHONY: help demo test fuzz damage corpus heavy bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -28,6 +28,10 @@ fuzz:  ## random input to the C library, with sanitizers; about a minute
 damage:  ## 2000 damaged files through the readers of images and curves; some minutes
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/mutations.py
+
+corpus:  ## every file under a folder, ours against every other reader that is installed: make corpus DIR=folder
+	@tools/setup.sh test
+	@$(VENV)/python tests/python/corpus.py $(DIR)
 
 heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
