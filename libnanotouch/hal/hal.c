@@ -77,15 +77,21 @@ static void forget(nt_reading *reading, uint32_t flags)
     reading->valid = 0;
 }
 
+static inline void keep(nt_reading *reading, uint32_t channel, double *value)
+{
+    if (!(reading->valid & 1u << channel))
+        *value = NAN;
+}
+
 /* What a half does not call valid is no number, whatever stands there. */
 static void keep_valid(nt_reading *reading)
 {
-    for (int i = 0; i < NT_AXES; ++i) {
-        if (!(reading->valid & 1u << (NT_READS_POSITION + i)))
-            reading->position[i] = NAN;
-        if (!(reading->valid & 1u << (NT_READS_FELT + i)))
-            reading->felt[i] = NAN;
-    }
+    keep(reading, NT_READS_POSITION + NT_X, &reading->position[NT_X]);
+    keep(reading, NT_READS_POSITION + NT_Y, &reading->position[NT_Y]);
+    keep(reading, NT_READS_POSITION + NT_Z, &reading->position[NT_Z]);
+    keep(reading, NT_READS_FELT + NT_X, &reading->felt[NT_X]);
+    keep(reading, NT_READS_FELT + NT_Y, &reading->felt[NT_Y]);
+    keep(reading, NT_READS_FELT + NT_Z, &reading->felt[NT_Z]);
 }
 
 nt_status nt_hal_read(nt_hal *hal)

@@ -48,7 +48,8 @@ static nt_status check_row(play *p, const nt_channel_row *row)
     if (!(row->step >= 0.0) || !(row->noise >= 0.0) || !(row->latency >= 0.0))
         return broken(p, "step, noise or latency of a channel", fmin(row->step, fmin(row->noise, row->latency)), 0.0,
                       HUGE_VAL);
-    if (row->driven && !(row->safe >= row->minimum && row->safe <= row->maximum))
+    const int may_stay = isnan(row->safe) && strcmp(row->unit, "m") == 0;
+    if (row->driven && !may_stay && !(row->safe >= row->minimum && row->safe <= row->maximum))
         return broken(p, "safe value of a driven channel", row->safe, row->minimum, row->maximum);
     if (!row->driven && !isnan(row->safe))
         return broken(p, "safe values of channels that are read", 1.0, 0.0, 0.0);

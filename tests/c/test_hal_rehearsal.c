@@ -29,6 +29,7 @@ typedef enum offence {
     EMPTY_RANGE,
     NOISE_IS_NAN,
     UNSAFE,
+    NO_SAFE_FORCE,
     READ_IS_SAFE,
     GROWN_READING,
     UNKNOWN_FLAG,
@@ -99,7 +100,7 @@ static nt_status describe_device(void *context, nt_capabilities *capabilities)
     rows[0].maximum = is == EMPTY_RANGE ? -0.01 : 0.01;
     rows[0].noise = is == NOISE_IS_NAN ? (double)NAN : 0.0;
     rows[0].safe = is == READ_IS_SAFE ? 0.0 : (double)NAN;
-    rows[1].safe = is == UNSAFE ? 6.0 : 0.0;
+    rows[1].safe = is == UNSAFE ? 6.0 : is == NO_SAFE_FORCE ? (double)NAN : 0.0;
     capabilities->size += is == GROWN_CAPABILITIES;
     capabilities->can = NT_CAN_PUSH | NT_IS_EVENT_DRIVEN;
     capabilities->axes = is == TOO_MANY_AXES ? 4 : 1;
@@ -258,6 +259,7 @@ static const char *const rules[OFFENCES] = {
     [EMPTY_RANGE] = "minimum of a channel",
     [NOISE_IS_NAN] = "step, noise or latency of a channel",
     [UNSAFE] = "safe value of a driven channel",
+    [NO_SAFE_FORCE] = "safe value of a driven channel",
     [READ_IS_SAFE] = "safe values of channels that are read",
     [GROWN_READING] = "reading.size",
     [UNKNOWN_FLAG] = "unknown flags",

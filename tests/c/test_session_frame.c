@@ -22,7 +22,8 @@ static void expect_frame(const nt_frame *frame, const nt_record *record, const n
     assert_true(frame->tip_position[2] == base + record->deflection[NT_Z] * cos(tilt));
     for (int i = 0; i < NT_AXES; i++) {
         assert_true(frame->tip_force[i] == record->tip_force[i]);
-        assert_true(frame->master_position[i] == record->master_position[i]);
+        assert_true(i == NT_Z ? frame->master_position[i] == record->master_position[i]
+                              : isnan(frame->master_position[i])); /* it has one axis */
         assert_true(frame->motor_force[i] == record->motor_force[i]);
     }
     assert_true(frame->gap == record->gap && frame->contact_radius == record->contact_radius);

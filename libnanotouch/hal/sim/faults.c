@@ -191,9 +191,22 @@ static void spoil_frame(const nt_sim_link *link, const nt_fault *fault, nt_readi
         break;
     case NT_FAULT_DEVICE_LOST:
         reading->flags |= NT_SAMPLE_DEVICE_LOST;
+        reading->valid = 0;
         break;
     default:
         break;
+    }
+}
+
+/* Of what is valid: what a fault has made no number is not; what is not is no number. */
+static void mark(nt_reading *reading)
+{
+    for (int i = 0; i < NT_READS; i++) {
+        double *value = i < NT_READS_FELT ? &reading->position[i] : &reading->felt[i - NT_READS_FELT];
+        if (isnan(*value))
+            reading->valid &= ~(1u << i);
+        else if (!(reading->valid >> i & 1u))
+            *value = NAN;
     }
 }
 
@@ -209,7 +222,7 @@ void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *
     int stale = 0;
     reading->size = sizeof *reading;
     reading->sequence = link->converted + 1u;
-    reading->valid = (1u << NT_READS) - 1u;
+    reading->valid = link->valid;
     reading->lateness = link->lateness;
     for (int i = 0; i < link->faults.count; i++) {
         const nt_fault *fault = &link->faults.list[i];
@@ -223,6 +236,8 @@ void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *
             stale |= fault->kind == NT_FAULT_STALE;
         }
     }
+    if (link->faults.count > 0)
+        mark(reading);
     stamp(link, reading, age);
     link->last = (nt_sim_memory){reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};
     if (!stale)

@@ -51,6 +51,9 @@ nt_status nt_sim_master_init(nt_sim_master *master, const nt_sim_setup *setup)
     if (status != NT_OK)
         return status;
     init_sensors(&made);
+    nt_sim_list_master(&made);
+    for (int i = 0; i < NT_AXES; i++)
+        made.converted.position[i] = made.converted.felt[i] = NAN;
     double now[2];
     moment_now(&made, now);
     for (int i = 0; i < NT_SIM_SLOTS; ++i) {
@@ -76,7 +79,7 @@ nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
         nt_sim_moment_before(link, master->moments, seen);
         converted->position[NT_Z] = convert(master, &master->position_sensor, NT_CHANNEL_MASTER_POSITION, seen[0]);
         converted->felt[NT_Z] = convert(master, &master->gauge, NT_CHANNEL_OPERATOR_FORCE, seen[1]);
-        for (int i = NT_X; i < NT_Z; i++) /* sideways it is read as it is */
+        for (int i = NT_X; i < NT_Z && link->rig.master.axes > 1.0; i++) /* sideways it is read as it is */
             converted->position[i] = master->arm[i].position;
         link->converted = link->tick;
     }
@@ -86,12 +89,20 @@ nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
     return NT_OK;
 }
 
+double nt_sim_motor_step(const nt_sim_link *link)
+{
+    const double bits = link->rig.converters.dac_bits;
+    return bits > 0.0 ? link->rig.master.max_force * exp2(1.0 - bits) : 0.0;
+}
+
+/* Without a motor nothing comes of a command. */
 static double drive_motor(const nt_sim_link *link, double command)
 {
+    if (link->rig.master.motor == 0.0)
+        return 0.0;
     const double most = link->rig.master.max_force;
     const double force = nt_sim_spoil_motor(link, command);
-    const double bits = link->rig.converters.dac_bits, step = bits > 0.0 ? most * exp2(1.0 - bits) : 0.0;
-    return nt_sim_in_steps(fmin(fmax(force, -most), most), step);
+    return nt_sim_in_steps(fmin(fmax(force, -most), most), nt_sim_motor_step(link));
 }
 
 static void push_arm(nt_sim_master *master, const nt_master_model *model, const double *motor_force)
@@ -101,7 +112,7 @@ static void push_arm(nt_sim_master *master, const nt_master_model *model, const 
                    master->hand.rest);
     const nt_hand_target hand = nt_hand_now(&master->hand);
     for (int i = NT_X; i < NT_Z && master->link.rig.master.axes > 1.0; i++)
-        nt_master_step(model, &master->arm[i], motor_force[i] + hand.force[i], 0.0);
+        nt_master_step(model, &master->arm[i], drive_motor(&master->link, motor_force[i]) + hand.force[i], 0.0);
 }
 
 /* Where the hand holds it at the end of the period, within its travel. */

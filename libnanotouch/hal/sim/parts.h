@@ -30,6 +30,16 @@ static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
     return &link->noise[stream];
 }
 
+/* --- channels.c: what a half reads and drives; its sensors and delay are known --- */
+
+void nt_sim_list_master(nt_sim_master *master);
+void nt_sim_list_slave(nt_sim_slave *slave);
+
+/* --- master.c --- */
+
+/* Of the motor's converter [N]. */
+double nt_sim_motor_step(const nt_sim_link *link);
+
 /* --- probe.c: one period of the cantilever, base and surface where they are now --- */
 
 double nt_sim_surface_height(const nt_sim_slave *slave);

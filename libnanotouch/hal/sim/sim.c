@@ -19,20 +19,27 @@ static nt_status open_slave(void *context, const nt_host *host, nt_problem *prob
     return NT_OK;
 }
 
+static void list_channels(const nt_sim_link *link, nt_capabilities *capabilities)
+{
+    capabilities->channels = link->channels;
+    capabilities->rows = link->channel_count;
+}
+
 static nt_status describe_master(void *context, nt_capabilities *capabilities)
 {
     const nt_master *master = &((nt_sim_master *)context)->link.rig.master;
     capabilities->can = (master->motor != 0.0 ? NT_CAN_PUSH : 0u) | (master->gauge != 0.0 ? NT_CAN_FEEL : 0u);
     capabilities->axes = (int)master->axes;
     capabilities->period = master->rate > 0.0 ? 1.0 / master->rate : 0.0;
+    list_channels(&((nt_sim_master *)context)->link, capabilities);
     return NT_OK;
 }
 
 static nt_status describe_slave(void *context, nt_capabilities *capabilities)
 {
-    (void)context;
     capabilities->can = NT_CAN_FEEL;
     capabilities->axes = NT_AXES;
+    list_channels(&((nt_sim_slave *)context)->link, capabilities);
     return NT_OK;
 }
 
@@ -53,6 +60,21 @@ static nt_status write_slave(void *context, const nt_action *action)
     return nt_sim_slave_write(context, action);
 }
 
+/* What is driven goes to its safe value as soon as a command acts: no force, the stage drawn back. */
+static void disarm_master(void *context)
+{
+    nt_sim_master *master = context;
+    for (int i = 0; i < NT_SIM_SLOTS; i++)
+        for (int axis = 0; axis < NT_AXES; axis++)
+            master->pending[i][axis] = 0.0;
+}
+static void disarm_slave(void *context)
+{
+    nt_sim_slave *slave = context;
+    for (int i = 0; i < NT_SIM_SLOTS; i++)
+        slave->pending[i][NT_Z] = -0.5 * slave->link.rig.stage.travel;
+}
+
 const nt_backend *nt_sim_master_backend(void)
 {
     static const nt_backend backend = {.size = sizeof backend,
@@ -62,7 +84,8 @@ const nt_backend *nt_sim_master_backend(void)
                                        .open = open_master,
                                        .describe = describe_master,
                                        .read = read_master,
-                                       .write = write_master};
+                                       .write = write_master,
+                                       .disarm = disarm_master};
     return &backend;
 }
 
@@ -75,7 +98,8 @@ const nt_backend *nt_sim_slave_backend(void)
                                        .open = open_slave,
                                        .describe = describe_slave,
                                        .read = read_slave,
-                                       .write = write_slave};
+                                       .write = write_slave,
+                                       .disarm = disarm_slave};
     return &backend;
 }
 

@@ -47,6 +47,9 @@ static int is_dynamic(const nt_sim_slave *slave, nt_probe_model model)
 static nt_status begin(nt_sim_slave *slave, const nt_sim_setup *setup)
 {
     init_sensors(slave);
+    nt_sim_list_slave(slave);
+    for (int i = 0; i < NT_AXES; i++)
+        slave->converted.position[i] = slave->converted.felt[i] = NAN;
     slave->start_height = nt_sim_surface_height(slave) + setup->clearance;
     slave->cantilever = nt_cantilever_at(setup->clearance);
     slave->truth.gap = NAN;                      /* nothing is known yet */

@@ -30,7 +30,7 @@ typedef struct nt_channel_row {
     double step;    /* of its converter, 0: none is known */
     double noise;   /* standard deviation */
     double latency; /* from the moment measured to the reading, or from the write to its effect [s] */
-    double safe;    /* driven: what it is left at by disarm; read: NaN */
+    double safe;    /* driven: what disarm leaves it at, NaN: a position that stays where it is; read: NaN */
 } nt_channel_row;
 
 /* What a half can do. */

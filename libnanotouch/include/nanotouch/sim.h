@@ -37,7 +37,7 @@ typedef struct nt_sim_setup {
     const nt_faults *faults; /* copied; NULL: none */
 } nt_sim_setup;
 
-enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000 };
+enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000, NT_SIM_CHANNELS = 7 };
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {
@@ -80,6 +80,9 @@ typedef struct nt_sim_link {
     nt_sim_memory last;  /* as it was given away */
     nt_sim_memory fresh; /* the last one of a living link */
     const nt_host *host; /* whose clock stamps the readings; NULL: ticks times period */
+    nt_channel_row channels[NT_SIM_CHANNELS];
+    int channel_count;
+    uint32_t valid; /* bits of the channels that it reads */
 } nt_sim_link;
 
 /* --- the master: hand, arm, gauge --- */

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the simulated halves read and drive, made from the rig that is simulated. */
+#include <math.h>
+#include <stddef.h>
+
+#include "parts.h"
+
+static const char *const position_names[] = {"position x", "position y", "position z"};
+
+static void add(nt_sim_link *link, const nt_channel_row *row)
+{
+    link->channels[link->channel_count++] = *row;
+}
+
+/* Through a converter, which sees what was a latency ago. */
+static void add_sensor(nt_sim_link *link, const char *name, const char *unit, const nt_sensor *sensor)
+{
+    add(link, &(nt_channel_row){.name = name,
+                                .unit = unit,
+                                .axis = NT_Z,
+                                .minimum = -sensor->range,
+                                .maximum = sensor->range,
+                                .step = sensor->resolution,
+                                .noise = sensor->noise,
+                                .latency = link->rig.converters.adc_latency,
+                                .safe = NAN});
+}
+
+/* Sideways a position is read as it is. */
+static void add_sideways(nt_sim_link *link, double range)
+{
+    for (int i = NT_X; i < NT_Z; i++) {
+        add(link,
+            &(nt_channel_row){
+                .name = position_names[i], .unit = "m", .axis = i, .minimum = -range, .maximum = range, .safe = NAN});
+        link->valid |= 1u << (NT_READS_POSITION + i);
+    }
+}
+
+/* From a write to its effect [s]. */
+static double effect_latency(const nt_sim_link *link)
+{
+    return (link->delay + link->fraction) * link->period;
+}
+
+void nt_sim_list_master(nt_sim_master *master)
+{
+    static const char *const motor_names[] = {"motor force x", "motor force y", "motor force z"};
+    nt_sim_link *link = &master->link;
+    const nt_master *arm = &link->rig.master;
+    const int first = arm->axes > 1.0 ? NT_X : NT_Z;
+    link->channel_count = 0;
+    link->valid = 1u << (NT_READS_POSITION + NT_Z);
+    if (first == NT_X)
+        add_sideways(link, 0.5 * arm->travel);
+    add_sensor(link, position_names[NT_Z], "m", &master->position_sensor);
+    if (arm->gauge != 0.0) {
+        add_sensor(link, "operator force z", "N", &master->gauge);
+        link->valid |= 1u << (NT_READS_FELT + NT_Z);
+    }
+    for (int i = first; i < NT_AXES && arm->motor != 0.0; i++)
+        add(link, &(nt_channel_row){.name = motor_names[i],
+                                    .unit = "N",
+                                    .driven = 1,
+                                    .axis = i,
+                                    .minimum = -arm->max_force,
+                                    .maximum = arm->max_force,
+                                    .step = nt_sim_motor_step(link),
+                                    .latency = effect_latency(link),
+                                    .safe = 0.0});
+}
+
+void nt_sim_list_slave(nt_sim_slave *slave)
+{
+    static const char *const command_names[] = {"stage x", "stage y", "stage travel"};
+    nt_sim_link *link = &slave->link;
+    link->channel_count = 0;
+    link->valid = 1u << (NT_READS_POSITION + NT_Z) | 1u << (NT_READS_FELT + NT_Z);
+    add_sideways(link, HUGE_VAL);
+    add_sensor(link, position_names[NT_Z], "m", &slave->stage_sensor);
+    add_sensor(link, "deflection", "m", &slave->deflection_sensor);
+    for (int i = NT_X; i < NT_AXES; i++) {
+        const double range = i == NT_Z ? 0.5 * link->rig.stage.travel : HUGE_VAL;
+        add(link, &(nt_channel_row){.name = command_names[i],
+                                    .unit = "m",
+                                    .driven = 1,
+                                    .axis = i,
+                                    .minimum = -range,
+                                    .maximum = range,
+                                    .step = i == NT_Z ? slave->command_step : 0.0,
+                                    .latency = effect_latency(link),
+                                    .safe = i == NT_Z ? -range : (double)NAN}); /* drawn back, where it is */
+    }
+}
