@@ -161,6 +161,7 @@ set(nanotouch_sources_fit
     fit/data.cpp
     fit/flicker.cpp
     fit/guess.cpp
+    fit/judgement.cpp
     fit/linear.cpp
     fit/model.cpp
     fit/options.cpp

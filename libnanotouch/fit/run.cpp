@@ -23,6 +23,12 @@ void write_message(const nt_fit_options &options, nt_fit_result *result)
                              result->converged ? "converged after %d iterations"
                                                : "stopped after %d iterations without convergence",
                              result->iterations);
+    if (!result->residuals_are_noise)
+        used +=
+            std::snprintf(text + used, static_cast<std::size_t>(NT_FIT_MESSAGE - used),
+                          "; the residuals (%.3g N RMS) are not noise (%.3g N from point to point): this model does "
+                          "not describe the points",
+                          result->residual_rms, result->residual_noise);
     const char *separator = "; not determined by these data: ";
     for (int p = 0; p < NT_FIT_PARAMETERS && used < NT_FIT_MESSAGE; p++) {
         const auto parameter = static_cast<nt_fit_parameter>(p);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "judgement.hpp"
 #include "reserve.hpp"
 #include "uncertainty.hpp"
 
@@ -88,6 +89,7 @@ void Fit::fill_values(nt_fit_result *result) const
                                ? value[static_cast<std::size_t>(i)]
                                : std::numeric_limits<double>::quiet_NaN();
     result->residual_rms = residuals_.unit() * std::sqrt(squares / double(data_.count));
+    judge_residuals(options_, data_, residuals_, result);
     residuals_.model().describe(deepest, result);
 }
 

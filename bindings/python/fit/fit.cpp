@@ -77,6 +77,8 @@ static py::dict result_dict(const nt_fit_result &result)
     out["identifiable"] = std::vector<bool>(result.identifiable, result.identifiable + NT_FIT_PARAMETERS);
     out["covariance"] = covariance;
     out["residual_rms"] = result.residual_rms;
+    out["residual_noise"] = result.residual_noise;
+    out["residuals_are_noise"] = bool(result.residuals_are_noise);
     out["misfit"] = result.misfit;
     out["transition_parameter"] = result.transition_parameter;
     out["pull_off_force"] = result.pull_off_force;

@@ -122,7 +122,7 @@ typedef struct nt_fit_data {
  * NT_FIT_IDENTIFIABLE: relative, for contact point, force offset and tilt of the range of the data. */
 #define NT_FIT_IDENTIFIABLE 0.5
 
-enum { NT_FIT_MESSAGE = 200 };
+enum { NT_FIT_MESSAGE = 300 };
 
 typedef struct nt_fit_result {
     double value[NT_FIT_PARAMETERS]; /* SI; those of the model that are fixed too; NaN for those not in the model */
@@ -130,16 +130,20 @@ typedef struct nt_fit_result {
     double covariance[NT_FIT_PARAMETERS][NT_FIT_PARAMETERS]; /* SI; 0 if fixed, NaN beside an infinite variance */
     double from_tear[NT_FIT_PARAMETERS]; /* part of the variance that comes from the tear's position [-] */
     int identifiable[NT_FIT_PARAMETERS];
-    double residual_rms; /* of the force [N] */
-    double misfit;       /* reduced chi^2 against force_noise; NaN if that is 0. The covariance is scaled up by it
-                            if > 1 */
+    double residual_rms;     /* of the force [N] */
+    double residual_noise;   /* of the residuals from point to point, standard deviation [N]; residual_rms if white */
+    int residuals_are_noise; /* 0: the model does not describe the points, and sigma is too small. Looked for at a ratio
+                                of residual_rms (from the median with a robust loss) to residual_noise or force_noise
+                                above 1.5 + 4/sqrt(count) */
+    double misfit;           /* reduced chi^2 against force_noise; NaN if that is 0. The covariance is scaled up by it
+                                if > 1 */
     double transition_parameter; /* Maugis' lambda [-]; NaN for other models */
     double pull_off_force;       /* of the fitted contact, positive [N]; NaN for NT_FIT_CUSTOM, as the next two */
     double contact_radius;       /* a at the deepest point [m] */
     double contact_stiffness;    /* k at the deepest point [N/m] */
     int iterations;
     int converged;                /* 0: stopped at max_iterations; the values are the best so far */
-    char message[NT_FIT_MESSAGE]; /* one sentence; ends with what the data cannot determine, if any */
+    char message[NT_FIT_MESSAGE]; /* one sentence; ends with a misfit and what the data cannot determine, if any */
 } nt_fit_result;
 
 /* Fits. problem (NULL allowed) names what is wrong with options or data. The result is written on NT_OK only; fails

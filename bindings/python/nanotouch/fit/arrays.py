@@ -5,11 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .contact_part import Contact, contact_of
+from .fitting import ASSUMED_HALF_ANGLE
 from .models import Model, extension, find
+from .result import Status
+from .solving import Setup, solve, steep_width
+from .uncertainties import Uncertainties
+
+_MISFIT = 1.6  # residual over the noise stated, where the fit itself has taken the larger one
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,16 +29,23 @@ class PointsFit:
     ----------
     values, sigma, identifiable : mapping
         By parameter, as of :class:`FitResult`; sigma is statistical.
-    residual_rms : float
-        Of the force [N].
+    residual_rms, residual_noise : float
+        Of the force [N]; the noise of the residuals from point to point [N], which equals it where they are noise.
     converged : bool
+    torn : bool
+        Whether the arrays hold a tear: the force jumps from below back to its straight end.
+    status : {"ok", "misfit", "not converged"}
+        ``"misfit"``: the residuals are not noise, so the model does not describe these points and sigma is too small.
     """
 
     values: Mapping[str, float]
     sigma: Mapping[str, float]
     identifiable: Mapping[str, bool]
     residual_rms: float
+    residual_noise: float
     converged: bool
+    torn: bool
+    status: Status
 
 
 def fit_points(
@@ -48,7 +64,9 @@ def fit_points(
 ) -> PointsFit:
     """Fit a model to forces over positions, all points with the same weight.
 
-    Hertz, cone and pyramid over the indentation about a given contact point are solved in closed form.
+    Hertz, cone and pyramid over the indentation about a given contact point are solved in closed form. With adhesion
+    the points in contact are fitted alone; a straight end beyond them is the baseline. Where the force jumps back to it
+    and the arrays run away from the sample, the place of this tear is used as well.
 
     Parameters
     ----------
@@ -72,26 +90,60 @@ def fit_points(
     fixed : mapping, optional
         Parameters to hold, by name, at a value [SI].
     """
-    options = find(model).options(extension(), radius)
-    if half_angle is not None:
-        options.half_angle = half_angle
-    options.spring_constant, options.force_noise = spring_constant, noise
-    if contact_point is not None:
-        options.hold("contact_point", contact_point)
-    if fit_offset:
-        options.free("force_offset")
-    if fit_tilt:
-        options.free("force_tilt")
-    for name, value in (fixed or {}).items():
-        options.hold(name, value)
-    compiled = extension()
+    compiled, chosen = extension(), find(model)
     X, F = np.asarray(position, dtype=np.float64), np.asarray(force, dtype=np.float64)
-    found = compiled.run(options, X, F)
+    held = dict(fixed or {})
+    if contact_point is not None:
+        held["contact_point"] = contact_point
+    fit_offset, fit_tilt = fit_offset and "force_offset" not in held, fit_tilt and "force_tilt" not in held
+    setup = Setup(
+        model=chosen,
+        radius=radius,
+        half_angle=ASSUMED_HALF_ANGLE if half_angle is None else half_angle,
+        spring_constant=spring_constant,
+        held=held,
+    )
+    usable = chosen.adhesive and X.ndim == 1 and X.shape == F.shape and bool(np.isfinite([X, F]).all())
+    contact = contact_of(X, F, noise, offset=fit_offset, tilt=fit_tilt) if usable else None
+    if contact is not None:
+        found, options = _run_contact(compiled, setup, contact)
+        found["residuals_are_noise"] &= not 0.0 < noise < found["residual_rms"] / _MISFIT
+    else:
+        options = setup.options(compiled)
+        options.force_noise = noise
+        for name in ["force_offset"] * fit_offset + ["force_tilt"] * fit_tilt:
+            options.free(name)
+        found = compiled.run(options, X, F)
+    return _result(found, options, contact is not None and contact.torn)
+
+
+def _run_contact(compiled: ModuleType, setup: Setup, contact: Contact) -> tuple[dict[str, Any], Any]:
+    """The fit of the points in contact; its offset and tilt are the whole baseline's, the offset that at position 0."""
+    points, exact = contact.points, Uncertainties(sensitivity=0.0)
+    if setup.spring_constant == 0.0 or setup.model.force is not None:
+        points = points.without_tear()
+    elif contact.torn:  # what may lie next to the tear, where the model is only continued, would bend it
+        width = steep_width(compiled, solve(compiled, setup, points.without_tear(), exact))
+        points = points.kept(points.z[-1] - points.z > width, "fit_points")
+    solution = solve(compiled, setup, points, exact)
+    found, place = solution.found, {p[0]: i for i, p in enumerate(solution.options.parameters) if p is not None}
+    value, sigma, middle = found["value"], found["sigma"], points.baseline_z
+    offset, tilt = place["force_offset"], place["force_tilt"]
+    value[tilt] -= contact.tilt
+    value[offset] += contact.level + middle * value[tilt]
+    sigma[offset] = np.hypot(sigma[offset], middle * sigma[tilt])
+    return found, solution.options
+
+
+def _result(found: dict[str, Any], options: Any, torn: bool) -> PointsFit:
     present = [(i, parameter[0]) for i, parameter in enumerate(options.parameters) if parameter is not None]
     return PointsFit(
         values={name: float(found["value"][i]) for i, name in present},
         sigma={name: float(found["sigma"][i]) for i, name in present},
         identifiable={name: bool(found["identifiable"][i]) for i, name in present if options.is_free(name)},
         residual_rms=found["residual_rms"],
+        residual_noise=found["residual_noise"],
         converged=found["converged"],
+        torn=torn,
+        status="not converged" if not found["converged"] else "ok" if found["residuals_are_noise"] else "misfit",
     )

@@ -12,13 +12,13 @@ from nanotouch._words import times
 
 from .models import Model
 from .points import Points
+from .result import MISFIT
 from .show import with_sigma
 from .solving import Setup, Solution, with_free_sensitivity
 from .uncertainties import Uncertainties
 
 _STIFF = 5.0  # contact stiffness over spring constant, from where the cantilever rules the curve
 _SMALL_CONTACT = 0.5  # a/R up to which a paraboloid on a half-space is believed
-_MISFIT = 3.0  # residual over noise from where the model is said not to describe the curve
 _WRONG = 0.05  # residual over the span of the force from where no parameter is believed
 _MUCH_BETTER = 0.7  # ratio of residuals
 _CONTRADICTION = 4.0  # standard deviations
@@ -50,7 +50,7 @@ def doubts(
             "the tip was torn off elsewhere than where this contact and cantilever let go (by a shock, or the model is "
             "wrong): where it happened is not used"
         )
-    if misfit > _MISFIT and np.isfinite(misfit):
+    if misfit > MISFIT and np.isfinite(misfit):
         notes.append(
             f"the residuals are {times(misfit)} the noise: this model does not describe the curve, and sigma covers "
             "only part of that"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from .points import Branch
 from .show import Page, Row, as_html, as_text, newton
 from .show import with_sigma as with_sigma
 
+Status = Literal["ok", "misfit", "not converged"]
+
+MISFIT = 3.0  # residual over noise from where the model is said not to describe the curve
 _PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 
 
@@ -97,6 +101,13 @@ class FitResult:
     notes: tuple[str, ...] = ()
     name: str = ""
     units: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def status(self) -> Status:
+        """``"ok"``, ``"not converged"`` or ``"misfit"``: the residuals are not noise; the notes say what follows."""
+        if not self.converged:
+            return "not converged"
+        return "misfit" if MISFIT < self.misfit < np.inf else "ok"
 
     @property
     def residuals(self) -> Floats:

@@ -118,9 +118,12 @@ def steep_part(extension: ModuleType, solution: Solution) -> float:
 
     What was measured there is left out, by its distance from the measured tear: the model must not choose its points.
     """
+    return steep_width(extension, solution) if solution.options.tear_sigma > 0.0 else 0.0
+
+
+def steep_width(extension: ModuleType, solution: Solution) -> float:
+    """How far before its own tear the model is only a straight continuation [m]."""
     options, value = solution.options, solution.found["value"]
-    if options.tear_sigma == 0.0:
-        return 0.0
     distance = np.geomspace(1e-13, 1e-7, 100)
     held = extension.evaluate(options, value, extension.tear_position(options, value) + distance)[2]
     return float(distance[np.argmax(held)])
