@@ -97,6 +97,7 @@ def _describe_curves(file: Path, untrusted: bool) -> list[str]:
         if key in first.meta:
             value = first.meta[key]
             lines.append(f"  {key}: {value:.4g} {unit}" if isinstance(value, float) else f"  {key}: {value}")
+    lines += [f"  note: {note}" for note in first.meta.get("notes", ())]
     for curve in found[:_LISTED]:
         lines.append(f"  curve {curve.meta.get('enum', 0)}: " + "; ".join(_segment(s) for s in curve.segments))
     if len(found) > _LISTED:

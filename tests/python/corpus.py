@@ -79,7 +79,7 @@ def _unknown(reason: str) -> bool:
 
 
 def _our_image(file: Path) -> tuple[Image, str, list[str]]:
-    read, told = _read(images.read, file, pixel_size=1e-9, z_unit="nm")
+    read, told = _read(images.read, file, pixel_size=1e-8, z_unit="nm")
     return Image(read.channel, read.heights, read.size), read.source, [*told, *getattr(read, "notes", ())]
 
 

@@ -306,7 +306,7 @@ def write_nanoscope(
         "*Ciao force list", f"Forward vel.: {4 * volts}", f"Reverse vel.: {2 * volts}", "Ramp delay: 0",
         "Reverse delay: 0", f"force/line: {max(1, int(len(curves) ** 0.5))} 0",
         "*Ciao force image list", f"Data offset: {offset}", f"Data length: {len(data)}", f"Bytes/pixel: {kind[2]}",
-        f"Samps/line: {near} {far}", f"Spring Constant: {spring_constant}",
+        f"Samps/line: {far} {near}", f"Spring Constant: {spring_constant}",
         '@4:Image Data: S [DeflectionError] "Deflection Error"', "@Z magnify: C [4:Z scale] 1.000000",
         f"@4:Z scale: V [Sens. DeflSens] ({volts_per_lsb:.16f} V/LSB) 2.500000 V",
         f"@4:Ramp size: V [Sens. Zsens] (0.006103497 V/LSB) {volts:.6f} V", "*File list end",

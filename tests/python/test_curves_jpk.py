@@ -13,7 +13,7 @@ import pytest
 import synthetic
 from nanotouch import curves
 from nanotouch.curves import jpk
-from nanotouch.errors import ReadError
+from nanotouch.errors import InvalidValue, ReadError
 
 KNOWN = synthetic.known_curve(n=100)
 REAL = sorted((synthetic.DATA / "curves").glob("*.jpk*")) if synthetic.DATA.is_dir() else []
@@ -22,6 +22,30 @@ REAL = sorted((synthetic.DATA / "curves").glob("*.jpk*")) if synthetic.DATA.is_d
 def single(path: Path) -> Path:
     segments = [("extend", KNOWN.approach_z, KNOWN.approach_force), ("retract", KNOWN.retract_z, KNOWN.retract_force)]
     return synthetic.write_jpk(path, segments, spring_constant=0.8, sensitivity=6e-8)
+
+
+def test_segments_of_other_styles_are_left_out_and_named(tmp_path: Path) -> None:
+    """A modulated hold between approach and retraction: both are read, with the time that the hold took."""
+    wave = 1e-9 * np.sin(np.arange(200))
+    segments = [("extend", KNOWN.approach_z, KNOWN.approach_force), *[("modulation", wave, wave)] * 2,
+                ("retract", KNOWN.retract_z, KNOWN.retract_force)]  # fmt: skip
+    (curve,) = curves.read(synthetic.write_jpk(tmp_path / "a.jpk-force", segments, spring_constant=0.8))
+    assert [segment.role for segment in curve.segments] == ["approach", "retract"]
+    np.testing.assert_allclose(curve.segments[1].force, KNOWN.retract_force, atol=1e-15)  # type: ignore[arg-type]
+    assert curve.segments[1].time[0] == pytest.approx(3.0)
+    assert curve.meta["notes"] == ("2 segments of style 'modulation' left out",)
+    with pytest.raises(ReadError, match="no segments of style extend, pause, retract, only modulation"):
+        curves.read(synthetic.write_jpk(tmp_path / "b.jpk-force", segments[1:2]))
+
+
+def test_a_curve_of_two_points_is_read_and_not_analysed(tmp_path: Path) -> None:
+    """What an instrument stores that was broken off at once."""
+    point = np.zeros(1)
+    segments = [("extend", point, point), ("retract", point, point)]
+    (curve,) = curves.read(synthetic.write_jpk(tmp_path / "a.jpk-force", segments))
+    assert [len(segment) for segment in curve.segments] == [1, 1]
+    with pytest.raises(InvalidValue, match="at least 16 points"):
+        curves.analyse(curve)
 
 
 def as_map(path: Path, count: int) -> Path:
@@ -141,7 +165,6 @@ def test_the_work_grows_as_the_number_of_curves(tmp_path: Path) -> None:
     ("old", "new", "message"),
     [
         (b"num-points=100", b"num-points=101", "100 heights, 100 forces, but states 101"),
-        (b"style=extend", b"style=lunge", "style 'lunge'"),
         (b"type=signedinteger", b"type=float", "type 'float', which is not read"),
         (b"force-segment-header.duration=1.0", b"", "lacks 'force-segment-header.duration'"),
         (b"duration=1.0", b"duration=nan", "'nan', no number"),

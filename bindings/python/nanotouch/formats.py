@@ -75,7 +75,7 @@ _ST, _AF, _OWN, _REAL, _MADE, _NOT = (
     "not tried",
 )
 
-_RAMPS = f"2 bytes per value: {_REAL}, {_MADE}; 4 bytes (from version 9.2): {_MADE}"
+_RAMPS = f"{_REAL}, {_MADE}"
 
 FORMATS: tuple[Format, ...] = (
     _reads("Bruker/Veeco/DI NanoScope", ".spm .000 .001 .di", "images", _ST, f"{_REAL}, {_MADE}"),
@@ -117,11 +117,11 @@ FORMATS: tuple[Format, ...] = (
     _reads("Asylum Research (Igor binary wave)", ".ibw", "curves", _AF, f"{_REAL}, {_MADE}"),
     _reads("Bruker NanoScope ramp", ".spm .000 .001", "curves", _OWN, _RAMPS),
     _reads("Bruker NanoScope force volume", ".spm .003", "curves", _OWN, _RAMPS),
-    _reads("NT-MDT text", ".txt", "curves", _AF, _NOT),
-    _reads("AFM Workshop", ".csv .zip", "curves", _AF, _NOT),
-    _reads("Optics11 Chiaro text", ".txt", "curves", _AF, _NOT),
+    _reads("Bruker PeakForce capture", ".pfc", "curves", _OWN, _MADE),
+    _reads("NT-MDT text", ".txt", "curves", _AF, _REAL),
+    _reads("AFM Workshop", ".csv .zip", "curves", _AF, _REAL),
+    _reads("Optics11 Chiaro text", ".txt", "curves", _AF, _REAL),
     _reads("afmformats' own", ".h5 .tab", "curves", _AF, _MADE),
-    _refuses("Bruker PeakForce capture", ".pfc", "curves", "export the curves from NanoScope Analysis as ramps (.spm)"),
     _refuses("Asylum force map archive", ".ardf", "curves", "export single curves from Igor as .ibw", (8, b"ARDF")),
     _refuses("Igor packed experiment", ".pxp", "curves", "save the wave in Igor as .ibw"),
     _refuses("Park Systems", ".tiff .ps-ppt", "curves", _TEXT, (0, b"II*\0"), (0, b"MM\0*")),

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from .._words import printable
 from ..errors import ReadError, require
 from .calibration import Calibration
-from .checks import MAX_POINTS, MIN_POINTS
+from .checks import FEWEST, MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
 
 NAME = "afmformats"
@@ -39,8 +39,9 @@ def _loaded(file: Path, calibration: Calibration) -> list[Any]:
     given = calibration.given
     try:
         return list(afmformats.load_data(file))
-    except afmformats.errors.FileFormatNotSupportedError:
-        raise ReadError(f"{file}: its content is not that of a {file.suffix} force curve file") from None
+    except (afmformats.errors.FileFormatNotSupportedError, UnicodeDecodeError):
+        hint = " (an archive of curves is unpacked first)" if file.suffix == ".zip" else ""
+        raise ReadError(f"{file}: its content is not that of a {file.suffix} force curve file{hint}") from None
     except afmformats.errors.MissingMetaDataError as error:
         missing = [key for key in error.meta_keys if given.get(key) is None]
         if missing:
@@ -54,7 +55,7 @@ def _converted(data: Any, file: Path, number: int) -> ForceCurve:
     if z_channel is None or "force" not in data.columns:
         raise ReadError(f"{file}: curve {data.enum} lacks a height or a force; it has {', '.join(data.columns)}")
     z, force = np.asarray(data[z_channel], np.float64), np.asarray(data["force"], np.float64)
-    if z.ndim != 1 or z.shape != force.shape or not MIN_POINTS <= z.size <= MAX_POINTS:
+    if z.ndim != 1 or z.shape != force.shape or not FEWEST <= z.size <= MAX_POINTS:
         raise ReadError(f"{file}: curve {data.enum} has {z.size} heights and {force.size} forces")
     # Without a time column none is invented: the sampling rates in the headers do not always hold (Asylum's do not).
     time = np.asarray(data["time"], np.float64) if "time" in data.columns else np.full(z.size, np.nan)

@@ -154,6 +154,7 @@ def _notes(curve: ForceCurve, retract: Branch | None) -> tuple[str, ...]:
         f"the file's {name} ({curve.meta[name]:g}) is a placeholder: give the calibrated one to curves.read"
         for name in curve.meta.get("placeholders", ())
     ]
+    notes += curve.meta.get("notes", ())
     if retract is not None:
         notes += _baseline_notes(retract, curve.retract)
     return tuple(notes)

@@ -14,7 +14,8 @@ Z_RANGE = (1e-10, 1e-3)  # travel of the base [m]
 FORCE_LIMIT = 1e-2  # [N]
 DEFLECTION_LIMIT = 1e-3  # [m]
 DURATION_LIMIT = 1e5  # of a curve [s]
-MIN_POINTS = 16  # per curve, and per segment that is analysed
+MIN_POINTS = 16  # per segment that is analysed
+FEWEST = 2  # per curve that is read
 MAX_POINTS = 1 << 26  # of all curves of a file
 
 
@@ -28,11 +29,12 @@ def check_curve(curve: ForceCurve, file: Path) -> None:
         if bad:
             raise ReadError(f"{where}: {bad} of {sum(a.size for a in arrays)} values of {key} are not finite")
     points = sum(len(s) for s in curve.segments)
-    if points < MIN_POINTS:
-        raise ReadError(f"{where} has {points} points, expected at least {MIN_POINTS}")
+    if points < FEWEST:
+        raise ReadError(f"{where} has {points} points, expected at least {FEWEST}")
     full = [s for s in curve.segments if len(s)]
     travel = max(float(s.z.max()) for s in full) - min(float(s.z.min()) for s in full)
-    if not Z_RANGE[0] <= travel <= Z_RANGE[1]:
+    least = Z_RANGE[0] if points >= MIN_POINTS else 0.0  # a curve that was broken off may not have moved
+    if not least <= travel <= Z_RANGE[1]:
         raise ReadError(f"{where}: the base travels {travel:.3g} m, expected {Z_RANGE[0]:g} .. {Z_RANGE[1]:g} m")
     hint = _hint(curve)
     for key, limit, unit in (("force", FORCE_LIMIT, "N"), ("deflection", DEFLECTION_LIMIT, "m")):

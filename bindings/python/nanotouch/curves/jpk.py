@@ -5,7 +5,8 @@ A zip archive of Java property files and big-endian integers. A single curve has
 in ``index/N/segments/``. A segment's ``segment-header.properties`` says style and duration, and for each channel how
 its integers become volts (*encoder*) and these what is meant, slot by slot (*conversion set*: volts, distance, force).
 What many segments share stands once in ``shared-data/header.properties``: ``channel.height.lcd-info.*=0`` stands for
-everything under ``lcd-info.0.``.
+everything under ``lcd-info.0.``. Segments of other styles than extend, pause and retract (modulation, ...) are left
+out, and named in ``meta["notes"]``.
 
 afmformats reads these files too, and is what this reader is tested against; but it searches all names of the archive
 again for every curve, so that its time grows as the square of a map's, and it does not keep a segment's style.
@@ -15,6 +16,7 @@ from __future__ import annotations
 
 import math
 import zipfile
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
@@ -24,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._files import check_unpacked
-from .._words import printable
+from .._words import counted, printable
 from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS
@@ -111,15 +113,22 @@ class Archive:
             "software": "JPK",
             "format": f"JPK ({self.file.suffix})",
         }
-        start = 0.0
-        while f"{folder}segments/{len(segments)}/segment-header.properties" in self._names:
-            place = f"{folder}segments/{len(segments)}/"
+        start, count = 0.0, 0
+        left_out: Counter[str] = Counter()
+        while f"{folder}segments/{count}/segment-header.properties" in self._names:
+            place = f"{folder}segments/{count}/"
             facts = _Facts(self.file, place, own | self._expanded(place) | self._general)
-            segment, duration = self._segment(facts, place, start, meta)
-            start += duration
-            segments.append(segment)
+            style, duration = facts.text(f"{_SETTINGS}style"), facts.number("force-segment-header.duration")
+            if style in _ROLES:
+                segments.append(self._segment(facts, place, start, meta))
+            else:
+                left_out[style] += 1
+            start, count = start + duration, count + 1
         if not segments:
-            raise ReadError(f"{self.file}: curve {enum} has no segments")
+            styles = f" of style {', '.join(_ROLES)}, only {', '.join(left_out)}" if left_out else ""
+            raise ReadError(f"{self.file}: curve {enum} has no segments{styles}")
+        if left_out:
+            meta["notes"] = tuple(f"{counted(n, 'segment')} of style {s!r} left out" for s, n in left_out.items())
         meta |= {"duration": start, "segment count": len(segments), "point count": sum(len(s) for s in segments)}
         return ForceCurve(tuple(segments), meta, printable(self.file.name))
 
@@ -160,10 +169,8 @@ class Archive:
                 found.setdefault(f"{head}.{rest}", value)
         return found
 
-    def _segment(self, facts: _Facts, place: str, start: float, meta: dict[str, Any]) -> tuple[Segment, float]:
-        style = facts.text(f"{_SETTINGS}style")
-        if style not in _ROLES:
-            raise ReadError(f"{self.file}: a segment of style {style!r}, expected {', '.join(_ROLES)}")
+    def _segment(self, facts: _Facts, place: str, start: float, meta: dict[str, Any]) -> Segment:
+        role = _ROLES[facts.text(f"{_SETTINGS}style")]
         duration = facts.number("force-segment-header.duration")
         channel, slot, column = self._height(place)
         z = facts.converted(channel, slot, self._raw(facts, place, channel))
@@ -172,10 +179,10 @@ class Archive:
         stated = facts.number("force-segment-header.num-points")
         if not z.size == volts.size == stated:
             raise ReadError(f"{self.file}: {place} has {z.size} heights, {volts.size} forces, but states {stated:g}")
-        _note(meta, facts, _ROLES[style], z.size)
+        _note(meta, facts, role, z.size)
         time = np.asarray(start + np.arange(z.size) * (duration / max(z.size, 1)), np.float64)
         force = np.asarray(deflection * stiffness, np.float64)
-        return Segment(_ROLES[style], time, z, column, force, deflection), duration
+        return Segment(role, time, z, column, force, deflection)
 
     def _calibrated(
         self, facts: _Facts, volts: NDArray[np.float64], meta: dict[str, Any]

@@ -1,184 +1,145 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Bruker NanoScope force files: single ramps and force volumes, deflection over the piezo's ramp.
+"""Bruker NanoScope force files: ramps, force volumes, PeakForce captures; deflection over the way of the piezo.
 
-A text header of sections ``\\*Name`` and lines ``\\Key: value``; a value with a scale is written
-``\\@4:Z scale: V [Sens. DeflSens] (0.000375 V/LSB) 2.5 V``: the integers times the number in brackets times the named
-sensitivity (``\\@Sens. DeflSens: V 41.1 nm/V``, in another section). The data of a force image are int16, from version
-9.2 on int32, times the same number: for each curve the approach and then the retraction, both from the deepest point
-outwards. The samples of a ramp of n points are 1/n of its size apart: ``Effective BW`` is n over the time that its size
-takes at its velocity.
+The data of a force image are int16, from version 9.2 on int32: for each curve the approach and then the retraction,
+both from the deepest point outwards. ``Samps/line`` counts the retraction first. Samples of a ramp stand its size over
+the points of the retraction apart; where no ramp is stated, the height sensor's channel is z. Samples that were never
+taken, at the end of a branch, are 0 or the lowest integer: no data, and left out.
 """
 
 from __future__ import annotations
 
-import math
-import re
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._words import printable
+from .._arrays import Floats
+from .._words import counted, printable
 from ..errors import ReadError
-from .checks import MAX_POINTS
-from .curve import ForceCurve, Segment
+from . import nanoscope_header as header
+from .calibration import Calibration
+from .checks import MAX_POINTS, MIN_POINTS
+from .curve import ForceCurve, Role, Segment
+from .nanoscope_header import Section
 
 NAME = "nanotouch/nanoscope"
 SIGNATURES = (b"\\*File list", b"\\*Force file list", b"\\*Ciao")  # how Bruker's headers begin
 _VERSION_32BIT = 0x09200000  # from here on integers take 4 bytes, whatever "Bytes/pixel" says of their scale
-_HEADER_LIMIT = 1 << 20  # byte; those seen have 40 KiB
 _DEFLECTION = ("DeflectionError", "Deflection")
-_UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
-_NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
-_SCALED = re.compile(rf"V \[Sens\. ([^\]]+)\] \({_NUMBER} (m?V)/LSB\) {_NUMBER} (m?V)")
-_SENSITIVITY = re.compile(rf"V {_NUMBER} (\S+)")
+_FAR = 0.125  # of a period; how far the largest deflection of a capture may lie from its turn without a note
+Bools = NDArray[np.bool_]
 
 
-class _Section(dict[str, str]):
-    """One section of the header."""
+@dataclass(frozen=True)
+class _Way:
+    """Of the base: one for all curves, or one for each."""
 
-    def __init__(self, file: Path, name: str) -> None:
-        super().__init__()
-        self.file, self.name = file, name
-
-    def text(self, key: str) -> str:
-        if key not in self:
-            raise ReadError(f"{self.file}: its header lacks {key!r} in {self.name!r}")
-        return self[key]
-
-    def counts(self, key: str) -> list[int]:
-        words = self.text(key).split()
-        if not words or not all(re.fullmatch("[0-9]{1,12}", word) for word in words):
-            raise ReadError(f"{self.file}: {key!r} is {self[key]!r}, expected whole numbers")
-        return [int(word) for word in words]
-
-    def positive(self, key: str) -> float:
-        try:
-            value = float(self.text(key).split()[0])
-        except (ValueError, IndexError):
-            value = math.nan
-        if not 0.0 < value < math.inf:
-            raise ReadError(f"{self.file}: {key!r} is {self[key]!r}, expected a positive number")
-        return value
-
-    def scaled(self, ending: str) -> tuple[str, float, float]:
-        """Of the value whose key ends so: name of its sensitivity, V per LSB, V."""
-        for key, value in self.items():
-            match = _SCALED.match(value)
-            if key.startswith("@") and key.endswith(ending) and match:
-                name, per_lsb, lsb_unit, volts, unit = match.groups()
-                return name, float(per_lsb) * _UNITS[lsb_unit], float(volts) * _UNITS[unit]
-        raise ReadError(f"{self.file}: its header lacks {ending!r} with a scale in {self.name!r}")
+    near: int  # samples of the approach, which comes first
+    z: Floats  # [m], shape (1 or curves, samples)
+    time: Floats  # [s], shape (samples,)
+    channel: str
+    meta: dict[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
-def read(file: Path) -> list[ForceCurve]:
-    """All ramps of a NanoScope force file; ReadError if it is none, damaged, or of a kind not read."""
-    sections = _sections(file)
-    image = _deflection_image(file, sections)
-    ramp_list = next((s for s in sections if s.name == "Ciao force list"), None)
-    if ramp_list is None:
-        raise ReadError(f"{file}: its header lacks the section 'Ciao force list'")
-    raw = _raw(file, image, _version(sections[0]))
-    sensor, volts_per_lsb, _ = image.scaled(":Z scale")
-    piezo, _, ramp_volts = image.scaled(":Ramp size")
-    size = ramp_volts * _sensitivity(file, sections, piezo)
-    meta = _meta(file, sections, image) | {"sensitivity": _sensitivity(file, sections, sensor)}
-    points = image.counts("Samps/line")
-    z, time, speeds = _ramp(ramp_list, points, size, ramp_volts)
-    meta |= speeds
-    deflection = raw * (volts_per_lsb * meta["sensitivity"])
-    deflection[:, : points[0]] = deflection[:, points[0] - 1 :: -1]  # into the order of time
-    force = deflection * meta["spring constant"]
-    line = ramp_list.counts("force/line")[0] if len(raw) > 1 else 1
-    parts: tuple[tuple[Literal["approach", "retract"], slice], ...] = (
-        ("approach", slice(0, points[0])),
-        ("retract", slice(points[0], sum(points))),
-    )
+def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]:
+    """All curves with the file's own calibration; `calibration` only where the file states none."""
+    found = header.sections(file)
+    image = _deflection_image(file, found)
+    meta, notes = _meta(found, image, calibration or Calibration())
+    near, far = _points(found, image)
+    raw = _raw(found, image, near + far)
+    known, raw = _in_time(~_fillers(raw, near), near), _in_time(raw, near)
+    deflection = raw * (image.must_be_scaled(":Z scale")[1] * meta["sensitivity"])
+    if _is_capture(found):
+        first, way = _period(found, deflection)
+        deflection, known = np.roll(deflection, -first, axis=1), np.roll(known, -first, axis=1)
+    else:
+        way = _ramp(found, image, near, far) or _sensor(found, near, far)
+    enough = [int(n) for n in np.flatnonzero(_enough(known, way.near))]
+    if len(enough) < len(raw):
+        notes += (f"{counted(len(raw) - len(enough), 'curve')} of {len(raw)} without data left out",)
+    meta |= way.meta | ({"notes": notes + way.notes} if notes + way.notes else {})
+    line = _line(found) if len(raw) > 1 else 1
     return [
         ForceCurve(
-            tuple(
-                Segment(role, time[part], z[part], "height (piezo)", force[number, part], deflection[number, part])
-                for role, part in parts
-            ),
-            meta | _place(number, line, len(raw)),
+            _segments(way, way.z[min(n, len(way.z) - 1)], deflection[n], known[n], meta["spring constant"]),
+            meta | _place(n, line, len(raw)),
             printable(file.name),
         )
-        for number in range(len(raw))
+        for n in enough
     ]
 
 
-def _sections(file: Path) -> list[_Section]:
-    with file.open("rb") as stream:
-        text = stream.read(_HEADER_LIMIT).split(b"\x1a")[0].decode("latin-1")
-    if "\\*File list end" not in text:
-        raise ReadError(f"{file}: its header does not end")
-    sections: list[_Section] = []
-    for line in text.split("\\*File list end")[0].splitlines():
-        if line.startswith("\\*"):
-            sections.append(_Section(file, line[2:].strip()))
-        elif line.startswith("\\") and sections:
-            # A colon also stands in the name of a parameter: "@4:Z scale: V ..."
-            key, _, value = line[1:].partition(": ")
-            sections[-1].setdefault(key.strip().rstrip(":"), value.strip())
-    return sections
+def _segments(way: _Way, z: Floats, deflection: Floats, known: Bools, stiffness: float) -> tuple[Segment, ...]:
+    parts: tuple[tuple[Role, slice], ...] = (("approach", slice(0, way.near)), ("retract", slice(way.near, z.size)))
+    found = []
+    for role, part in parts:
+        keep = known[part]
+        bent = deflection[part][keep]
+        found.append(Segment(role, way.time[part][keep], z[part][keep], way.channel, bent * stiffness, bent))
+    return tuple(found)
 
 
-def _deflection_image(file: Path, sections: list[_Section]) -> _Section:
-    images = [s for s in sections if s.name == "Ciao force image list"]
-    if not images:
+# --- header -----------------------------------------------------------------------------------------------------------
+
+
+def _deflection_image(file: Path, found: list[Section]) -> Section:
+    listed = [one for one in found if one.name == "Ciao force image list"]
+    if not listed:
         raise ReadError(f"{file}: a Bruker NanoScope file without force curves; images.read reads pictures")
-    shown = []
-    for image in images:
-        names = [value for key, value in image.items() if key.startswith("@") and key.endswith(":Image Data")]
-        shown += names
-        if any(f"[{kind}]" in name for name in names for kind in _DEFLECTION):
+    for image in listed:
+        if any(f"[{kind}]" in image.channel for kind in _DEFLECTION):
             return image
-    raise ReadError(f"{file}: no deflection among its channels ({', '.join(shown)})")
+    raise ReadError(f"{file}: no deflection among its channels ({', '.join(one.channel for one in listed)})")
 
 
-def _raw(file: Path, image: _Section, version: int) -> NDArray[np.signedinteger[Any]]:
-    """The integers, shape (curves, approach + retraction)."""
-    width = 4 if version >= _VERSION_32BIT else image.counts("Bytes/pixel")[0]
-    if width not in (2, 4):
-        raise ReadError(f"{file}: {width} bytes per value; NanoScope force files of 2 or 4 are read, export it as text")
+def _meta(found: list[Section], image: Section, given: Calibration) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """What the header says, and what has to be told of it."""
+    first, name = found[0], image.must_be_scaled(":Z scale")[0]
+    known = header.sensitivity(found, name)
+    if known is None and given.sensitivity is None:
+        raise ReadError(f"{first.file}: its header states no sensitivity {name!r} in metres per volt; give it")
+    sensitivity, note = (given.sensitivity, "") if known is None else known
+    if "spring constant" not in image and given.spring_constant is not None:
+        stiffness = given.spring_constant
+    else:
+        stiffness = image.positive("Spring Constant")
+    meta = {
+        "format": "Bruker NanoScope",
+        "spring constant": stiffness,
+        "sensitivity": sensitivity,
+        "instrument": "Bruker NanoScope",
+        "software version": first.get("version", ""),
+        "date": first.get("date", ""),
+        "path": first.file,
+    }
+    return meta, (note,) if note and given.sensitivity is None else ()
+
+
+def _is_capture(found: list[Section]) -> bool:
+    scan = next((one for one in found if one.name == "Ciao scan list"), Section(found[0].file, ""))
+    ramps = scan.get("operating mode", "Force") in ("Force", "Force Volume")
+    return not ramps and scan.get("peakforce capture") == "Allow"
+
+
+def _points(found: list[Section], image: Section) -> tuple[int, int]:
+    """Of approach and retraction; in a capture both are half a period, whatever is said of the approach."""
     points = image.counts("Samps/line")
     if len(points) != 2 or min(points) == 0:
-        raise ReadError(f"{file}: 'Samps/line' is {image['Samps/line']!r}, expected the points of both directions")
-    offset, length = image.counts("Data offset")[0], image.counts("Data length")[0]
-    held = file.stat().st_size
-    if offset + length > held:
-        raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
-    if length == 0 or length % (width * sum(points)):
-        raise ReadError(f"{file}: {length} bytes of data are no whole number of curves of {sum(points)} points")
-    if length // width > MAX_POINTS:
-        raise ReadError(f"{file}: {length // width} points in all; up to {MAX_POINTS} are read")
-    return np.fromfile(file, f"<i{width}", length // width, offset=offset).reshape(-1, sum(points))
+        raise ReadError(f"{image.file}: 'Samps/line' is {image.text('Samps/line')!r}, expected both directions' points")
+    far, near = points
+    return (far, far) if _is_capture(found) else (near, far)
 
 
-def _version(first: _Section) -> int:
-    return int(first["Version"], 16) if re.fullmatch("0x[0-9A-Fa-f]{8}", first.get("Version", "")) else 0
-
-
-def _sensitivity(file: Path, sections: list[_Section], name: str) -> float:
-    """In m/V."""
-    for section in sections:
-        match = _SENSITIVITY.match(section.get(f"@Sens. {name}", ""))
-        if match and match[2] in _UNITS and match[2].endswith("/V"):
-            return float(match[1]) * _UNITS[match[2]]
-    raise ReadError(f"{file}: its header states no sensitivity {name!r} in metres per volt")
-
-
-def _meta(file: Path, sections: list[_Section], image: _Section) -> dict[str, Any]:
-    first = sections[0]
-    return {
-        "format": "Bruker NanoScope",
-        "spring constant": image.positive("Spring Constant"),
-        "instrument": "Bruker NanoScope",
-        "software version": first.get("Version", ""),
-        "date": first.get("Date", ""),
-        "path": file,
-    }
+def _line(found: list[Section]) -> int:
+    """Curves per line of a map."""
+    if _is_capture(found):
+        return header.section(found, "Ciao scan list").counts("Samps/line")[0]
+    return header.section(found, "Ciao force list").counts("force/line")[0]
 
 
 def _place(number: int, line: int, count: int) -> dict[str, Any]:
@@ -189,17 +150,107 @@ def _place(number: int, line: int, count: int) -> dict[str, Any]:
     return place
 
 
-def _ramp(
-    ramp_list: _Section, points: list[int], size: float, volts: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], dict[str, float]]:
-    """z [m] and time [s] of a ramp of this size in m and in V, in which its velocities are given; and its speeds.
+# --- data -------------------------------------------------------------------------------------------------------------
 
-    Of a ramp that rests without recording, the time is NaN.
+
+def _raw(found: list[Section], image: Section, points: int) -> NDArray[np.signedinteger[Any]]:
+    """The integers as stored, shape (curves, approach + retraction)."""
+    file, width = image.file, image.counts("Bytes/pixel")[0]
+    if header.version(found) >= _VERSION_32BIT:
+        width = 4
+    if width not in (2, 4):
+        raise ReadError(f"{file}: {width} bytes per value; NanoScope force files of 2 or 4 are read, export it as text")
+    offset, length = image.counts("Data offset")[0], image.counts("Data length")[0]
+    held = file.stat().st_size
+    if offset + length > held:
+        raise ReadError(f"{file}: {held} bytes long, but its data end at {offset + length}: it is cut off")
+    if length == 0 or length % (width * points):
+        raise ReadError(f"{file}: {length} bytes of data are no whole number of curves of {points} points")
+    if length // width > MAX_POINTS:
+        raise ReadError(f"{file}: {length // width} points in all; up to {MAX_POINTS} are read")
+    return np.fromfile(file, f"<i{width}", length // width, offset=offset).reshape(-1, points)
+
+
+def _in_time(stored: NDArray[Any], near: int) -> NDArray[Any]:
+    """The approach is stored backwards."""
+    return np.concatenate([stored[:, :near][:, ::-1], stored[:, near:]], axis=1)
+
+
+def _fillers(raw: NDArray[np.signedinteger[Any]], near: int) -> Bools:
+    """Samples at the ends of a branch that were never taken.
+
+    Zeros over more than half of both branches are a free cantilever on a coarse digitiser, not fillers.
     """
-    near, far = points
-    z = np.concatenate([np.arange(near)[::-1] * (size / near), np.arange(far) * (size / far)])
-    durations = [volts / ramp_list.positive(key) for key in ("Forward vel.", "Reverse vel.")]
-    time = np.concatenate([np.arange(near) * durations[0] / near, durations[0] + np.arange(far) * durations[1] / far])
-    if any(float(ramp_list.get(key, "0") or 0) for key in ("Ramp delay", "Reverse delay")):
+    lowest, zero = raw == np.iinfo(raw.dtype).min, raw == 0
+    found, runs = np.zeros(raw.shape, bool), []
+    for part in (slice(0, near), slice(near, raw.shape[1])):
+        filler = zero[:, part] | lowest[:, part]
+        before = np.logical_and.accumulate(filler, axis=1)
+        after = np.logical_and.accumulate(filler[:, ::-1], axis=1)[:, ::-1]
+        found[:, part] = before | after
+        runs.append(after.mean(axis=1) > 0.5)
+    free = runs[0] & runs[1] & ~zero.all(axis=1)
+    found[free] = lowest[free]
+    return found
+
+
+def _enough(known: Bools, near: int) -> Bools:
+    if len(known) == 1:
+        return np.ones(1, bool)
+    points = known[:, :near].sum(axis=1), known[:, near:].sum(axis=1)
+    return np.asarray(np.minimum(*points) >= MIN_POINTS)
+
+
+# --- the way of the base ----------------------------------------------------------------------------------------------
+
+
+def _ramp(found: list[Section], image: Section, near: int, far: int) -> _Way | None:
+    """In time order; None where no size is stated. Of a ramp that rests without recording, the time is NaN."""
+    stated = image.scaled(":Ramp size") or image.scaled(":Z scan size")
+    if stated is None:
+        return None
+    settings = header.section(found, "Ciao force list")
+    name, _, volts = stated
+    size = volts * header.piezo(found, name)
+    z = np.concatenate([np.arange(near)[::-1], np.arange(far)]) * (size / far)
+    durations = [volts / settings.positive(key) for key in ("Forward vel.", "Reverse vel.")]
+    time = np.concatenate([np.arange(near) * durations[0], near * durations[0] + np.arange(far) * durations[1]]) / far
+    if any(float(settings.get(key, "0") or 0) for key in ("ramp delay", "reverse delay")):
         time = np.full(time.size, np.nan)
-    return z, time, {"speed approach": size / durations[0], "speed retract": size / durations[1]}
+    speeds = {"speed approach": size / durations[0], "speed retract": size / durations[1]}
+    return _Way(near, z[None, :], time, "height (piezo)", speeds)
+
+
+def _sensor(found: list[Section], near: int, far: int) -> _Way:
+    """The height sensor's channel of every curve; its deepest sample, stored first, is its lowest z."""
+    image = next((one for one in found if one.name == "Ciao force image list" and "Height Sensor" in one.channel), None)
+    if image is None:
+        raise ReadError(f"{found[0].file}: its header lacks ':Ramp size' with a scale, and it has no height sensor")
+    name, volts_per_lsb, _ = image.must_be_scaled(":Z scale")
+    stored = _raw(found, image, near + far) * (volts_per_lsb * header.piezo(found, name))
+    outwards = np.median(stored[:, near - 1] - stored[:, 0]) > 0
+    z = _in_time(stored if outwards else -stored, near)
+    return _Way(near, z - z.min(), np.full(near + far, np.nan), "height (measured)")
+
+
+def _period(found: list[Section], deflection: Floats) -> tuple[int, _Way]:
+    """A PeakForce capture: one period of a sine from its highest point on, and the sample at which that stands.
+
+    ``Sync Distance`` counts the samples of the driving sine, ``Sample Points`` a period, to its deepest point.
+    """
+    scan, n = header.section(found, "Ciao scan list"), deflection.shape[1]
+    amplitude = scan.positive("Peak Force Amplitude") * 1e-9
+    frequency = scan.positive("PFT Freq") * 1e3
+    name = next((k for k in ("Sync Distance QNM", "Sync Distance") if scan.get(k.lower(), "0").split()[0] != "0"), "")
+    if not name:
+        raise ReadError(f"{found[0].file}: its header states no 'Sync Distance', so its z is not known")
+    turn = scan.positive(name) * n / scan.positive("Sample Points") % n
+    first = int(np.ceil(turn - n / 2))
+    steps = first + np.arange(n)
+    z = -amplitude * np.cos(2 * np.pi * (steps - turn) / n)
+    near = int(np.count_nonzero(steps <= turn))
+    off = (int(deflection.mean(axis=0).argmax()) - turn + n / 2) % n - n / 2
+    notes = () if abs(off) <= _FAR * n else (
+        f"the largest deflection lies {off:+.3g} of {n} samples from the turn that {name!r} states",)  # fmt: skip
+    meta = {"speed approach": 4 * amplitude * frequency, "speed retract": 4 * amplitude * frequency}
+    return first % n, _Way(near, z[None, :], np.arange(n) / (n * frequency), "height (piezo)", meta, notes)

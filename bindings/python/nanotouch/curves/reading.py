@@ -33,8 +33,8 @@ def read(
     ----------
     path : str or path
         JPK ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``; Asylum ``.ibw``; NT-MDT and
-        Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; afmformats ``.h5``, ``.tab``. NanoScope ramps and force
-        volumes (``.000``, ``.spm``, any name; known by how they begin).
+        Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; afmformats ``.h5``, ``.tab``. NanoScope ramps, force volumes
+        and PeakForce captures (``.000``, ``.spm``, ``.pfc``, any name; known by how they begin).
     spring_constant : float, optional
         k_c [N/m], 1e-4 .. 1e4, in place of the file's; forces are rescaled, deflections stay.
     sensitivity : float, optional
@@ -48,7 +48,8 @@ def read(
     -------
     list of ForceCurve
         In the order of the file; a map is one list. ``meta["placeholders"]`` names what the file states without
-        anybody having measured it (:data:`~nanotouch.curves.calibration.PLACEHOLDERS`).
+        anybody having measured it (:data:`~nanotouch.curves.calibration.PLACEHOLDERS`), ``meta["notes"]`` what was
+        left out or supplied.
 
     Raises
     ------
@@ -139,7 +140,7 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
             return name, list(reader.read(file))
     if head.startswith(nanoscope.SIGNATURES):
         with guarded(file, nanoscope.NAME):
-            return nanoscope.NAME, nanoscope.read(file)
+            return nanoscope.NAME, nanoscope.read(file, given)
     if file.suffix in jpk.ENDINGS:
         with guarded(file, jpk.NAME):
             return jpk.NAME, jpk.read(file, given)

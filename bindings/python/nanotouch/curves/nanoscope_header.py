@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The text header of Bruker's NanoScope files: sections ``\\*Name`` of lines ``\\Key: value``.
+
+A value with a scale is written ``\\@4:Z scale: V [Sens. DeflSens] (0.000375 V/LSB) 2.5 V``: the integers times the
+number in brackets times the named sensitivity (``\\@Sens. DeflSens: V 41.1 nm/V``, in another section). Versions write
+keys with other capitals (``Ramp size``, ``Ramp Size``), and some leave the sensitivity's unit out.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+from ..errors import ReadError
+
+_HEADER_LIMIT = 1 << 20  # byte; those seen have 80 KiB
+_UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
+_NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
+_SCALED = re.compile(rf"V \[Sens\. ([^\]]+)\] \({_NUMBER} (m?V)/LSB\)\s+{_NUMBER} (m?V)")
+_SENSITIVITY = re.compile(rf"V {_NUMBER}\s*(\S*)")
+
+
+class Section(dict[str, str]):
+    """One section of the header; keys in lower case."""
+
+    def __init__(self, file: Path, name: str) -> None:
+        super().__init__()
+        self.file, self.name = file, name
+
+    def text(self, key: str) -> str:
+        """Of a key that must be there."""
+        if key.lower() not in self:
+            raise ReadError(f"{self.file}: its header lacks {key!r} in {self.name!r}")
+        return self[key.lower()]
+
+    def counts(self, key: str) -> list[int]:
+        """Whole numbers."""
+        words = self.text(key).split()
+        if not words or not all(re.fullmatch("[0-9]{1,12}", word) for word in words):
+            raise ReadError(f"{self.file}: {key!r} is {self.text(key)!r}, expected whole numbers")
+        return [int(word) for word in words]
+
+    def positive(self, key: str) -> float:
+        """A number above 0, whatever unit follows it."""
+        try:
+            value = float(self.text(key).split()[0])
+        except (ValueError, IndexError):
+            value = math.nan
+        if not 0.0 < value < math.inf:
+            raise ReadError(f"{self.file}: {key!r} is {self.text(key)!r}, expected a positive number")
+        return value
+
+    def scaled(self, ending: str) -> tuple[str, float, float] | None:
+        """Of the value whose key ends so: name of its sensitivity, V per LSB, V; None if there is none."""
+        for key, value in self.items():
+            match = _SCALED.match(value)
+            if key.startswith("@") and key.endswith(ending.lower()) and match:
+                name, per_lsb, lsb_unit, volts, unit = match.groups()
+                return name, float(per_lsb) * _UNITS[lsb_unit], float(volts) * _UNITS[unit]
+        return None
+
+    def must_be_scaled(self, ending: str) -> tuple[str, float, float]:
+        """The same of a value that must be there."""
+        found = self.scaled(ending)
+        if found is None:
+            raise ReadError(f"{self.file}: its header lacks {ending!r} with a scale in {self.name!r}")
+        return found
+
+    @property
+    def channel(self) -> str:
+        """What an image section holds: ``S [DeflectionError] "Deflection Error"``."""
+        return next((v for k, v in self.items() if k.startswith("@") and k.endswith(":image data")), "")
+
+
+def sections(file: Path) -> list[Section]:
+    """All sections of a file, in order."""
+    with file.open("rb") as stream:
+        text = stream.read(_HEADER_LIMIT).split(b"\x1a")[0].decode("latin-1")
+    if "\\*File list end" not in text:
+        raise ReadError(f"{file}: its header does not end")
+    found: list[Section] = []
+    for line in text.split("\\*File list end")[0].splitlines():
+        if line.startswith("\\*"):
+            found.append(Section(file, line[2:].strip()))
+        elif line.startswith("\\") and found:
+            # A colon also stands in the name of a parameter: "@4:Z scale: V ..."
+            key, _, value = line[1:].partition(": ")
+            found[-1].setdefault(key.strip().rstrip(":").lower(), value.strip())
+    return found
+
+
+def section(found: list[Section], name: str) -> Section:
+    """The first of this name."""
+    for one in found:
+        if one.name == name:
+            return one
+    raise ReadError(f"{found[0].file}: its header lacks the section {name!r}")
+
+
+def version(found: list[Section]) -> int:
+    """Of the software; 0 if not told."""
+    text = found[0].get("version", "")
+    return int(text, 16) if re.fullmatch("0x[0-9A-Fa-f]{8}", text) else 0
+
+
+def sensitivity(found: list[Section], name: str) -> tuple[float, str] | None:
+    """In m/V, with a note where its unit is left out; None where nobody measured one.
+
+    Without a unit stand numbers of nm/V (as in versions that state it), and a bare 1 where nothing was calibrated.
+    """
+    for one in found:
+        match = _SENSITIVITY.match(one.get(f"@sens. {name}".lower(), ""))
+        if not match:
+            continue
+        value, unit = float(match[1]), match[2]
+        if unit in _UNITS and unit.endswith("/V"):
+            return value * _UNITS[unit], ""
+        if not unit and value != 1.0:
+            return value * 1e-9, f"the header states the sensitivity {name} {value:g} without a unit: taken as nm/V"
+    return None
+
+
+def piezo(found: list[Section], name: str) -> float:
+    """A sensitivity that must be there, in m/V."""
+    known = sensitivity(found, name)
+    if known is None:
+        raise ReadError(f"{found[0].file}: its header states no sensitivity {name!r} in metres per volt")
+    return known[0]
