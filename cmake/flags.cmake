@@ -8,6 +8,7 @@ target_compile_options(
   INTERFACE $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off
             -fno-math-errno
             -fno-trapping-math
+            -fno-semantic-interposition
             -Wall
             -Wextra
             -Wpedantic
@@ -46,7 +47,7 @@ function(nanotouch_library target)
                                              SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   get_target_property(type ${target} TYPE)
   if(type STREQUAL SHARED_LIBRARY AND CMAKE_SYSTEM_NAME STREQUAL Linux)
-    target_link_options(${target} PRIVATE LINKER:--version-script=${nanotouch_exports})
+    target_link_options(${target} PRIVATE LINKER:--version-script=${nanotouch_exports} LINKER:-Bsymbolic-functions)
     set_target_properties(${target} PROPERTIES LINK_DEPENDS ${nanotouch_exports})
   endif()
 endfunction()

@@ -124,7 +124,6 @@ nt_law_value nt_shape_eval(const nt_shape *shape, double effective_modulus, doub
     if (!isfinite(indentation))
         return (nt_law_value){NAN, NAN, NAN, NAN};
     const nt_contact paraboloid = paraboloid_of(shape, effective_modulus);
-    const double angle = nt_pyramid_equivalent_angle(shape->sides, shape->half_angle);
     switch (shape->kind) {
     case NT_SHAPE_PARABOLOID:
         return nt_hertz_eval(&paraboloid, indentation);
@@ -132,7 +131,8 @@ nt_law_value nt_shape_eval(const nt_shape *shape, double effective_modulus, doub
         return to_si(nt_sphere_point(nt_sphere_find_depth(indentation / shape->radius)), effective_modulus,
                      shape->radius);
     case NT_SHAPE_CONE:
-        return nt_cone_eval(effective_modulus, angle, indentation);
+        return nt_cone_eval(effective_modulus, nt_pyramid_equivalent_angle(shape->sides, shape->half_angle),
+                            indentation);
     case NT_SHAPE_PUNCH:
         return nt_punch_eval(effective_modulus, shape->radius, indentation);
     case NT_SHAPE_BLUNTED:

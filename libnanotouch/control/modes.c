@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-#include "control/clamp.h"
 #include "control/motor.h"
+#include "core/clamp.h"
 
 #define FADE_TIME 0.05  /* uncoupled, the force is gone after this [s] */
 #define FOUND_SHARE 0.9 /* of the set-point: the surface is found */

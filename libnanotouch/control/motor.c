@@ -2,7 +2,7 @@
  * The motor of the master where no law speaks, and its limits. */
 #include "control/motor.h"
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 
 /* Share of the master's own damping that the motor adds while it fades out; well below the sampled limit 2 b. */
 #define FADE_DAMPING 0.5

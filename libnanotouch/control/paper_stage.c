@@ -4,7 +4,7 @@
  * start that is not at rest will do. */
 #include <math.h>
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 #include "core/lti.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"

@@ -10,7 +10,7 @@
  */
 #include <math.h>
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 #include "nanotouch/material.h"
 #include "nanotouch/passivity.h"
 

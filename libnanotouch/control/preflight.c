@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 #include "nanotouch/material.h"
 
 #define TARE_HALF 0.05     /* [s] */

@@ -2,7 +2,7 @@
  * What may be asked of a running touch from outside, between two steps. */
 #include <math.h>
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 #include "nanotouch/touch.h"
 
 nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)

@@ -5,7 +5,7 @@
  * what the operator has lost in the master's damping. In free air S = 0 and everything is allowed. */
 #include <math.h>
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 #include "nanotouch/scaling.h"
 #include "nanotouch/servo.h"
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "control/clamp.h"
+#include "core/clamp.h"
 
 /* tau_m = -alpha_f f_s - K_f (alpha_f f_s - f_m). At rest f_m = alpha_f f_s for any K_f (erratum E16). */
 static double reflect(const nt_gains *gains, const nt_signals *signals, double operator_force)

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#include "control/clamp.h"
 #include "control/sampled.h"
+#include "core/clamp.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
 

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "control/clamp.h"
 #include "control/modes.h"
 #include "control/motor.h"
+#include "core/clamp.h"
 #include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */

@@ -26,11 +26,11 @@ size_t nt_ring_count(const nt_ring *ring)
 
 nt_status nt_ring_push(nt_ring *ring, const void *element)
 {
-    const size_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);
-    if (head - atomic_load_explicit(&ring->tail, memory_order_acquire) == ring->capacity)
+    void *next = nt_ring_next(ring);
+    if (!next)
         return NT_E_CAPACITY;
-    memcpy(ring->memory + (head & (ring->capacity - 1)) * ring->element, element, ring->element);
-    atomic_store_explicit(&ring->head, head + 1, memory_order_release);
+    memcpy(next, element, ring->element);
+    nt_ring_add(ring);
     return NT_OK;
 }
 

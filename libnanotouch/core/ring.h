@@ -23,6 +23,18 @@ nt_status nt_ring_init(nt_ring *ring, void *memory, size_t element, size_t capac
 size_t nt_ring_count(const nt_ring *ring);
 /* NT_E_CAPACITY when full. */
 nt_status nt_ring_push(nt_ring *ring, const void *element);
+/* The same in two steps, for what is written in place: where the next element goes, NULL when full; and there it is. */
+static inline void *nt_ring_next(nt_ring *ring)
+{
+    const size_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);
+    const size_t count = head - atomic_load_explicit(&ring->tail, memory_order_acquire);
+    return count < ring->capacity ? ring->memory + (head & (ring->capacity - 1)) * ring->element : NULL;
+}
+static inline void nt_ring_add(nt_ring *ring)
+{
+    const size_t head = atomic_load_explicit(&ring->head, memory_order_relaxed);
+    atomic_store_explicit(&ring->head, head + 1, memory_order_release);
+}
 /* Moves up to `count` elements out; returns how many. */
 size_t nt_ring_pop(nt_ring *ring, void *elements, size_t count);
 

@@ -19,6 +19,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/clamp.h"
+
 #define LONGEST 64.0    /* longest step of the walk, in field lengths */
 #define SHORTEST 0.125  /* a jump of the force is crossed in a step of this many field lengths */
 #define UNRESOLVED 0.05 /* mismatch of N over a step, relative to the N at its ends */
@@ -78,7 +80,7 @@ static nt_status step_downhill(walk *w, const place *a, double *step, place *b)
 {
     const double length = w->field->length;
     while (w->evaluations < EVALUATIONS_MAX) {
-        const double reach = fmin(*step, newton_distance(a));
+        const double reach = lesser(*step, newton_distance(a));
         *b = place_at(w, a->z + w->way * reach);
         if (!place_is_finite(b))
             return NT_E_NOT_FINITE;
@@ -88,7 +90,7 @@ static nt_status step_downhill(walk *w, const place *a, double *step, place *b)
             *step = reach;
             return NT_OK;
         }
-        *step = fmax(0.25 * reach, SHORTEST * length);
+        *step = greater(0.25 * reach, SHORTEST * length);
     }
     return NT_E_NO_CONVERGENCE;
 }
@@ -134,7 +136,7 @@ static nt_status walk_downhill(walk *w, place *a)
             return polish(w, a, b);
         commit(w, b.z);
         *a = b;
-        step = fmin(2.0 * step, fmax(LONGEST * length, fabs(w->base - a->z) / 64.0));
+        step = lesser(2.0 * step, greater(LONGEST * length, fabs(w->base - a->z) / 64.0));
     }
     return NT_OK;
 }

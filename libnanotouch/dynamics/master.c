@@ -101,9 +101,8 @@ void nt_master_step(const nt_master_model *model, nt_master_state *state, double
         way == 0.0 && model->master.friction > 0.0 ? 0.0 : (pull - way * model->master.friction) / c.mass;
 }
 
-double nt_master_grip_force(const nt_master_model *model, const nt_master_state *state, const nt_hand_state *hand)
+double nt_master_grip_force(const nt_master_model *model, const nt_master_state *state, double effort, double rest)
 {
     const nt_hand *h = &model->hand;
-    return nt_hand_effort(hand) - h->mass * state->acceleration - h->damping * state->speed -
-           h->stiffness * (state->position - hand->rest);
+    return effort - h->mass * state->acceleration - h->damping * state->speed - h->stiffness * (state->position - rest);
 }

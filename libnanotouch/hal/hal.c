@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/axes.h"
 #include "core/problem.h"
 
 #define ALL_CHANNELS ((1u << NT_READS) - 1u)
@@ -143,31 +144,26 @@ static double seconds_between(int64_t from, int64_t to)
     return (double)(to - from) / 1e9;
 }
 
-nt_sample nt_hal_sample(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now)
+void nt_hal_sample(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
 {
     const nt_reading *hand = &master->reading, *probe = &slave->reading;
-    nt_sample sample = {.tick = tick,
-                        .age = seconds_between(probe->time, now),
-                        .master_age = seconds_between(hand->time, now),
-                        .lateness = hand->lateness > probe->lateness ? hand->lateness : probe->lateness,
-                        .flags = hand->flags | probe->flags};
-    for (int i = 0; i < NT_AXES; ++i) {
-        sample.master_position[i] = hand->position[i];
-        sample.operator_force[i] = hand->felt[i];
-        sample.stage_position[i] = probe->position[i];
-        sample.deflection[i] = probe->felt[i];
-    }
-    return sample;
+    sample->tick = tick;
+    sample->age = seconds_between(probe->time, now);
+    sample->master_age = seconds_between(hand->time, now);
+    sample->lateness = hand->lateness > probe->lateness ? hand->lateness : probe->lateness;
+    sample->flags = hand->flags | probe->flags;
+    copy_axes(sample->master_position, hand->position);
+    copy_axes(sample->operator_force, hand->felt);
+    copy_axes(sample->stage_position, probe->position);
+    copy_axes(sample->deflection, probe->felt);
 }
 
 nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command, nt_action *action)
 {
     action->state = command->state;
-    for (int i = 0; i < NT_AXES; ++i)
-        action->target[i] = command->motor_force[i];
+    copy_axes(action->target, command->motor_force);
     const nt_status status = nt_hal_write(master, action);
-    for (int i = 0; i < NT_AXES; ++i)
-        action->target[i] = command->stage_position[i];
+    copy_axes(action->target, command->stage_position);
     const nt_status second = nt_hal_write(slave, action);
     return status == NT_OK ? second : status;
 }

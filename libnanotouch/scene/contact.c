@@ -63,11 +63,6 @@ int nt_plan_has_local_form(const nt_plan *plan)
     return form == NT_FORM_EXACT || (form == NT_FORM_SHAPE && plan->shape.kind == NT_SHAPE_PARABOLOID);
 }
 
-int nt_form_is_local(nt_form form)
-{
-    return form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
-}
-
 static const nt_maugis_bank no_tables = {.panels = NULL}; /* what it does not hold, the exact solver answers */
 
 static const nt_maugis_bank *bank_of(const nt_plan *plan, nt_form form)

@@ -17,7 +17,10 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
 
 /* Whether the contact of the scene can follow the effective radius of each place, and whether a form does. */
 int nt_plan_has_local_form(const nt_plan *plan);
-int nt_form_is_local(nt_form form);
+static inline int nt_form_is_local(nt_form form)
+{
+    return form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
+}
 /* {U, F, k, a} and dU/dR of a local form at an effective radius [m]; all NaN where it refuses. */
 nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, double radius, double indentation);
 /* Where that contact lets go under grips [m]. */

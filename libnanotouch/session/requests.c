@@ -94,13 +94,17 @@ static void answer(nt_session *session, const nt_call *call, nt_status status)
     nt_frames_answer(session->frames, &found);
 }
 
-void nt_session_take_calls(nt_session *session)
+static void take_all(nt_session *session)
 {
     nt_call call;
-    if (nt_ring_count(&session->calls) == 0)
-        return;
     while (nt_ring_pop(&session->calls, &call, 1) == 1)
         answer(session, &call, apply(session, &call));
+}
+
+void nt_session_take_calls(nt_session *session)
+{
+    if (nt_ring_count(&session->calls) > 0)
+        take_all(session);
 }
 
 /* --- the caller's side --- */

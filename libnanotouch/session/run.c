@@ -2,6 +2,7 @@
  * A session running: one period after another, and what may be read of it. No heap, no lock. */
 #include <math.h>
 
+#include "core/axes.h"
 #include "session/state.h"
 
 /* The button is held, or has been pressed since the last tick: no press is lost to a quick release. */
@@ -30,10 +31,8 @@ static void take_input(nt_session *session)
         return;
     if (session->simulates[NT_HALF_MASTER]) {
         nt_hand_target target = {.holds = input.holds, .duration = input.duration};
-        for (int i = 0; i < NT_AXES; ++i) {
-            target.force[i] = input.operator_force[i];
-            target.position[i] = input.master_position[i];
-        }
+        copy_axes(target.force, input.operator_force);
+        copy_axes(target.position, input.master_position);
         nt_sim_aim_hand(&session->sim.master, &target);
     }
     if (isnan(input.x))
@@ -43,34 +42,34 @@ static void take_input(nt_session *session)
         (void)nt_session_keep_event(session, &event);
 }
 
-static nt_record record_of(const nt_session *session, const nt_sample *sample, const nt_command *command,
-                           const nt_truth *truth)
+static const nt_truth unknown = {
+    .gap = NAN, .tip_force = {NAN, NAN, NAN}, .contact_radius = NAN, .surface_height = NAN};
+
+/* All of a record. What is true is so until the command is written. */
+static void fill(nt_record *record, const nt_session *session, const nt_sample *sample, const nt_command *command)
 {
     const nt_touch *touch = &session->now->touch;
-    const uint64_t tick = session->touch_state.ticks - 1u;
-    nt_record record = {.tick = tick,
-                        .time = (double)tick * touch->period,
-                        .slave_force = touch->rig.probe.spring_constant * sample->deflection[NT_Z],
-                        .gap = truth->gap,
-                        .contact_radius = truth->contact_radius,
-                        .surface_height = truth->surface_height,
-                        .age = sample->age,
-                        .master_age = sample->master_age,
-                        .lateness = sample->lateness,
-                        .flags = sample->flags,
-                        .phase = (uint32_t)session->touch_state.phase,
-                        .state = command->state,
-                        .reasons = command->reasons};
-    for (int i = 0; i < NT_AXES; ++i) {
-        record.master_position[i] = sample->master_position[i];
-        record.operator_force[i] = sample->operator_force[i];
-        record.stage_position[i] = sample->stage_position[i];
-        record.stage_command[i] = command->stage_position[i];
-        record.deflection[i] = sample->deflection[i];
-        record.motor_force[i] = command->motor_force[i];
-        record.tip_force[i] = truth->tip_force[i];
-    }
-    return record;
+    const nt_truth *truth = session->simulates[NT_HALF_SLAVE] ? &session->sim.slave.truth : &unknown;
+    record->tick = session->touch_state.ticks - 1u;
+    record->time = (double)record->tick * touch->period;
+    record->slave_force = touch->rig.probe.spring_constant * sample->deflection[NT_Z];
+    record->gap = truth->gap;
+    record->contact_radius = truth->contact_radius;
+    record->surface_height = truth->surface_height;
+    record->age = sample->age;
+    record->master_age = sample->master_age;
+    record->lateness = sample->lateness;
+    record->flags = sample->flags;
+    record->phase = (uint32_t)session->touch_state.phase;
+    record->state = command->state;
+    record->reasons = command->reasons;
+    copy_axes(record->master_position, sample->master_position);
+    copy_axes(record->operator_force, sample->operator_force);
+    copy_axes(record->stage_position, sample->stage_position);
+    copy_axes(record->stage_command, command->stage_position);
+    copy_axes(record->deflection, sample->deflection);
+    copy_axes(record->motor_force, command->motor_force);
+    copy_axes(record->tip_force, truth->tip_force);
 }
 
 /* Without a clock of the machine, time is ticks times period, as the simulated halves count it. */
@@ -87,7 +86,7 @@ nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sampl
     nt_status status = nt_hal_read(&session->master);
     if (status == NT_OK)
         status = nt_hal_read(&session->slave);
-    *sample = nt_hal_sample(&session->master, &session->slave, tick, session->time);
+    nt_hal_sample(&session->master, &session->slave, tick, session->time, sample);
     return status;
 }
 
@@ -97,8 +96,12 @@ nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command 
     return nt_hal_command(&session->master, &session->slave, command, &action);
 }
 
-static const nt_truth unknown = {
-    .gap = NAN, .tip_force = {NAN, NAN, NAN}, .contact_radius = NAN, .surface_height = NAN};
+/* The record of this tick goes straight into the ring; one that has no place there can still be shown. */
+static nt_record *next_record(nt_session *session)
+{
+    nt_record *next = session->records ? nt_ring_next(&session->ring) : NULL;
+    return next ? next : &session->unkept;
+}
 
 static nt_status keep(nt_session *session, const nt_record *record)
 {
@@ -106,16 +109,16 @@ static nt_status keep(nt_session *session, const nt_record *record)
         const nt_frame frame = nt_session_frame(session, record);
         nt_frames_publish(session->frames, &frame);
     }
-    if (!session->records)
-        return NT_OK;
-    const nt_status status = nt_ring_push(&session->ring, record);
-    if (status == NT_OK || !session->may_drop)
-        return status;
-    atomic_fetch_add_explicit(&session->dropped, 1, memory_order_relaxed);
+    if (record != &session->unkept)
+        nt_ring_add(&session->ring);
+    else if (session->records && !session->may_drop)
+        return NT_E_CAPACITY;
+    else if (session->records)
+        atomic_fetch_add_explicit(&session->dropped, 1, memory_order_relaxed);
     return NT_OK;
 }
 
-static nt_status tick_with(nt_session *session, nt_record *record)
+static nt_status run_tick(nt_session *session, nt_record *record)
 {
     nt_sample sample;
     nt_command command;
@@ -123,7 +126,6 @@ static nt_status tick_with(nt_session *session, nt_record *record)
         nt_session_take_clients(session);
     nt_session_take_calls(session);
     take_input(session);
-    const nt_truth truth = session->simulates[NT_HALF_SLAVE] ? session->sim.slave.truth : unknown; /* at this moment */
     const uint64_t tick = session->touch_state.ticks;
     const nt_status status = nt_session_sample(session, tick, &sample);
     if (status != NT_OK)
@@ -133,15 +135,14 @@ static nt_status tick_with(nt_session *session, nt_record *record)
     if (session->clock)
         sample.lateness = session->lateness;
     nt_touch_step(&session->now->touch, &session->touch_state, &sample, &command);
-    *record = record_of(session, &sample, &command, &truth);
+    fill(record, session, &sample, &command);
     const nt_status kept = keep(session, record);
     return kept == NT_OK ? nt_session_write(session, tick, &command) : kept;
 }
 
 nt_status nt_session_tick(nt_session *session)
 {
-    nt_record record;
-    return tick_with(session, &record);
+    return run_tick(session, next_record(session));
 }
 
 static nt_status check_free(const nt_session *session, long ticks)
@@ -168,14 +169,15 @@ nt_status nt_session_advance(nt_session *session, long ticks)
 
 nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *frame)
 {
-    nt_record record;
     nt_status status = check_free(session, 1);
     if (status == NT_OK && input)
         status = nt_session_aim(session, input, NULL);
+    if (status != NT_OK)
+        return status;
+    const nt_record *record = next_record(session);
+    status = nt_session_tick(session);
     if (status == NT_OK)
-        status = tick_with(session, &record);
-    if (status == NT_OK)
-        *frame = nt_session_frame(session, &record);
+        *frame = nt_session_frame(session, record);
     return status;
 }
 

@@ -54,6 +54,7 @@ struct nt_session {
     nt_input mailbox_memory[3];
     nt_ring ring, events, calls, clients;
     nt_record *records; /* NULL: nothing is recorded */
+    nt_record unkept;   /* the last one that had no place in the ring */
     nt_event *event_memory;
     nt_call *call_memory;
     nt_request *client_memory;

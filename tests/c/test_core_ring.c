@@ -44,6 +44,25 @@ static void a_full_ring_refuses_and_keeps_what_it_has(void **state)
         assert_int_equal(out[i], i);
 }
 
+/* Nobody sees it before it is added. */
+static void an_element_may_be_written_in_place(void **state)
+{
+    (void)state;
+    nt_ring ring;
+    int memory[2], out[2];
+    assert_int_equal(nt_ring_init(&ring, memory, sizeof(int), 2), NT_OK);
+    for (int i = 0; i < 2; i++) {
+        int *next = nt_ring_next(&ring);
+        assert_ptr_equal(next, &memory[i]);
+        *next = 7 + i;
+        assert_int_equal(nt_ring_count(&ring), i);
+        nt_ring_add(&ring);
+    }
+    assert_null(nt_ring_next(&ring));
+    assert_int_equal(nt_ring_pop(&ring, out, 2), 2);
+    assert_true(out[0] == 7 && out[1] == 8);
+}
+
 /* The indices run over: from just below the largest size_t. */
 static void order_is_kept_round_and_round(void **state)
 {
@@ -184,6 +203,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(capacity_must_be_a_power_of_two),
         cmocka_unit_test(a_full_ring_refuses_and_keeps_what_it_has),
+        cmocka_unit_test(an_element_may_be_written_in_place),
         cmocka_unit_test(order_is_kept_round_and_round),
         cmocka_unit_test(two_threads_lose_and_tear_nothing),
         cmocka_unit_test(only_the_newest_message_counts),

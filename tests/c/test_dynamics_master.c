@@ -164,7 +164,7 @@ static void grip_force_balances_the_master(void **state)
     for (int k = 0; k < 200; k++) {
         const double motor = -0.6 * cos(0.4 * k);
         nt_master_step(&model, &now, motor + nt_hand_effort(&holds), holds.rest);
-        const double force = nt_master_grip_force(&model, &now, &holds);
+        const double force = nt_master_grip_force(&model, &now, nt_hand_effort(&holds), holds.rest);
         const double friction = now.speed > 0.0 ? 0.1 : -0.1;
         const double rest = motor + force - 100.0 * now.speed - 0.1 * now.acceleration;
         assert_true(now.speed != 0.0 ? fabs(rest - friction) < 1e-12 : fabs(rest) <= 0.1 + 1e-12);

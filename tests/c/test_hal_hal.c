@@ -193,7 +193,8 @@ static void a_reading_is_held_until_a_newer_one_comes(void **state)
         assert_int_equal(nt_hal_read(&master), NT_OK);
         assert_int_equal(nt_hal_read(&slave), NT_OK);
         expect_number(&master, 3.0);
-        const nt_sample sample = nt_hal_sample(&master, &slave, (uint64_t)tick, 10000 + 500 * tick);
+        nt_sample sample;
+        nt_hal_sample(&master, &slave, (uint64_t)tick, 10000 + 500 * tick, &sample);
         assert_true(sample.master_age == (7000 + 500 * tick) / 1e9);
         assert_true(sample.age == (2000 + 500 * tick) / 1e9);
         assert_true(sample.master_position[NT_Y] == 6.0 && sample.operator_force[NT_Z] == 18.0);
@@ -295,11 +296,12 @@ static void flags_and_lateness_of_both_halves_count(void **state)
     master.reading.flags = NT_SAMPLE_EMERGENCY_STOP;
     slave.reading.flags = NT_SAMPLE_LIMIT_SWITCH;
     slave.reading.lateness = 2e-5;
-    nt_sample sample = nt_hal_sample(&master, &slave, 5, 2000);
+    nt_sample sample;
+    nt_hal_sample(&master, &slave, 5, 2000, &sample);
     assert_int_equal(sample.flags, NT_SAMPLE_EMERGENCY_STOP | NT_SAMPLE_LIMIT_SWITCH);
     assert_true(sample.lateness == 2e-5 && sample.age == 0.0 && sample.master_age == 1e-6);
     master.reading.lateness = 3e-5;
-    sample = nt_hal_sample(&master, &slave, 5, 2000);
+    nt_hal_sample(&master, &slave, 5, 2000, &sample);
     assert_true(sample.lateness == 3e-5);
 }
 

@@ -210,20 +210,10 @@ static void mark(nt_reading *reading)
     }
 }
 
-static void stamp(const nt_sim_link *link, nt_reading *reading, double age)
-{
-    const int64_t now = link->host ? link->host->now(link->host) : llround((double)link->tick * link->period * 1e9);
-    reading->time = age == 0.0 ? now : now - llround(age * 1e9);
-}
-
 /* Sensors first, then the link that carries them. */
-void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double age)
+int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double *age)
 {
     int stale = 0;
-    reading->size = sizeof *reading;
-    reading->sequence = link->converted + 1u;
-    reading->valid = link->valid;
-    reading->lateness = link->lateness;
     for (int i = 0; i < link->faults.count; i++) {
         const nt_fault *fault = &link->faults.list[i];
         if ((int)fault->channel < SENSORS && is_active(link, fault))
@@ -232,16 +222,12 @@ void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *
     for (int i = 0; i < link->faults.count; i++) {
         const nt_fault *fault = &link->faults.list[i];
         if (fault->channel == NT_CHANNEL_RIG && is_active(link, fault)) {
-            spoil_frame(link, fault, reading, &age);
+            spoil_frame(link, fault, reading, age);
             stale |= fault->kind == NT_FAULT_STALE;
         }
     }
-    if (link->faults.count > 0)
-        mark(reading);
-    stamp(link, reading, age);
-    link->last = (nt_sim_memory){reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};
-    if (!stale)
-        link->fresh = link->last;
+    mark(reading);
+    return stale;
 }
 
 int nt_sim_lost_periods(const nt_sim_link *link)

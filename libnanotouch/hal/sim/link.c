@@ -46,14 +46,6 @@ nt_status nt_sim_link_init(nt_sim_link *link, const nt_sim_setup *setup, double 
     return status;
 }
 
-int nt_sim_is_converted(const nt_sim_link *link)
-{
-    const double per_tick = link->per_tick;
-    if (link->tick == 0 || per_tick == 0.0 || per_tick >= 1.0)
-        return 1;
-    return floor((double)link->tick * per_tick) > floor((double)(link->tick - 1u) * per_tick);
-}
-
 void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double seen[2])
 {
     if (link->rig.converters.adc_latency == 0.0) {
@@ -70,18 +62,21 @@ void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double 
         seen[i] = newer[i] + share * (older[i] - newer[i]);
 }
 
-const double *nt_sim_acting(const nt_sim_link *link, double (*pending)[NT_AXES], int part)
+static int64_t time_now(const nt_sim_link *link)
 {
-    const uint64_t newest = link->tick + NT_SIM_SLOTS - (uint64_t)link->delay;
-    return pending[(part == 0 ? newest - 1u : newest) % NT_SIM_SLOTS];
+    return link->host ? link->host->now(link->host) : llround((double)link->tick * link->period * 1e9);
 }
 
-double nt_sim_in_steps(double value, double step)
+void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading)
 {
-    return step > 0.0 ? step * round(value / step) : value;
-}
-
-int nt_sim_is_finite(const nt_action *action)
-{
-    return isfinite(action->target[NT_X]) && isfinite(action->target[NT_Y]) && isfinite(action->target[NT_Z]);
+    double age = link->rig.converters.adc_latency + (double)(link->tick - link->converted) * link->period;
+    reading->size = sizeof *reading;
+    reading->sequence = link->converted + 1u;
+    reading->valid = link->valid;
+    reading->lateness = link->lateness;
+    const int is_stale = link->faults.count > 0 && nt_sim_spoil(link, sensors, reading, &age);
+    reading->time = time_now(link) - (age == 0.0 ? 0 : llround(age * 1e9));
+    link->last = (nt_sim_memory){reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};
+    if (!is_stale)
+        link->fresh = link->last;
 }

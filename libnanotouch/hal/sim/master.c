@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/axes.h"
+#include "core/clamp.h"
 #include "parts.h"
 
 static void init_sensors(nt_sim_master *master)
@@ -28,15 +30,19 @@ static nt_status init_models(nt_sim_master *master)
     return status;
 }
 
+static double effort_of(const nt_sim_master *master)
+{
+    return nt_hand_effort(&master->hand) + nt_sim_push(&master->link);
+}
+
 /* Position and grip force along NT_Z, as they are. */
 static void moment_now(const nt_sim_master *master, double moment[2])
 {
-    nt_hand_state hand = master->hand;
-    hand.random_force += nt_sim_push(&master->link);
-    moment[0] = master->arm[NT_Z].position;
-    moment[1] = master->link.rig.master.gauge != 0.0
-                    ? nt_master_grip_force(&master->models[1], &master->arm[NT_Z], &hand)
-                    : (double)NAN;
+    const nt_master_state *arm = &master->arm[NT_Z];
+    const int measures = master->link.rig.master.gauge != 0.0;
+    moment[0] = arm->position;
+    moment[1] =
+        measures ? nt_master_grip_force(&master->models[1], arm, effort_of(master), master->hand.rest) : (double)NAN;
 }
 
 nt_status nt_sim_master_init(nt_sim_master *master, const nt_sim_setup *setup)
@@ -83,9 +89,8 @@ nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
             converted->position[i] = master->arm[i].position;
         link->converted = link->tick;
     }
-    const double age = link->rig.converters.adc_latency + (double)(link->tick - link->converted) * link->period;
     *reading = *converted;
-    nt_sim_spoil(link, &(nt_sim_sensors){NT_HALF_MASTER, &master->position_sensor, &master->gauge}, reading, age);
+    nt_sim_give(link, &(nt_sim_sensors){NT_HALF_MASTER, &master->position_sensor, &master->gauge}, reading);
     return NT_OK;
 }
 
@@ -102,16 +107,17 @@ static double drive_motor(const nt_sim_link *link, double command)
         return 0.0;
     const double most = link->rig.master.max_force;
     const double force = nt_sim_spoil_motor(link, command);
-    return nt_sim_in_steps(fmin(fmax(force, -most), most), nt_sim_motor_step(link));
+    return nt_sim_in_steps(clamp(force, -most, most), nt_sim_motor_step(link));
 }
 
 static void push_arm(nt_sim_master *master, const nt_master_model *model, const double *motor_force)
 {
-    const double effort = nt_hand_effort(&master->hand) + nt_sim_push(&master->link);
-    nt_master_step(model, &master->arm[NT_Z], drive_motor(&master->link, motor_force[NT_Z]) + effort,
-                   master->hand.rest);
+    const double motor = drive_motor(&master->link, motor_force[NT_Z]);
+    nt_master_step(model, &master->arm[NT_Z], motor + effort_of(master), master->hand.rest);
+    if (!(master->link.rig.master.axes > 1.0))
+        return;
     const nt_hand_target hand = nt_hand_now(&master->hand);
-    for (int i = NT_X; i < NT_Z && master->link.rig.master.axes > 1.0; i++)
+    for (int i = NT_X; i < NT_Z; i++)
         nt_master_step(model, &master->arm[i], drive_motor(&master->link, motor_force[i]) + hand.force[i], 0.0);
 }
 
@@ -124,7 +130,7 @@ static void hold_arm(nt_sim_master *master)
     const nt_hand_target hand = nt_hand_now(&later);
     for (int i = 0; i < NT_AXES; i++) {
         nt_master_state *arm = &master->arm[i];
-        const double position = fmin(fmax(hand.position[i], -stop), stop);
+        const double position = clamp(hand.position[i], -stop, stop);
         const double speed = (position - arm->position) / period;
         *arm = (nt_master_state){position, speed, (speed - arm->speed) / period};
     }
@@ -134,8 +140,7 @@ static void hold_arm(nt_sim_master *master)
 static void pass_period(nt_sim_master *master, const double *target)
 {
     nt_sim_link *link = &master->link;
-    for (int i = 0; i < NT_AXES; i++)
-        master->pending[link->tick % NT_SIM_SLOTS][i] = target[i];
+    copy_axes(master->pending[link->tick % NT_SIM_SLOTS], target);
     for (int part = 0; part < 2 && !master->hand.to.holds; part++)
         if (master->models[part].period > 0.0)
             push_arm(master, &master->models[part], nt_sim_acting(link, master->pending, part));
@@ -155,8 +160,7 @@ nt_status nt_sim_master_write(nt_sim_master *master, const nt_action *action)
     link->lateness = lost * link->period;
     for (int i = 0; i < lost; i++) {
         double before[NT_AXES];
-        for (int axis = 0; axis < NT_AXES; axis++)
-            before[axis] = master->pending[(link->tick + NT_SIM_SLOTS - 1u) % NT_SIM_SLOTS][axis];
+        copy_axes(before, master->pending[(link->tick + NT_SIM_SLOTS - 1u) % NT_SIM_SLOTS]);
         pass_period(master, before);
         moment_now(master, master->moments[link->tick % NT_SIM_SLOTS]);
     }

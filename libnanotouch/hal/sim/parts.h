@@ -3,6 +3,8 @@
 #ifndef NANOTOUCH_HAL_SIM_PARTS_H
 #define NANOTOUCH_HAL_SIM_PARTS_H
 
+#include <math.h>
+
 #include "nanotouch/sim.h"
 
 #ifdef __cplusplus
@@ -15,13 +17,36 @@ nt_status nt_sim_check_setup(const nt_sim_setup *setup);
 /* own_rate: of this half's measurements beside the converters', 0: none [Hz]. */
 nt_status nt_sim_link_init(nt_sim_link *link, const nt_sim_setup *setup, double own_rate);
 /* Does a conversion end in this tick? */
-int nt_sim_is_converted(const nt_sim_link *link);
+static inline int nt_sim_is_converted(const nt_sim_link *link)
+{
+    const double per_tick = link->per_tick;
+    if (per_tick == 0.0 || per_tick >= 1.0 || link->tick == 0)
+        return 1;
+    return floor((double)link->tick * per_tick) > floor((double)(link->tick - 1u) * per_tick);
+}
+/* The two sensors of a half: of its position, and of what it feels. */
+typedef struct nt_sim_sensors {
+    nt_half half;
+    const nt_sensor *position, *felt;
+} nt_sim_sensors;
+/* What was converted goes on its way: numbered, spoilt by faults, stamped, kept for a fault that lasts. */
+void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading);
 /* A pair of values as it was a latency ago, between two ticks on a straight line. */
 void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double seen[2]);
 /* The command that acts in the first (0) or second (1) part of this period. */
-const double *nt_sim_acting(const nt_sim_link *link, double (*pending)[NT_AXES], int part);
-double nt_sim_in_steps(double value, double step);
-int nt_sim_is_finite(const nt_action *action);
+static inline const double *nt_sim_acting(const nt_sim_link *link, double (*pending)[NT_AXES], int part)
+{
+    const uint64_t newest = link->tick + NT_SIM_SLOTS - (uint64_t)link->delay;
+    return pending[(part == 0 ? newest - 1u : newest) % NT_SIM_SLOTS];
+}
+static inline double nt_sim_in_steps(double value, double step)
+{
+    return step > 0.0 ? step * round(value / step) : value;
+}
+static inline int nt_sim_is_finite(const nt_action *action)
+{
+    return isfinite(action->target[NT_X]) && isfinite(action->target[NT_Y]) && isfinite(action->target[NT_Z]);
+}
 
 /* The stream of a channel at the beginning of this tick. */
 static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
@@ -47,13 +72,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave);
 
 /* --- faults.c: what each fault does, where it acts --- */
 
-/* The two sensors of a half: of its position, and of what it feels. */
-typedef struct nt_sim_sensors {
-    nt_half half;
-    const nt_sensor *position, *felt;
-} nt_sim_sensors;
-/* What becomes of a reading on its way; age: of what was measured [s]. Stamps it. */
-void nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double age);
+/* What becomes of a reading on its way; age: of what was measured [s]. 1: the link has brought old news. */
+int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double *age);
 /* Periods that are lost before this command arrives. */
 int nt_sim_lost_periods(const nt_sim_link *link);
 /* What stage and motor make of what they are told [m], [N]. */

@@ -121,7 +121,7 @@ nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
     if (status != NT_OK)
         return status;
     const nt_sim_link *link = &sim->slave.link;
-    *sample = nt_hal_sample(&master, &slave, link->tick, llround((double)link->tick * link->period * 1e9));
+    nt_hal_sample(&master, &slave, link->tick, llround((double)link->tick * link->period * 1e9), sample);
     return NT_OK;
 }
 

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/axes.h"
+#include "core/clamp.h"
 #include "parts.h"
 
 #define SUBSTEP 0.25 /* of the dynamic cantilever [rad] */
@@ -102,17 +104,11 @@ nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
         converted->felt[NT_Z] = convert(slave, &slave->deflection_sensor, NT_CHANNEL_DEFLECTION, seen[1]);
         link->converted = link->tick;
     }
-    const double age = link->rig.converters.adc_latency + (double)(link->tick - link->converted) * link->period;
     *reading = *converted;
     reading->position[NT_X] = slave->x;
     reading->position[NT_Y] = slave->y;
-    nt_sim_spoil(link, &(nt_sim_sensors){NT_HALF_SLAVE, &slave->stage_sensor, &slave->deflection_sensor}, reading, age);
+    nt_sim_give(link, &(nt_sim_sensors){NT_HALF_SLAVE, &slave->stage_sensor, &slave->deflection_sensor}, reading);
     return NT_OK;
-}
-
-static double limit(double value, double minimum, double maximum)
-{
-    return fmin(fmax(value, minimum), maximum);
 }
 
 /* What the stage's driver makes of a command: travel, slew, steps. */
@@ -120,8 +116,8 @@ static double drive_stage(nt_sim_slave *slave, double command, double time)
 {
     const nt_stage *stage = &slave->link.rig.stage;
     const double slew = stage->max_speed * time, half = 0.5 * stage->travel;
-    const double reached = limit(command, slave->stage_drive - slew, slave->stage_drive + slew);
-    slave->stage_drive = limit(reached, -half, half);
+    const double reached = clamp(command, slave->stage_drive - slew, slave->stage_drive + slew);
+    slave->stage_drive = clamp(reached, -half, half);
     return nt_sim_in_steps(slave->stage_drive, slave->command_step);
 }
 
@@ -148,8 +144,7 @@ static void move_stage(nt_sim_slave *slave, nt_stage_model *model, const double 
 static nt_status pass_period(nt_sim_slave *slave, const double *target)
 {
     nt_sim_link *link = &slave->link;
-    for (int i = 0; i < NT_AXES; i++)
-        slave->pending[link->tick % NT_SIM_SLOTS][i] = target[i];
+    copy_axes(slave->pending[link->tick % NT_SIM_SLOTS], target);
     for (int part = 0; part < 2; part++)
         if (slave->models[part].period > 0.0)
             move_stage(slave, &slave->models[part], nt_sim_acting(link, slave->pending, part));
@@ -167,8 +162,7 @@ nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action)
     nt_status status = NT_OK;
     for (int i = 0; i < lost && status == NT_OK; i++) {
         double before[NT_AXES];
-        for (int axis = 0; axis < NT_AXES; axis++)
-            before[axis] = slave->pending[(link->tick + NT_SIM_SLOTS - 1u) % NT_SIM_SLOTS][axis];
+        copy_axes(before, slave->pending[(link->tick + NT_SIM_SLOTS - 1u) % NT_SIM_SLOTS]);
         status = pass_period(slave, before);
         moment_now(slave, slave->moments[link->tick % NT_SIM_SLOTS]);
     }

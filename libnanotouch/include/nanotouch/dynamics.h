@@ -156,7 +156,7 @@ NT_API nt_status nt_master_model_init(nt_master_model *model, const nt_master *m
 NT_API NT_REALTIME void nt_master_step(const nt_master_model *model, nt_master_state *state, double force, double rest);
 /* f_m, what a force sensor between hand and master reads: effort - m_h x'' - b_h x' - k_h (x - rest) [N]. */
 NT_API NT_REALTIME double nt_master_grip_force(const nt_master_model *model, const nt_master_state *state,
-                                               const nt_hand_state *hand);
+                                               double effort, double rest);
 
 /* --- sensor: gain 1, white noise, range, steps --- */
 typedef struct nt_sensor {

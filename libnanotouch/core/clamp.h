@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to control/. fmin and fmax are calls where NaN must be minded; here it has been. */
-#ifndef NANOTOUCH_CONTROL_CLAMP_H
-#define NANOTOUCH_CONTROL_CLAMP_H
+ * Private. fmin and fmax are calls where NaN must be minded; here it has been. */
+#ifndef NANOTOUCH_CORE_CLAMP_H
+#define NANOTOUCH_CORE_CLAMP_H
 
 static inline double lesser(double a, double b)
 {
