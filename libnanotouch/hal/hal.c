@@ -144,9 +144,14 @@ static double seconds_between(int64_t from, int64_t to)
     return (double)(to - from) / 1e9;
 }
 
-void nt_hal_sample(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
+nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
 {
     const nt_reading *hand = &master->reading, *probe = &slave->reading;
+    nt_status status = nt_hal_read(master);
+    if (status == NT_OK)
+        status = nt_hal_read(slave);
+    if (status != NT_OK)
+        return status;
     sample->tick = tick;
     sample->age = seconds_between(probe->time, now);
     sample->master_age = seconds_between(hand->time, now);
@@ -156,6 +161,7 @@ void nt_hal_sample(const nt_hal *master, const nt_hal *slave, uint64_t tick, int
     copy_axes(sample->operator_force, hand->felt);
     copy_axes(sample->stage_position, probe->position);
     copy_axes(sample->deflection, probe->felt);
+    return NT_OK;
 }
 
 nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command, nt_action *action)

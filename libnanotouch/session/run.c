@@ -83,11 +83,7 @@ static int64_t time_of(const nt_session *session, uint64_t tick)
 nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sample)
 {
     session->time = time_of(session, tick);
-    nt_status status = nt_hal_read(&session->master);
-    if (status == NT_OK)
-        status = nt_hal_read(&session->slave);
-    nt_hal_sample(&session->master, &session->slave, tick, session->time, sample);
-    return status;
+    return nt_hal_sample(&session->master, &session->slave, tick, session->time, sample);
 }
 
 nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command)

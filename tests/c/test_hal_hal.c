@@ -190,11 +190,9 @@ static void a_reading_is_held_until_a_newer_one_comes(void **state)
     assert_int_equal(open_half(&master, &hand, &d), NT_OK);
     assert_int_equal(open_half(&slave, &probe, &e), NT_OK);
     for (int tick = 0; tick < 4; tick++) {
-        assert_int_equal(nt_hal_read(&master), NT_OK);
-        assert_int_equal(nt_hal_read(&slave), NT_OK);
-        expect_number(&master, 3.0);
         nt_sample sample;
-        nt_hal_sample(&master, &slave, (uint64_t)tick, 10000 + 500 * tick, &sample);
+        assert_int_equal(nt_hal_sample(&master, &slave, (uint64_t)tick, 10000 + 500 * tick, &sample), NT_OK);
+        expect_number(&master, 3.0);
         assert_true(sample.master_age == (7000 + 500 * tick) / 1e9);
         assert_true(sample.age == (2000 + 500 * tick) / 1e9);
         assert_true(sample.master_position[NT_Y] == 6.0 && sample.operator_force[NT_Z] == 18.0);
@@ -292,17 +290,25 @@ static void a_device_that_is_lost_shows_in_the_reading(void **state)
 static void flags_and_lateness_of_both_halves_count(void **state)
 {
     (void)state;
-    nt_hal master = {.reading = reading_of(1)}, slave = {.reading = reading_of(2)};
-    master.reading.flags = NT_SAMPLE_EMERGENCY_STOP;
-    slave.reading.flags = NT_SAMPLE_LIMIT_SWITCH;
-    slave.reading.lateness = 2e-5;
+    const nt_backend hand = backend_of(NT_HALF_MASTER), probe = backend_of(NT_HALF_SLAVE);
+    device d = {.next = reading_of(1)}, e = {.next = reading_of(2)};
+    nt_hal master, slave;
+    assert_int_equal(open_half(&master, &hand, &d), NT_OK);
+    assert_int_equal(open_half(&slave, &probe, &e), NT_OK);
+    d.next.flags = NT_SAMPLE_EMERGENCY_STOP;
+    e.next.flags = NT_SAMPLE_LIMIT_SWITCH;
+    e.next.lateness = 2e-5;
     nt_sample sample;
-    nt_hal_sample(&master, &slave, 5, 2000, &sample);
+    assert_int_equal(nt_hal_sample(&master, &slave, 5, 2000, &sample), NT_OK);
     assert_int_equal(sample.flags, NT_SAMPLE_EMERGENCY_STOP | NT_SAMPLE_LIMIT_SWITCH);
     assert_true(sample.lateness == 2e-5 && sample.age == 0.0 && sample.master_age == 1e-6);
-    master.reading.lateness = 3e-5;
-    nt_hal_sample(&master, &slave, 5, 2000, &sample);
+    d.next.lateness = 3e-5;
+    assert_int_equal(nt_hal_sample(&master, &slave, 5, 2000, &sample), NT_OK);
     assert_true(sample.lateness == 3e-5);
+    sample.tick = 77;
+    e.reads = NT_E_NO_CONVERGENCE; /* then nothing is written */
+    assert_int_equal(nt_hal_sample(&master, &slave, 5, 2000, &sample), NT_E_NO_CONVERGENCE);
+    assert_int_equal(sample.tick, 77);
 }
 
 static void a_command_reaches_both_halves(void **state)

@@ -336,10 +336,8 @@ static void the_backends_are_the_simulator(void **state)
     for (uint64_t i = 0; i < 100; i++) {
         const nt_command command = script(i);
         nt_sample y;
-        assert_int_equal(nt_hal_read(&master), NT_OK);
-        assert_int_equal(nt_hal_read(&slave), NT_OK);
         nt_sample x;
-        nt_hal_sample(&master, &slave, i, llround((double)i * setup.period * 1e9), &x);
+        assert_int_equal(nt_hal_sample(&master, &slave, i, llround((double)i * setup.period * 1e9), &x), NT_OK);
         assert_int_equal(nt_sim_read(&b, &y), NT_OK);
         assert_memory_equal(&x, &y, SAMPLE_BYTES);
         nt_action action = {.size = sizeof action, .tick = i};

@@ -46,13 +46,8 @@ nt_status nt_sim_link_init(nt_sim_link *link, const nt_sim_setup *setup, double 
     return status;
 }
 
-void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double seen[2])
+void nt_sim_moment_between(const nt_sim_link *link, double (*moments)[2], double seen[2])
 {
-    if (link->rig.converters.adc_latency == 0.0) {
-        for (int i = 0; i < 2; i++)
-            seen[i] = moments[link->tick % NT_SIM_SLOTS][i];
-        return;
-    }
     const double back = link->rig.converters.adc_latency / link->period;
     const uint64_t whole = (uint64_t)back;
     const double share = back - (double)whole;

@@ -31,8 +31,17 @@ typedef struct nt_sim_sensors {
 } nt_sim_sensors;
 /* What was converted goes on its way: numbered, spoilt by faults, stamped, kept for a fault that lasts. */
 void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading);
-/* A pair of values as it was a latency ago, between two ticks on a straight line. */
-void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double seen[2]);
+/* A pair of values as it was a latency ago: that of this tick, or between two ticks on a straight line. */
+void nt_sim_moment_between(const nt_sim_link *link, double (*moments)[2], double seen[2]);
+static inline void nt_sim_moment_before(const nt_sim_link *link, double (*moments)[2], double seen[2])
+{
+    if (link->rig.converters.adc_latency != 0.0) {
+        nt_sim_moment_between(link, moments, seen);
+        return;
+    }
+    for (int i = 0; i < 2; i++)
+        seen[i] = moments[link->tick % NT_SIM_SLOTS][i];
+}
 /* The command that acts in the first (0) or second (1) part of this period. */
 static inline const double *nt_sim_acting(const nt_sim_link *link, double (*pending)[NT_AXES], int part)
 {

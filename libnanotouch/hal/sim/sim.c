@@ -115,14 +115,9 @@ nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
 {
     nt_hal master = {.backend = nt_sim_master_backend(), .context = &sim->master};
     nt_hal slave = {.backend = nt_sim_slave_backend(), .context = &sim->slave};
-    nt_status status = nt_hal_read(&master);
-    if (status == NT_OK)
-        status = nt_hal_read(&slave);
-    if (status != NT_OK)
-        return status;
     const nt_sim_link *link = &sim->slave.link;
-    nt_hal_sample(&master, &slave, link->tick, llround((double)link->tick * link->period * 1e9), sample);
-    return NT_OK;
+    const int64_t now = llround((double)link->tick * link->period * 1e9);
+    return nt_hal_sample(&master, &slave, link->tick, now, sample);
 }
 
 nt_status nt_sim_write(nt_sim *sim, const nt_command *command)
