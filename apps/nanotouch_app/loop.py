@@ -27,7 +27,7 @@ def add_options(group: Any) -> None:
     group.add_argument(
         "--force-range", metavar="RANGE", help="forces on the tip that fill the hand's range (alpha_f by the paper's "
         "Eq. 19): 'plan' for pull-off to force limit, the recording.mcap of a test touch, or LOW,HIGH with an equals "
-        "sign, --force-range=-20nN,500nN (default: the paper's attraction of 0.6 uN to the probe's range)"
+        "sign, --force-range=-20nN,500nN (default: the sample's pull-off is 0.3 N at the hand, where 'plan' allows it)"
     )  # fmt: skip
 
 
@@ -48,6 +48,14 @@ def scale_force(text: str | None, plan: nt.Plan, rig: nt.Rig, settings: nt.Setti
     """Let alpha_f follow ``--force-range``."""
     if text is not None:
         settings.gains.alpha_f = margins.heuristic_alpha_f(rig, _force_range(text, plan, settings))
+
+
+def felt(tables: dict[str, Any], text: str | None, scene: nt.Scene, rig: nt.Rig) -> dict[str, float]:
+    """The gains of a first touch, whose pull-off is clearly felt; none if file or option say how it is scaled."""
+    if text is not None or any(key.startswith("alpha_f_N") for key in tables.get("gains", {})):
+        return {}
+    pull_off, load = scene.plan().pull_off_force, scene.range.maximum_load
+    return {"alpha_f": margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), pull_off, load)}
 
 
 def _force_range(text: str, plan: nt.Plan, settings: nt.Settings) -> ForceRange:

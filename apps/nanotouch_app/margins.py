@@ -56,6 +56,7 @@ def run(args: argparse.Namespace) -> int:
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
     settings = settings_for_path(rig, clearance=CLEARANCE, load=scene.range.maximum_load)
     plan = scene.plan()
+    settings.gains.alpha_f = loop.felt(tables, args.force_range, scene, rig).get("alpha_f", settings.gains.alpha_f)
     loop.scale_force(args.force_range, plan, rig, settings)
     settings.update_from_tables(tables)
     loop.close(settings, args)

@@ -138,7 +138,8 @@ def _session(args: argparse.Namespace, topography: nt.Topography) -> nt.Session:
     }  # fmt: skip
     session = nt.Session(
         scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),
-        delay=loop.delay_of(args.delay), minimum_margin=0.0, **what,
+        delay=loop.delay_of(args.delay), minimum_margin=0.0,
+        gains=loop.felt(tables, args.force_range, scene, rig), **what,
     )  # fmt: skip
     found = session.margins()
     if not found.least >= args.minimum_margin:

@@ -76,6 +76,17 @@ def test_dots_are_followed_at_constant_force(statements: dict[int, list[Statemen
     assert find(statements[19], "the z position").number < 2e-9
 
 
+def test_what_figure_17_lets_a_hand_feel(statements: dict[int, list[Statement]]) -> None:
+    """As printed 2e6 x 17 nN: 35 mN beside gauge steps of 20 mN and noise of 26 mN. 4 pi 0.0728 R = 0.5 uN: 547 nm."""
+    printed = find(statements[17], "the attractive forces are large enough")
+    assert printed.verdict == "does not hold"
+    assert printed.number == pytest.approx(2e6 * 17.3e-9, rel=0.05)
+    assert find(statements[17], "the figure's -1 to -2 N").number == pytest.approx(547e-9, rel=1e-3)
+    ours = find(statements[17], "the sticking of this tip can be felt")
+    assert ours.verdict == "holds"
+    assert ours.number > 0.3
+
+
 def test_columns_have_no_gaps() -> None:
     for number in (16, 17, 18, 19):
         for header, values in reproduce.reproduction(number).columns.items():

@@ -21,6 +21,10 @@ from nanotouch.scene import Rig, Settings
 Floats = NDArray[np.float64]
 MINIMUM = 1.5
 """a loop closer to its limit than this is refused, unless told otherwise"""
+CLEARLY_FELT = 0.3
+"""a force at the hand that nobody misses [N]: well above the 0.02 N that the paper's gauge resolves"""
+SEEN = 0.93
+"""of a plan's pull-off that a loop shows at least: the tear lies between two of its steps"""
 HAND_BAND = 33.0
 """the paper's bandwidth of the haptic device [Hz]"""
 
@@ -201,6 +205,16 @@ def heuristic_alpha_f(rig: Rig, span: ForceRange) -> float:
         )
     reach: float = min(rig.master.gauge_range, rig.master.max_force) if rig["master.gauge"] else rig.master.max_force
     return 2.0 * reach / (span.highest - span.lowest)
+
+
+def felt_alpha_f(rig: Rig, settings: Settings, pull_off_force: float, load: float) -> float:
+    """alpha_f at which a pull-off [N] is clearly felt, CLEARLY_FELT at the hand; for a first touch of a sample.
+
+    Never above Eq. 19 for forces from the pull-off to ``load`` [N], nor below that of the settings.
+    """
+    full = heuristic_alpha_f(rig, ForceRange(-pull_off_force, load))
+    wanted = CLEARLY_FELT / (SEEN * pull_off_force) if pull_off_force > 0.0 else math.inf
+    return max(float(settings.gains.alpha_f), min(wanted, full))
 
 
 class Felt(NamedTuple):
