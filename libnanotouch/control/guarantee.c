@@ -38,7 +38,9 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     nt_rig slave = shape.rig;
     slave.master.rate = 0.0; /* a slow master takes no part in a stop */
     nt_guarantee found = {.reaction_time = nt_margins_compute(&slave, &shape.gains, hazard->stiffness).loop_delay};
-    const double closer = (vertical + hazard->slope * limits->lateral_speed) * found.reaction_time;
+    found.moves_sideways = rig->stage.axes > 1.0;
+    const double lateral = found.moves_sideways ? hazard->slope * limits->lateral_speed : 0.0;
+    const double closer = (vertical + lateral) * found.reaction_time;
     found.motion = k_eff * closer;
     found.ringing = k_eff * ringing;
     found.snap_in = hazard->snap_in_force;

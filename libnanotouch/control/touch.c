@@ -80,7 +80,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .period = period,
                      .law = nt_servo_law_of(&settings->control),
                      .stage_loop = nt_stage_loop_make(&rig->stage, &shape.gains),
-                     .leads_sideways = rig->master.axes > 1.0,
+                     .leads_sideways = rig->master.axes > 1.0 && rig->stage.axes > 1.0,
                      .borders = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}},
                      .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),

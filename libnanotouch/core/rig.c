@@ -30,6 +30,7 @@ static const nt_field rig_fields[] = {
     FIELD(stage.noise, "m", 0.0, 1e-5, "standard deviation of the stage's read-out"),
     FIELD(stage.hysteresis, "", 0.0, 0.4, "hysteresis of the stage at full stroke, over the stroke"),
     FIELD(stage.creep, "", 0.0, 0.2, "creep of the stage per decade of time, over the step"),
+    FIELD(stage.axes, "", 1.0, 3.0, "axes that it has: 1 is z, x and y stay where a session starts; 3 are all"),
     FIELD(master.mass, "kg", 1e-4, 1e2, "moving mass m_m of the master"),
     FIELD(master.damping, "N s/m", 0.0, 1e5, "damping b_m of the master"),
     FIELD(master.friction, "N", 0.0, 1e2, "Coulomb friction of the master"),
@@ -84,6 +85,7 @@ nt_rig nt_rig_defaults(void)
                 .command_resolution =
                     1e-10,           /* a 20-bit converter over the travel: 1 nm steps make the resonance ring */
                 .max_speed = 100e-6, /* not in the paper; 10 nm per tick at 10 kHz */
+                .axes = 3.0,
             },
         .master =
             {

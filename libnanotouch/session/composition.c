@@ -79,9 +79,23 @@ static nt_status make_terrain(nt_composition *made, const nt_composition *before
     return nt_terrain_make(&made->terrain, &wanted, problem);
 }
 
+/* A stage of one axis reaches the place where it starts, and no other. */
+static nt_status find_reach_at_start(nt_composition *made, nt_problem *problem)
+{
+    static const char *const names[] = {"path.x of a stage of one axis", "path.y of a stage of one axis"};
+    const nt_session_setup *setup = &made->setup;
+    const double start[] = {setup->x, setup->y};
+    for (long i = 0; setup->path && i < 2 * setup->path_count; ++i)
+        if (setup->path[i] != start[i % 2])
+            return nt_problem_set(problem, names[i % 2], "m", setup->path[i], start[i % 2], start[i % 2]);
+    return nt_terrain_reach_path(made->terrain, start, 1, &made->reach, problem);
+}
+
 static nt_status find_reach(nt_composition *made, nt_problem *problem)
 {
     const nt_session_setup *setup = &made->setup;
+    if (setup->rig.stage.axes == 1.0)
+        return find_reach_at_start(made, problem);
     if (setup->path)
         return nt_terrain_reach_path(made->terrain, setup->path, setup->path_count, &made->reach, problem);
     const nt_area area = nt_terrain_whole(made->terrain, setup->x, setup->y);
@@ -91,7 +105,10 @@ static nt_status find_reach(nt_composition *made, nt_problem *problem)
 static void set_borders(nt_composition *made)
 {
     const nt_surface *surface = nt_terrain_surface(made->terrain);
-    if (!surface)
+    const double start[] = {made->setup.x, made->setup.y};
+    for (int i = NT_X; i < NT_Z && made->setup.rig.stage.axes == 1.0; ++i)
+        made->touch.borders[i][0] = made->touch.borders[i][1] = start[i];
+    if (!surface || made->setup.rig.stage.axes == 1.0)
         return;
     const double ends[] = {(double)(surface->nx - 1) * surface->dx, (double)(surface->ny - 1) * surface->dy};
     for (int i = NT_X; i < NT_Z; ++i) {

@@ -82,6 +82,8 @@ static nt_status check_halves(const nt_session *session, nt_problem *problem)
         return nt_problem_set(problem, "master.rate", "Hz", described->rate, 0.0, 1.0 / master->period);
     if (slave->period > 1.001 * period)
         return nt_problem_set(problem, "gains.rate", "Hz", 1.0 / period, 0.0, 1.0 / slave->period);
+    if (session->now->setup.rig.stage.axes > 1.0 && slave->axes < 2)
+        return nt_problem_set(problem, "stage.axes", "", session->now->setup.rig.stage.axes, 1.0, slave->axes);
     if (!(slave->can & NT_CAN_FEEL))
         return nt_problem_set(problem, "slave that measures its deflection", "no|yes", 0.0, 1.0, 1.0);
     if (described->gauge != 0.0 && !(master->can & NT_CAN_FEEL))

@@ -83,7 +83,12 @@ static int64_t time_of(const nt_session *session, uint64_t tick)
 nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sample)
 {
     session->time = time_of(session, tick);
-    return nt_hal_sample(&session->master, &session->slave, tick, session->time, sample);
+    const nt_status status = nt_hal_sample(&session->master, &session->slave, tick, session->time, sample);
+    if (session->now->touch.rig.stage.axes == 1.0) { /* nothing moves it sideways */
+        sample->stage_position[NT_X] = session->now->setup.x;
+        sample->stage_position[NT_Y] = session->now->setup.y;
+    }
+    return status;
 }
 
 nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command)

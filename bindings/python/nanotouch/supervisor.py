@@ -43,6 +43,8 @@ class Guarantee(NamedTuple):
     """the same whatever fails at once, a stage that turns its sign while nothing is read of it among it [N]"""
     indentation: float
     """never more than this past first touch, where the tip stands sideways [m]"""
+    moves_sideways: bool
+    """no: the stage has one axis, and all this holds at the place where the session starts"""
 
     def __str__(self) -> str:
         terms = self.motion + self.ringing + self.snap_in + self.noise
@@ -53,6 +55,7 @@ class Guarantee(NamedTuple):
             f"{self.noise * 1e9:.0f}); indentation at most {self.indentation * 1e9:.0f} nm; reaction within "
             f"{self.reaction_time * 1e3:.2f} ms; at most {self.with_faults * 1e9:.0f} nN whatever "
             "fails at once, a stage that turns its sign unseen among it"
+            + ("" if self.moves_sideways else "; the tip stays at its place, for the stage has one axis")
         )
 
 

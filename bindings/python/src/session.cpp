@@ -83,6 +83,7 @@ static py::dict guarantee_of(const Session &self)
     out["force"] = guarantee.force;
     out["with_faults"] = guarantee.with_faults;
     out["indentation"] = guarantee.indentation;
+    out["moves_sideways"] = guarantee.moves_sideways != 0;
     return out;
 }
 

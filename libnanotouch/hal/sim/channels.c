@@ -74,12 +74,14 @@ void nt_sim_list_slave(nt_sim_slave *slave)
 {
     static const char *const command_names[] = {"stage x", "stage y", "stage travel"};
     nt_sim_link *link = &slave->link;
+    const int first = link->rig.stage.axes > 1.0 ? NT_X : NT_Z;
     link->channel_count = 0;
     link->valid = 1u << (NT_READS_POSITION + NT_Z) | 1u << (NT_READS_FELT + NT_Z);
-    add_sideways(link, HUGE_VAL);
+    if (first == NT_X)
+        add_sideways(link, HUGE_VAL);
     add_sensor(link, position_names[NT_Z], "m", &slave->stage_sensor);
     add_sensor(link, "deflection", "m", &slave->deflection_sensor);
-    for (int i = NT_X; i < NT_AXES; i++) {
+    for (int i = first; i < NT_AXES; i++) {
         const double range = i == NT_Z ? 0.5 * link->rig.stage.travel : HUGE_VAL;
         add(link, &(nt_channel_row){.name = command_names[i],
                                     .unit = "m",

@@ -38,7 +38,7 @@ static nt_status describe_master(void *context, nt_capabilities *capabilities)
 static nt_status describe_slave(void *context, nt_capabilities *capabilities)
 {
     capabilities->can = NT_CAN_FEEL;
-    capabilities->axes = NT_AXES;
+    capabilities->axes = (int)((nt_sim_slave *)context)->link.rig.stage.axes;
     list_channels(&((nt_sim_slave *)context)->link, capabilities);
     return NT_OK;
 }

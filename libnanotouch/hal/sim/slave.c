@@ -105,8 +105,10 @@ nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
         link->converted = link->tick;
     }
     *reading = *converted;
-    reading->position[NT_X] = slave->x;
-    reading->position[NT_Y] = slave->y;
+    if (link->rig.stage.axes > 1.0) {
+        reading->position[NT_X] = slave->x;
+        reading->position[NT_Y] = slave->y;
+    }
     nt_sim_give(link, &(nt_sim_sensors){NT_HALF_SLAVE, &slave->stage_sensor, &slave->deflection_sensor}, reading);
     return NT_OK;
 }
@@ -137,8 +139,10 @@ static void move_stage(nt_sim_slave *slave, nt_stage_model *model, const double 
     const double drive = drive_stage(slave, command[NT_Z], model->period);
     const nt_stage_load load = {slave->truth.tip_force[NT_Z], tip_stiffness(slave)};
     nt_stage_step(model, &slave->stage, nt_sim_spoil_stage(slave, drive), &load);
-    slave->x = command[NT_X];
-    slave->y = command[NT_Y];
+    if (slave->link.rig.stage.axes > 1.0) {
+        slave->x = command[NT_X];
+        slave->y = command[NT_Y];
+    }
 }
 
 static nt_status pass_period(nt_sim_slave *slave, const double *target)

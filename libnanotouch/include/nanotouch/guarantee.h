@@ -28,6 +28,7 @@ typedef struct nt_guarantee {
     double with_faults;   /* the same whatever fails at once: a stage that turns its sign while nothing is read of it is
                              lifted into the sample, by all of retract_distance [N] */
     double indentation;   /* never more than this past first touch, at rest sideways [m] */
+    int moves_sideways;   /* 0: the stage has one axis, and all this holds at the place where the session starts */
 } nt_guarantee;
 NT_API nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard);
 

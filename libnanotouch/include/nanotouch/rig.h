@@ -36,6 +36,7 @@ typedef struct nt_stage {
     double noise;              /* standard deviation of the read-out [m] */
     double hysteresis;         /* opening of the loop at full stroke over that stroke, open loop [-] */
     double creep;              /* drift after a step over the step, per decade of time, open loop [-] */
+    double axes;               /* that it has: 1 (z: x and y stay where a session starts), or 3 [-] */
 } nt_stage;
 
 /* 1-degree-of-freedom haptic master (paper, Eq. 12). */

@@ -68,7 +68,8 @@ typedef struct nt_record {
     double time;                     /* [s] */
     double master_position[NT_AXES]; /* x_m measured [m] */
     double operator_force[NT_AXES];  /* f_m measured, tared [N] */
-    double stage_position[NT_AXES];  /* measured: x and y of the tip, and x_s [m] */
+    double stage_position[NT_AXES];  /* measured: x and y of the tip, and x_s; x and y of a stage of one axis are those
+                                        of the start [m] */
     double stage_command[NT_AXES];   /* [m] */
     double deflection[NT_AXES];      /* measured, tared [m] */
     double slave_force;              /* f_s = k_c zeta [N] */

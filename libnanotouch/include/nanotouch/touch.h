@@ -23,7 +23,7 @@ typedef struct nt_touch {
     double period; /* T [s] */
     nt_servo_law law;
     nt_stage_loop stage_loop;
-    int leads_sideways;   /* the master has more than one axis: x and y follow it, not a path ... */
+    int leads_sideways;   /* master and stage have more than one axis: x and y follow the hand, not a path ... */
     double borders[2][2]; /* ... within these, of x and of y; infinite where nothing borders it [m] */
     double force_filter;  /* of the low-pass of f_m, per period [-] */
     uint32_t delay;       /* after which a motor force acts, as far as it is remembered [periods] */
