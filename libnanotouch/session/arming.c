@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Before a session is armed: the preflight. */
+#include <math.h>
+
 #include "nanotouch/preflight.h"
 
 #include "session/state.h"
@@ -25,5 +27,9 @@ nt_status nt_session_fly(nt_session *session, nt_problem *problem)
         return NT_E_RANGE;
     }
     session->tare = state.tare;
+    if (!session->simulates[NT_HALF_MASTER]) /* where the hand has gone meanwhile */
+        session->master_start = session->master.reading.position[NT_Z];
+    if (status == NT_OK && !isfinite(session->master_start))
+        return NT_E_DEVICE;
     return status;
 }
