@@ -101,7 +101,7 @@ def _described(image: images.Topography) -> str:
     ]
     if image.masked_pixels:
         lines.append(f"missing pixels filled from their neighbours: {image.masked_pixels}")
-    return "\n".join(lines)
+    return "\n".join(lines + [f"note: {note}" for note in image.notes])
 
 
 def _repaired(image: images.Topography, args: argparse.Namespace, facts: dict[str, Any]) -> images.Topography:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch info FILE``: what an image, a force curve file or a recording holds."""
+"""``nanotouch info FILE``: what an image, a force curve file, a thermal spectrum or a recording holds."""
 
 from __future__ import annotations
 
@@ -39,6 +39,8 @@ def describe(file: Path, untrusted: bool = False) -> list[str]:
     """The lines of the answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
     if record.is_recording(file):
         return _describe_recording(file)
+    if file.suffix.lower() == ".tnd":
+        return _describe_thermal(file)
     problems: list[ReadError | MissingExtra] = []
     for kind in (_describe_curves, _describe_image):
         try:
@@ -68,6 +70,17 @@ def _describe_recording(file: Path) -> list[str]:
     return lines if recording.incomplete is None else [*lines, f"  INCOMPLETE: {recording.incomplete}"]
 
 
+def _describe_thermal(file: Path) -> list[str]:
+    found = curves.thermal_spectrum(file)
+    lines = [f"{file.name}: thermal spectrum, {found.frequency.size} points up to {found.frequency[-1] / 1e3:.4g} kHz"]
+    for name, value, unit in (
+        ("sensitivity", found.sensitivity, "m/V"),
+        ("spring constant", found.spring_constant, "N/m"),
+    ):
+        lines.append(f"  {name}: {'not stated' if value is None else f'{value:.4g} {unit}'}")
+    return lines
+
+
 def _describe_image(file: Path, untrusted: bool) -> list[str]:
     listed = images.channels(file, untrusted=untrusted)
     lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
@@ -86,7 +99,7 @@ def _describe_image(file: Path, untrusted: bool) -> list[str]:
     lines.append(f"  heights {low:.4g} .. {high:.4g} nm, pixel {dx * 1e9:.4g} x {dy * 1e9:.4g} nm, {topography.source}")
     if topography.masked_pixels:
         lines.append(f"  {topography.masked_pixels} missing pixels, filled from their neighbours")
-    return lines
+    return lines + [f"  note: {note}" for note in topography.notes]
 
 
 def _describe_curves(file: Path, untrusted: bool) -> list[str]:

@@ -17,6 +17,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
+import itertools
 import logging
 import os
 import sys
@@ -32,7 +33,9 @@ import numpy as np
 from corpus_peers import Curves, Image
 from nanotouch import curves, images
 from nanotouch.errors import Error, ReadError
+from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 SIZE, RANGE = 0.006, 2e-3  # relative differences that are none: scan size (N against N - 1), heights and forces
 LIKE = 0.999  # correlation above which two pictures are the same
 
@@ -55,6 +58,7 @@ def judged(file: Path) -> Row | None:
     for kind, ours, peers, compare in (
         ("image", _our_image, corpus_peers.IMAGES, _images_differ),
         ("curves", _our_curves, corpus_peers.CURVES, _curves_differ),
+        ("thermal", _our_spectrum, {}, None),
     ):
         others = _asked(peers, file)
         try:
@@ -64,9 +68,13 @@ def judged(file: Path) -> Row | None:
             reasons.append((kind, " ".join(str(error).split()).removeprefix(f"{file}: "), others))
             continue
         wrong = [f"{name} has {text}" for name, theirs in others.items() if (text := compare(mine, theirs))]  # type: ignore[operator]
+        if wrong and kind == "image" and _another_agrees(file, others):
+            wrong, notes = [], [*notes, "compared in another of its channels of heights"]
         verdict = "wrong" if 2 * len(wrong) > len(others) else "read"
         return Row(file, verdict, kind, reader, "; ".join([*wrong, *notes]), tuple(others))
     kind, told, others = next((found for found in reasons if found[2]), reasons[0])
+    if "; read that" in reasons[1][1]:
+        return Row(file, "read", "curves", "nanotouch/asylum-pair", reasons[1][1], ())
     if not others and "not an AFM image" in reasons[0][1] and _unknown(reasons[1][1]):
         return None
     if kind == "image" and not others and not _unknown(reasons[1][1]):  # the reader of curves knows more of it
@@ -80,7 +88,11 @@ def _unknown(reason: str) -> bool:
 
 def _our_image(file: Path) -> tuple[Image, str, list[str]]:
     read, told = _read(images.read, file, pixel_size=1e-8, z_unit="nm")
-    return Image(read.channel, read.heights, read.size), read.source, [*told, *getattr(read, "notes", ())]
+    return (
+        Image(read.channel, np.where(read.mask, np.nan, read.heights), read.size),
+        read.source,
+        [*told, *getattr(read, "notes", ())],
+    )
 
 
 def _read(reader: Callable[..., Any], file: Path, **given: Any) -> tuple[Any, list[str]]:
@@ -113,6 +125,11 @@ def _our_curves(file: Path) -> tuple[Curves, str, list[str]]:
     return Curves(points, travel, force[0] if force else None), str(read[0].meta.get("format", "")), notes
 
 
+def _our_spectrum(file: Path) -> tuple[None, str, list[str]]:
+    curves.thermal_spectrum(file)
+    return None, "nanotouch/thermal-file", []
+
+
 def _asked(
     peers: dict[str, Callable[[Path], list[Image] | Curves | None]], file: Path
 ) -> dict[str, list[Image] | Curves]:
@@ -142,41 +159,55 @@ def _images_differ(ours: Image, theirs: list[Image]) -> str:
     return min((_image_differs(ours, one) for one in theirs), key=len)
 
 
+def _another_agrees(file: Path, others: dict[str, list[Image]]) -> bool:
+    """Whether all have one of our other channels of heights as we have it: they may not know the best one."""
+    heights = [channel.name for channel in images.channels(file) if channel.kind == "height" and not channel.default]
+    for name in heights[:8]:
+        read = images.read(file, name)
+        if not any(_images_differ(Image(name, read.heights, read.size), theirs) for theirs in others.values()):
+            return True
+    return False
+
+
 def _image_differs(ours: Image, theirs: Image) -> str:
     if ours.heights.shape not in (theirs.heights.shape, theirs.heights.shape[::-1]):
         return f"{theirs.heights.shape[1]} x {theirs.heights.shape[0]} pixels in {theirs.name!r} instead of ours"
     told = []
-    known = np.isfinite(theirs.heights)
-    turned = _turned(ours.heights, np.where(known, theirs.heights, np.median(theirs.heights[known])))
+    turned = _turned(ours.heights, theirs.heights)
     if turned:
         told.append(turned)
     if theirs.size is not None and not np.allclose(ours.size, theirs.size, rtol=SIZE + 1 / min(ours.heights.shape)):
         told.append(f"scan {theirs.size[1]:.4g} x {theirs.size[0]:.4g} m, ours {ours.size[1]:.4g} x {ours.size[0]:.4g}")
     if not turned:
+        known = np.isfinite(theirs.heights) & np.isfinite(ours.heights)
         mine, others = float(np.ptp(ours.heights[known])), float(np.ptp(theirs.heights[known]))
         if not abs(mine - others) <= RANGE * max(mine, others):
             told.append(f"heights over {others:.4g} m, ours {mine:.4g}")
     return ", ".join(told)
 
 
-def _turned(ours: np.ndarray, theirs: np.ndarray) -> str:
+def _turned(ours: Array, theirs: Array) -> str:
     """How theirs is turned against ours; empty if it is not."""
     best, how = -2.0, ""
-    for transpose in (False, True):
-        for flip_y in (1, -1):
-            for flip_x in (1, -1):
-                picture = (theirs.T if transpose else theirs)[::flip_y, ::flip_x]
-                if picture.shape == ours.shape:
-                    like = _correlation(ours, picture)
-                    if like > best + 1e-6:  # the first of several that serve, as it stands
-                        best = like
-                        how = " ".join(w for w, yes in (("transposed", transpose), ("upside down", flip_y < 0),
-                                                        ("mirrored", flip_x < 0)) if yes)  # fmt: skip
+    for transpose, flip_y, flip_x in itertools.product((False, True), (False, True), (False, True)):
+        picture = (theirs.T if transpose else theirs)[:: -1 if flip_y else 1, :: -1 if flip_x else 1]
+        if picture.shape == ours.shape:
+            like = _correlation(ours, picture)
+            if like > best + 1e-6:  # the first of several that serve, as it stands
+                best = like
+                ways = (("transposed", transpose), ("upside down", flip_y), ("mirrored", flip_x))
+                how = " ".join(word for word, yes in ways if yes)
     return how if best > LIKE else f"another picture (correlation {best:.3f})"
 
 
-def _correlation(one: np.ndarray, other: np.ndarray) -> float:
-    a, b = one - one.mean(), other - other.mean()
+def _correlation(one: Array, other: Array) -> float:
+    """Over what both know; of two that are constant 1."""
+    known = np.isfinite(one) & np.isfinite(other)
+    if not known.any():
+        return 0.0
+    a, b = one[known] - one[known].mean(), other[known] - other[known].mean()
+    if np.ptp(a) == 0.0 and np.ptp(b) <= 1e-9 * np.abs(other[known]).max():
+        return 1.0
     return float((a * b).sum() / max(np.sqrt((a**2).sum() * (b**2).sum()), 1e-300))
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "Å": 1e-10, "A": 1e-10, "pm": 1e-12}
 _CHANNELS = ("Height", "Height Sensor", "ZSensor", "HeightTracee", "HeightTrace", "height_trace",
-             "measuredHeight_trace", "height", "image", "HeightRetrace", "Z Height", "Topography")  # fmt: skip
+             "measuredheight_trace", "height", "image", "HeightRetrace", "Z Height", "Topography")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,8 @@ def _pyfmreader(file: Path) -> Curves:
     curve = opened.getcurve(0)
     sensitivity = meta["defl_sens_nmbyV"] * 1e-9
     curve.preprocess_force_curve(sensitivity, meta["height_channel_key"])
-    segments = [segment for _, segment in curve.get_segments()]
+    listed = sorted([*curve.extend_segments, *curve.pause_segments, *curve.retract_segments], key=lambda s: int(s[0]))
+    segments = [segment for _, segment in listed]
     z = np.concatenate([np.asarray(s.zheight, float) for s in segments])
     force = np.concatenate([np.asarray(s.vdeflection, float) for s in segments])
     stiffness = meta.get("spring_const_Nbym")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A header that says something twice, and not the same: the file is refused."""
+"""A header that says something twice, and not the same: told; data that are not there: refused."""
 
 from __future__ import annotations
 
@@ -53,34 +53,53 @@ def test_the_whole_file_is_read(tmp_path: Path, kind: str) -> None:
     assert topography.pixel_size == pytest.approx((1.25e-7, 1.25e-7), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("kind", "old", "new", "message"),
-    [
-        ("nanoscope", rb"LSB\) ([0-9.]+)", None, "full scale .* but value per count"),
-        ("nanoscope", rb"(?<=Data length: )1536", b"1538", "1538 bytes for 32 x 24 pixels"),
-        ("nanoscope", rb"(?<=Scan Size: )4000", b"2000", "image width .* but scan size"),
-        ("igor", rb"(?s)(?<=.{200})\x00", b"\x01", "check sum of its header is wrong"),
-        ("igor", rb"FastScanSize: 3", b"FastScanSize: 9", "FastScanSize .* but pixels times"),
-        ("nanosurf", rb"(?<=Image size=)4", b"8", "image size .* but of the channel"),
-        ("nanosurf", rb"(?<=4\xb5m\r\nPoints=)32", b"33", "Points of the scan 33, but"),
-        ("nanosurf", rb"\Z", b"xx", "bytes of data, but its channels take"),
-        ("wsxm", rb"(?<=header size: )\d", b"9", "header size .* but its end"),
-        ("wsxm", rb"(?<=Z Amplitude: )40", b"44", "Z amplitude .* but range of the heights"),
-        ("wsxm", rb"\Z", b"xx", "bytes of data for 768 pixels"),
-        ("picoview", rb"\Z", b"xx", "bytes of data for 1 x 768 pixels"),
-    ],
-)
-def test_a_header_that_contradicts_itself_is_refused(
-    tmp_path: Path, kind: str, old: bytes, new: bytes | None, message: str
+NOTES = [
+    ("nanoscope", rb"(?<=Scan Size: )4000", b"2000", "image width .* but scan size"),
+    ("igor", rb"FastScanSize: 3", b"FastScanSize: 9", "FastScanSize .* but pixels times"),
+    ("nanosurf", rb"(?<=Image size=)4", b"8", "image size .* but of the channel"),
+    ("nanosurf", rb"(?<=4\xb5m\r\nPoints=)32", b"33", "Points of the scan 33, but"),
+    ("wsxm", rb"(?<=header size: )\d", b"9", "header size .* but its end"),
+    ("wsxm", rb"(?<=Z Amplitude: )40", b"44", "Z amplitude .* but range of the heights"),
+]
+
+
+@pytest.mark.parametrize(("kind", "old", "new", "message"), NOTES)
+def test_what_no_format_promises_is_told_and_read(
+    tmp_path: Path, kind: str, old: bytes, new: bytes, message: str
 ) -> None:
     path = WRITERS[kind](tmp_path / "image")
+    assert images.read(path).notes == ()
+    path.write_bytes(re.sub(old, new, path.read_bytes(), count=1))
+    (note,) = images.read(path).notes
+    assert re.search(f"its header contradicts itself: {message}", note)
+
+
+def test_the_full_scale_of_nanoscope_is_no_power_of_two_times_its_digit(tmp_path: Path) -> None:
+    """In real files V per LSB times 65536 is anything: the heights follow from the full scale."""
+    path = WRITERS["nanoscope"](tmp_path / "image")
+    expected = images.read(path)
+    path.write_bytes(re.sub(rb"\(([0-9.]+) V/LSB", lambda m: m[0].replace(m[1], b"9" + m[1][1:]), path.read_bytes()))
+    np.testing.assert_array_equal(images.read(path).heights, expected.heights)
+
+
+@pytest.mark.parametrize(
+    ("kind", "data"), [("nanoscope", 1536), ("nanosurf", 3072), ("wsxm", 6144), ("picoview", 3072)]
+)
+def test_data_that_are_not_there_are_refused_more_than_is_needed_is_not(tmp_path: Path, kind: str, data: int) -> None:
+    path = WRITERS[kind](tmp_path / "image")
     content = path.read_bytes()
-    if new is None:  # the full scale, doubled
-        damaged = re.sub(old, lambda m: m[0].replace(m[1], b"%.6f" % (2 * float(m[1]))), content, count=1)
-    else:
-        damaged = re.sub(old, new, content, count=1)
-    assert damaged != content
-    path.write_bytes(damaged)
-    with pytest.raises(ReadError, match=message) as caught:
+    expected = images.read(path).heights
+    path.write_bytes(content + b"\r\n")
+    np.testing.assert_array_equal(images.read(path).heights, expected)
+    for left in (data - 2, data // 2):
+        path.write_bytes(content[: len(content) - data + left])
+        with pytest.raises(ReadError):
+            images.read(path)
+
+
+def test_a_wrong_check_sum_is_refused(tmp_path: Path) -> None:
+    path = igor(tmp_path / "image")
+    content = path.read_bytes()
+    path.write_bytes(re.sub(rb"(?s)(?<=.{200})\x00", b"\x01", content, count=1))
+    with pytest.raises(ReadError, match="check sum of its header is wrong"):
         images.read(path)
-    assert caught.value.reader.startswith("SurfaceTopography/") or kind == "igor"

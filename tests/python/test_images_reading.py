@@ -146,12 +146,37 @@ def test_few_missing_pixels_are_filled_from_their_neighbours(tmp_path: Path) -> 
     assert images.read(synthetic.write_gwy(tmp_path / "mask.gwy", heights, SIDE, mask)).masked_pixels == 1
 
 
-def test_many_missing_pixels_are_refused(tmp_path: Path) -> None:
+def test_many_missing_pixels_are_masked_and_told_too_many_refused(tmp_path: Path) -> None:
     heights = synthetic.asymmetric()
     heights[:2] = np.nan  # 64 of 768 pixels
     path = synthetic.write_matrix(tmp_path / "half.txt", heights, SIDE)
-    with pytest.raises(ReadError, match=r"8\.33 % of the pixels are missing"):
-        images.read(path)
+    topography = images.read(path)
+    np.testing.assert_array_equal(topography.mask, np.isnan(heights))
+    assert topography.notes == ("8.33 % of the pixels are missing: filled from their neighbours and masked",)
+    heights[2:22] = np.nan
+    with pytest.raises(ReadError, match=r"91\.7 % of the pixels are missing"):
+        images.read(synthetic.write_matrix(path, heights, SIDE))
+
+
+def test_a_wide_hole_gets_the_heights_of_its_rim(tmp_path: Path) -> None:
+    plane = 1e-9 * np.add.outer(np.arange(200.0), 0.5 * np.arange(160.0))
+    holed = plane.copy()
+    holed[30:170, 30:130] = np.nan
+    topography = images.read(synthetic.write_matrix(tmp_path / "hole.txt", holed, (2e-6, 1.6e-6)))
+    inside = topography.heights[30:170, 30:130]
+    assert plane.min() <= inside.min() <= inside.max() <= plane.max()
+    assert topography.heights[31, 80] == pytest.approx(plane[31, 80], abs=3e-9)
+
+
+@pytest.mark.parametrize(
+    ("size", "factor", "message"),
+    [(60e-3, 1.0, "a scan of 60 mm"), (30e-9, 1.0, "heights over 4e-08 m, more than the longer side"),
+     (3e-6, 0.0, "all heights are equal")],
+)  # fmt: skip
+def test_what_is_unusual_is_read_and_told(tmp_path: Path, size: float, factor: float, message: str) -> None:
+    path = synthetic.write_matrix(tmp_path / "image.txt", factor * synthetic.asymmetric(), (0.75 * size, size))
+    (note,) = images.read(path).notes
+    assert message in note
 
 
 def _empty(path: Path) -> None:
@@ -204,7 +229,7 @@ def test_missing_file_and_folder(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("factor_side", "factor_height", "message"),
-    [(1e6, 1.0, "a scan of"), (1e-5, 1.0, "a scan of"), (1.0, 1e4, "heights over a range"), (1.0, 0.0, "heights over")],
+    [(1e6, 1.0, "a scan of"), (1e-5, 1.0, "a scan of"), (1.0, 1e4, "heights over a range")],
 )
 def test_implausible_scales_are_refused(tmp_path: Path, factor_side: float, factor_height: float, message: str) -> None:
     side = (SIDE[0] * factor_side, SIDE[1] * factor_side)

@@ -73,7 +73,7 @@ def _hdf5(path: Path, what: str) -> None:
             file.create_virtual_dataset("z", layout)
         elif what == "round":
             file["group/inside"] = file["/"]  # a hard link to its own parent
-            file["group/z"] = np.zeros((8, 8))  # flat: no heights
+            file["group/z"] = np.zeros((2, 2))  # no image
 
 
 def _npy(path: Path) -> None:
@@ -100,7 +100,7 @@ BOMBS = {
     "external storage.h5": (lambda path: _hdf5(path, "external storage"), "keeps 'z' in another file"),
     "external link.h5": (lambda path: _hdf5(path, "external link"), "links to another file in 'z'"),
     "virtual.h5": (lambda path: _hdf5(path, "virtual"), "keeps 'z' in another file"),
-    "round.h5": (lambda path: _hdf5(path, "round"), "heights over a range of 0 m"),
+    "round.h5": (lambda path: _hdf5(path, "round"), "2 x 2 pixels"),
     "array.npy": (_npy, "pixels|cannot read"),
     "ramp.000": (_nanoscope, "no whole number of curves"),
     "image.gwy": (_gwy, "cannot read|pixels"),

@@ -22,7 +22,7 @@ MAX_TOML_SIZE = 1 << 20  # some 20 000 lines [byte]
 MAX_UNPACKED = 1 << 31  # of all that a container says it holds [byte]
 # they log what they raise as well
 _TALKATIVE = ("tifffile", "afmformats.formats", "igor2.binarywave", "igor2.packed", "igor2.struct")
-_HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk")
+_HDF5_ENDINGS = (".h5", ".hdf5", ".nc", ".nhf", ".h5-jpk", ".topostats")
 
 
 def checked_path(path: str | PathLike[str]) -> Path:

@@ -15,6 +15,7 @@ from .report import CurveReport
 from .sader import hydrodynamic_function, sader
 from .synthesis import synthesise
 from .thermal import ThermalTune, thermal_tune
+from .thermal_file import ThermalSpectrum, thermal_spectrum
 
 __all__ = [
     "Baseline",
@@ -24,6 +25,7 @@ __all__ = [
     "ForceCurve",
     "Segment",
     "Stream",
+    "ThermalSpectrum",
     "ThermalTune",
     "Wave",
     "analyse",
@@ -34,5 +36,6 @@ __all__ = [
     "sensitivity",
     "stream",
     "synthesise",
+    "thermal_spectrum",
     "thermal_tune",
 ]

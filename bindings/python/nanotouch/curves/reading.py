@@ -13,7 +13,7 @@ from .._readers import head_of, registered_for
 from .._words import printable
 from ..errors import ReadError
 from ..formats import refusal
-from . import afm_formats, jpk, nanoscope
+from . import afm_formats, asylum_pair, jpk, nanonis, nanoscope
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve, Segment
@@ -32,9 +32,10 @@ def read(
     Parameters
     ----------
     path : str or path
-        JPK ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``; Asylum ``.ibw``; NT-MDT and
-        Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; afmformats ``.h5``, ``.tab``. NanoScope ramps, force volumes
-        and PeakForce captures (``.000``, ``.spm``, ``.pfc``, any name; known by how they begin).
+        JPK ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``; Asylum ``.ibw``, of pairs the
+        ``...Defl.ibw``; NT-MDT and Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; Nanonis ``.dat``; afmformats
+        ``.h5``, ``.tab``. NanoScope ramps, force volumes and PeakForce captures (``.000``, ``.spm``, ``.pfc``, any
+        name; known by how they begin).
     spring_constant : float, optional
         k_c [N/m], 1e-4 .. 1e4, in place of the file's; forces are rescaled, deflections stay.
     sensitivity : float, optional
@@ -144,6 +145,12 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if file.suffix in jpk.ENDINGS:
         with guarded(file, jpk.NAME):
             return jpk.NAME, jpk.read(file, given)
+    if nanonis.recognises(file, head):
+        with guarded(file, nanonis.NAME):
+            return nanonis.NAME, nanonis.read(file, given)
+    if asylum_pair.recognises(file):
+        with guarded(file, asylum_pair.NAME):
+            return asylum_pair.NAME, asylum_pair.read(file, given)
     refused = refusal(file, head, "curves")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")

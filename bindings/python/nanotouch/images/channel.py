@@ -1,12 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a reader of images says a file holds."""
+"""What a reader of images says a file holds, and which of it is taken."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..errors import ReadError
+
+#: Names of height channels, best first: a calibrated sensor before the voltage of a piezo.
+HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
+_TOLD = 20  # names in an error
+_BACKWARD_NAMES = ("retrace", "backward", "reverse")
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,8 @@ class Plane:
         True where the file says that a value was filled in, which stays as it is.
     source : str
         Reader and format, as ``"SurfaceTopography/ibw"``.
+    notes : tuple of str
+        What was left out or supplied.
     """
 
     name: str
@@ -66,3 +77,35 @@ class Plane:
     source: str
     no_size: str = "states no scan size"
     mask: NDArray[np.bool_] | None = None
+    notes: tuple[str, ...] = ()
+
+
+def si_unit(unit: str) -> str:
+    """Of a format that keeps to SI, where A is the ampere and no Ångström, as elsewhere."""
+    return "ampere" if unit == "A" else unit
+
+
+def with_default(listed: Sequence[Channel]) -> list[Channel]:
+    """The same with the channel marked that is read if none is named: of the heights, the first of the best name."""
+
+    def rank(channel: Channel) -> tuple[int, bool]:
+        name = channel.name.casefold()
+        known = [i for i, part in enumerate(HEIGHT_NAMES) if part in name]
+        return (known[0] if known else len(HEIGHT_NAMES), any(part in name for part in _BACKWARD_NAMES))
+
+    best = min((channel for channel in listed if channel.kind == "height"), key=rank, default=None)
+    return [replace(channel, default=channel is best) for channel in listed]
+
+
+def chosen(listed: Sequence[Channel], name: str | None, file: Path) -> int:
+    """Number of the channel of this name, whatever its case; without a name, of the default."""
+    names = ", ".join(channel.name for channel in listed[:_TOLD]) + (", ..." if len(listed) > _TOLD else "")
+    if name is None:
+        found = [number for number, channel in enumerate(listed) if channel.default]
+        if not found:
+            raise ReadError(f"{file}: no height channel; it holds {names}")
+    else:
+        found = [number for number, channel in enumerate(listed) if channel.name.casefold() == name.casefold()]
+        if len(found) != 1:
+            raise ReadError(f"{file}: no channel {name!r}; it holds {names}")
+    return found[0]

@@ -12,12 +12,15 @@ from ..errors import ReadError
 from .filling import fill
 from .topography import Topography
 
-SIDE_RANGE = (1e-9, 1e-3)  # scan size [m]
-HEIGHT_RANGE = (1e-12, 1e-4)  # highest minus lowest [m]; also never more than the longer side
-OFFSET_LIMIT = 1e-2  # of any height from 0 [m]: a stage's travel
+SIDE_RANGE = (1e-9, 1.0)  # scan size [m]; profilers measure centimetres
+HEIGHT_RANGE = (1e-12, 1e-2)  # highest minus lowest [m]
+OFFSET_LIMIT = 1.0  # of any height from 0 [m]: a stage's travel
+USUAL_SIDE = 1e-3  # of an AFM image; what is larger is told
+MAX_STEEPNESS = 10.0  # height range over the longer side; above 1 it is told
 PIXELS_PER_SIDE = (4, 16384)
 MAX_PIXELS = 1 << 26  # 512 MiB of doubles
-MAX_MISSING = 0.01  # fraction of pixels that may be filled from their neighbours
+MAX_MISSING = 0.9  # fraction of pixels that may be filled from their neighbours
+TOLD_MISSING = 0.01  # above which they are told
 MAX_PIXEL_ASPECT = 128.0  # of dy and dx: a square scan of few lines has oblong pixels
 
 LENGTHS = {
@@ -50,8 +53,8 @@ def check_scale(topography: Topography, file: Path) -> None:
             f"{file}: pixels of {dx:.3g} x {dy:.3g} m; one side at most {MAX_PIXEL_ASPECT:g} times the other is "
             "expected (damaged header?)"
         )
-    height, limit = topography.height_range, min(HEIGHT_RANGE[1], max(topography.size))
-    if not HEIGHT_RANGE[0] <= height <= limit:
+    height, limit = topography.height_range, min(HEIGHT_RANGE[1], MAX_STEEPNESS * max(topography.size))
+    if height != 0.0 and not HEIGHT_RANGE[0] <= height <= limit:
         raise ReadError(
             f"{file}: heights over a range of {height:.3g} m in channel {topography.channel!r}; expected "
             f"{HEIGHT_RANGE[0]:g} .. {limit:.3g} m (damaged data or wrong unit?)"
@@ -61,6 +64,21 @@ def check_scale(topography: Topography, file: Path) -> None:
             f"{file}: heights of up to {np.abs(topography.heights).max():.3g} m in channel {topography.channel!r}; "
             f"expected up to {OFFSET_LIMIT:g} m (damaged data or wrong unit?)"
         )
+
+
+def unusual(topography: Topography) -> tuple[str, ...]:
+    """What is believed, but told."""
+    notes, side, height = [], max(topography.size), topography.height_range
+    missing = topography.masked_pixels / topography.heights.size
+    if missing > TOLD_MISSING:
+        notes.append(f"{100 * missing:.3g} % of the pixels are missing: filled from their neighbours and masked")
+    if height == 0.0:
+        notes.append("all heights are equal: nothing was measured in this channel")
+    if side > USUAL_SIDE:
+        notes.append(f"a scan of {side * 1e3:.4g} mm, more than an AFM's: a profiler's image, or a wrong unit")
+    if height > side:
+        notes.append(f"heights over {height:.3g} m, more than the longer side ({side:.3g} m): a spike, or a wrong unit")
+    return tuple(notes)
 
 
 def filled(values: NDArray[np.float64], file: Path) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -9,9 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 from .._arrays import Floats
 from ..errors import InvalidValue, require
 
+_RIMS = 32  # filled one after the other [pixel]
+
 
 def fill(heights: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
     """Fill missing (not finite) pixels by the mean of their known neighbours, from the rim of each hole inwards.
+
+    What lies more than 32 pixels inside a hole gets the height of the nearest pixel on that rim.
 
     Parameters
     ----------
@@ -34,7 +38,9 @@ def fill(heights: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
     cv2 = require("cv2", "images")
     values, todo = values.copy(), missing.copy()
     values[todo] = 0.0  # OpenCV hides NaN, so none may reach it
-    while todo.any():
+    for _ in range(_RIMS):
+        if not todo.any():
+            break
         known = (~todo).astype(np.float64)
         border = cv2.BORDER_CONSTANT
         weight = cv2.boxFilter(known, -1, (3, 3), normalize=False, borderType=border)
@@ -42,4 +48,8 @@ def fill(heights: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
         rim = todo & (weight > 0.5)
         values[rim] = total[rim] / weight[rim]
         todo &= ~rim
+    if todo.any():
+        ndimage = require("scipy.ndimage", "images")
+        nearest = ndimage.distance_transform_edt(todo, return_distances=False, return_indices=True)
+        values[todo] = values[tuple(nearest[:, todo])]
     return values, missing

@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Header fields that say the same thing twice are compared: where they differ, one of them is damaged.
+"""Header fields that say the same thing twice are compared.
 
-| format | what is compared |
-|---|---|
-| NanoScope | data length and pixels; full scale and value per count; image and scan; ends |
-| Igor (.ibw) | size of the scan in the note and pixel size (check sum and lengths: before any reader sees it) |
-| Nanosurf (.nid) | size, points and lines in the scan's section; length of all channels and of the file |
-| WSxM | length of the header, of the data and of the file; amplitude and range of the heights |
-| PicoView (.mi) | length of all channels and of the file |
+| format | refused: data that are not there | told in a note: what may be a damaged number, or a setting changed later |
+|---|---|---|
+| NanoScope | data length below the pixels'; end of the file | image wider than the scan |
+| Igor (.ibw) | (check sum and lengths: before any reader sees it) | size of the scan in the note and pixel size |
+| Nanosurf (.nid) | file shorter than its channels | size, points and lines in the scan's section |
+| WSxM | file shorter than its pixels | length of the header; amplitude and range of the heights |
+| PicoView (.mi) | file shorter than its channels | |
 
-The others say nothing twice, or their reader compares it already (.gwy: array length and pixels).
+No format promises the second column, so it does not refuse a file. The others say nothing twice, or their reader
+compares it already (.gwy: array length and pixels).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -30,16 +31,21 @@ _TOLERANCE = 2e-3  # of numbers printed with few digits
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 
 
-def cross_check(file: Path, format_: str, meta: Meta, plane: Plane) -> None:
-    """Refuse a file whose header contradicts itself."""
-    if format_ in _CHECKS:
-        _CHECKS[format_](file, meta, plane)
+def cross_check(file: Path, format_: str, meta: Meta, plane: Plane) -> tuple[str, ...]:
+    """What its header contradicts itself in; a file that lacks data is refused."""
+    return tuple(text for text in _CHECKS[format_](file, meta, plane) if text) if format_ in _CHECKS else ()
 
 
-def _agree(file: Path, first: tuple[str, float], second: tuple[str, float], tolerance: float = _TOLERANCE) -> None:
+def _differ(first: tuple[str, float], second: tuple[str, float], tolerance: float = _TOLERANCE) -> str:
     (what, a), (other, b) = first, second
-    if not abs(a - b) <= tolerance * max(abs(a), abs(b)):
-        raise ReadError(f"{file}: its header contradicts itself: {what} {a:.6g}, but {other} {b:.6g}")
+    if abs(a - b) <= tolerance * max(abs(a), abs(b)):
+        return ""
+    return f"its header contradicts itself: {what} {a:.6g}, but {other} {b:.6g}"
+
+
+def _short(file: Path, held: int, needed: int) -> None:
+    if held < needed:
+        raise ReadError(f"{file}: {held} bytes of data, but its header states {needed}: it is cut off or damaged")
 
 
 def _length(text: str) -> float | None:
@@ -48,33 +54,25 @@ def _length(text: str) -> float | None:
     return float(match[1]) * LENGTHS[match[2]] if match and match[2] in LENGTHS else None
 
 
-def _nanoscope(file: Path, meta: Meta, plane: Plane) -> None:
+def _nanoscope(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     ny, nx = plane.values.shape
     length, offset = int(meta["data length"]), int(meta["data offset"])
-    if length not in (2 * nx * ny, 4 * nx * ny):
-        raise ReadError(f"{file}: its header contradicts itself: {length} bytes for {nx} x {ny} pixels")
-    if offset + length > file.stat().st_size:
-        raise ReadError(f"{file}: {file.stat().st_size} bytes long, but its data end at {offset + length}")
-    scale = next((meta[key] for key in ("@2:z scale", "@4:z scale") if key in meta), "")
-    match = re.search(rf"\({_NUMBER} (\S+)/LSB\) {_NUMBER} (\S+)", scale)
-    if match and match[2] == match[4]:  # the one is a count of 16 or 32 bit times the other
-        per_count, full = float(match[1]), float(match[3])
-        power = min((2.0**16, 2.0**32), key=lambda p: abs(full - per_count * p))
-        _agree(file, ("full scale", full), ("value per count times counts", per_count * power))
+    _short(file, length, 2 * nx * ny)
+    _short(file, file.stat().st_size, offset + length)
     with file.open("rb") as stream:
         scan = re.search(rb"\\\*Ciao scan list.*?\\Scan Size: ([^\r\n]+)", stream.read(min(offset, 1 << 20)), re.S)
     stated = _length(scan[1].decode("latin-1")) if scan else None
     if stated is not None and plane.pixel_size is not None and nx * plane.pixel_size[1] > stated * (1 + _TOLERANCE):
-        _agree(file, ("image width [m]", nx * plane.pixel_size[1]), ("scan size [m]", stated))
+        yield _differ(("image width [m]", nx * plane.pixel_size[1]), ("scan size [m]", stated))
 
 
-def _igor(file: Path, meta: Meta, plane: Plane) -> None:
+def _igor(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     assert plane.pixel_size is not None
     for axis, key, points in ((1, "FastScanSize", "ScanPoints"), (0, "SlowScanSize", "ScanLines")):
         count, pitch = plane.values.shape[axis], plane.pixel_size[axis]
         stated = _positive(meta.get(key))
         if stated is not None and _positive(meta.get(points)) == count:  # else it was cropped or stopped
-            _agree(file, (f"{key} [m]", stated), ("pixels times their size [m]", count * pitch), 2.0 / count)
+            yield _differ((f"{key} [m]", stated), ("pixels times their size [m]", count * pitch), 2.0 / count)
 
 
 def _positive(value: Any) -> float | None:
@@ -85,7 +83,7 @@ def _positive(value: Any) -> float | None:
     return number if 0.0 < number < np.inf else None
 
 
-def _nanosurf(file: Path, meta: Meta, plane: Plane) -> None:
+def _nanosurf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     content = file.read_bytes()
     header, mark, data = content.partition(b"#!")
     text = header.decode("latin-1")
@@ -97,47 +95,47 @@ def _nanosurf(file: Path, meta: Meta, plane: Plane) -> None:
         for key, count in (("Points", nx), ("Lines", ny)):
             stated = _positive(facts.get(key))
             if stated is not None:
-                _agree(file, (f"{key} of the scan", stated), ("of the channel", count), 0.0)
+                yield _differ((f"{key} of the scan", stated), ("of the channel", count), 0.0)
         stated = _length(facts.get("Image size", ""))
         if stated is not None:
-            _agree(file, ("image size [m]", stated), ("of the channel [m]", nx * plane.pixel_size[1]))
+            yield _differ(("image size [m]", stated), ("of the channel [m]", nx * plane.pixel_size[1]))
     sections = re.findall(r"\[DataSet-\d+:\d+\](.*?)(?=\n\[|\Z)", text, re.S)
     sizes = []
     for section in sections:
         facts = dict(line.strip().split("=", 1) for line in section.splitlines() if "=" in line)
         if facts.get("SaveMode", "") == "Binary":
             sizes.append(int(facts["Points"]) * int(facts["Lines"]) * int(facts["SaveBits"]) // 8)
-    if mark and sizes and sum(sizes) != len(data):
-        raise ReadError(f"{file}: {len(data)} bytes of data, but its channels take {sum(sizes)}: it is damaged")
+    if mark:
+        _short(file, len(data), sum(sizes))
 
 
-def _wsxm(file: Path, meta: Meta, plane: Plane) -> None:
+def _wsxm(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     content = file.read_bytes()
     start = re.search(rb"\[Header end\]\s*?\n", content)
     stated = re.search(rb"Image header size:\s*(\d+)", content[:200])
     general = meta["General Info"]
     width = {"short": 2, "integer": 4, "float": 4, "double": 8}.get(general.get("Image Data Type", "short"))
     if start and stated:
-        _agree(file, ("header size", float(stated[1])), ("its end", start.end()), 0.0)
-        if width is not None and len(content) != start.end() + width * plane.values.size:
-            raise ReadError(f"{file}: {len(content) - start.end()} bytes of data for {plane.values.size} pixels")
+        yield _differ(("header size", float(stated[1])), ("its end", start.end()), 0.0)
+        if width is not None:
+            _short(file, len(content) - start.end(), width * plane.values.size)
     amplitude = _length(general.get("Z Amplitude", "").replace("Å", "A"))
     if amplitude is not None and plane.unit in LENGTHS and np.isfinite(plane.values).all():
         spread = float(np.ptp(plane.values)) * LENGTHS[plane.unit]
-        _agree(file, ("Z amplitude [m]", amplitude), ("range of the heights [m]", spread), 0.01)
+        yield _differ(("Z amplitude [m]", amplitude), ("range of the heights [m]", spread), 0.01)
 
 
-def _picoview(file: Path, meta: Meta, plane: Plane) -> None:
+def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     content = file.read_bytes()
     end = re.search(rb"\ndata\s+(BINARY(?:_32)?)\s*?\n", content)
     if end is None:
         return  # as text
     width = 4 if end[1] == b"BINARY_32" else 2
     buffers = len(re.findall(rb"\nbufferLabel\s", content[: end.end()]))
-    if len(content) - end.end() != buffers * width * plane.values.size:
-        raise ReadError(f"{file}: {len(content) - end.end()} bytes of data for {buffers} x {plane.values.size} pixels")
+    _short(file, len(content) - end.end(), buffers * width * plane.values.size)
+    yield from ()
 
 
-_CHECKS: dict[str, Callable[[Path, Meta, Plane], None]] = {
+_CHECKS: dict[str, Callable[[Path, Meta, Plane], Iterator[str]]] = {
     "di": _nanoscope, "ibw": _igor, "ezd": _nanosurf, "wsxm": _wsxm, "mi": _picoview,
 }  # fmt: skip

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,9 +16,9 @@ from .._readers import head_of, registered_for
 from .._words import printable
 from ..errors import InvalidValue, ReadError
 from ..formats import refusal
-from . import hdf5, surfacetopography
+from . import gsf, hdf5, jpk_movie, nanonis, ntmdt, surfacetopography, topostats
 from .channel import Channel, Plane
-from .checks import LENGTHS, check_scale, check_shape, filled
+from .checks import LENGTHS, check_scale, check_shape, filled, unusual
 from .topography import Topography
 
 
@@ -72,13 +73,14 @@ def read(
     Returns
     -------
     Topography
-        Heights (ny, nx) [m]. Up to 1 % missing pixels are filled from their neighbours and masked.
+        Heights (ny, nx) [m]. Up to 90 % missing pixels are filled from their neighbours and masked; `notes` tells
+        where they are more than 1 %, and what else reading supplied or found unusual.
 
     Raises
     ------
     ReadError
-        If the file is missing, empty, damaged, not an image, has no height channel, has more than 1 % missing pixels,
-        states no unit, contradicts itself, or if its size or height is not that of an AFM image.
+        If the file is missing, empty, damaged, not an image, has no height channel, has more than 90 % missing pixels,
+        states no unit, or if its size or height is not that of an AFM image.
     InvalidValue
         If `pixel_size` or `z_unit` is not valid.
     """
@@ -108,8 +110,9 @@ def _reader(file: Path) -> tuple[str, Any]:
     refused = refusal(file, head, "images")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")
-    if hdf5.recognises(file, head):
-        return hdf5.NAME, hdf5
+    for own in (hdf5, jpk_movie, topostats, nanonis, gsf, ntmdt):
+        if own.recognises(file, head):
+            return own.NAME, own
     return surfacetopography.NAME, surfacetopography
 
 
@@ -125,7 +128,7 @@ def _checked(plane: Plane, file: Path, given_pixel: tuple[float, float] | None, 
         mask |= plane.mask
     topography = Topography(heights, pixel_size, printable(file.name), plane.name, plane.source, mask)
     check_scale(topography, file)
-    return topography
+    return replace(topography, notes=tuple(map(printable, plane.notes)) + unusual(topography))
 
 
 def _height_scale(plane: Plane, given: str | None, file: Path) -> float:

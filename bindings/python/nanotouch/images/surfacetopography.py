@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -20,14 +21,11 @@ from numpy.typing import NDArray
 from .._files import guarded
 from ..errors import ReadError, require
 from . import headers
-from .channel import Channel, Plane
+from .channel import HEIGHT_NAMES, Channel, Plane, chosen, with_default
 from .checks import LENGTHS, check_shape
 
 NAME = "SurfaceTopography"
-#: Names of height channels, best first: a calibrated sensor before the voltage of a piezo.
-_HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
 _OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "lateral", "potential", "current")
-_BACKWARD_NAMES = ("retrace", "backward", "reverse")
 #: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
 _CREDULOUS = ("hgt", "nms")
 
@@ -35,15 +33,14 @@ _CREDULOUS = ("hgt", "nms")
 def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
     with _opened(file) as reader:
-        found = _images_in(reader, file)
-        default = _default_channel(found)
-        return [_described(info, info is default) for info in found]
+        return _listed(_images_in(reader, file), reader.format())
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     with _opened(file) as reader:
-        info = _chosen(_images_in(reader, file), channel, file)
+        found = _images_in(reader, file)
+        info = found[chosen(_listed(found, reader.format()), channel, file)]
         check_shape(file, info.nb_grid_pts)
         unsized = info.physical_sizes is None
         loaded = info.topography(physical_sizes=info.nb_grid_pts if unsized else None)
@@ -56,12 +53,15 @@ def read(file: Path, channel: str | None) -> Plane:
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
             no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
+        notes: tuple[str, ...] = ()
+        if reader.format() == "ibw" and _kind(info, "ibw") == "height" and str(info.data_kind.value) != "height":
+            vertical, notes = "m", (f"no unit of {name!r} is stated: taken as m, in which such files hold heights",)
         if unsized or lateral not in LENGTHS:
-            return Plane(name, values, vertical, None, source, no_size)
+            return Plane(name, values, vertical, None, source, no_size, notes=notes)
         lx, ly = (float(s) * LENGTHS[lateral] for s in loaded.physical_sizes)
-        plane = Plane(name, values, vertical, (ly / values.shape[0], lx / values.shape[1]), source)
-        headers.cross_check(file, str(reader.format()), info.info.get("raw_metadata") or {}, plane)
-        return plane
+        plane = Plane(name, values, vertical, (ly / values.shape[0], lx / values.shape[1]), source, notes=notes)
+        told = headers.cross_check(file, str(reader.format()), info.info.get("raw_metadata") or {}, plane)
+        return replace(plane, notes=notes + told)
 
 
 @contextmanager
@@ -85,48 +85,32 @@ def _images_in(reader: Any, file: Path) -> list[Any]:
     return found
 
 
-def _chosen(found: list[Any], channel: str | None, file: Path) -> Any:
-    names = ", ".join(str(info.channel_id) for info in found)
-    if channel is None:
-        default = _default_channel(found)
-        if default is None:
-            raise ReadError(f"{file}: no height channel; it holds {names}")
-        return default
-    wanted = channel.casefold()
-    matches = [i for i in found if str(i.channel_id).casefold() == wanted]
-    if len(matches) != 1:
-        raise ReadError(f"{file}: no channel {channel!r}; it holds {names}")
-    return matches[0]
+def _kind(info: Any, format_: str) -> str:
+    """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude.
+
+    In Asylum's files it knows some names and takes the others, as MapHeight, for volts.
+    """
+    kind, name = str(info.data_kind.value), str(info.name).casefold()
+    other = next((part for part in _OTHER_NAMES if part in name), "")
+    if format_ == "ibw" and kind == "voltage" and not other and any(part in name for part in HEIGHT_NAMES):
+        return "height"
+    return other or kind if kind == "height" else kind
 
 
-def _default_channel(found: list[Any]) -> Any | None:
-    """The height channel: by name if a name tells, else the only or first one of a length that no name excludes."""
-
-    def rank(info: Any) -> tuple[int, bool]:
-        name = str(info.name).casefold()
-        known = [i for i, part in enumerate(_HEIGHT_NAMES) if part in name]
-        return (known[0] if known else len(_HEIGHT_NAMES), any(part in name for part in _BACKWARD_NAMES))
-
-    return min((info for info in found if _kind(info) == "height"), key=rank, default=None)
+def _listed(found: list[Any], format_: str) -> list[Channel]:
+    return with_default([_described(info, _kind(info, format_)) for info in found])
 
 
-def _kind(info: Any) -> str:
-    """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude."""
-    kind = str(info.data_kind.value)
-    name = str(info.name).casefold()
-    return next((part for part in _OTHER_NAMES if part in name), kind) if kind == "height" else kind
-
-
-def _described(info: Any, default: bool) -> Channel:
+def _described(info: Any, kind: str) -> Channel:
     lateral, vertical = _units(info.unit)
-    if not info.is_height_channel:
+    if kind != "height":
         vertical = info.data_unit
     size = None
     if info.physical_sizes is not None and lateral in LENGTHS:
         lx, ly = (float(s) * LENGTHS[lateral] for s in info.physical_sizes)
         size = (ly, lx)
     shape = None if info.nb_grid_pts is None else (info.nb_grid_pts[1], info.nb_grid_pts[0])
-    return Channel(str(info.channel_id), shape, size, vertical, _kind(info), default)
+    return Channel(str(info.channel_id), shape, size, vertical, kind, False)
 
 
 def _units(unit: Any) -> tuple[str | None, str | None]:

@@ -30,6 +30,8 @@ class Topography:
         What read it, as ``"SurfaceTopography/ibw"``.
     mask : ndarray, shape (ny, nx), bool
         True where a height was not measured but filled in from its neighbours; nowhere if not given.
+    notes : tuple of str
+        What reading left out or supplied, and what is unusual of the file.
     """
 
     heights: NDArray[np.float64]
@@ -38,6 +40,7 @@ class Topography:
     channel: str = ""
     source: str = ""
     mask: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 0), bool))
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         heights = _frozen(self.heights, np.float64)

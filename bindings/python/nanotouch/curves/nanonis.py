@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nanonis spectroscopy over z, ``.dat``: lines ``key<tab>value``, then ``[DATA]``, names of columns and numbers.
+
+Names carry the unit, and what was measured on the way back: ``Deflection [bwd] (m)``. Columns of the way back stand at
+the same z as those of the way there, against the order of time. A force curve needs a column of a force [N], or of a
+deflection in m or V; spectra over the bias, or of currents and frequency shifts alone, are refused.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._arrays import Floats
+from .._words import printable
+from ..errors import ReadError
+from .calibration import Calibration
+from .checks import MAX_POINTS, MIN_POINTS
+from .curve import ForceCurve, Role, Segment
+
+NAME = "nanotouch/nanonis-spectroscopy"
+_DATA = "[DATA]"
+_COLUMN = re.compile(r"(?P<name>.*?)(?P<back> \[bwd\])?(?P<other> \[[^\]]*\])* \((?P<unit>[^()]*)\)")
+_Z = ("Z (m)", "Z rel (m)")  # absolute before relative
+
+
+def recognises(file: Path, head: bytes) -> bool:
+    """Whether it begins as Nanonis' spectra do."""
+    return file.suffix.lower() == ".dat" and head.startswith(b"Experiment\t")
+
+
+def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
+    """The one curve; `calibration` gives what such files do not state."""
+    text = file.read_bytes().decode("utf-8", "replace")
+    header, mark, body = text.partition(_DATA)
+    if not mark:
+        raise ReadError(f"{file}: lacks {_DATA}")
+    facts = dict(line.split("\t")[:2] for line in header.splitlines() if "\t" in line)
+    names, values = _table(file, body)
+    z_name = next((name for name in _Z if name in names and float(np.ptp(values[names.index(name)])) > 0.0), None)
+    signal = _signal(names)
+    if z_name is None or signal is None:
+        what = facts.get("Experiment", "spectroscopy")
+        raise ReadError(
+            f"{file}: {what} without a z and a deflection or force in m, N or V; it holds {', '.join(names)}"
+        )
+    there, back, unit = signal
+    meta: dict[str, Any] = {"format": "Nanonis", "instrument": "Nanonis", "path": file, "enum": 0}
+    meta |= {"date": facts.get("Saved Date", "")}
+    factor, notes = _factor(file, unit, calibration, meta)
+    if notes:
+        meta["notes"] = notes
+    z, forward = values[names.index(z_name)], values[there]
+    segments = [_segment(z, forward, unit, factor, meta)]
+    if back is not None:
+        segments.append(_segment(z[::-1], values[back][::-1], unit, factor, meta))
+    return [ForceCurve(tuple(segments), meta, printable(file.name))]
+
+
+def _table(file: Path, body: str) -> tuple[list[str], Floats]:
+    lines = body.strip("\r\n").splitlines()
+    names = [name.strip() for name in lines[0].split("\t")] if lines else []
+    rows = [line.split("\t") for line in lines[1:] if line.strip()]
+    if not MIN_POINTS <= len(rows) <= MAX_POINTS or any(len(row) != len(names) for row in rows):
+        raise ReadError(f"{file}: {len(rows)} rows, or rows of another length than its {len(names)} columns")
+    return names, np.array(rows, np.float64).T
+
+
+def _signal(names: list[str]) -> tuple[int, int | None, str] | None:
+    """Columns of the way there and back, and their unit: a force before a deflection in m, that before one in V."""
+    parsed = [(number, match) for number, name in enumerate(names) if (match := _COLUMN.fullmatch(name))]
+    for word, unit in (("force", "N"), ("deflection", "m"), ("deflection", "V")):
+        fits = [(n, m) for n, m in parsed if word in m["name"].casefold() and m["unit"] == unit and not m["other"]]
+        there = next((n for n, m in fits if not m["back"]), None)
+        if there is not None:
+            name = _COLUMN.fullmatch(names[there])
+            back = next((n for n, m in fits if m["back"] and name and m["name"] == name["name"]), None)
+            return there, back, unit
+    return None
+
+
+def _factor(file: Path, unit: str, given: Calibration, meta: dict[str, Any]) -> tuple[float, tuple[str, ...]]:
+    """From the column to the deflection (from m, V) or to the force (from N), and what has to be told."""
+    if given.spring_constant is not None:
+        meta["spring constant"] = given.spring_constant
+    if unit == "V":
+        if given.sensitivity is None:
+            raise ReadError(f"{file}: its deflection is in V, and it states no sensitivity; give it")
+        meta["sensitivity"] = given.sensitivity
+        return given.sensitivity, ()
+    if unit == "m" and given.spring_constant is None:
+        return 1.0, ("states no spring constant: deflections alone; give it for forces",)
+    return 1.0, ()
+
+
+def _segment(z: Floats, signal: Floats, unit: str, factor: float, meta: dict[str, Any]) -> Segment:
+    role: Role = "approach" if z[-1] < z[0] else "retract"
+    stiffness: float | None = meta.get("spring constant")
+    values, per_metre = signal * factor, 1.0 if stiffness is None else stiffness
+    force = values if unit == "N" else values * per_metre
+    deflection = values / per_metre if unit == "N" else values
+    return Segment(
+        role,
+        np.full(z.size, np.nan),
+        z,
+        "height (measured)",
+        None if unit != "N" and stiffness is None else force,
+        None if unit == "N" and stiffness is None else deflection,
+    )

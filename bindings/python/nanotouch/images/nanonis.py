@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nanonis scans, ``.sxm``: a text header of ``:KEY:`` lines and their values, then big-endian floats.
+
+The table ``DATA_INFO`` names channel, unit and direction; after ``:SCANIT_END:`` and the bytes 1A 04 each channel
+follows, its forward picture and, where the direction is ``both``, its backward one, whose lines are stored in the order
+of time, from right to left. ``SCAN_DIR`` says whether the first line is the lowest (``up``) or the top one (``down``).
+Lines that were not scanned are NaN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import ReadError
+from .channel import Channel, Plane, chosen, si_unit, with_default
+from .checks import check_shape
+
+NAME = "nanotouch/nanonis"
+SIGNATURE = b":NANONIS_VERSION:"
+_END, _MARK = b":SCANIT_END:", b"\x1a\x04"
+_HEADER_LIMIT = 1 << 22  # byte; those seen have 20 KiB
+
+
+@dataclass(frozen=True)
+class _Scan:
+    """What the header says."""
+
+    shape: tuple[int, int]
+    size: tuple[float, float]  # (Ly, Lx) [m]
+    up: bool  # the first line stored is the lowest
+    pictures: tuple[tuple[str, str, bool], ...]  # name, unit, backward
+    start: int  # of the data [byte]
+
+
+def recognises(file: Path, head: bytes) -> bool:
+    """Whether it is a Nanonis scan."""
+    return head.startswith(SIGNATURE)
+
+
+def channels(file: Path) -> list[Channel]:
+    """Forward and backward pictures of all channels."""
+    return _listed(_header(file))
+
+
+def read(file: Path, channel: str | None) -> Plane:
+    """One picture; forward heights if none is named."""
+    scan = _header(file)
+    check_shape(file, scan.shape)
+    listed = _listed(scan)
+    number = chosen(listed, channel, file)
+    _, unit, backward = scan.pictures[number]
+    count = scan.shape[0] * scan.shape[1]
+    needed = scan.start + 4 * count * len(scan.pictures)
+    if file.stat().st_size < needed:
+        raise ReadError(f"{file}: {file.stat().st_size} bytes long, but its header states {needed}: it is cut off")
+    raw = np.fromfile(file, ">f4", count, offset=scan.start + 4 * count * number)
+    values = raw.astype(np.float64).reshape(scan.shape)[:: 1 if scan.up else -1, :: -1 if backward else 1]
+    ny, nx = scan.shape
+    return Plane(listed[number].name, np.array(values), unit, (scan.size[0] / ny, scan.size[1] / nx), NAME)
+
+
+def _listed(scan: _Scan) -> list[Channel]:
+    return with_default(
+        [
+            Channel(
+                f"{name} backward" if backward else name,
+                scan.shape,
+                scan.size,
+                unit,
+                "height" if name.casefold() == "z" and unit == "m" else name.casefold(),
+                False,
+            )
+            for name, unit, backward in scan.pictures
+        ]
+    )
+
+
+def _header(file: Path) -> _Scan:
+    with file.open("rb") as stream:
+        content = stream.read(_HEADER_LIMIT)
+    text, end, rest = content.partition(_END)
+    at = rest.find(_MARK)
+    if not end or at < 0:
+        raise ReadError(f"{file}: its header does not end")
+    facts: dict[str, list[str]] = {}
+    lines: list[str] = []
+    for line in text.decode("latin-1").splitlines():
+        if line.startswith(":") and line.rstrip().endswith(":"):
+            lines = facts.setdefault(line.strip().strip(":"), [])
+        elif line.strip():
+            lines.append(line)
+    scan_type = _words(file, facts, "SCANIT_TYPE")
+    if scan_type != ["FLOAT", "MSBFIRST"]:
+        raise ReadError(f"{file}: numbers of the type {' '.join(scan_type)}, expected FLOAT MSBFIRST")
+    try:
+        nx, ny = (int(word) for word in _words(file, facts, "SCAN_PIXELS"))
+        width, height = (float(word) for word in _words(file, facts, "SCAN_RANGE"))
+    except ValueError as error:
+        raise ReadError(f"{file}: pixels or range of its header are no two numbers: {error}") from None
+    direction = _words(file, facts, "SCAN_DIR")
+    if direction not in (["up"], ["down"]):
+        raise ReadError(f"{file}: scanned {' '.join(direction)!r}, expected up or down")
+    start = len(text) + len(end) + at + len(_MARK)
+    return _Scan((ny, nx), (height, width), direction == ["up"], _pictures(file, facts), start)
+
+
+def _words(file: Path, facts: dict[str, list[str]], key: str) -> list[str]:
+    if not facts.get(key):
+        raise ReadError(f"{file}: its header lacks {key}")
+    return facts[key][0].split()
+
+
+def _pictures(file: Path, facts: dict[str, list[str]]) -> tuple[tuple[str, str, bool], ...]:
+    """Rows of the table: number, name, unit, direction, ..."""
+    found: list[tuple[str, str, bool]] = []
+    for row in facts.get("DATA_INFO", [])[1:]:
+        cells = row.strip().split("\t")
+        if len(cells) < 4 or cells[3] not in ("both", "forward", "backward"):
+            raise ReadError(
+                f"{file}: a channel of its table is {row.strip()!r}, expected number, name, unit, direction"
+            )
+        directions = (False, True) if cells[3] == "both" else (cells[3] == "backward",)
+        found += [(cells[1].replace("_", " "), si_unit(cells[2]), backward) for backward in directions]
+    if not found:
+        raise ReadError(f"{file}: its header lists no channel")
+    return tuple(found)

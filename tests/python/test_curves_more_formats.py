@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Asylum's pairs of waves, Nanonis' spectra over z, JPK's thermal spectra; made here, and real ones where they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import synthetic
+from nanotouch import curves
+from nanotouch.errors import InvalidValue, ReadError
+
+pytest.importorskip("afmformats")
+
+KNOWN = synthetic.known_curve(n=200)
+K = KNOWN.spring_constant
+NAMES = ("Line0003Point0007Defl.ibw", "Line0003Point0007ZSnsr.ibw")
+
+
+def write_pair(folder: Path, note: str | None = "Indexes") -> Path:
+    """Approach, retraction and a rest, one wave each for deflection and height."""
+    rest = np.full(40, KNOWN.retract_z[-1]) + 1e-12 * np.arange(40)
+    z = np.concatenate([KNOWN.approach_z, KNOWN.retract_z, rest])
+    deflection = np.concatenate([KNOWN.approach_force, KNOWN.retract_force, np.zeros(40)]) / K
+    ends = np.cumsum([0, KNOWN.approach_z.size, KNOWN.retract_z.size, 40]) - 1
+    facts: dict[str, object] = {"XLVDT": -3e-5}
+    if note:
+        facts[note] = f"0,{','.join(str(end) for end in ends[1:])},"
+    for name, values in zip(NAMES, (deflection, -z), strict=True):
+        # one dimension: a wave of one channel
+        synthetic.write_ibw(folder / name, values, [], note=facts)
+    return folder / NAMES[0]
+
+
+@pytest.mark.parametrize("note", ["Indexes", None])
+def test_a_pair_is_one_curve(tmp_path: Path, note: str | None) -> None:
+    (curve,) = curves.read(write_pair(tmp_path, note), spring_constant=K)
+    roles = ["approach", "retract"] + (["pause"] if note else [])
+    assert [segment.role for segment in curve.segments] == roles
+    approach, retract = curve.segments[:2]
+    assert approach.z_channel == "height (measured)"
+    np.testing.assert_allclose(approach.z, KNOWN.approach_z, atol=1e-18)
+    np.testing.assert_allclose(approach.force, KNOWN.approach_force, atol=1e-18)  # type: ignore[arg-type]
+    np.testing.assert_allclose(retract.z[:200], KNOWN.retract_z, atol=1e-18)
+    assert (curve.meta["grid index y"], curve.meta["grid index x"]) == (3, 7)
+
+
+def test_without_a_spring_constant_it_has_deflections_and_says_so(tmp_path: Path) -> None:
+    (curve,) = curves.read(write_pair(tmp_path))
+    assert curve.segments[0].force is None
+    np.testing.assert_allclose(curve.segments[0].deflection, KNOWN.approach_force / K, atol=1e-18)  # type: ignore[arg-type]
+    assert "states no spring constant: deflections alone; give it for forces" in curve.meta["notes"]
+    with pytest.raises(InvalidValue, match="spring constant"):
+        curves.analyse(curve)
+
+
+def test_the_half_with_the_heights_is_refused_as_the_curve_would_count_twice(tmp_path: Path) -> None:
+    write_pair(tmp_path)
+    with pytest.raises(ReadError, match=f"holds the heights of {NAMES[0]}; read that"):
+        curves.read(tmp_path / NAMES[1])
+    (tmp_path / NAMES[1]).unlink()
+    with pytest.raises(ReadError):
+        curves.read(tmp_path / NAMES[0])
+
+
+def write_dat(path: Path, columns: dict[str, np.ndarray], experiment: str = "Z spectroscopy") -> Path:
+    rows = ["\t".join(f"{value:.9E}" for value in row) for row in zip(*columns.values(), strict=True)]
+    header = [f"Experiment\t{experiment}\t", "Saved Date\t20.04.2023 14:55:09\t", "X (m)\t153.514E-9\t", "", "[DATA]"]
+    path.write_text("\n".join([*header, "\t".join(columns), *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("signal", ["Deflection (m)", "Deflection (V)", "Force (N)"])
+def test_a_nanonis_spectrum_over_z(tmp_path: Path, signal: str) -> None:
+    """The way back stands at the z of the way there, against the order of time."""
+    z = KNOWN.approach_z
+    back = np.interp(z[::-1], KNOWN.retract_z, KNOWN.retract_force)[::-1]
+    factor = {"Deflection (m)": K, "Deflection (V)": K * 5e-8, "Force (N)": 1.0}[signal]
+    columns = {"Z rel (m)": z, "Current (A)": 0 * z, signal: KNOWN.approach_force / factor,
+               signal.replace(" (", " [bwd] ("): back / factor, signal.replace(" (", " [filt] ("): 0 * z}  # fmt: skip
+    path = write_dat(tmp_path / "a.dat", columns)
+    given = {"sensitivity": 5e-8} if "V" in signal else {}
+    (curve,) = curves.read(path, spring_constant=K, **given)
+    assert [segment.role for segment in curve.segments] == ["approach", "retract"]
+    approach, retract = curve.segments
+    np.testing.assert_allclose(approach.force, KNOWN.approach_force, atol=1e-15)  # type: ignore[arg-type]
+    np.testing.assert_allclose(retract.z, z[::-1], atol=1e-15)
+    np.testing.assert_allclose(retract.force, back[::-1], atol=1e-15)  # type: ignore[arg-type]
+    if "V" in signal:
+        with pytest.raises(ReadError, match="in V, and it states no sensitivity; give it"):
+            curves.read(path)
+
+
+def test_other_nanonis_spectra_are_refused_with_what_they_hold(tmp_path: Path) -> None:
+    bias = np.linspace(-1.0, 1.0, 50)
+    path = write_dat(tmp_path / "a.dat", {"Bias calc (V)": bias, "Current (A)": bias}, "bias spectroscopy")
+    message = r"bias spectroscopy without a z and a deflection or force .* it holds Bias calc \(V\), Current \(A\)"
+    with pytest.raises(ReadError, match=message):
+        curves.read(path)
+
+
+def write_tnd(path: Path, frequency: np.ndarray, density: np.ndarray) -> Path:
+    head = [
+        "# thermal noise data", "# sensitivity: 20.0 nm/V", "# spring constant: 40.0 mN/m",
+        "# settings.method: Contact-free",
+        "# Channels: 'Frequency' 'Vertical Deflection' 'average' ", "# Units: 'Hz' 'V²/Hz' 'V²/Hz'", "",
+    ]  # fmt: skip
+    rows = [f"{f!r} {d!r} 0.0" for f, d in zip(frequency.tolist(), density.tolist(), strict=True)]
+    path.write_text("\n".join(head + rows) + "\n", encoding="utf-8")
+    return path
+
+
+def test_a_thermal_spectrum_gives_its_spring_constant(tmp_path: Path) -> None:
+    """An oscillator of 0.04 N/m at 293 K, written as JPK writes it."""
+    k, resonance, q = 0.04, 24e3, 3.0
+    f = np.arange(0.0, 1e5, 12.0)
+    mean_square = 1.380649e-23 * 293.0 / k
+    peak = 2.0 * mean_square / (np.pi * resonance * q)
+    density = peak * resonance**4 / ((f**2 - resonance**2) ** 2 + (f * resonance / q) ** 2) + 1e-27
+    found = curves.thermal_spectrum(write_tnd(tmp_path / "a.tnd", f, density / (20e-9) ** 2))
+    assert (found.sensitivity, found.spring_constant) == pytest.approx((20e-9, 0.04))
+    assert found.frequency[0] == 12.0  # not 0 Hz
+    assert found.facts["settings.method"] == "Contact-free"
+    tune = curves.thermal_tune(found.frequency, found.density, averages=1000, temperature=293.0, correction=1.0)
+    assert tune.spring_constant == pytest.approx(k, rel=0.01)
+    text = (tmp_path / "a.tnd").read_text(encoding="utf-8")
+    for old, new in (("# thermal", "# cold"), ("'Frequency'", "'Time'"), ("24.0 ", "24.0 7 "), ("nm/V", "furlong")):
+        (tmp_path / "b.tnd").write_text(text.replace(old, new, 1), encoding="utf-8")
+        with pytest.raises(ReadError):
+            curves.thermal_spectrum(tmp_path / "b.tnd")
+
+
+def test_real_files() -> None:
+    folder = synthetic.DATA / "corpus" / "curves"
+    if not folder.is_dir():
+        pytest.skip(f"real data not here: {folder}")
+    (curve,) = curves.read(folder / "asylum-pairs" / "Line0000Point0000Defl.ibw")
+    assert [(s.role, len(s)) for s in curve.segments] == [("approach", 2488), ("retract", 2528), ("pause", 199)]
+    spectrum = curves.thermal_spectrum(next(folder.glob("*.tnd")))
+    assert spectrum.spring_constant == pytest.approx(45.8785e-3)
+    near = (spectrum.frequency > 3e3) & (spectrum.frequency < 150e3)
+    tune = curves.thermal_tune(
+        spectrum.frequency[near], spectrum.density[near], averages=50, temperature=298.0, correction=1.0
+    )
+    assert tune.resonance == pytest.approx(24.25e3, rel=0.15)  # the instrument's own fit
