@@ -33,12 +33,13 @@ corpus:  ## every file under a folder, ours against every other reader that is i
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/corpus.py $(DIR)
 
-heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings under 50 kills, fits without memory; half an hour
+heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings of an hour and under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
 	@$(VENV)/python tests/heavy/energy.py
 	@$(VENV)/python tests/heavy/yielding.py
 	@$(VENV)/python tests/heavy/kills.py
+	@$(VENV)/python tests/heavy/hour.py
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every

@@ -3,6 +3,9 @@
 
 After every block the file has an ending that calls it incomplete; the next block takes its place, and gets a new one.
 So a file is a finished one at any time but while a block is written, and on a full disk there is room for the reason.
+
+No index is written: it would have to be kept in memory until the end. Readers of MCAP then begin at the start,
+as they do where a recording was cut short.
 """
 
 from __future__ import annotations
@@ -30,6 +33,7 @@ TOPIC = "nanotouch/touch"
 ENCODING = "nanotouch.columns"
 LAYOUT = "one message is one block of rows: the columns in the order listed, each contiguous and little-endian"
 CHUNK_SIZE = 1  # [bytes]: every block is a chunk of its own, and on its way to the disk when append returns
+CHUNKS_KEPT = 100  # a writer of the library remembers all its chunks: after so many another one goes on
 INCOMPLETE = "incomplete"
 """key of the metadata with the reason"""
 KILLED = "the program that recorded it was killed"
@@ -53,7 +57,7 @@ class Writer:
     """
 
     def __init__(self, path: str | os.PathLike[str], metadata: Mapping[str, Any] | None = None) -> None:
-        mcap = require("mcap.writer", "record")
+        require("mcap.writer", "record")
         texts = _texts(metadata or {})
         self.path = Path(path)
         self.rows = 0
@@ -67,7 +71,7 @@ class Writer:
             self._file = _new_part(self.path)
         self._part = Path(self._file.name)
         with self._growing():
-            self._mcap = mcap.Writer(self._file, chunk_size=CHUNK_SIZE, compression=mcap.CompressionType.ZSTD)
+            self._mcap = _new_writer(self._file)
             self._mcap.start(profile="nanotouch", library="nanotouch")
             self._mcap.add_metadata("nanotouch", texts)
 
@@ -75,14 +79,15 @@ class Writer:
         """Write one block of rows, best some hundred; the first block decides which columns the file has."""
         self._check_open()
         block = checked(columns)
-        if not self._names:
-            self._register(tuple(block))
-        if tuple(block) != self._names:
+        if tuple(block) != (self._names or tuple(block)):
             raise InvalidValue(f"a block has the columns {', '.join(block)}; the file has {', '.join(self._names)}")
         times = block["time"]
         if not np.isfinite(times).all():
             raise InvalidValue("a block has a time that is not finite; time [s] must be a number in every row")
         stamp = max(0, round(float(times[0]) * 1e9)) if times.size else 0
+        if self._blocks % CHUNKS_KEPT == 0:
+            self._mcap, self._names = _new_writer(self._file), tuple(block)
+            self._register(self._names)
         data = b"".join(values.tobytes() for values in block.values())
         with self._growing():
             self._mcap.add_message(self._channel, log_time=stamp, data=data, publish_time=stamp, sequence=self._blocks)
@@ -177,7 +182,12 @@ class Writer:
         schema = {"layout": LAYOUT, "columns": [{"name": name, **vars(COLUMNS[name])} for name in names]}
         number = self._mcap.register_schema("nanotouch.Touch", ENCODING, json.dumps(schema, indent=1).encode())
         self._channel = self._mcap.register_channel(TOPIC, ENCODING, number)
-        self._names = names
+
+
+def _new_writer(file: BinaryIO) -> Any:
+    """A writer that goes on where the file ends."""
+    mcap = require("mcap.writer", "record")
+    return mcap.Writer(file, chunk_size=CHUNK_SIZE, index_types=mcap.IndexType.NONE, use_statistics=False)
 
 
 def _new_part(path: Path) -> BinaryIO:
