@@ -31,7 +31,7 @@ void nt_session_sleep_until(int64_t deadline)
 
 void nt_session_keep_time(nt_session *session)
 {
-    if (!session->clock)
+    if (!session->clock && isinf(nt_session_own_period(session)))
         return;
     const int64_t now = nt_session_machine_time(), next = session->deadline + llround(1e9 * session->now->touch.period);
     session->deadline = next > now ? next : now;

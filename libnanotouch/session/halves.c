@@ -145,6 +145,18 @@ nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
     return status;
 }
 
+double nt_session_own_period(const nt_session *session)
+{
+    const nt_hal *const halves[] = {&session->master, &session->slave};
+    double shortest = INFINITY;
+    for (int half = NT_HALF_MASTER; half <= NT_HALF_SLAVE; ++half) {
+        const double own = halves[half]->capabilities.period;
+        if (!session->simulates[half] && own > 0.0)
+            shortest = fmin(shortest, own);
+    }
+    return shortest;
+}
+
 nt_status nt_session_check_pace(const nt_session *session, nt_pace pace)
 {
     const uint32_t can = session->master.capabilities.can | session->slave.capabilities.can;

@@ -17,7 +17,7 @@
 #include "core/problem.h"
 
 #define WAKE 1000000      /* wall pace: [ns] */
-#define LONGEST_LAG 0.05  /* further behind than this a session slows down instead of catching up [s] */
+#define LONGEST_LAG 0.05  /* further behind than this a session slows down instead of catching up, at the most [s] */
 #define SLOWDOWN_TIME 1.0 /* over which the slowdown is told [s] */
 enum { BATCH = 64 };      /* ticks between two looks at what was asked of the thread */
 
@@ -110,9 +110,18 @@ static void run_free(nt_session *session)
 /* Time that the session owes its person, and how much slower than it should it goes. */
 typedef struct wall_clock {
     int64_t last; /* when it was looked at [ns] */
+    double lag;   /* the most that it may owe [s] */
     double due;   /* session time that has to be run yet [s] */
     double lost;  /* share of time that could not be run, lately [-] */
 } wall_clock;
+
+/* What is owed is run at once, and meanwhile no device says anything new. A quarter of a device's own period is the
+ * most: twice that may come between two readings, half a period more than they are apart, and two make it stale. */
+static double longest_lag(const nt_session *session)
+{
+    const double due = fmax(0.25 * nt_session_own_period(session), 2.0 * session->now->touch.period);
+    return fmin(LONGEST_LAG, due);
+}
 
 static void look_at(wall_clock *clock, nt_runner *runner)
 {
@@ -120,7 +129,7 @@ static void look_at(wall_clock *clock, nt_runner *runner)
     const double passed = 1e-9 * (double)(now - clock->last), speed = atomic_load(&runner->speed);
     clock->last = now;
     clock->due += speed * passed;
-    const double lost = fmax(0.0, clock->due - speed * LONGEST_LAG);
+    const double lost = fmax(0.0, clock->due - speed * clock->lag);
     clock->due -= lost;
     const double share = -expm1(-passed / SLOWDOWN_TIME);
     if (passed > 0.0)
@@ -132,7 +141,8 @@ static void run_wall(nt_session *session)
 {
     nt_runner *runner = session->runner;
     const double period = session->now->touch.period;
-    wall_clock clock = {.last = nt_session_machine_time()};
+    wall_clock clock = {.last = nt_session_machine_time(), .lag = longest_lag(session)};
+    const int64_t wake = llround(fmin(WAKE, 0.5e9 * clock.lag));
     while (!is_over(session)) {
         if (atomic_load(&runner->paused)) {
             if (pass_pause(session) < 0)
@@ -147,7 +157,7 @@ static void run_wall(nt_session *session)
         if (done == 0)
             nt_session_take_calls(session);
         clock.due -= (double)done * period;
-        rest(session, clock.last + WAKE);
+        rest(session, clock.last + wake);
     }
 }
 

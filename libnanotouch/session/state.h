@@ -45,7 +45,7 @@ struct nt_session {
     nt_host host;
     double master_start, master_travel; /* [m] */
     double borders[2][2];               /* of the surface, x and y [m]; with master_travel for inputs of any thread */
-    int64_t deadline;                   /* of the next tick before a session is armed, with a real half [ns] */
+    int64_t deadline;                   /* of the next tick before it runs, where a half has a clock of its own [ns] */
     nt_frames *frames;
     /* between threads */
     atomic_uint stop; /* emergency stop: STOP_HELD, STOP_UNSEEN (run.c) */
@@ -90,6 +90,9 @@ nt_verdict nt_composition_judge(const nt_composition *composition, const nt_sett
 
 /* Opens, configures and arms both halves. */
 nt_status nt_session_open_halves(nt_session *session, nt_problem *problem);
+/* The shortest one of a half that measures by a clock of its own; infinite where there is none [s]. What is simulated
+ * measures in session time. */
+double nt_session_own_period(const nt_session *session);
 /* May they run at this pace? */
 nt_status nt_session_check_pace(const nt_session *session, nt_pace pace);
 /* Tare and sign test, on the rig's own time. */
@@ -140,7 +143,7 @@ nt_frame nt_session_frame(const nt_session *session, const nt_record *record);
 
 int64_t nt_session_machine_time(void); /* [ns] */
 void nt_session_sleep_until(int64_t deadline);
-/* With a real half, before it runs: waits for the next period. */
+/* With a half that measures by a clock of its own, before it runs: waits for the next period. */
 void nt_session_keep_time(nt_session *session);
 /* One thread prepares and asks at a time. */
 void nt_session_lock(nt_session *session);

@@ -171,6 +171,85 @@ static void wall_pace_follows_the_clock(void **state)
 }
 
 /* What was due before the change counts in full, what comes after it a hundredth. */
+/* A position device that has a new reading each 8 ms of the machine's time. Now and then the loop is kept from running
+ * for longer than two of them, as a busy machine does. */
+typedef struct pointer {
+    const nt_host *host;
+    nt_reading newest;
+    long reads;
+} pointer;
+#define POINTER_PERIOD 0.008 /* [s] */
+
+static nt_status open_pointer(void *context, const nt_host *host, nt_problem *problem)
+{
+    (void)problem;
+    ((pointer *)context)->host = host;
+    return NT_OK;
+}
+
+static nt_status describe_pointer(void *context, nt_capabilities *capabilities)
+{
+    (void)context;
+    capabilities->can = NT_IS_EVENT_DRIVEN;
+    capabilities->period = POINTER_PERIOD;
+    return NT_OK;
+}
+
+static nt_status read_pointer(void *context, nt_reading *reading)
+{
+    pointer *p = context;
+    if (++p->reads % 1000 == 0)
+        for (int i = 0; i < 20; i++)
+            doze();
+    const uint64_t sequence = (uint64_t)(seconds() / POINTER_PERIOD);
+    if (sequence != p->newest.sequence)
+        p->newest = (nt_reading){.size = sizeof p->newest,
+                                 .sequence = sequence,
+                                 .time = p->host->now(p->host),
+                                 .felt = {NAN, NAN, NAN},
+                                 .valid = 1u << (NT_READS_POSITION + NT_Z)};
+    *reading = p->newest;
+    return NT_OK;
+}
+
+static nt_status write_pointer(void *context, const nt_action *action)
+{
+    (void)context, (void)action;
+    return NT_OK;
+}
+
+/* It slows down instead. */
+static void catching_up_makes_no_device_stale(void **state)
+{
+    (void)state;
+    static const nt_backend backend = {.size = sizeof backend,
+                                       .version = NT_HAL_API_VERSION,
+                                       .name = "pointer",
+                                       .half = NT_HALF_MASTER,
+                                       .open = open_pointer,
+                                       .describe = describe_pointer,
+                                       .read = read_pointer,
+                                       .write = write_pointer};
+    pointer device = {.host = NULL};
+    nt_session_setup setup = nt_session_defaults();
+    setup.rig.master.motor = setup.rig.master.gauge = 0.0;
+    setup.rig.master.rate = 1.0 / POINTER_PERIOD;
+    setup.settings = nt_settings_defaults(&setup.rig);
+    setup.master = (nt_hal_choice){&backend, &device};
+    nt_session *session = open_session(&setup);
+    enum { TICKS = 5000 };
+    assert_int_equal(nt_session_start(session, NT_PACE_WALL, TICKS), NT_OK);
+    const nt_progress end = await_end(session);
+    assert_int_equal(nt_session_halt(session), NT_OK);
+    assert_int_equal(nt_session_read(session, records, TICKS), TICKS);
+    for (int i = 0; i < TICKS; i++) {
+        assert_true(records[i].master_age <= 1.5 * POINTER_PERIOD + 2e-4);
+        assert_int_equal(records[i].state, NT_RUN);
+    }
+    assert_true(end.slowdown > 1.05);
+    nt_session_close(session);
+}
+
 static void slow_motion_is_slow(void **state)
 {
     (void)state;
@@ -265,6 +344,7 @@ int main(void)
         cmocka_unit_test(who_calls_what_while_it_runs),
         cmocka_unit_test(a_pause_stops_and_steps_on),
         cmocka_unit_test(wall_pace_follows_the_clock),
+        cmocka_unit_test(catching_up_makes_no_device_stale),
         cmocka_unit_test(slow_motion_is_slow),
         cmocka_unit_test(hard_pace_counts_what_a_full_ring_drops),
         cmocka_unit_test(a_thread_that_fails_says_why),
