@@ -18,8 +18,8 @@ from nanotouch_app import stop
 from nanotouch_app.guard import REFUSED, guarded, one_line
 
 COMMANDS = (
-    "touch", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "recover", "reproduce", "tradeoff",
-    "bench", "doctor",
+    "touch", "live", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "recover", "reproduce",
+    "tradeoff", "bench", "doctor",
 )  # fmt: skip
 EPILOG = """exit status: 0 done; 1 done, and the answer is no, or nobody read it; 2 refused, with the reason; 70 a bug
 of nanotouch, whose traceback NANOTOUCH_DEBUG=1 shows; 130 stopped by Ctrl-C"""

@@ -201,7 +201,8 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
     signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
     rescale(touch, state);
-    if (state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
+    const int closes = touch->rig.master.motor != 0.0; /* without a motor no loop closes through the hand */
+    if (closes && state->mode == NT_MODE_TOUCH)        /* a servo is meant to move the hand */
         watch_energy(touch, state, stage_step);
 }
 

@@ -31,7 +31,7 @@ _HOMES = {
 _MODULES = (
     "batch", "commands", "contact", "curves", "errors", "faults", "fit", "forces", "frames", "geometry", "hal",
     "images", "interaction", "maps", "margins", "materials", "operator", "plan", "plots", "presets", "record",
-    "reference", "scene", "session", "surface", "units",
+    "reference", "scene", "session", "surface", "units", "view",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]

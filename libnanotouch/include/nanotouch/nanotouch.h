@@ -29,5 +29,6 @@
 #include "nanotouch/terrain.h"
 #include "nanotouch/types.h"
 #include "nanotouch/version.h"
+#include "nanotouch/view.h"
 
 #endif

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two charts: force against gap with the law behind it, and the force at the hand over the last ten seconds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nanotouch_app.live.axes import Axes
+from nanotouch_app.live.look import SMALL, Colour, Palette, digits, step_up
+from nanotouch_app.live.painter import Painter
+from nanotouch_app.live.seen import HISTORY, Seen
+
+Frame = tuple[float, float, float, float]
+HELD = 3.0  # an axis becomes narrower no earlier than after this [s]
+
+
+class Follower:
+    """The end of an axis that follows in steps: at once outwards, late inwards, so that it never wobbles."""
+
+    def __init__(self) -> None:
+        self.end, self.since = 0.0, 0.0
+
+    def of(self, wanted: float, now: float) -> float:
+        """The end that holds a wanted size."""
+        step = step_up(max(wanted, 1e-15))
+        if step >= self.end:
+            self.end, self.since = step, now
+        elif step > 0.45 * self.end:
+            self.since = now
+        elif now - self.since > HELD:
+            self.end, self.since = step, now
+        return self.end
+
+
+class ForceGap:
+    """The law: stable branches solid, unstable ones dashed; the lever's line; the point that is now."""
+
+    def __init__(self) -> None:
+        self.up, self.out = Follower(), Follower()
+
+    def draw(self, painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
+        """Into x, y, width, height."""
+        painter.box(frame, palette.panel, palette.line)
+        if seen.frame is None or not seen.world:
+            return
+        now = float(seen.frame["time"])
+        pull = seen.plan.pull_off_force
+        recent = max((abs(force) for _, _, force in seen.tail), default=0.0)
+        top = self.up.of(max(1.3 * pull, 1.15 * recent, 0.02 * seen.load), now)
+        gap = float(seen.frame["gap"])
+        reach = self.out.of(max(seen.reach, 1.1 * min(gap, 3.9 * seen.reach)), now)
+        deep = np.interp(top, seen.curve.attached[::-1, 1], -seen.curve.attached[::-1, 0]) if len(
+            seen.curve.attached) else 0.0  # fmt: skip
+        inner = -max(0.25 * reach, 1.2 * min(float(deep), 1.5 * seen.depth), -1.1 * gap)
+        low = -top if pull > 0.02 * top else -0.1 * top
+        axes = Axes(frame, (inner, reach), (low, top))
+        axes.draw(painter, palette, ("gap", "force on the tip"), ("m", "N"))
+        self._law(painter, palette, axes, seen)
+        self._lever(painter, palette, axes, seen)
+        self._now(painter, palette, axes, seen)
+        x, y = frame[0] + frame[2] - 14, frame[1] + frame[3] - 16
+        painter.text(x, y, f"pull-off {digits(pull, 'N')}", palette.ink, SMALL, "right")
+
+    @staticmethod
+    def _law(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
+        way_in: Colour = palette.accent
+        painter.line(_mapped(axes, seen.curve.unstable), palette.quiet, 1.5, dashed=True)
+        painter.line(_mapped(axes, seen.curve.attached), palette.ink, 2.0)
+        painter.line(_mapped(axes, seen.curve.apart), way_in, 2.0)
+
+    @staticmethod
+    def _lever(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
+        """F = K (h - h_proxy): the spring that holds the tip, through the point that is now."""
+        spring = float(seen.world["stiffness"])
+        gap, force = float(seen.frame["gap"]), float(seen.frame["tip_force"][2])
+        ends = np.array([axes.x[0], axes.x[1]])
+        line = np.stack([ends, force + spring * (ends - gap)], axis=1)
+        low, high = sorted((gap + (axes.y[0] - force) / spring, gap + (axes.y[1] - force) / spring))
+        ends = np.clip(ends, low, high)
+        line = np.stack([ends, force + spring * (ends - gap)], axis=1)
+        painter.line(axes.at(line[:, 0], line[:, 1]), palette.hold, 1.2)
+        mark = axes.at(line[0, 0], line[0, 1])
+        painter.text(float(mark[0]) + 4, float(mark[1]) + 12, "spring", palette.hold, SMALL)
+
+    @staticmethod
+    def _now(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
+        colour = palette.repulsion if seen.force >= 0.0 else palette.attraction
+        tail = np.array([(gap, force) for _, gap, force in seen.tail])
+        if len(tail) > 1:
+            painter.line(axes.at(tail[:, 0], tail[:, 1]), colour, 1.5)
+        x, y = axes.at(float(seen.frame["gap"]), float(seen.frame["tip_force"][2]))
+        painter.dot(float(x), float(y), 5.0, colour, palette.panel)
+
+
+def _mapped(axes: Axes, rows: np.ndarray) -> np.ndarray:
+    kept = axes.inside(rows)
+    return axes.at(kept[:, 0], kept[:, 1])
+
+
+class History:
+    """The last ten seconds: least and largest force of each slice, so that no spike is lost."""
+
+    def __init__(self) -> None:
+        self.high, self.low = Follower(), Follower()
+
+    def draw(self, painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
+        """Into x, y, width, height."""
+        painter.box(frame, palette.panel, palette.line)
+        if not seen.slices or not seen.world:
+            return
+        scale = float(seen.world["settings"]["gains"]["alpha_f"])
+        rows = np.array(seen.slices)
+        now = float(rows[-1, 0])
+        rows = rows[rows[:, 0] > now - HISTORY]
+        most = max(float(rows[:, 2].max()), 0.05 * seen.load, 0.3 * seen.plan.pull_off_force)
+        high = self.high.of(1.1 * most * scale, now)
+        low = self.low.of(1.1 * max(-float(rows[:, 1].min()), 0.05 * high / scale) * scale, now)
+        axes = Axes(frame, (-HISTORY, 0.0), (-low, high))
+        axes.draw(painter, palette, ("time", "force at the hand"), ("s", "N"))
+        for sign, colour in ((1.0, palette.repulsion), (-1.0, palette.attraction)):
+            least, largest = (np.clip(sign * rows[:, column], 0.0, None) * sign * scale for column in (1, 2))
+            when = rows[:, 0] - now
+            lower, upper = axes.at(when, np.minimum(least, largest)), axes.at(when, np.maximum(least, largest))
+            zero = axes.at(when, np.zeros(len(rows)))[:, 1]
+            painter.area(np.stack([lower[:, 0], zero, 0.5 * (lower[:, 1] + upper[:, 1])], axis=1), colour, 60)
+            painter.area(np.stack([lower[:, 0], lower[:, 1] - 0.8, upper[:, 1] + 0.8], axis=1), colour)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Host and window together: the window in a process of its own, which may come, go or die; the session stays here."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import queue
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from nanotouch.errors import Error, MissingExtra
+from nanotouch.images import Topography
+
+START_TIME = 60.0  # until VTK has drawn its first picture on a loaded machine [s]
+TURN = 0.005  # of the host's loop [s]
+CLOCK = 0.2  # between two reports of the clock [s]
+
+
+class Desk:
+    """A window and the wires to it."""
+
+    def __init__(self, topography: Topography) -> None:
+        if importlib.util.find_spec("vtkmodules") is None:
+            raise MissingExtra("vtk is not installed: pip install 'nanotouch[view]'")
+        self.folder = tempfile.TemporaryDirectory(prefix="nanotouch-live-")
+        surface = Path(self.folder.name) / "surface.npz"
+        np.savez(surface, heights=topography.heights, pixel_size=np.asarray(topography.pixel_size))
+        self.said = Path(self.folder.name) / "said.txt"
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+        with open(self.said, "wb") as errors:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "nanotouch_app.live.window", str(surface)], stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE, stderr=errors, env=environment, text=True, bufsize=1,
+            )  # fmt: skip
+        self.asked: queue.Queue[dict[str, Any]] = queue.Queue()
+        self.listener = threading.Thread(target=self._listen, daemon=True)
+        self.listener.start()
+
+    def _listen(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            try:
+                self.asked.put(json.loads(line))
+            except json.JSONDecodeError:  # a library's own line
+                continue
+        self.asked.put({"do": "leave"})
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """Tell the window something; it may be gone."""
+        assert self.process.stdin is not None
+        try:
+            self.process.stdin.write(json.dumps(message) + "\n")
+            self.process.stdin.flush()
+        except (BrokenPipeError, ValueError):
+            self.asked.put({"do": "leave"})
+
+    def wait_ready(self) -> None:
+        """Until the first picture is drawn; an error with what VTK has said if there is none."""
+        try:
+            first = self.asked.get(timeout=START_TIME)
+        except queue.Empty:
+            self.close()
+            raise Error(f"the window did not open within {START_TIME:g} s") from None
+        if first["do"] != "ready":
+            self.process.wait(5.0)
+            said = self.said.read_text(errors="replace").strip().splitlines() or ["VTK said nothing"]
+            self.close()
+            raise Error(f"the window could not be opened: {said[-1]}")
+
+    def serve(self, host: Any) -> None:
+        """Until the person leaves: what is asked, what happens by itself, the clock."""
+        self.tell(host.world())
+        due = 0.0
+        while True:
+            try:
+                message = self.asked.get(timeout=TURN)
+                while True:
+                    if not host.answer(message):
+                        return
+                    message = self.asked.get_nowait()
+            except queue.Empty:
+                pass
+            host.tick()
+            if time.monotonic() > due:
+                due = time.monotonic() + CLOCK
+                self.tell(host.clock())
+
+    def close(self) -> None:
+        """End the window."""
+        if self.process.poll() is None:
+            if self.process.stdin is not None:
+                self.process.stdin.close()
+            try:
+                self.process.wait(3.0)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        self.listener.join(1.0)
+        for wire in (self.process.stdin, self.process.stdout):
+            if wire is not None:
+                wire.close()
+        self.folder.cleanup()

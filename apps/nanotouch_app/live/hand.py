@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The hand of a person who has no haptic device: it moves a point, the proxy, and physics lets the tip follow through
+a spring, the virtual coupling. What lies between the two is what would be felt.
+
+Such a hand is a master without a motor: no loop closes through it. Its moves are lengths at the tip, scaled up by
+1/alpha_p here. It yields as an arm would: where the force comes near the limit it gives way by itself."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+from nanotouch.operator import Hold
+
+LATERAL_REACH = 1.5  # travel of the master over the size of the surface
+COUPLING = 0.25  # spring between proxy and tip over the lever's
+SETTLING = 2e-3  # of the virtual tool [s], times the lever's spring over its own
+LOAD_SHARE = 0.8  # of the force limit: nearer to it the hand goes no further
+PRESS_SHARE = 0.5  # of the largest load: the steady force of the space bar
+GLIDE = 0.03  # the master goes to a new place within this [s]
+STEPS = 80  # of the wheel from first touch to the largest load
+APPROACH = 12.0  # far from the surface a step of the wheel is at least this part of the gap
+
+
+def rig_of(rig: nt.Rig, settings: nt.Settings, extent: float) -> nt.Rig:
+    """The rig with a hand that has no motor, moves on three axes and reaches over a surface of this extent [m]."""
+    made = rig.copy()
+    made["master.motor"], made["master.gauge"], made["master.axes"] = "no", "no", 3.0
+    made["master.travel"] = min(10.0, max(rig.master.travel, 2.0 * LATERAL_REACH * extent / settings.gains.alpha_p))
+    made["master.resolution"] = 1e-7
+    return made
+
+
+def settings_of(settings: nt.Settings, rig: nt.Rig) -> nt.Settings:
+    """The settings with the spring between proxy and tip."""
+    made = settings.copy()
+    scale = made.gains.alpha_p * made.gains.alpha_f
+    made["gains.force_gain"] = 0.0  # no gauge hears the hand
+    made["gains.coupling_stiffness"] = COUPLING * rig.probe.spring_constant * scale
+    made["gains.coupling_damping"] = made["gains.coupling_stiffness"] * SETTLING / COUPLING
+    return made
+
+
+class Hand:
+    """Where the hand is; ``height`` of the proxy in the tip's frame [m], ``place`` in the master's own lengths."""
+
+    def __init__(self, session: nt.Session) -> None:
+        self.session = session
+        self.reach = 0.5 * session.rig.master.travel
+        self.place = np.array([0.0, 0.0, session.core.master_start])
+        self.height = float(session.core.start_height)
+        self.presses = False
+        load = float(session.scene.range.maximum_load)
+        self.step = (float(session.plan.explain()["largest_indentation"]) + load / self.stiffness) / STEPS
+        self.limit = LOAD_SHARE * float(session.settings.limits.force)
+        self.press_force = PRESS_SHARE * load
+        gaps = -np.linspace(0.0, 1.2, 400) * float(session.plan.explain()["largest_indentation"])
+        sunk = float(np.interp(self.limit, session.plan.force(gaps, "retract"), -gaps))
+        self.reach_down = sunk + self.limit / self.stiffness  # of the proxy below the surface [m]
+
+    @property
+    def stiffness(self) -> float:
+        """Between proxy and tip: coupling and lever, one after the other [N/m]."""
+        gains, lever = self.session.settings.gains, float(self.session.rig.probe.spring_constant)
+        spring = float(gains.coupling_stiffness / (gains.alpha_p * gains.alpha_f))
+        return spring * lever / (spring + lever) if spring > 0.0 else lever
+
+    def follow(self, frame: Any, elapsed: float) -> None:
+        """What an arm does by itself, some hundred times a second: it presses, yields, and stays by a stopped tip."""
+        force, tip = float(frame["tip_force"][2]), float(frame["tip_position"][2])
+        if not (math.isfinite(force) and math.isfinite(tip)):
+            return
+        if frame["state"] != 0:
+            self.height, self.presses = tip - force / self.stiffness, False
+        elif force > 1.1 * self.limit:
+            self._shift((0.0, 0.0, -(force - self.limit) / self.stiffness))
+        elif self.presses:
+            way = 4.0 * elapsed * (self.press_force - force) / self.stiffness
+            if not frame["contact_radius"] > 0.0:
+                way = elapsed * max(STEPS * self.step, 2.0 * float(frame["gap"]))
+            self.move((0.0, 0.0, way), frame)
+
+    def lift(self, frame: Any) -> None:
+        """Draw back by the clearance, and by what adhesion stretches the springs before it lets go."""
+        stretch = self.session.plan.pull_off_force / self.stiffness
+        up = float(frame["tip_position"][2]) + self.session.clearance + 1.2 * stretch - self.height
+        self._shift((0.0, 0.0, -max(up, 0.0)))
+
+    def step_down(self, steps: float, frame: Any) -> None:
+        """Go down by steps of the wheel, longer ones far away from the surface; up if below 0."""
+        far = max(float(frame["gap"]), 0.0) / APPROACH if not frame["contact_radius"] > 0.0 else 0.0
+        self.move((0.0, 0.0, steps * max(self.step, far)), frame)
+
+    def move(self, way: tuple[float, float, float], frame: Any) -> bool:
+        """Move by lengths at the tip [m], the third one + down. False where the force limit has cut the way."""
+        ground = float(frame["tip_position"][2]) - float(frame["gap"])
+        room = self.height - ground + self.reach_down
+        down = min(way[2], max(room, 0.0)) if math.isfinite(room) else min(way[2], 0.0)
+        self._shift((way[0], way[1], down))
+        return down == way[2]
+
+    def _shift(self, way: tuple[float, float, float]) -> None:
+        scale = 1.0 / self.session.settings.gains.alpha_p
+        self.place = np.clip(self.place + scale * np.asarray(way), -self.reach, self.reach)
+        self.height -= way[2]
+        x, y, z = (float(part) for part in self.place)
+        self.session.aim(Hold((x, y, z), math.nan, math.nan, GLIDE))

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The session that a person touches, at wall pace, and what its front ends may ask of it. A front end asks by a
+message, a dict with "do"; what it is told are messages, too. Frames go through shared memory (:mod:`nanotouch.frames`).
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import time
+from collections.abc import Callable
+from typing import Any
+
+import nanotouch as nt
+from nanotouch import record
+from nanotouch.errors import Error
+from nanotouch.session import settings_for_path
+
+from nanotouch_app.live.hand import Hand, rig_of, settings_of
+from nanotouch_app.live.subject import Subject
+
+SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
+REWIND = 5.0  # [s]
+STEP_TICKS = 10  # of a single step of a paused session: 1 ms
+INDENTATION_SHARE = 1.5  # limit of the indentation over that of the largest load
+Message = dict[str, Any]
+_NUMBERS = itertools.count(1)  # of the sessions of this process
+
+
+class Host:
+    """One session, its hand, its history of changes."""
+
+    def __init__(self, subject: Subject, tell: Callable[[Message], None], out: str | None = None) -> None:
+        self.subject = subject
+        self.tell = tell
+        self.scene, self.rig = subject.scene.copy(), subject.rig.copy()
+        self.overrides: dict[str, float] = {}
+        self.done: list[tuple[str, str, Any, Any]] = []
+        self.undone: list[tuple[str, str, Any, Any]] = []
+        self.speed, self.paused = 1.0, False
+        self.out = out
+        self.writer: Any = None
+        self.seen = time.monotonic()
+        self._open()
+
+    def _open(self) -> None:
+        extent = max(self.subject.topography.size)
+        surface = nt.Surface.touched_by(self.scene, self.subject.topography)
+        load = float(self.scene.range.maximum_load)
+        usual = settings_for_path(self.rig, self.subject.topography.height_range, load=load)
+        settings = settings_of(usual, self.rig)
+        deepest = float(self.scene.plan().explain()["largest_indentation"])
+        settings["limits.indentation"] = max(settings.limits.indentation, INDENTATION_SHARE * deepest)
+        for field, value in self.overrides.items():
+            settings[field] = value
+        width, height = surface.size
+        middle = (0.5 * width, 0.5 * height)
+        self.session = nt.Session(
+            self.scene, rig_of(self.rig, settings, extent), surface=surface, settings=settings, mode="scan",
+            path=[middle, (0.6 * width, 0.5 * height)], clearance=self.subject.clearance(),
+            recorded=self.out is not None,
+        )  # fmt: skip
+        self.name = f"live-{os.getpid()}-{next(_NUMBERS)}"
+        self.session.publish(self.name)
+        self.observer = nt.frames.attach(self.name)
+        self.hand = Hand(self.session)
+        if self.out is not None and self.writer is None:
+            self.writer = record.Writer(self.out, self.session.metadata())
+        self.session.start("wall")
+        self.session.set_speed(self.speed)
+        self.session.pause(self.paused)
+
+    def close(self) -> None:
+        """End the session; what was recorded is written."""
+        self.observer.close()
+        self.session.halt()
+        self._drain()
+        if self.writer is not None:
+            self.writer.update(self.session.metadata())
+            self.writer.close()
+
+    def _drain(self) -> None:
+        while self.writer is not None:
+            block = self.session.read(5000)
+            if not len(block["time"]):
+                return
+            self.writer.append(block)
+
+    # --- what happens by itself ---
+
+    def tick(self) -> None:
+        """Some hundred times a second: what hand and recording do."""
+        now = time.monotonic()
+        frame = self.observer.newest()
+        if frame is not None and not self.paused:
+            self.hand.follow(frame, min(now - self.seen, 0.1) * self.speed)
+        self.seen = now
+        self._drain()
+
+    def world(self) -> Message:
+        """All that changes only when something is changed."""
+        session, plan = self.session, self.session.plan
+        return {
+            "tell": "world", "title": self.subject.title, "felt": self.subject.felt, "hint": self.subject.hint,
+            "scene": session.scene.to_dict(), "rig": session.rig.to_dict(), "settings": session.settings.to_dict(),
+            "stiffness": self.hand.stiffness, "bound": plan.bound, "law": plan.contact_law,
+            "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
+            "force": session.guarantee().force, "undo": len(self.done), "redo": len(self.undone),
+            "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
+        }  # fmt: skip
+
+    def clock(self) -> Message:
+        """How the session goes."""
+        progress = self.session.progress
+        return {
+            "tell": "clock", "speed": self.speed, "paused": self.paused, "slowdown": progress.slowdown,
+            "recorded": self.writer is not None, "height": self.hand.height,
+        }  # fmt: skip
+
+    # --- what is asked ---
+
+    def answer(self, message: Message) -> bool:
+        """Do what a message asks; what is refused is told. False: the person has left."""
+        what = message["do"]
+        if what == "leave":
+            return False
+        try:
+            getattr(self, f"_do_{what}")(message)
+        except Error as error:
+            self.tell({"tell": "refused", "why": str(error), "field": message.get("field")})
+        return True
+
+    def _do_move(self, message: Message) -> None:
+        frame = self.observer.newest()
+        if frame is None:
+            return
+        if not self.hand.move(message["way"], frame):
+            self.tell({"tell": "note", "text": "The hand stops here: the force limit is near."})
+
+    def _do_wheel(self, message: Message) -> None:
+        frame = self.observer.newest()
+        if frame is not None:
+            self.hand.step_down(message["steps"], frame)
+
+    def _do_press(self, message: Message) -> None:
+        self.hand.presses = bool(message["on"])
+        frame = self.observer.newest()
+        if frame is not None and not self.hand.presses:  # release lifts
+            self.hand.lift(frame)
+
+    def _do_retract(self, message: Message) -> None:
+        self._do_press({"on": False})
+
+    def _do_arm(self, message: Message) -> None:
+        self.session.arm(confirmed=True)
+        self._rest()
+
+    def _rest(self) -> None:
+        """The hand begins anew from where the tip is."""
+        frame = self.observer.newest()
+        if frame is not None:
+            self.hand.height = float(frame["tip_position"][2])
+
+    def _do_stop(self, message: Message) -> None:
+        self.session.emergency_stop(True)
+        self.session.emergency_stop(False)
+
+    def _do_pause(self, message: Message) -> None:
+        self.paused = not self.paused
+        self.session.pause(self.paused)
+
+    def _do_step(self, message: Message) -> None:
+        if not self.paused:
+            self._do_pause(message)
+        self.session.step_on(STEP_TICKS)
+
+    def _do_slower(self, message: Message) -> None:
+        self._set_speed(-1)
+
+    def _do_faster(self, message: Message) -> None:
+        self._set_speed(1)
+
+    def _set_speed(self, way: int) -> None:
+        place = SPEEDS.index(self.speed) + way
+        self.speed = SPEEDS[min(max(place, 0), len(SPEEDS) - 1)]
+        self.session.set_speed(self.speed)
+
+    def _do_rewind(self, message: Message) -> None:
+        self.session.rewind(REWIND)
+        time.sleep(0.02)
+        frame = self.observer.newest()
+        if frame is not None:
+            held = frame["master_position"]
+            self.hand.place[:] = held
+            self.hand.height = float(frame["tip_position"][2]) - float(frame["tip_force"][2]) / self.hand.stiffness
+            self.hand.move((0.0, 0.0, 0.0), frame)
+
+    # --- changes, and their history ---
+
+    def _do_change(self, message: Message) -> None:
+        what, field, value = message["what"], message["field"], message["value"]
+        old = getattr(self.session, what)[field]
+        if value != old:
+            self._change(what, field, value)
+            self.done.append((what, field, old, value))
+            self.undone.clear()
+        self.tell(self.world())
+
+    def _do_undo(self, message: Message) -> None:
+        if self.done:
+            what, field, old, new = self.done.pop()
+            self._change(what, field, old)
+            self.undone.append((what, field, old, new))
+        self.tell(self.world())
+
+    def _do_redo(self, message: Message) -> None:
+        if self.undone:
+            what, field, old, new = self.undone.pop()
+            self._change(what, field, new)
+            self.done.append((what, field, old, new))
+        self.tell(self.world())
+
+    def _change(self, what: str, field: str, value: float) -> None:
+        if field in ("gains.alpha_p", "gains.alpha_f"):
+            self.session.rescale(**{field.removeprefix("gains."): value})
+        elif what == "rig" or field in ("tip.radius", "tip.half_angle"):
+            self._reopen(what, field, value)
+        else:
+            self.session.change("scene" if what == "scene" else "settings", field, value)
+            if what == "scene":
+                self.scene[field] = value
+            else:
+                self.overrides[field] = value
+
+    def _reopen(self, what: str, field: str, value: float) -> None:
+        """Lever and tip are the instrument itself: another one is mounted, and the touch begins above the surface."""
+        described = self.scene if what == "scene" else self.rig
+        old = described[field]
+        described[field] = value
+        before = self.session
+        try:
+            self._open()
+        except Error:
+            described[field] = old
+            raise
+        before.halt()

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surface, tip, lever, shadow and trace in three dimensions. The surface is sent once: that the tip moves changes no
+byte of it. One scene unit is the longer side of the surface."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nanotouch_app.live.arrays import points, quads, to_vtk
+from nanotouch_app.live.look import LIGHT, Palette, unit
+from nanotouch_app.live.seen import TRACE, Seen
+
+Floats = NDArray[np.float64]
+
+MOST_PIXELS = 256  # to a side of the mesh: at most 2^17 triangles
+RELIEF = 0.12  # height of the drawn relief where it has to be exaggerated [scene units]
+TIP_HEIGHT = 0.34  # of the drawn tip [scene units]
+LEVER = (0.55, 0.13)  # length and width of the drawn lever [scene units]
+LEVER_POINTS = 24
+BEND = 0.05  # of the lever under the largest load [scene units]
+SHADOW = 0.05  # radius of the soft shadow [scene units]
+VIEWS = {"0": (0.0, 32.0, 1.62), "1": (0.0, 32.0, 1.62), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.6),
+         "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
+
+
+def coarse(heights: Floats, most: int = MOST_PIXELS) -> tuple[Floats, int]:
+    """Mean heights over squares of so many pixels that at most ``most`` are left to a side; and how many."""
+    size = -(-max(heights.shape) // most)
+    rows, columns = (length // size * size for length in heights.shape)
+    means = heights[:rows, :columns].reshape(rows // size, size, columns // size, size).mean(axis=(1, 3))
+    return means, size
+
+
+def exaggeration(heights: Floats, width: float) -> float:
+    """By what heights are multiplied: 1, 1.5, 2, 3, 5 or 7 times a power of ten, 1 for a steep relief."""
+    relief = float(np.ptp(heights)) / width
+    if not 0.0 < relief < RELIEF:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(RELIEF / relief))
+    return max(step * power for step in (1, 1.5, 2, 3, 5, 7) if step * power <= RELIEF / relief * (1 + 1e-12))
+
+
+class Stage:
+    """The actors of one renderer."""
+
+    def __init__(self, vtk: Any, renderer: Any, heights: Floats, pixel_size: Floats) -> None:
+        self.vtk, self.renderer = vtk, renderer
+        self.heights, merged = coarse(heights)
+        dy, dx = pixel_size * merged
+        self.unit = float(max(heights.shape * np.asarray(pixel_size)))
+        self.dx, self.dy = dx / self.unit, dy / self.unit
+        self.factor = exaggeration(self.heights, self.unit)
+        self.scale = np.array([1.0, 1.0, self.factor]) / self.unit
+        self.lowest = float(self.heights.min())
+        self.centre = np.array([0.5 * self.dx * self.heights.shape[1], 0.5 * self.dy * self.heights.shape[0], 0.0])
+        self.surface, self.colours = self._surface()
+        self.rebuilt = 0  # bytes of the surface that were made anew after the first time
+        self.tip: Any = None
+        self.lever: Any = None
+        self.ribbon: Any = None
+        self.palette = LIGHT
+        self.shape: tuple[Any, ...] = ()
+        self.shadows = [self._shadow(share) for share in (1.0, 0.7, 0.4)]
+        self.trace, self.trace_data = self._line()
+        self.camera("0")
+
+    # --- made once ---
+
+    def _surface(self) -> tuple[Any, Any]:
+        rows, columns = self.heights.shape
+        x, y = np.meshgrid((np.arange(columns) + 0.5) * self.dx, (np.arange(rows) + 0.5) * self.dy)
+        z = (self.heights - self.lowest) * self.scale[2]
+        mesh = self.vtk.vtkPolyData()
+        mesh.SetPoints(points(self.vtk, np.stack([x, y, z], axis=-1)))
+        mesh.SetPolys(quads(self.vtk, rows, columns))
+        mesh.GetPointData().SetScalars(to_vtk(self.heights.ravel()))
+        slope_y, slope_x = np.gradient(z, self.dy, self.dx)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1).reshape(-1, 3)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        mesh.GetPointData().SetNormals(to_vtk(normals.astype(np.float32)))
+        self.mesh = mesh
+        colours = self.vtk.vtkColorTransferFunction()
+        actor = self._actor(mesh)
+        actor.GetMapper().SetLookupTable(colours)
+        actor.GetMapper().InterpolateScalarsBeforeMappingOn()
+        actor.GetProperty().SetAmbient(0.28)
+        actor.GetProperty().SetDiffuse(0.8)
+        actor.GetProperty().SetSpecular(0.12)
+        return actor, colours
+
+    def _actor(self, data: Any) -> Any:
+        mapper = self.vtk.vtkPolyDataMapper()
+        mapper.SetInputData(data)
+        actor = self.vtk.vtkActor()
+        actor.SetMapper(mapper)
+        self.renderer.AddActor(actor)
+        return actor
+
+    def _shadow(self, share: float) -> Any:
+        disc = self.vtk.vtkDiskSource()
+        disc.SetInnerRadius(0.0)
+        disc.SetOuterRadius(SHADOW * share)
+        disc.SetCircumferentialResolution(32)
+        disc.Update()
+        actor = self._actor(disc.GetOutput())
+        actor.GetProperty().SetColor(0.0, 0.0, 0.0)
+        actor.GetProperty().SetOpacity(0.16)
+        actor.GetProperty().LightingOff()
+        return actor
+
+    def _line(self) -> tuple[Any, Any]:
+        data = self.vtk.vtkPolyData()
+        actor = self._actor(data)
+        actor.GetProperty().SetLineWidth(4.0)
+        actor.GetProperty().LightingOff()
+        return actor, data
+
+    def paint(self, palette: Palette) -> None:
+        """Light or dark."""
+        self.palette = palette
+        self.colours.RemoveAllPoints()
+        top = max(float(self.heights.max()), self.lowest + 1e-12)
+        for height, colour in zip(np.linspace(self.lowest, top, len(palette.heights)), palette.heights, strict=True):
+            self.colours.AddRGBPoint(float(height), *unit(colour))
+        self.surface.GetMapper().SetScalarRange(self.lowest, top)
+        self.renderer.SetBackground(*unit(palette.panel))
+        for actor in (self.tip, self.lever):
+            if actor is not None:
+                actor.GetProperty().SetColor(*unit(palette.tip))
+
+    # --- the instrument: made anew when another tip is mounted ---
+
+    def mount(self, radius: float, half_angle: float, kind: str) -> None:
+        """A tip of this radius [m] and half angle [rad] in its own proportions."""
+        if self.shape == (radius, half_angle, kind):
+            return
+        self.shape = (radius, half_angle, kind)
+        for actor in (self.tip, self.lever):
+            if actor is not None:
+                self.renderer.RemoveActor(actor)
+        self.tip = self._actor(self._turned(radius / self.unit, half_angle, kind))
+        self.tip.GetProperty().SetSpecular(0.35)
+        self.tip.GetProperty().SetSpecularPower(25.0)
+        self.tip.GetProperty().SetOpacity(0.88)
+        self.ribbon = self.vtk.vtkPolyData()
+        self.lever = self._actor(self.ribbon)
+        self.lever.GetProperty().SetSpecular(0.2)
+        self.ribbon.SetPolys(quads(self.vtk, 2, LEVER_POINTS))
+        self.paint(self.palette)
+
+    def _turned(self, radius: float, half_angle: float, kind: str) -> Any:
+        """Sphere that goes over into a cone, or a ball on a stem."""
+        last = math.pi / 2 - half_angle if kind != "sphere" and radius < 0.05 else 0.9 * math.pi
+        angle = np.linspace(0.0, last, 28)
+        r, h = radius * np.sin(angle), radius * (1.0 - np.cos(angle))
+        widening = math.tan(half_angle) if last < math.pi / 2 else 0.0
+        if h[-1] < TIP_HEIGHT:
+            r, h = np.append(r, r[-1] + (TIP_HEIGHT - h[-1]) * widening), np.append(h, TIP_HEIGHT)
+        turn = np.linspace(0.0, 2.0 * math.pi, 41)
+        rings = np.stack([np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn)), np.outer(h, np.ones_like(turn))], -1)
+        data = self.vtk.vtkPolyData()
+        data.SetPoints(points(self.vtk, rings))
+        data.SetPolys(quads(self.vtk, *rings.shape[:2]))
+        normals = self.vtk.vtkPolyDataNormals()
+        normals.SetInputData(data)
+        normals.Update()
+        return normals.GetOutput()
+
+    # --- what moves ---
+
+    def apex(self, seen: Seen) -> Floats:
+        """Where the tip is drawn: over the drawn surface, at the gap that is true."""
+        x, y, z = (float(part) for part in seen.frame["tip_position"])
+        gap = float(seen.frame["gap"])
+        ground = self._ground(x, y) if math.isfinite(gap) else z
+        height = (ground + gap if math.isfinite(gap) else z) - self.lowest
+        return np.array([x, y, height]) * self.scale
+
+    def _ground(self, x: float, y: float) -> float:
+        rows, columns = self.heights.shape
+        column = min(max(x / self.unit / self.dx - 0.5, 0.0), columns - 1.001)
+        row = min(max(y / self.unit / self.dy - 0.5, 0.0), rows - 1.001)
+        i, j = int(column), int(row)
+        u, v = column - i, row - j
+        patch = self.heights[j : j + 2, i : i + 2]
+        return float(
+            (1 - v) * ((1 - u) * patch[0, 0] + u * patch[0, 1]) + v * ((1 - u) * patch[1, 0] + u * patch[1, 1])
+        )
+
+    def update(self, seen: Seen) -> None:
+        """Move tip, lever, shadow and trace; never the surface."""
+        apex = self.apex(seen)
+        self.tip.SetPosition(*apex)
+        self._bend(apex, seen)
+        ground = (self._ground(*(float(part) for part in seen.frame["tip_position"][:2])) - self.lowest) * self.scale[2]
+        above = float(apex[2] - ground)
+        for actor in self.shadows:
+            actor.SetPosition(apex[0] + 0.6 * above, apex[1] - 0.3 * above, ground + 0.004)
+            actor.SetScale(1.0 + 3.0 * max(above, 0.0))
+        self._draw_trace(seen)
+
+    def _bend(self, apex: Floats, seen: Seen) -> None:
+        """A beam that is clamped behind: w = zeta (3 s^2 - s^3)/2."""
+        length, width = LEVER
+        bend = BEND * max(-1.5, min(1.5, seen.force / seen.load)) if seen.load > 0.0 else 0.0
+        s = np.linspace(0.0, 1.0, LEVER_POINTS)
+        z = apex[2] + TIP_HEIGHT - bend * (1.0 - 0.5 * (3.0 * s**2 - s**3)) + 0.02 * (1 - s)
+        y = apex[1] + 0.04 + length * (1.0 - s)
+        rows = [np.stack([np.full_like(s, apex[0] + side * width / 2), y, z], axis=1) for side in (-1.0, 1.0)]
+        self.ribbon.SetPoints(points(self.vtk, np.concatenate(rows)))
+        self.ribbon.Modified()
+
+    def _draw_trace(self, seen: Seen) -> None:
+        rows = np.array(seen.trace)
+        if len(rows) < 2:
+            self.trace_data.Initialize()
+            return
+        now = rows[-1, 0]
+        ground = np.array([self._ground(x, y) for x, y in rows[:, 1:3]])
+        places = np.stack([rows[:, 1], rows[:, 2], ground - self.lowest], axis=1) * self.scale + [0.0, 0.0, 0.004]
+        cells = self.vtk.vtkCellArray()
+        cells.InsertNextCell(len(rows), list(range(len(rows))))
+        share = np.clip(rows[:, 4] / max(seen.load, 1e-15) * 3.0, -1.0, 1.0)
+        pull = np.clip(rows[:, 4] / max(seen.plan.pull_off_force, 1e-15), -1.0, 0.0)
+        ends = np.where((share > 0.0)[:, None], self.palette.repulsion, self.palette.attraction)
+        strength = np.maximum(np.abs(share), np.abs(pull))[:, None]
+        colour = strength * ends + (1.0 - strength) * np.array(self.palette.paper)
+        fade = 255.0 * np.clip(1.0 - (now - rows[:, 0]) / TRACE, 0.0, 1.0) * (strength[:, 0] > 0.01)
+        rgba = np.concatenate([colour, fade[:, None]], axis=1).astype(np.uint8)
+        self.trace_data.SetPoints(points(self.vtk, places))
+        self.trace_data.SetLines(cells)
+        self.trace_data.GetPointData().SetScalars(to_vtk(rgba))
+        self.trace_data.Modified()
+
+    # --- the camera ---
+
+    def camera(self, view: str, at: Floats | None = None) -> None:
+        """One of the views 0 .. 5; 4 looks at the tip."""
+        turn, height, distance = VIEWS[view]
+        middle = at if at is not None and view == "4" else self.centre
+        focus = middle + np.array([0.0, 0.0, 0.055])
+        turn, height = math.radians(turn), math.radians(height)
+        away = distance * np.array([math.sin(turn) * math.cos(height), -math.cos(turn) * math.cos(height),
+                                    math.sin(height)])  # fmt: skip
+        camera = self.renderer.GetActiveCamera()
+        camera.SetViewAngle(36.0)
+        camera.SetFocalPoint(*focus)
+        camera.SetPosition(*(focus + away))
+        camera.SetViewUp(0.0, 1.0 if view == "2" else 0.0, 0.0 if view == "2" else 1.0)
+        self.renderer.ResetCameraClippingRange()
+
+    def pixel(self, place: Floats) -> Floats:
+        """Where a place in scene units is on the window [pixels]."""
+        self.renderer.SetWorldPoint(*place, 1.0)
+        self.renderer.WorldToDisplay()
+        return np.array(self.renderer.GetDisplayPoint()[:2])
+
+    def dragged(self, place: Floats, pixels: Floats) -> tuple[float, float]:
+        """The way in x and y [m] that a drag by so many pixels means at this place."""
+        step = 1e-3
+        here = self.pixel(place)
+        ways = np.stack([(self.pixel(place + step * axis) - here) / step for axis in np.eye(3)[:2]], axis=1)
+        moved = np.linalg.lstsq(ways, pixels, rcond=1e-3)[0] * self.unit
+        return float(moved[0]), float(moved[1])

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The process that owns the window: ``python -m nanotouch_app.live.window SURFACE``. It is told of the session by lines
+of JSON on its input, and asks by lines on its output; frames come through shared memory."""
+
+from __future__ import annotations
+
+import json
+import queue
+import sys
+import threading
+import time
+from datetime import datetime
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+from nanotouch.errors import DeviceError, require
+
+from nanotouch_app.live.look import HEIGHT, WIDTH
+from nanotouch_app.live.picture import Picture, save
+
+FASTEST = 1.0 / 60.0  # between two pictures [s]
+SHARE = 0.5  # of one processor at most that drawing takes
+FINE, TURN = 0.1, 0.4  # with shift; degrees per pixel
+PLAIN_KEYS = {
+    "r": "retract", "p": "pause", "pause": "pause", "period": "step", "bracketleft": "slower",
+    "bracketright": "faster", "backspace": "rewind", "return": "arm", "kp_enter": "arm", "escape": "stop",
+}  # fmt: skip
+ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
+ARROW_PIXELS = 4.0
+
+
+class Window:
+    """VTK's window with mouse and keys."""
+
+    def __init__(self, surface: str) -> None:
+        self.vtk = require("vtk", "view")
+        with np.load(surface) as stored:
+            heights, pixel_size = stored["heights"], stored["pixel_size"]
+        self.window = self.vtk.vtkRenderWindow()
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(WIDTH, HEIGHT)
+        self.window.SetWindowName("nanotouch live")
+        self.picture = Picture(self.vtk, self.window, heights, pixel_size)
+        self.interactor = self.vtk.vtkRenderWindowInteractor()
+        self.interactor.SetRenderWindow(self.window)
+        self.interactor.SetInteractorStyle(self.vtk.vtkInteractorStyleUser())
+        for event, answer in (
+            ("LeftButtonPressEvent", self.left), ("LeftButtonReleaseEvent", self.let_go),
+            ("RightButtonPressEvent", self.right), ("RightButtonReleaseEvent", self.let_go),
+            ("MiddleButtonPressEvent", self.middle), ("MiddleButtonReleaseEvent", self.let_go),
+            ("MouseMoveEvent", self.move), ("MouseWheelForwardEvent", lambda *_: self.wheel(-1.0)),
+            ("MouseWheelBackwardEvent", lambda *_: self.wheel(1.0)), ("KeyPressEvent", self.key),
+            ("KeyReleaseEvent", self.key_up), ("ExitEvent", lambda *_: self.leave()),
+        ):  # fmt: skip
+            self.interactor.AddObserver(event, answer)
+        self.told: queue.Queue[dict[str, Any]] = queue.Queue()
+        self.observer: nt.frames.Observer | None = None
+        self.name = ""
+        self.dragging, self.at = "", np.zeros(2)
+        self.open = True
+
+    # --- the loop ---
+
+    def run(self) -> None:
+        """Until the person leaves or the host has gone."""
+        threading.Thread(target=self._listen, daemon=True).start()
+        self.interactor.Initialize()
+        self.picture.render()
+        self.ask("ready")
+        due = 0.0
+        while self.open:
+            self.interactor.ProcessEvents()
+            self._take()
+            begun = time.monotonic()
+            if begun < due:
+                time.sleep(min(due - begun, 0.004))
+                continue
+            if self.observer is not None:
+                self.picture.seen.look(self.observer)
+            self.picture.render()
+            took = time.monotonic() - begun
+            due = begun + max(FASTEST, took / SHARE)
+        self.ask("leave")
+
+    def _listen(self) -> None:
+        for line in sys.stdin:
+            self.told.put(json.loads(line))
+        self.told.put({"tell": "gone"})
+
+    def _take(self) -> None:
+        while not self.told.empty():
+            message = self.told.get()
+            if message["tell"] == "gone":
+                self.open = False
+                return
+            if message["tell"] == "picture":
+                self.picture.render()
+                save(self.vtk, self.window, message["path"])
+                self.ask("saved", path=message["path"])
+                continue
+            if message["tell"] == "world" and message.get("name", "") != self.name:
+                self._attach(message["name"])
+            self.picture.hear(message)
+
+    def _attach(self, name: str) -> None:
+        try:
+            self.observer, self.name = nt.frames.attach(name), name
+        except DeviceError as error:
+            self.picture.hear({"tell": "refused", "why": str(error)})
+
+    def ask(self, what: str | dict[str, Any], **more: Any) -> None:
+        """Ask the host for something."""
+        message = {"do": what, **more} if isinstance(what, str) else what
+        try:
+            print(json.dumps(message), flush=True)
+        except BrokenPipeError:
+            self.open = False
+
+    def leave(self) -> None:
+        """The window is closed."""
+        self.open = False
+
+    # --- the mouse ---
+
+    def _pointer(self) -> Any:
+        return np.array(self.interactor.GetEventPosition(), dtype=float)
+
+    def _in_view(self, at: Any) -> bool:
+        x, y, width, height = self.picture.layout.view
+        return bool(x <= at[0] <= x + width and y <= at[1] <= y + height)
+
+    def left(self, *_: Any) -> None:
+        """Take the tip, or a slider."""
+        self.at = self._pointer()
+        slider = self.picture.sliders.at(*self.at)
+        if slider is not None:
+            self.dragging = "slider"
+            self.picture.sliders.held = slider
+            self.picture.sliders.drag(self.at[0])
+        elif self._in_view(self.at):
+            self.dragging = "tip"
+
+    def right(self, *_: Any) -> None:
+        """Take the height."""
+        self.at, self.dragging = self._pointer(), "height"
+
+    def middle(self, *_: Any) -> None:
+        """Take the camera."""
+        self.at, self.dragging = self._pointer(), "camera"
+
+    def let_go(self, *_: Any) -> None:
+        """A slider that is let go asks for its value."""
+        if self.dragging == "slider":
+            request = self.picture.sliders.drop()
+            if request is not None:
+                self.picture.seen.waiting.add(request["field"])
+                self.ask(request)
+        self.dragging = ""
+
+    def move(self, *_: Any) -> None:
+        """What is held follows the pointer."""
+        at = self._pointer()
+        way, self.at = at - self.at, at
+        self.picture.sliders.hovered = self.picture.sliders.at(*at)
+        fine = FINE if self.interactor.GetShiftKey() else 1.0
+        if self.dragging == "slider":
+            self.picture.sliders.drag(at[0])
+        elif self.dragging == "tip":
+            self._drag(fine * way)
+        elif self.dragging == "height":
+            self.ask("wheel", steps=-fine * way[1] / 4.0)
+        elif self.dragging == "camera":
+            camera = self.picture.scene.GetActiveCamera()
+            camera.Azimuth(-TURN * way[0])
+            camera.Elevation(-TURN * way[1])
+            camera.OrthogonalizeViewUp()
+
+    def _drag(self, pixels: Any) -> None:
+        seen = self.picture.seen
+        if seen.frame is not None and seen.world:
+            x, y = self.picture.stage.dragged(self.picture.stage.apex(seen), pixels)
+            self.ask("move", way=(x, y, 0.0))
+
+    def wheel(self, steps: float) -> None:
+        """Down and up."""
+        self.ask("wheel", steps=steps * (FINE if self.interactor.GetShiftKey() else 1.0))
+
+    # --- the keyboard ---
+
+    def key(self, *_: Any) -> None:
+        """The table of the help."""
+        name = str(self.interactor.GetKeySym()).lower()
+        if name in PLAIN_KEYS:
+            self.ask(PLAIN_KEYS[name])
+        elif name in ARROWS:
+            fine = FINE if self.interactor.GetShiftKey() else 1.0
+            self._drag(ARROW_PIXELS * fine * np.array(ARROWS[name]))
+        elif name in ("next", "prior"):
+            self.wheel(1.0 if name == "next" else -1.0)
+        elif name == "space":
+            self.ask("press", on=True)
+        elif name == "z":
+            self.ask("redo" if self.interactor.GetShiftKey() else "undo")
+        elif name in "012345" and len(name) == 1:
+            seen = self.picture.seen
+            self.picture.stage.camera(name, self.picture.stage.apex(seen) if seen.world else None)
+        else:
+            self._own_key(name)
+
+    def _own_key(self, name: str) -> None:
+        """What the session does not need to know."""
+        if name == "l":
+            self.picture.turn_light()
+        elif name == "h":
+            self.picture.help = not self.picture.help
+        elif name == "s":
+            path = f"nanotouch-{datetime.now():%Y-%m-%dT%H-%M-%S}.png"
+            save(self.vtk, self.window, path)
+            self.picture.hear({"tell": "note", "text": f"saved {path}"})
+        elif name == "q":
+            self.leave()
+
+    def key_up(self, *_: Any) -> None:
+        """The space bar is let go: the hand lifts."""
+        if str(self.interactor.GetKeySym()).lower() == "space":
+            self.ask("press", on=False)
+
+
+def main(arguments: list[str]) -> int:
+    """Run the window over a surface."""
+    Window(arguments[0]).run()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

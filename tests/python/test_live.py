@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Live without a window: the host and its hand at wall pace, changes and their history, the display that is none."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch_app.live import display, stage
+from nanotouch_app.live.host import Host
+from nanotouch_app.live.look import digits, step_up
+from nanotouch_app.live.seen import Seen
+from nanotouch_app.live.sliders import offered
+from nanotouch_app.live.subject import PRESETS, of_preset
+
+PATIENCE = 30.0  # of a loaded machine [s]
+
+
+@pytest.fixture
+def host() -> Iterator[Host]:
+    told: list[dict[str, Any]] = []
+    made = Host(of_preset("silicon_in_air"), told.append)
+    made.told = told  # type: ignore[attr-defined]
+    yield made
+    made.close()
+
+
+def wait(host: Host, until: Callable[[Any], bool], act: Callable[[], None] = lambda: None) -> Any:
+    """The first frame of which this holds."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        host.tick()
+        frame = host.observer.newest()
+        if frame is not None and until(frame):
+            return frame
+        act()
+        time.sleep(0.005)
+    raise AssertionError(f"it never came: {host.observer.newest()}")
+
+
+def scroll(host: Host) -> Callable[[], None]:
+    return lambda: host._do_wheel({"steps": 1.0})
+
+
+@pytest.mark.parametrize("name", sorted(PRESETS))
+def test_every_preset_is_touched_and_let_go(name: str) -> None:
+    host = Host(of_preset(name), lambda message: None)
+    try:
+        host.answer({"do": "press", "on": True})
+        pressed = wait(host, lambda frame: frame["tip_force"][2] > 0.4 * host.session.scene.range.maximum_load)
+        assert pressed["state"] == 0
+        host.answer({"do": "press", "on": False})
+        free = wait(host, lambda frame: frame["gap"] > 0.3 * host.session.clearance)
+        assert free["state"] == 0
+    finally:
+        host.close()
+
+
+def test_the_spring_holds_the_tip(host: Host) -> None:
+    wait(host, lambda frame: frame["tip_force"][2] > 2e-8, scroll(host))
+    settled = time.monotonic() + 0.5
+    frame = wait(host, lambda frame: time.monotonic() > settled)
+    lead = float(frame["tip_position"][2]) - host.hand.height
+    assert float(frame["tip_force"][2]) == pytest.approx(lead * host.hand.stiffness, rel=0.15, abs=3e-9)
+
+
+def test_the_hand_stops_before_the_force_limit(host: Host) -> None:
+    wait(host, lambda frame: True)
+    for _ in range(400):
+        host.answer({"do": "wheel", "steps": 1.0})
+    end = time.monotonic() + 1.0
+    frame = wait(host, lambda frame: time.monotonic() > end)
+    assert frame["state"] == 0
+    assert 0.5 * host.hand.limit < frame["tip_force"][2] < 1.1 * host.hand.limit
+
+
+def test_a_pause_holds_and_a_step_steps(host: Host) -> None:
+    wait(host, lambda frame: frame["sequence"] > 100)
+    host.answer({"do": "pause"})
+    time.sleep(0.05)
+    held = host.observer.newest()["sequence"]
+    time.sleep(0.1)
+    assert host.observer.newest()["sequence"] == held
+    host.answer({"do": "step"})
+    wait(host, lambda frame: frame["sequence"] == held + 10)
+
+
+def test_dry_air_pulls_off_as_the_law_says_and_undo_takes_it_back(host: Host) -> None:
+    wet = host.session.plan.pull_off_force
+    host.answer({"do": "change", "what": "scene", "field": "medium.relative_humidity", "value": 0.0})
+    scene, _ = nt.presets.silicon_in_air()
+    scene["medium.relative_humidity"] = 0.0
+    assert host.session.plan.pull_off_force == pytest.approx(scene.plan().pull_off_force, rel=1e-9)
+    wait(host, lambda frame: frame["contact_radius"] > 0.0, scroll(host))
+    lowest = [0.0]
+
+    def note() -> None:
+        frames = reader.read()
+        lowest[0] = np.minimum(lowest[0], frames["tip_force"][:, 2].min(initial=0.0))
+        host._do_wheel({"steps": -0.3})
+
+    with nt.frames.attach(host.name) as reader:
+        wait(host, lambda frame: frame["gap"] > 5e-9, note)
+        note()
+    assert -lowest[0] == pytest.approx(host.session.plan.pull_off_force, rel=0.1)
+    host.answer({"do": "undo"})
+    assert host.session.plan.pull_off_force == pytest.approx(wet)
+    host.answer({"do": "redo"})
+    assert host.session.scene["medium.relative_humidity"] == 0.0
+
+
+def test_another_lever_is_mounted_and_a_bad_one_refused(host: Host) -> None:
+    host.answer({"do": "change", "what": "rig", "field": "probe.spring_constant", "value": 2.0})
+    assert host.session.rig["probe.spring_constant"] == 2.0
+    host.answer({"do": "change", "what": "scene", "field": "tip.radius", "value": 1e-12})
+    assert host.told[-1]["tell"] == "refused"  # type: ignore[attr-defined]
+    assert "tip.radius" in host.told[-1]["why"]  # type: ignore[attr-defined]
+    assert host.session.scene["tip.radius"] == 20e-9
+    host.answer({"do": "undo"})
+    assert host.session.rig["probe.spring_constant"] == 8.0
+    wait(host, lambda frame: frame["sequence"] > 100)
+
+
+def test_rewind_goes_back(host: Host) -> None:
+    before = wait(host, lambda frame: frame["time"] > 6.0)
+    host.answer({"do": "rewind"})
+    assert wait(host, lambda frame: True)["time"] < before["time"] - 4.0
+    wait(host, lambda frame: frame["tip_force"][2] > 1e-8, scroll(host))
+
+
+def test_old_frames_are_not_felt(host: Host) -> None:
+    seen = Seen()
+    seen.hear(host.world())
+    wait(host, lambda frame: frame["tip_force"][2] > 2e-8, scroll(host))
+    time.sleep(0.05)
+    with nt.frames.attach(host.name) as observer:
+        wait(host, lambda frame: len(seen.tail) > 0, lambda: seen.look(observer))
+        assert seen.force != 0.0
+        host.session.halt()
+        seen.look(observer)
+        time.sleep(0.15)
+        seen.look(observer)
+    assert seen.stale
+    assert seen.force == 0.0
+
+
+def test_sliders_are_those_that_mean_something(host: Host) -> None:
+    sliders = {slider.field: slider for slider in offered(host.world())}
+    assert "medium.relative_humidity" in sliders
+    assert "medium.brush_thickness" not in sliders
+    for slider in sliders.values():
+        assert slider.at(slider.place) == pytest.approx(slider.value, rel=0.01)
+        assert slider.about.doc
+        assert slider.about.minimum <= slider.low < slider.high <= slider.about.maximum
+
+
+def test_a_surface_is_drawn_with_few_triangles() -> None:
+    heights = np.random.default_rng(1).standard_normal((4096, 1500))
+    means, size = stage.coarse(heights)
+    assert 2 * (means.shape[0] - 1) * (means.shape[1] - 1) <= 2**17
+    assert means[3, 5] == pytest.approx(heights[3 * size : 4 * size, 5 * size : 6 * size].mean())
+    assert stage.exaggeration(np.array([[0.0, 1e-9]]), 1e-6) == 100.0
+    assert stage.exaggeration(np.zeros((4, 4)), 1e-6) == 1.0
+
+
+def test_numbers_keep_three_digits() -> None:
+    assert digits(1.7976e-8, "N") == "18.0 nN"
+    assert digits(-4.5e-10, "m") == "-450 pm"
+    assert digits(0.0, "N") == "0 N"
+    assert digits(float("nan"), "N") == "-"
+    assert step_up(2.1e-9) == pytest.approx(5e-9)
+
+
+def test_no_display_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    with pytest.raises(nt.Error, match="DISPLAY is not set"):
+        display.check()
+    for name, reason in ((":7654", "nobody listens"), ("what", "names none")):
+        monkeypatch.setenv("DISPLAY", name)
+        with pytest.raises(nt.Error, match=reason):
+            display.check()
+
+
+def test_a_display_that_does_not_answer_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        number = silent.getsockname()[1] - display.BASE_PORT
+        monkeypatch.setenv("DISPLAY", f"127.0.0.1:{number}.0")
+        with pytest.raises(nt.Error, match=r"did not answer within 0\.2 s"):
+            display.check(0.2)
