@@ -61,6 +61,7 @@ set(nanotouch_sources_surface
     surface/extremes.c
     surface/grating.c
     surface/height_field.c
+    surface/properties.c
     surface/radius_map.c)
 set(nanotouch_sources_scene
     scene/adhesion.c
@@ -74,6 +75,7 @@ set(nanotouch_sources_scene
     scene/laws.c
     scene/local.c
     scene/options.c
+    scene/places.c
     scene/plan.c
     scene/plastic.c
     scene/pull_off.c

@@ -25,6 +25,7 @@ void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adh
     plan->source = nt_scene_adhesion_source(scene);
     plan->shape = nt_scene_shape(scene);
     plan->contact = nt_scene_contact(scene, work_of_adhesion);
+    nt_plan_take_properties(plan, scene);
     const double range =
         plan->source == NT_ADHESION_NONE ? 0.0 : plan->contact.work_of_adhesion / plan->contact.cohesive_stress;
     plan->capture_gap = range; /* where attraction begins; a bridge, where the films touch */
@@ -70,25 +71,23 @@ static const nt_maugis_bank *bank_of(const nt_plan *plan, nt_form form)
     return form == NT_FORM_LOCAL_EXACT ? &no_tables : plan->bank;
 }
 
-nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, double radius, double indentation)
+nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, const nt_contact *contact, double indentation)
 {
     nt_bank_value value = {{NAN, NAN, NAN, NAN}, NAN};
-    nt_contact contact = plan->contact;
-    contact.radius = radius;
-    if (plan->source != NT_ADHESION_NONE)
-        (void)nt_maugis_bank_eval_radius(bank_of(plan, form), &contact, indentation, NT_BRANCH_STABLE, &value);
-    else {
-        value.law = nt_hertz_eval(&contact, indentation);
-        value.dU_dR = 0.5 * value.law.U / radius;
+    if (plan->source != NT_ADHESION_NONE) {
+        (void)nt_maugis_bank_eval_radius(bank_of(plan, form), contact, indentation, NT_BRANCH_STABLE, &value);
+        return value;
     }
+    value.law = plan->shape.kind == NT_SHAPE_PARABOLOID
+                    ? nt_hertz_eval(contact, indentation)
+                    : nt_shape_eval(&plan->shape, contact->effective_modulus, indentation);
+    value.dU_dR = 0.5 * value.law.U / contact->radius;
     return value;
 }
 
-double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, double radius)
+double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, const nt_contact *contact)
 {
-    nt_contact contact = plan->contact;
-    contact.radius = radius;
-    return plan->source == NT_ADHESION_NONE ? 0.0 : -nt_maugis_bank_grip_indentation(bank_of(plan, form), &contact);
+    return plan->source == NT_ADHESION_NONE ? 0.0 : -nt_maugis_bank_grip_indentation(bank_of(plan, form), contact);
 }
 
 /* Where the contact carries `load` [m]: bracket upwards from first touch, where it cannot push, then bisect. NaN if it

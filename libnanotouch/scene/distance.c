@@ -79,12 +79,14 @@ static nt_law_value jkr_at(const nt_plan *plan, double indentation)
 
 static nt_law_value sharpest_at(const nt_plan *plan, double indentation)
 {
-    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->minimum, indentation).law;
+    const nt_contact contact = nt_plan_contact_of_radius(plan, plan->radii->minimum);
+    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, &contact, indentation).law;
 }
 
 static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
 {
-    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum, indentation).law;
+    const nt_contact contact = nt_plan_contact_of_radius(plan, plan->radii->maximum);
+    return nt_plan_local_eval(plan, NT_FORM_LOCAL_EXACT, &contact, indentation).law;
 }
 
 /* The difference between two laws of contact over max(|truth|, scale). S is that of the demanded quantity; of a force
@@ -125,7 +127,7 @@ double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 double nt_plan_away_from_folds(const nt_plan *plan)
 {
     const double longest = fmax(fabs(plan->release_gap), plan->length);
-    return plan->source == NT_ADHESION_NONE ? 0.0 : AWAY_FROM_FOLDS * longest * cbrt(nt_plan_largest_ratio(plan));
+    return plan->source == NT_ADHESION_NONE ? 0.0 : AWAY_FROM_FOLDS * longest * nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
 }
 
 /* Stiffness and radius begin as roots of the distance to the fold or to first touch, which move with the radius: they

@@ -148,7 +148,7 @@ static double force_limit(const nt_plan *plan, double gap)
 
 double nt_plan_cutoff_gap(const nt_plan *plan, double force)
 {
-    const double release = nt_plan_release_gap(plan, plan->contact.radius * largest_ratio(plan));
+    const double release = nt_plan_farthest_release(plan);
     double low = fmax(fmax(release, plan->capture_gap), 0.0), high = fmax(2.0 * low, 1e-9);
     if (!(force >= 0.0))
         return NAN;

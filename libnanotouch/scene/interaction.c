@@ -20,8 +20,13 @@ static void add(nt_law_value *sum, nt_law_value term)
 
 nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
 {
-    if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
-        return nt_surface_place(plan->surface, plan->radii, x, y);
+    if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form)) {
+        const nt_radius_map *radii = nt_plan_has_local_form(plan) ? plan->radii : NULL;
+        nt_place found = nt_surface_place(plan->surface, radii, plan->properties, x, y);
+        if (!radii)
+            found.radius.radius = plan->contact.radius;
+        return found;
+    }
     nt_place place = {.radius = {.radius = plan->contact.radius}};
     if (plan->surface)
         place.surface = nt_surface_height(plan->surface, x, y);
@@ -39,21 +44,42 @@ int nt_plan_is_attached(const nt_plan *plan, int attached, const nt_place *place
 {
     if (gap <= plan->capture_gap)
         return 1;
-    return attached && gap <= nt_plan_release_gap(plan, nt_plan_radius_at(plan, place));
+    return attached && gap <= nt_plan_release_gap(plan, place);
 }
 
 nt_bank_value nt_plan_contact_at(const nt_plan *plan, const nt_place *place, double gap)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    if (nt_form_is_local(form))
-        return nt_plan_local_eval(plan, form, nt_plan_radius_at(plan, place), -gap);
-    return (nt_bank_value){nt_plan_contact_eval(plan, form, -gap), 0.0};
+    if (!nt_form_is_local(form))
+        return (nt_bank_value){nt_plan_contact_eval(plan, form, -gap), 0.0};
+    const nt_contact contact = nt_plan_contact_of_place(plan, place);
+    return nt_plan_local_eval(plan, form, &contact, -gap);
 }
 
-/* The vertical law, with dU/dR where the radius varies. */
-static nt_bank_value eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+/* The vertical law, and how U changes with what varies from place to place. */
+typedef struct vertical {
+    nt_law_value law;
+    double dU_dR; /* [J/m] */
+    double dU_dE; /* over E_s [J/Pa] */
+    double dU_dw; /* [m^2] */
+} vertical;
+
+/* With one range of adhesion U = pi w R d_s f(delta/d_s), d_s ~ (w^2 R/K^2)^(1/3): the slope over R is that over d_s,
+ * too, and with it
+ *     dU/dln E* = 2 (U - R dU/dR), dU/dln w = 2 R dU/dR - U. */
+static void add_properties(vertical *sum, const nt_plan *plan, const nt_place *place, const nt_bank_value *contact)
 {
-    nt_bank_value sum = {{0.0, 0.0, 0.0, 0.0}, 0.0};
+    const nt_contact here = nt_plan_contact_of_place(plan, place);
+    const double E = place->youngs_modulus.value, by_modulus = 2.0 * (contact->law.U - here.radius * contact->dU_dR);
+    if (E > 0.0)
+        sum->dU_dE = by_modulus * here.effective_modulus * plan->sample_factor / (E * E);
+    if (here.work_of_adhesion > 0.0)
+        sum->dU_dw = (contact->law.U - by_modulus) / here.work_of_adhesion;
+}
+
+static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+{
+    vertical sum = {{0.0, 0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
     if (plan->yield.count > 0 && !isnan(gap)) {
         sum.law = nt_plan_yield_at(plan, gap);
         return sum;
@@ -74,6 +100,8 @@ static nt_bank_value eval_at(const nt_plan *plan, const nt_interaction_state *st
         const nt_bank_value contact = nt_plan_contact_at(plan, place, gap);
         add(&sum.law, contact.law);
         sum.dU_dR += contact.dU_dR;
+        if (plan->properties && place)
+            add_properties(&sum, plan, place, &contact);
     }
     if (isnan(gap))
         sum.law.U = sum.law.F = sum.law.k = sum.law.a = gap;
@@ -90,11 +118,14 @@ nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interacti
 {
     const nt_place place = nt_interaction_place(plan, pose->x, pose->y);
     const double gap = pose->z - place.surface.z;
-    const nt_bank_value here = eval_at(plan, state, &place, gap);
-    /* U(h, R) with h = z - z_s(x, y) and R(x, y): F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx */
+    const vertical here = eval_at(plan, state, &place, gap);
+    const nt_property_value *E = &place.youngs_modulus, *w = &place.work_of_adhesion;
+    /* U(h, R, E_s, w) with h = z - z_s(x, y) and R(x, y), ..: F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx - .. */
     nt_interaction_value value = {.U = here.law.U,
-                                  .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx,
-                                  .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy,
+                                  .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx -
+                                        here.dU_dE * E->dx - here.dU_dw * w->dx,
+                                  .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy -
+                                        here.dU_dE * E->dy - here.dU_dw * w->dy,
                                   .Fz = here.law.F,
                                   .k = here.law.k,
                                   .a = here.law.a,

@@ -102,7 +102,7 @@ nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *prob
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->prepare)
             nt_term_rows[term]->prepare(law_of(plan, term), scene, plan->capture_gap);
-    const double share = nt_plan_tail_share(plan), w = plan->contact.work_of_adhesion;
+    const double share = plan->tail = nt_plan_tail_share(plan), w = plan->contact.work_of_adhesion;
     if (!(share > 0.0))
         return NT_OK;
     if (share >= w)

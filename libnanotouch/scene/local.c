@@ -4,10 +4,13 @@
 
 #include "scene/parts.h"
 
-double nt_plan_release_gap(const nt_plan *plan, double radius)
+double nt_plan_release_gap(const nt_plan *plan, const nt_place *place)
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    return nt_form_is_local(form) ? nt_plan_local_release_gap(plan, form, radius) : plan->release_gap;
+    if (!nt_form_is_local(form))
+        return plan->release_gap;
+    const nt_contact contact = nt_plan_contact_of_place(plan, place);
+    return nt_plan_local_release_gap(plan, form, &contact);
 }
 
 double nt_plan_largest_ratio(const nt_plan *plan)
@@ -19,8 +22,10 @@ double nt_plan_curvature_shift(const nt_plan *plan)
 {
     if (!plan->radii || nt_plan_contact_form(plan) != NT_FORM_EXACT)
         return 0.0;
-    const double sharpest = nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->minimum);
-    const double bluntest = nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum);
+    const nt_contact sharp = nt_plan_contact_of_radius(plan, plan->radii->minimum);
+    const nt_contact blunt = nt_plan_contact_of_radius(plan, plan->radii->maximum);
+    const double sharpest = nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, &sharp);
+    const double bluntest = nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, &blunt);
     return fmax(fabs(sharpest - plan->release_gap), fabs(bluntest - plan->release_gap));
 }
 
@@ -30,16 +35,26 @@ int nt_plan_is_curved(const nt_plan *plan)
     return plan->radii && nt_plan_has_local_form(plan) && (plan->radii->minimum != R || plan->radii->maximum != R);
 }
 
+/* The least and the largest lambda = 2 sigma0 (R/(pi w K^2))^(1/3), sigma0 ~ w, of all places. */
+static void lambdas_of(const nt_plan *plan, double lambda[2])
+{
+    const nt_contact rigid = nt_plan_contact_of_corner(plan, NT_CORNER_STIFF);
+    const nt_contact soft = nt_plan_contact_of_corner(plan, NT_CORNER_BLUNT | NT_CORNER_STICKY);
+    lambda[0] = nt_maugis_lambda(&rigid);
+    lambda[1] = nt_maugis_lambda(&soft);
+}
+
 int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options)
 {
-    if (!nt_plan_is_curved(plan) || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+    if (!nt_plan_varies(plan) || nt_plan_contact_form(plan) != NT_FORM_EXACT)
         return 0;
-    const double R = plan->contact.radius, accuracy = plan->demand.relative_accuracy;
-    const double least = plan->radii->minimum / R, largest = plan->radii->maximum / R;
+    double lambda[2];
+    lambdas_of(plan, lambda);
+    const double accuracy = plan->demand.relative_accuracy, least = plan->least.radius / plan->contact.radius;
     /* reduced by (pi^2 w^2 R/K^2)^(1/3) of the sharpest place, where the same load goes deeper */
     const double deepest = plan->largest_indentation / plan->maugis.indentation_scale / cbrt(least * least);
-    const double first = fmin(fmax(floor(log10(plan->lambda * cbrt(least) / 1.5)), -15.0), 14.0);
-    const double last = fmin(fmax(ceil(log10(plan->lambda * cbrt(largest) * 1.5)), first + 1.0), 15.0);
+    const double first = fmin(fmax(floor(log10(lambda[0] / 1.5)), -15.0), 14.0);
+    const double last = fmin(fmax(ceil(log10(lambda[1] * 1.5)), first + 1.0), 15.0);
     *options = nt_maugis_bank_defaults();
     options->lambda_min = pow(10.0, first);
     options->lambda_max = pow(10.0, last);
@@ -48,28 +63,35 @@ int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options)
     return 1;
 }
 
-/* Over the lambdas of the surface, lambda ~ R^(1/3). */
 static nt_bank_error bank_error(const nt_plan *plan)
 {
-    const double R = plan->contact.radius;
-    return nt_maugis_bank_error(plan->bank, plan->lambda * cbrt(plan->radii->minimum / R),
-                                plan->lambda * cbrt(plan->radii->maximum / R));
+    double lambda[2];
+    lambdas_of(plan, lambda);
+    return nt_maugis_bank_error(plan->bank, lambda[0], lambda[1]);
 }
 
 #define AWAY_FROM_FOLDS 1e-4 /* reduced: nearer to them the bank has not been measured (contact/maugis_bank.c) */
 
-/* The bank's errors are over what its own place has for a scale. From the tip's own radius to the bluntest the pull-off
- * force grows no faster than R; the units of stiffness and radius as R^(2/3), and S is at least these of R. */
+/* How much more than the plan's own contact one of its own radius can pull. */
+static double most_of(const nt_plan *plan)
+{
+    const double w = plan->most.work_of_adhesion / plan->contact.work_of_adhesion;
+    return plan->properties ? 4.0 / 3.0 * w : 1.0;
+}
+
+/* The bank's errors are over what its own place has for a scale, and S is that of the plan's own contact: its pull-off
+ * force, or its units of stiffness and radius. From the tip's own radius to the bluntest the pull-off force grows no
+ * faster than R, with w no faster than w, and from soft to stiff by no more than 4/3 (JKR to DMT). */
 double nt_plan_bank_error(const nt_plan *plan, nt_quantity quantity)
 {
     const nt_bank_error error = bank_error(plan);
-    const double pull = nt_plan_largest_ratio(plan) * nt_maugis_pull_off_force(&plan->maugis);
+    const double pull = nt_plan_largest_ratio(plan) * most_of(plan) * nt_maugis_pull_off_force(&plan->maugis);
     const double half_shift = 0.5 * error.fold_shift / AWAY_FROM_FOLDS;
     switch (quantity) {
     case NT_QUANTITY_STIFFNESS:
-        return (error.stiffness + half_shift) * cbrt(nt_plan_largest_ratio(plan) * nt_plan_largest_ratio(plan));
+        return (error.stiffness + half_shift) * nt_plan_largest_unit(plan, quantity);
     case NT_QUANTITY_RADIUS:
-        return error.radius * cbrt(nt_plan_largest_ratio(plan) * nt_plan_largest_ratio(plan));
+        return error.radius * nt_plan_largest_unit(plan, quantity);
     case NT_QUANTITY_FOLDS:
         return nt_plan_bank_shift(plan) / plan->scale;
     default:
@@ -82,7 +104,8 @@ double nt_plan_bank_shift(const nt_plan *plan)
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     if (form == NT_FORM_LOCAL_EXACT || plan->source == NT_ADHESION_NONE)
         return 0.0;
-    return bank_error(plan).fold_shift * plan->maugis.indentation_scale * cbrt(nt_plan_largest_ratio(plan));
+    return bank_error(plan).fold_shift * plan->maugis.indentation_scale *
+           nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
 }
 
 double nt_plan_last_hold(double release_gap)
@@ -90,31 +113,17 @@ double nt_plan_last_hold(double release_gap)
     return release_gap - 1e-12 * fabs(release_gap);
 }
 
-/* Stiffness where the contact carries `load` at a radius: bracketed upwards from first touch, then bisected. */
-static double stiffness_at(const nt_plan *plan, double radius, double load)
-{
-    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    double low = 0.0, high = plan->largest_indentation;
-    for (int i = 0; i < 64 && nt_plan_local_eval(plan, form, radius, high).law.F < load; ++i) {
-        low = high;
-        high *= 2.0;
-    }
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        if (nt_plan_local_eval(plan, form, radius, middle).law.F < load)
-            low = middle;
-        else
-            high = middle;
-    }
-    return nt_plan_local_eval(plan, form, radius, high).law.k;
-}
-
-/* Pull-off and attraction grow with the radius, no faster than it; stiffness at a load, too. */
+/* Pull-off and attraction grow with the radius, no faster than it; stiffness at a load, too, as with modulus and
+ * adhesion. */
 void nt_plan_local_facts(nt_plan *plan, double maximum_load)
 {
-    const double bluntest = plan->radii->maximum, ratio = nt_plan_largest_ratio(plan);
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    const nt_contact stiffest = nt_plan_contact_of_corner(plan, NT_CORNERS - 1);
+    const double ratio = nt_plan_largest_ratio(plan);
+    const double depth = nt_plan_local_depth(plan, form, &stiffest, maximum_load);
     plan->largest_pull_off_force *= ratio;
     plan->minimum_spring *= ratio;
-    plan->maximum_stiffness = fmax(plan->maximum_stiffness, stiffness_at(plan, bluntest, maximum_load));
+    plan->maximum_stiffness = 
+        fmax(plan->maximum_stiffness, nt_plan_local_eval(plan, form, &stiffest, depth).law.k);
     plan->bound.fold_shift = nt_plan_bank_shift(plan);
 }

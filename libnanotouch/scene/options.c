@@ -11,6 +11,7 @@
 /* Measured cost of a surface, in evaluations of an inlined Hertz law (tests/bench/bench_plan.c). */
 #define COST_HEIGHT 15.0 /* height and slopes */
 #define COST_PLACE 28.0  /* and the effective radius */
+#define COST_MADE 52.0   /* and what it is made of */
 #define LAST_BITS                                                                                                      \
     5e-15 /* of each term beside contact, within which a difference loses some, too; large ones can cancel to a small  \
              sum */
@@ -95,7 +96,9 @@ static void burden_contact(const nt_plan *plan, nt_plan_options *options, double
         options->option[NT_PLAN_CONTACT][i].error += lost;
         if (plan->surface)
             options->option[NT_PLAN_CONTACT][i].cost +=
-                nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_PLACE : COST_HEIGHT;
+                !nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_HEIGHT
+                : plan->properties                                          ? COST_MADE
+                                                                            : COST_PLACE;
     }
 }
 

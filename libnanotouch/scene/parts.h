@@ -21,20 +21,43 @@ static inline int nt_form_is_local(nt_form form)
 {
     return form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
 }
-/* {U, F, k, a} and dU/dR of a local form at an effective radius [m]; all NaN where it refuses. */
-nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, double radius, double indentation);
+/* {U, F, k, a} and dU/dR of a local form for the contact of a place; all NaN where it refuses. A law that cannot follow
+ * the radius says dU/dR = U/(2 R), as Hertz. */
+nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, const nt_contact *contact, double indentation);
 /* Where that contact lets go under grips [m]. */
-double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, double radius);
+double nt_plan_local_release_gap(const nt_plan *plan, nt_form form, const nt_contact *contact);
 
-/* local.c: where the contact lets go under grips, of the form that was chosen, at an effective radius [m]. */
-double nt_plan_release_gap(const nt_plan *plan, double radius);
+/* places.c: E* on a sample of Young's modulus E_s [Pa]. */
+double nt_plan_effective_modulus(const nt_plan *plan, double youngs_modulus);
+/* The contact of a scene at the corner plan->corner of what its surface is made of. */
+void nt_plan_take_properties(nt_plan *plan, const nt_scene *scene);
+/* The scene with the modulus and adhesion of that corner 0 in place of its own. */
+nt_scene nt_plan_scene_over(const nt_scene *scene, const nt_properties *properties);
+/* Facts at all corners: the worst of them, with the contact of corner 0. */
+nt_status nt_plan_over_surface(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+/* The contact at a place (NULL: the plan's own), at a radius, at a corner of least and most. */
+nt_contact nt_plan_contact_of_place(const nt_plan *plan, const nt_place *place);
+nt_contact nt_plan_contact_of_radius(const nt_plan *plan, double radius);
+nt_contact nt_plan_contact_of_corner(const nt_plan *plan, int corner);
+/* How much larger than the plan's own the units of stiffness, radius and indentation can be, at least 1. */
+double nt_plan_largest_unit(const nt_plan *plan, nt_quantity quantity);
+/* Whether the contact changes from place to place: with the radius, or with what the surface is made of. */
+int nt_plan_varies(const nt_plan *plan);
+/* The largest gap at which a contact is held anywhere [m]. */
+double nt_plan_farthest_release(const nt_plan *plan);
+/* Where a local contact carries `load` [m]; NaN if it never does. */
+double nt_plan_local_depth(const nt_plan *plan, nt_form form, const nt_contact *contact, double load);
+
+/* local.c: where the contact lets go under grips, of the form that was chosen, at a place (NULL: the plan's own) [m].
+ */
+double nt_plan_release_gap(const nt_plan *plan, const nt_place *place);
 /* Whether the surface is curved where the contact can follow it. */
 int nt_plan_is_curved(const nt_plan *plan);
 /* The largest effective radius of the surface over the tip's own, at least 1. */
 double nt_plan_largest_ratio(const nt_plan *plan);
 /* How far the radii of the surface move the release gap from that of the tip's own [m]. */
 double nt_plan_curvature_shift(const nt_plan *plan);
-/* How far off the bank is over the radii of the surface, in the norm of a demand; its fold [m]. */
+/* How far off the bank is over the places of the surface, in the norm of a demand; its fold [m]. */
 double nt_plan_bank_error(const nt_plan *plan, nt_quantity quantity);
 double nt_plan_bank_shift(const nt_plan *plan);
 /* Just inside a release gap, where the contact still holds: on the fold itself rounding decides. */
@@ -61,7 +84,9 @@ nt_form nt_plan_full_form(const nt_plan *plan, int term);
 /* facts.c: pull-off, stiffness, energies of the jumps, with everything on. */
 nt_status nt_plan_facts(nt_plan *plan);
 
-/* pull_off.c: all of the above, with the w of a measured pull-off force where one is given. */
+/* pull_off.c: all of the above at a work of adhesion [J/m^2], which a scene reads that gives a pull-off force; and with
+ * the w that has the measured one. */
+nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem);
 nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 
 /* distance.c: the quantity of a demand. */
@@ -116,7 +141,7 @@ void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene);
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene);
 void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning);
 
-/* interaction.c: the effective radius at a place (NULL: the tip's own) [m]; the contact there, with dU/dR; whether it
+/* interaction.c: the effective radius at a place (NULL: the tip's own) [m]; its contact, with dU/dR; whether it
  * is captured by contact or meniscus: already, or because the gap is inside the capture range. */
 double nt_plan_radius_at(const nt_plan *plan, const nt_place *place);
 nt_bank_value nt_plan_contact_at(const nt_plan *plan, const nt_place *place, double gap);

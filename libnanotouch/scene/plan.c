@@ -16,10 +16,9 @@ const char *nt_form_name(nt_form form)
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
 }
 
-/* A radius map and its surface have one grid. */
-static int is_of(const nt_radius_map *radii, const nt_surface *surface)
+/* What belongs to a surface has its grid. */
+static int is_of(const nt_surface *grid, const nt_surface *surface)
 {
-    const nt_surface *grid = &radii->ratio;
     return surface && grid->nx == surface->nx && grid->ny == surface->ny && grid->dx == surface->dx &&
            grid->dy == surface->dy;
 }
@@ -34,7 +33,9 @@ static nt_status check(const nt_plan_inputs *inputs, const nt_demand *demand, nt
         rig.probe = *inputs->probe;
         status = nt_rig_check(&rig, problem);
     }
-    if (status == NT_OK && inputs->radii && !is_of(inputs->radii, inputs->surface))
+    if (status == NT_OK && inputs->radii && !is_of(&inputs->radii->ratio, inputs->surface))
+        status = NT_E_ARGUMENT;
+    if (status == NT_OK && inputs->properties && !is_of(&inputs->properties->youngs_modulus, inputs->surface))
         status = NT_E_ARGUMENT;
     return status;
 }
@@ -59,6 +60,19 @@ static void finish(nt_plan *plan, double maximum_load)
     }
 }
 
+/* JKR's cone and punch are no law of places. */
+static nt_status check_shape(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    int count = 0;
+    const nt_field *shape = nt_scene_fields(&count); /* the first */
+    if (!plan->properties || nt_plan_contact_form(plan) != NT_FORM_JKR)
+        return NT_OK;
+    if (problem)
+        *problem = (nt_problem){"tip.shape (adhesion on a surface with properties)", shape->unit, scene->tip.shape,
+                                NT_SHAPE_PARABOLOID, NT_SHAPE_SPHERE};
+    return NT_E_RANGE;
+}
+
 nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     static const nt_plan empty = {.surface = NULL};
@@ -70,9 +84,13 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     plan->demand = demand;
     plan->surface = inputs->surface;
     plan->radii = inputs->radii;
+    plan->properties = inputs->properties;
     plan->probe_noise = inputs->probe ? nt_probe_force_noise(inputs->probe) : 0.0;
-    status = nt_plan_tabulate(plan, inputs->scene, problem);
-    return status == NT_OK ? nt_plan_adhere(plan, inputs->scene, problem) : status;
+    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    status = nt_plan_tabulate(plan, &scene, problem);
+    if (status == NT_OK)
+        status = nt_plan_adhere(plan, &scene, problem);
+    return status == NT_OK ? check_shape(plan, &scene, problem) : status;
 }
 
 /* With the error of terms that add on the undeformed gap, if the demand keeps that. */
@@ -127,26 +145,31 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
         demanded > 0.0 || plan->rigid_error <= UNASKED ? choose_rigid(plan, &options, NULL) : NT_E_RANGE;
     if (rigid == NT_OK)
         return NT_OK;
-    const nt_status yields = nt_plan_yield(plan, scene, problem);
+    const nt_status yields = plan->properties ? NT_E_RANGE : nt_plan_yield(plan, scene, problem);
     if (yields == NT_OK)
         return NT_OK;
     if (is_left(plan))
         return nt_plan_choose(plan, &options, problem);
     if (!(demanded > 0.0) && isfinite(plan->rigid_error))
         return choose_rigid(plan, &options, problem);
+    if (plan->properties && problem)
+        *problem = (nt_problem){"sample.youngs_modulus (so soft that forces before contact move it, which no plan of a "
+                                "surface with properties knows)",
+                                "Pa", scene->sample.youngs_modulus, scene->sample.youngs_modulus, 1e13};
     return refuse(plan, &options, problem);
 }
 
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
+    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
     plan->bank = inputs->bank;
-    nt_status status = choose(plan, inputs->scene, problem);
+    nt_status status = choose(plan, &scene, problem);
     if (status == NT_OK)
-        status = nt_plan_check_plastic(plan, inputs->scene, problem);
+        status = nt_plan_check_plastic(plan, &scene, problem);
     if (status != NT_OK)
         return status;
-    finish(plan, inputs->scene->range.maximum_load);
-    nt_plan_warn(plan, inputs->scene);
+    finish(plan, scene.range.maximum_load);
+    nt_plan_warn(plan, &scene);
     return NT_OK;
 }
 

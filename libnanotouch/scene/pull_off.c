@@ -14,7 +14,7 @@
 #define MET 1e-9  /* of the measured force */
 #define JUST 1e-9 /* of w: beyond where the tail leaves nothing of it */
 
-static nt_status laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem)
+nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem)
 {
     nt_plan_contact_of(plan, scene, work_of_adhesion);
     nt_status status = nt_plan_laws_of(plan, scene, problem);
@@ -32,7 +32,7 @@ typedef struct sought {
 static double excess(double work_of_adhesion, const void *context)
 {
     const sought *in = context;
-    const nt_status status = laws_at(in->plan, in->scene, work_of_adhesion, NULL);
+    const nt_status status = nt_plan_laws_at(in->plan, in->scene, work_of_adhesion, NULL);
     const double measured = in->scene->adhesion.pull_off_force;
     if (status == NT_E_RANGE) /* 0 would be a root */
         return -fmax(measured, DBL_MIN);
@@ -78,7 +78,10 @@ static nt_status find(const sought *in, nt_problem *problem)
 nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const sought in = {plan, scene};
+    nt_status status;
     if (scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF || nt_scene_adhesion_source(scene) == NT_ADHESION_NONE)
-        return laws_at(plan, scene, 0.0, problem);
-    return find(&in, problem);
+        status = nt_plan_laws_at(plan, scene, 0.0, problem);
+    else
+        status = find(&in, problem);
+    return status == NT_OK ? nt_plan_over_surface(plan, scene, problem) : status;
 }

@@ -40,6 +40,19 @@ static nt_status check_scaling(const nt_session *session, const nt_scaling *scal
     return check_margin(session, session->asked_mode, scaling, problem);
 }
 
+/* What a surface gives at each place is not the scene's to change. */
+static int is_of_surface(const nt_properties *of, const char *field)
+{
+    static const char *const work[] = {"adhesion.given", "adhesion.work_of_adhesion", "adhesion.pull_off_force",
+                                       "adhesion.tip_surface_energy", "adhesion.sample_surface_energy"};
+    if (of && of->youngs_modulus.coefficients && strcmp(field, "sample.youngs_modulus") == 0)
+        return 1;
+    for (size_t i = 0; i < sizeof work / sizeof *work && of && of->work_of_adhesion.coefficients; ++i)
+        if (strcmp(field, work[i]) == 0)
+            return 1;
+    return 0;
+}
+
 /* What cannot change while a session is open: the clock, the delay that the rig was built with, scales (rescale), and
  * the tip that a surface was dilated with. */
 static int is_fixed(const nt_session *session, const char *field)
@@ -48,6 +61,8 @@ static int is_fixed(const nt_session *session, const char *field)
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; ++i)
         if (strcmp(field, fixed[i]) == 0)
             return 1;
+    if (is_of_surface(session->now->setup.properties, field))
+        return 1;
     return nt_terrain_surface(session->now->terrain) && strncmp(field, "tip.", 4) == 0;
 }
 

@@ -26,15 +26,27 @@ int nt_composition_allows(const nt_composition *composition, double margin)
     return minimum <= 0.0 || margin >= minimum;
 }
 
+/* Where of a surface with properties a force is seen last: softest and most adhesive. */
+static nt_place last_seen(const nt_plan *plan)
+{
+    nt_place place = {.radius = {.radius = plan->contact.radius}};
+    if (plan->properties) {
+        place.youngs_modulus.value = plan->properties->youngs_modulus.height_minimum;
+        place.work_of_adhesion.value = plan->properties->work_of_adhesion.height_maximum;
+    }
+    return place;
+}
+
 /* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be
  * off by all of it [m]. */
 static double unseen_indentation(const nt_plan *plan, double free_force)
 {
+    const nt_place place = last_seen(plan);
     const nt_interaction_state attached = {.attached = 1};
     double shallow = 0.0, deep = DEEPEST;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (shallow + deep);
-        const double force = nt_interaction_eval_gap(plan, &attached, NULL, -middle).F;
+        const double force = nt_interaction_eval_gap(plan, &attached, &place, -middle).F;
         if (force > 2.0 * free_force)
             deep = middle;
         else
@@ -71,6 +83,7 @@ static nt_status make_terrain(nt_composition *made, const nt_composition *before
     wanted.dilated = setup->dilated;
     wanted.surface = setup->surface;
     wanted.radii = setup->radii;
+    wanted.properties = setup->properties;
     if (before) {
         wanted.map = (nt_height_map){0};
         wanted.surface = nt_terrain_surface(before->terrain);
@@ -140,7 +153,7 @@ int nt_composition_is_same(const nt_session_setup *a, const nt_session_setup *b)
         return 0;
     fields = nt_rig_fields(&count);
     return has_same_scene(a, b) && is_same(fields, count, &a->rig, &b->rig) && a->surface == b->surface &&
-           a->map.heights == b->map.heights;
+           a->map.heights == b->map.heights && a->properties == b->properties;
 }
 
 static int keeps_terrain(const nt_session_setup *setup, const nt_composition *before)

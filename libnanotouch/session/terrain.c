@@ -31,29 +31,52 @@ static nt_status refuse(nt_problem *problem, nt_problem found, nt_status status)
     return status;
 }
 
-/* Were these radii made of this surface, for this tip? */
-static nt_status check_radii(const nt_terrain_setup *setup, nt_problem *problem)
+/* What has to be the same. */
+typedef struct agreement {
+    const char *field, *unit;
+    double value, expected;
+} agreement;
+
+static nt_status check_same(const agreement *same, size_t count, nt_problem *problem)
 {
-    const nt_surface *grid = &setup->radii->ratio, *surface = setup->surface;
-    const double tip = setup->scene.tip.radius, of = setup->radii->tip_radius;
-    if (!surface)
-        return refuse(problem, (nt_problem){"radii without a surface", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
-    const struct {
-        const char *field, *unit;
-        double value, expected;
-    } same[] = {
-        {"radii.nx", "", (double)grid->nx, (double)surface->nx},
-        {"radii.ny", "", (double)grid->ny, (double)surface->ny},
-        {"radii.dx", "m", grid->dx, surface->dx},
-        {"radii.dy", "m", grid->dy, surface->dy},
-        {"tip.radius", "m", tip, of}, /* over a surface that another tip has dilated */
-    };
-    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++)
+    for (size_t i = 0; i < count; i++)
         if (same[i].value != same[i].expected)
             return refuse(problem,
                           (nt_problem){same[i].field, same[i].unit, same[i].value, same[i].expected, same[i].expected},
                           NT_E_RANGE);
     return NT_OK;
+}
+
+/* Were these radii made of this surface, for this tip? */
+static nt_status check_radii(const nt_terrain_setup *setup, nt_problem *problem)
+{
+    const nt_surface *grid = &setup->radii->ratio, *surface = setup->surface;
+    if (!surface)
+        return refuse(problem, (nt_problem){"radii without a surface", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+    const agreement same[] = {
+        {"radii.nx", "", (double)grid->nx, (double)surface->nx},
+        {"radii.ny", "", (double)grid->ny, (double)surface->ny},
+        {"radii.dx", "m", grid->dx, surface->dx},
+        {"radii.dy", "m", grid->dy, surface->dy},
+        {"tip.radius", "m", setup->scene.tip.radius, setup->radii->tip_radius}, /* another tip has dilated it */
+    };
+    return check_same(same, sizeof same / sizeof same[0], problem);
+}
+
+/* Are these properties on the grid of this surface or map? */
+static nt_status check_properties(const nt_terrain_setup *setup, nt_problem *problem)
+{
+    const nt_surface *grid = &setup->properties->youngs_modulus, *surface = setup->surface;
+    const nt_height_map *map = &setup->map;
+    if (!surface && !map->heights)
+        return refuse(problem, (nt_problem){"properties without a surface", "", 1.0, 0.0, 0.0}, NT_E_ARGUMENT);
+    const agreement same[] = {
+        {"properties.nx", "", (double)grid->nx, (double)(surface ? surface->nx : map->nx)},
+        {"properties.ny", "", (double)grid->ny, (double)(surface ? surface->ny : map->ny)},
+        {"properties.dx", "m", grid->dx, surface ? surface->dx : map->dx},
+        {"properties.dy", "m", grid->dy, surface ? surface->dy : map->dy},
+    };
+    return check_same(same, sizeof same / sizeof same[0], problem);
 }
 
 static nt_status check(const nt_terrain_setup *setup, nt_problem *problem)
@@ -67,6 +90,8 @@ static nt_status check(const nt_terrain_setup *setup, nt_problem *problem)
         return refuse(problem, (nt_problem){"dilated", "", setup->dilated, 0.0, 1.0}, NT_E_RANGE);
     if (setup->radii && check_radii(setup, problem) != NT_OK)
         return setup->surface ? NT_E_RANGE : NT_E_ARGUMENT;
+    if (setup->properties && check_properties(setup, problem) != NT_OK)
+        return setup->surface || setup->map.heights ? NT_E_RANGE : NT_E_ARGUMENT;
     if (setup->map.heights || setup->map.nx != 0 || setup->map.ny != 0)
         return nt_height_map_check(&setup->map, problem);
     return NT_OK;
@@ -116,7 +141,8 @@ static nt_status make_plan(nt_terrain *terrain, const nt_terrain_setup *setup, n
                              .demand = &setup->demand,
                              .probe = setup->probe,
                              .surface = terrain->surface,
-                             .radii = terrain->radii};
+                             .radii = terrain->radii,
+                             .properties = setup->properties};
     nt_maugis_bank_options options;
     nt_status status = nt_plan_begin(&terrain->plan, &inputs, problem);
     if (status == NT_OK && nt_plan_wants_bank(&terrain->plan, &options)) {

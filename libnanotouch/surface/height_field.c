@@ -215,18 +215,33 @@ nt_height_value nt_surface_height(const nt_surface *surface, double x, double y)
     return height_at(surface, &rx, &ry);
 }
 
-nt_place nt_surface_place(const nt_surface *surface, const nt_radius_map *radii, double x, double y)
+static nt_property_value property_at(const nt_surface *grid, const reach *rx, const reach *ry)
 {
-    nt_place place = {.radius = {.radius = radii->tip_radius}};
-    if (isnan(x) || isnan(y) || surface->coefficients == NULL || radii->ratio.coefficients == NULL) {
+    if (grid->coefficients == NULL)
+        return (nt_property_value){0.0, 0.0, 0.0};
+    const nt_height_value at = height_at(grid, rx, ry);
+    return (nt_property_value){at.z, at.zx, at.zy};
+}
+
+nt_place nt_surface_place(const nt_surface *surface, const nt_radius_map *radii, const nt_properties *properties,
+                          double x, double y)
+{
+    const double R = radii != NULL ? radii->tip_radius : 0.0;
+    nt_place place = {.radius = {.radius = R}};
+    if (isnan(x) || isnan(y) || surface->coefficients == NULL) {
         place.surface = nt_surface_height(surface, x, y);
         return place;
     }
-    const double R = radii->tip_radius;
     const reach rx = reach_of(x / surface->dx, surface->nx), ry = reach_of(y / surface->dy, surface->ny);
-    const nt_height_value ratio = height_at(&radii->ratio, &rx, &ry);
     place.surface = height_at(surface, &rx, &ry);
-    place.radius = (nt_radius_value){.radius = R * ratio.z, .dx = R * ratio.zx, .dy = R * ratio.zy};
+    if (radii != NULL && radii->ratio.coefficients != NULL) {
+        const nt_height_value ratio = height_at(&radii->ratio, &rx, &ry);
+        place.radius = (nt_radius_value){.radius = R * ratio.z, .dx = R * ratio.zx, .dy = R * ratio.zy};
+    }
+    if (properties != NULL) {
+        place.youngs_modulus = property_at(&properties->youngs_modulus, &rx, &ry);
+        place.work_of_adhesion = property_at(&properties->work_of_adhesion, &rx, &ry);
+    }
     return place;
 }
 

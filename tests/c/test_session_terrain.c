@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -157,8 +158,12 @@ static void plan_is_that_of_the_parts(void **state)
     nt_terrain *terrain = made(&setup);
     const nt_plan *plan = nt_terrain_plan(terrain);
     static nt_plan whole;
-    const nt_plan_inputs inputs = {&setup.scene, &setup.demand, setup.probe, nt_terrain_surface(terrain),
-                                   plan->radii,  plan->bank};
+    const nt_plan_inputs inputs = {.scene = &setup.scene,
+                                   .demand = &setup.demand,
+                                   .probe = setup.probe,
+                                   .surface = nt_terrain_surface(terrain),
+                                   .radii = plan->radii,
+                                   .bank = plan->bank};
     assert_int_equal(nt_plan_make(&whole, &inputs, NULL), NT_OK);
     assert_memory_equal(whole.terms, plan->terms, sizeof whole.terms);
     assert_memory_equal(&whole.bound, &plan->bound, sizeof whole.bound);
@@ -279,12 +284,41 @@ static void radii_of_something_else_are_refused(void **state)
     nt_terrain_close(terrain);
 }
 
+/* Properties that are on another grid, or on none. */
+static void properties_of_something_else_are_refused(void **state)
+{
+    (void)state;
+    nt_terrain_setup setup = nt_terrain_defaults();
+    setup.map = dots_map();
+    const nt_surface grid = {setup.map.heights, setup.map.nx, setup.map.ny, setup.map.dx, setup.map.dy, 0.0, 0.0};
+    const size_t pixels = (size_t)setup.map.nx * (size_t)setup.map.ny;
+    double *modulus = malloc(pixels * sizeof *modulus);
+    assert_non_null(modulus);
+    for (size_t p = 0; p < pixels; p++)
+        modulus[p] = p % 7 ? 1e9 : 3e9;
+    nt_properties properties;
+    assert_int_equal(nt_properties_init(&properties, &grid, modulus, NULL, NULL), NT_OK);
+    setup.properties = &properties;
+    nt_terrain *terrain = made(&setup);
+    assert_true(nt_terrain_plan(terrain)->properties == &properties && nt_terrain_bank(terrain));
+    nt_terrain_close(terrain);
+    properties.youngs_modulus.nx--;
+    assert_refused(&setup, NT_E_RANGE, "properties.nx");
+    properties.youngs_modulus.nx++;
+    properties.youngs_modulus.dx *= 2.0;
+    assert_refused(&setup, NT_E_RANGE, "properties.dx");
+    setup.map = (nt_height_map){0};
+    assert_refused(&setup, NT_E_ARGUMENT, "properties without a surface");
+    free(modulus);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(is_what_python_composed),   cmocka_unit_test(three_ways_to_one_terrain),
         cmocka_unit_test(plan_is_that_of_the_parts), cmocka_unit_test(no_bank_without_a_use),
         cmocka_unit_test(bad_inputs_are_named),      cmocka_unit_test(radii_of_something_else_are_refused),
+        cmocka_unit_test(properties_of_something_else_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -172,7 +172,7 @@ static void a_place_has_both(void **state)
     for (int n = 0; n < 20000; n++) {
         const double x = (1.2 * nt_random_uniform(&random) - 0.1) * NX * DX;
         const double y = (1.2 * nt_random_uniform(&random) - 0.1) * NY * DY;
-        const nt_place place = nt_surface_place(&surface, &map, x, y);
+        const nt_place place = nt_surface_place(&surface, &map, NULL, x, y);
         const nt_height_value height = nt_surface_height(&surface, x, y);
         const nt_radius_value radius = nt_radius_map_eval(&map, x, y);
         const nt_surface_value all = nt_surface_eval(&surface, x, y);
@@ -183,10 +183,10 @@ static void a_place_has_both(void **state)
         assert_true(fabs(height.zx - all.zx) < 32 * 1.2e-16 * 80e-9 / DX);
         assert_true(fabs(height.zy - all.zy) < 32 * 1.2e-16 * 80e-9 / DX);
     }
-    assert_true(isnan(nt_surface_place(&surface, &map, NAN, Y0).surface.z));
+    assert_true(isnan(nt_surface_place(&surface, &map, NULL, NAN, Y0).surface.z));
     const nt_surface flat = nt_surface_flat();
     const nt_radius_map same = {.tip_radius = R};
-    const nt_place place = nt_surface_place(&flat, &same, 1.0, -1.0);
+    const nt_place place = nt_surface_place(&flat, &same, NULL, 1.0, -1.0);
     assert_true(place.surface.z == 0.0 && place.radius.radius == R && place.radius.dx == 0.0);
 }
 

@@ -101,7 +101,8 @@ typedef struct nt_plan {
     int warning_count;
 
     nt_adhesion_source source;
-    nt_contact contact; /* w: what the tail leaves of it (E5b) */
+    nt_contact contact; /* w: what the tail leaves of it (E5b). Of a surface with properties the softest modulus and
+                           the least w on it, with the tip's own radius */
     double lambda;      /* Maugis' parameter of the contact [-]; +inf without adhesion or its range */
     nt_shape shape;
     nt_jkr_shape jkr;
@@ -118,7 +119,7 @@ typedef struct nt_plan {
     double release_energy;         /* that is lost when it lets go, >= 0 [J] */
     double contact_pull;           /* the strongest pull in contact, everything on, positive [N] */
     double pull_off_force;         /* and wherever it is: what a load must overcome to come free, positive [N] */
-    double largest_pull_off_force; /* the same over the bluntest place of the surface [N] */
+    double largest_pull_off_force; /* the same over all places of the surface [N] */
     double minimum_spring;         /* a softer k_c jumps in; infinite where the force itself jumps [N/m] */
     double maximum_stiffness;      /* k of the contact at the largest load [N/m] */
     double largest_indentation;    /* at that load [m] */
@@ -128,6 +129,12 @@ typedef struct nt_plan {
     const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
     const nt_maugis_bank *bank; /* borrowed; NULL: none */
+    const nt_properties *properties; /* borrowed; NULL: those of the scene everywhere */
+    nt_contact least, most;          /* of each of R, E* and w over the surface; one range of adhesion */
+    double tip_compliance;           /* (1 - nu_t^2)/E_t [1/Pa] */
+    double sample_factor;            /* 1 - nu_s^2: 1/E* = tip_compliance + sample_factor/E_s [-] */
+    double tail;                     /* what the tails pull of w at each place (E5b) [J/m^2] */
+    int corner;                      /* while it is made: NT_CORNER_* of the surface at which `contact` is */
     nt_yield_table yield;       /* of a sample that yields to forces beside contact */
     double elastic_number;      /* e of the terms beside contact, the largest in the range [-] */
     double rigid_error;         /* of adding them on the undeformed gap, in the norm of the demand [-] */
@@ -142,7 +149,12 @@ typedef struct nt_plan_inputs {
     const nt_surface *surface;  /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
     const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not asked for */
     const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */
+    const nt_properties *properties; /* of that surface, borrowed; NULL: those of the scene everywhere. They stand in
+                                        place of sample.youngs_modulus and of all that gives w */
 } nt_plan_inputs;
+
+/* Corners of what a surface goes through; together they are a number. */
+enum { NT_CORNER_BLUNT = 1, NT_CORNER_STIFF = 2, NT_CORNER_STICKY = 4, NT_CORNERS = 8 };
 
 /* Decides. Some 100 us, some milliseconds where a pull-off force was measured. On failure *plan is not to be used and
  * *problem (NULL allowed) names the field of scene, demand or probe, or what the demand would have to be: NT_E_RANGE
@@ -153,9 +165,9 @@ NT_API nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_pr
  * and does not read inputs->bank, nt_plan_decide chooses. Each fails as nt_plan_make. */
 NT_API nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
 NT_API nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
-/* Of a plan that was begun: 1 and the options of the bank that serves its contact at every radius of the surface, 0 if
- * none could be of use (a flat, or adhesion that is none or has no range). The range of lambda is that of the
- * radii, lambda ~ R^(1/3), and the indentation that of the largest load at the sharpest place, in decades with a
+/* Of a plan that was begun: 1 and the options of the bank that serves its contact at every place of the surface, 0 if
+ * none could be of use (a flat, or adhesion that is none or has no range). The range of lambda is that of all
+ * places, and the indentation that of the largest load at the sharpest place, in decades with a
  * factor of 1.5 to spare; twice as fine below a demand of 1e-4. */
 NT_API int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options);
 

@@ -106,13 +106,39 @@ NT_API nt_status nt_radius_map_init(nt_radius_map *map, const nt_surface *dilate
 /* Effective radius and its slope at a point; beyond the map as nt_surface_eval. NaN in, NaN out. Real-time safe. */
 NT_API NT_REALTIME nt_radius_value nt_radius_map_eval(const nt_radius_map *map, double x, double y);
 
-/* A place on the surface: all of the geometry that does not depend on the gap there. */
+/* --- What the sample is made of at each place (docs/surface.md) --- */
+
+/* Over the grid of a surface: cubic B-splines whose coefficients are the values at the pixels, as those of the radius
+ * map: C2, never outside their range. Immutable after nt_properties_init; the values stay the caller's. */
+typedef struct nt_properties {
+    nt_surface youngs_modulus;   /* E_s [Pa]; no coefficients: that of the scene everywhere */
+    nt_surface work_of_adhesion; /* w [J/m^2]; no coefficients: that of the scene everywhere */
+} nt_properties;
+
+/* A property at a point and its slope. */
+typedef struct nt_property_value {
+    double value;  /* 0: not given */
+    double dx, dy; /* per metre */
+} nt_property_value;
+
+/* From values at the pixels of `grid`, row-major as its heights; either may be NULL. youngs_modulus: 1e2 .. 1e13 Pa;
+ * work_of_adhesion: up to 10 J/m^2, nowhere below a thousandth of its largest value. NT_E_NOT_FINITE, NT_E_RANGE with
+ * "surface.youngs_modulus" or "surface.work_of_adhesion" in *problem (NULL allowed); NT_E_ARGUMENT for a flat, which
+ * has no pixels. */
+NT_API nt_status nt_properties_init(nt_properties *properties, const nt_surface *grid, const double *youngs_modulus,
+                                    const double *work_of_adhesion, nt_problem *problem);
+
+/* A place on the surface: all that does not depend on the gap there. */
 typedef struct nt_place {
     nt_height_value surface;
-    nt_radius_value radius; /* effective radius of the contact there, and its slope */
+    nt_radius_value radius;             /* effective radius of the contact there, and its slope */
+    nt_property_value youngs_modulus;   /* E_s [Pa] */
+    nt_property_value work_of_adhesion; /* w [J/m^2] */
 } nt_place;
-/* Both at a point, at less than the cost of one after the other; `radii` is of this surface. NaN in, NaN out. */
-NT_API NT_REALTIME nt_place nt_surface_place(const nt_surface *surface, const nt_radius_map *radii, double x, double y);
+/* All at a point, at less than the cost of one after the other; `radii` (NULL: radius 0) and `properties` (NULL: none)
+ * are of this surface. NaN in, NaN out. */
+NT_API NT_REALTIME nt_place nt_surface_place(const nt_surface *surface, const nt_radius_map *radii,
+                                             const nt_properties *properties, double x, double y);
 
 /* Built-in samples. */
 

@@ -15,7 +15,7 @@
 #define ROOTS 4e-11    /* and of stiffness and radius, which go as a root there: 32 DBL_EPSILON over twice 1e-4 */
 
 /* The rows of `forms` whose words and cost depend on more than the form; before them those of nt_shape_kind. */
-enum { IN_PLACE_OF_SPHERE = 6, IN_PLACE_OF_BLUNTED, LOCAL_HERTZ, LOCAL_MAUGIS, OTHERS };
+enum { IN_PLACE_OF_SPHERE = 6, IN_PLACE_OF_BLUNTED, LOCAL_HERTZ, LOCAL_MAUGIS, MADE_HERTZ, MADE_SHAPE, MADE_MAUGIS, OTHERS };
 static const nt_term_form forms[] = {
     {NT_FORM_SHAPE, 3.0, "Hertz"},
     {NT_FORM_SHAPE, 55.0, "law of the sphere"},
@@ -27,6 +27,9 @@ static const nt_term_form forms[] = {
     [IN_PLACE_OF_BLUNTED] = {NT_FORM_PARABOLOID, 3.0, "Hertz in place of the blunted"},
     [LOCAL_HERTZ] = {NT_FORM_LOCAL, 6.0, "Hertz with the radius of each place"},
     [LOCAL_MAUGIS] = {NT_FORM_LOCAL, 55.0, "Maugis-Dugdale with the radius of each place"}, /* with dU/dR */
+    [MADE_HERTZ] = {NT_FORM_LOCAL, 7.0, "Hertz with radius and modulus of each place"},
+    [MADE_SHAPE] = {NT_FORM_LOCAL, 60.0, "law of the shape with the modulus of each place"},
+    [MADE_MAUGIS] = {NT_FORM_LOCAL, 60.0, "Maugis-Dugdale with radius, modulus and adhesion of each place"},
     [OTHERS] = {NT_FORM_SERIES, 4.0, "law of the sphere as a series"},
     {NT_FORM_JKR, 11.0, "JKR"},
     {NT_FORM_TABLE, 14.0, "Maugis-Dugdale table"},
@@ -36,6 +39,16 @@ static const nt_term_form forms[] = {
     {NT_FORM_LOCAL_EXACT, 1100.0, "Maugis-Dugdale, exact, with the radius of each place"},
 };
 enum { FORMS = sizeof forms / sizeof forms[0] };
+
+static int local_row(const nt_plan *plan)
+{
+    const int is_made = plan->properties != NULL;
+    if (plan->source != NT_ADHESION_NONE)
+        return is_made ? MADE_MAUGIS : LOCAL_MAUGIS;
+    if (plan->shape.kind != NT_SHAPE_PARABOLOID)
+        return MADE_SHAPE;
+    return is_made ? MADE_HERTZ : LOCAL_HERTZ;
+}
 
 /* Adhesion that cannot be felt is none: then the shape is Hertz' paraboloid. */
 static const nt_term_form *form_of(const void *law, nt_form form)
@@ -47,7 +60,7 @@ static const nt_term_form *form_of(const void *law, nt_form form)
     else if (form == NT_FORM_PARABOLOID)
         i = plan->shape.kind == NT_SHAPE_BLUNTED ? IN_PLACE_OF_BLUNTED : IN_PLACE_OF_SPHERE;
     else if (form == NT_FORM_LOCAL)
-        i = plan->source == NT_ADHESION_NONE ? LOCAL_HERTZ : LOCAL_MAUGIS;
+        i = local_row(plan);
     else
         while (i < FORMS - 1 && forms[i].form != form)
             ++i;
@@ -89,7 +102,7 @@ static double curved_contact(const nt_plan *plan, double more)
 
 static void offer_local(const nt_plan *plan, nt_plan_options *options, double more)
 {
-    if (!nt_plan_is_curved(plan))
+    if (!nt_plan_varies(plan))
         return;
     if (plan->source == NT_ADHESION_NONE) {
         offer(plan, options, NT_FORM_LOCAL, rounding(plan, more));
@@ -137,10 +150,12 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
 /* The largest gap at which there can be contact. */
 static double reach_of(const nt_plan *plan)
 {
-    const double reach = fmax(plan->capture_gap, plan->release_gap);
-    if (!nt_plan_is_curved(plan))
-        return reach;
-    return fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, plan->radii->maximum));
+    double reach = fmax(plan->capture_gap, plan->release_gap);
+    for (int corner = NT_CORNER_BLUNT; corner < NT_CORNERS && nt_plan_varies(plan); corner += 2) {
+        const nt_contact contact = nt_plan_contact_of_corner(plan, corner);
+        reach = fmax(reach, nt_plan_local_release_gap(plan, NT_FORM_LOCAL_EXACT, &contact));
+    }
+    return reach;
 }
 
 /* The largest attraction of all beside contact, at the gaps where there can be contact; all is held inside 0. */
@@ -158,7 +173,7 @@ static double more_stiffness_at(const nt_plan *plan, double gap)
 {
     const double T = NT_SAMPLED * nt_plan_largest_ratio(plan) * fabs(nt_plan_beside_at(plan, gap).k), S = plan->scale;
     const nt_form full = nt_plan_contact_form(plan);
-    if (nt_plan_is_curved(plan))
+    if (nt_plan_varies(plan))
         return 1.0 + T / S;
     const double k = fabs(nt_plan_contact_eval(plan, full == NT_FORM_EXACT ? NT_FORM_POLISHED : full, -gap).k);
     return fmax(k, S) / fmax(k - T, S);
@@ -237,7 +252,9 @@ static void offer_all(nt_plan *plan, const nt_scene *scene, nt_plan_options *opt
     }
     plan->terms[NT_PLAN_CONTACT].force = scene->range.maximum_load;
     plan->curvature_error = curved_contact(plan, more) + curved_laws(plan, beside);
-    if (full == NT_FORM_EXACT)
+    if (plan->properties) /* they are there to be felt */
+        offer_local(plan, options, more);
+    else if (full == NT_FORM_EXACT)
         offer_maugis(plan, options, more);
     else if (full == NT_FORM_JKR)
         offer(plan, options, full, rounding(plan, more));
@@ -306,7 +323,7 @@ static nt_term_step advance(const void *law, void *state, const nt_place *place,
         return step;
     if (*attached != before) {
         const double where = *attached ? plan->capture_gap
-                                       : nt_plan_last_hold(nt_plan_release_gap(plan, nt_plan_radius_at(plan, place)));
+                                       : nt_plan_last_hold(nt_plan_release_gap(plan, place));
         const double U = nt_plan_contact_at(plan, place, where).law.U;
         step.dissipated = fmax(0.0, *attached ? -U : U);
     }
