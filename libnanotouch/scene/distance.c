@@ -127,7 +127,8 @@ double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 double nt_plan_away_from_folds(const nt_plan *plan)
 {
     const double longest = fmax(fabs(plan->release_gap), plan->length);
-    return plan->source == NT_ADHESION_NONE ? 0.0 : AWAY_FROM_FOLDS * longest * nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
+    return plan->source == NT_ADHESION_NONE ? 0.0
+                                            : AWAY_FROM_FOLDS * longest * nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
 }
 
 /* Stiffness and radius begin as roots of the distance to the fold or to first touch, which move with the radius: they

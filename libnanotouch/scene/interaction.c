@@ -121,15 +121,14 @@ nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interacti
     const vertical here = eval_at(plan, state, &place, gap);
     const nt_property_value *E = &place.youngs_modulus, *w = &place.work_of_adhesion;
     /* U(h, R, E_s, w) with h = z - z_s(x, y) and R(x, y), ..: F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx - .. */
-    nt_interaction_value value = {.U = here.law.U,
-                                  .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx -
-                                        here.dU_dE * E->dx - here.dU_dw * w->dx,
-                                  .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy -
-                                        here.dU_dE * E->dy - here.dU_dw * w->dy,
-                                  .Fz = here.law.F,
-                                  .k = here.law.k,
-                                  .a = here.law.a,
-                                  .gap = gap};
+    nt_interaction_value value = {
+        .U = here.law.U,
+        .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx - here.dU_dE * E->dx - here.dU_dw * w->dx,
+        .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy - here.dU_dE * E->dy - here.dU_dw * w->dy,
+        .Fz = here.law.F,
+        .k = here.law.k,
+        .a = here.law.a,
+        .gap = gap};
     return value;
 }
 

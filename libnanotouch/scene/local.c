@@ -104,8 +104,7 @@ double nt_plan_bank_shift(const nt_plan *plan)
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     if (form == NT_FORM_LOCAL_EXACT || plan->source == NT_ADHESION_NONE)
         return 0.0;
-    return bank_error(plan).fold_shift * plan->maugis.indentation_scale *
-           nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
+    return bank_error(plan).fold_shift * plan->maugis.indentation_scale * nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
 }
 
 double nt_plan_last_hold(double release_gap)
@@ -123,7 +122,6 @@ void nt_plan_local_facts(nt_plan *plan, double maximum_load)
     const double depth = nt_plan_local_depth(plan, form, &stiffest, maximum_load);
     plan->largest_pull_off_force *= ratio;
     plan->minimum_spring *= ratio;
-    plan->maximum_stiffness = 
-        fmax(plan->maximum_stiffness, nt_plan_local_eval(plan, form, &stiffest, depth).law.k);
+    plan->maximum_stiffness = fmax(plan->maximum_stiffness, nt_plan_local_eval(plan, form, &stiffest, depth).law.k);
     plan->bound.fold_shift = nt_plan_bank_shift(plan);
 }

@@ -95,10 +95,10 @@ static void burden_contact(const nt_plan *plan, nt_plan_options *options, double
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
         options->option[NT_PLAN_CONTACT][i].error += lost;
         if (plan->surface)
-            options->option[NT_PLAN_CONTACT][i].cost +=
-                !nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form) ? COST_HEIGHT
-                : plan->properties                                          ? COST_MADE
-                                                                            : COST_PLACE;
+            options->option[NT_PLAN_CONTACT][i].cost += !nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form)
+                                                            ? COST_HEIGHT
+                                                        : plan->properties ? COST_MADE
+                                                                           : COST_PLACE;
     }
 }
 

@@ -94,9 +94,8 @@ int nt_plan_varies(const nt_plan *plan)
 double nt_plan_largest_unit(const nt_plan *plan, nt_quantity quantity)
 {
     const double R = nt_plan_largest_ratio(plan), K = plan->most.effective_modulus / plan->contact.effective_modulus;
-    const double w = plan->contact.work_of_adhesion > 0.0
-                         ? plan->most.work_of_adhesion / plan->contact.work_of_adhesion
-                         : 1.0;
+    const double w =
+        plan->contact.work_of_adhesion > 0.0 ? plan->most.work_of_adhesion / plan->contact.work_of_adhesion : 1.0;
     switch (quantity) {
     case NT_QUANTITY_STIFFNESS:
         return cbrt(R * R * K * K * w);

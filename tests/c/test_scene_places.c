@@ -202,7 +202,8 @@ static void bounds_hold_at_every_place(void **state)
                 const nt_contact contact = truth_of(&scene, &place);
                 nt_maugis maugis;
                 assert_int_equal(nt_maugis_init(&maugis, &contact), NT_OK);
-                const double fold = has_adhesion(which) ? -maugis.folds.grip_indentation * maugis.indentation_scale : 0.0;
+                const double fold =
+                    has_adhesion(which) ? -maugis.folds.grip_indentation * maugis.indentation_scale : 0.0;
                 const double touch =
                     has_adhesion(which) ? -maugis.folds.touch_indentation * maugis.indentation_scale : 0.0;
                 const double gap = p.z - place.surface.z;

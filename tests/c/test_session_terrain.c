@@ -315,9 +315,12 @@ static void properties_of_something_else_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(is_what_python_composed),   cmocka_unit_test(three_ways_to_one_terrain),
-        cmocka_unit_test(plan_is_that_of_the_parts), cmocka_unit_test(no_bank_without_a_use),
-        cmocka_unit_test(bad_inputs_are_named),      cmocka_unit_test(radii_of_something_else_are_refused),
+        cmocka_unit_test(is_what_python_composed),
+        cmocka_unit_test(three_ways_to_one_terrain),
+        cmocka_unit_test(plan_is_that_of_the_parts),
+        cmocka_unit_test(no_bank_without_a_use),
+        cmocka_unit_test(bad_inputs_are_named),
+        cmocka_unit_test(radii_of_something_else_are_refused),
         cmocka_unit_test(properties_of_something_else_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -129,8 +129,10 @@ static void what_is_no_property_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(is_the_mean_of_its_pixels),       cmocka_unit_test(slopes_are_the_derivatives),
-        cmocka_unit_test(what_is_not_given_is_the_scenes), cmocka_unit_test(what_is_no_property_is_refused),
+        cmocka_unit_test(is_the_mean_of_its_pixels),
+        cmocka_unit_test(slopes_are_the_derivatives),
+        cmocka_unit_test(what_is_not_given_is_the_scenes),
+        cmocka_unit_test(what_is_no_property_is_refused),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

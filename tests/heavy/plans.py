@@ -48,7 +48,8 @@ class Row(NamedTuple):
 
 
 def measure(job: tuple[str, int]) -> Row:
-    """Plan, compare, and what came of it; over bumps for tips whose contact follows the radius of each place."""
+    """Plan, compare, and what came of it; over bumps for tips whose contact follows the radius of each place, and over
+    bumps that are made of something else at each place."""
     surface, seed = job
     rng = np.random.default_rng(seed)
     scene = (random_scenes.near_preset if seed % 2 else random_scenes.extreme)(rng)
@@ -58,15 +59,25 @@ def measure(job: tuple[str, int]) -> Row:
         outcome = random_scenes.compare(scene, demand, quantity)
     else:
         scene.tip.shape = "paraboloid"
-        outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed), demand, rng, quantity)
+        body = cycles.bumpy(scene, seed)
+        if surface == "made":
+            try:
+                body = cycles.made_of(scene, body, seed)
+            except Error as error:
+                return Row(surface, seed, quantity, _refused(error))
+        outcome = random_scenes.compare_over(scene, body, demand, rng, quantity)
     if isinstance(outcome, Error):
-        refusal = re.split(r"[ =:]", str(outcome).removeprefix("plan: "), maxsplit=1)[0]
-        return Row(surface, seed, quantity, refusal)
+        return Row(surface, seed, quantity, _refused(outcome))
     plan = outcome.plan
     if plan.explain()["yields"]:
         return Row(surface, seed, quantity, "yields, which has a sampler of its own")
     full = float(plan.explain()["full_cost"])
     return Row(surface, seed, quantity, "", outcome.error, plan.bound, demand, outcome.folds_hold, plan.cost, full)
+
+
+def _refused(error: Error) -> str:
+    """The field that a refusal names."""
+    return re.split(r"[ =:]", str(error).removeprefix("plan: "), maxsplit=1)[0]
 
 
 def report(rows: list[Row]) -> int:
@@ -127,8 +138,9 @@ def main() -> int:
     options = parser.parse_args()
     first = options.first
     failed = run("flat", range(first, first + options.scenes), options.jobs, options.rows)
-    print("over bumpy surfaces:")
-    failed += run("bumpy", range(first, first + options.surfaces), options.jobs, options.rows)
+    for surface in ("bumpy", "made"):
+        print(f"over {surface} surfaces:")
+        failed += run(surface, range(first, first + options.surfaces), options.jobs, options.rows)
     return failed > 0
 
 

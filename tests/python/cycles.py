@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from nanotouch import Interaction, Plan, Scene, Surface, Topography
 from nanotouch._arrays import Floats
 from nanotouch.interaction import step
+from numpy.typing import NDArray
 
 _AT, _WEIGHT = np.polynomial.legendre.leggauss(8)
 _AT, _WEIGHT = (_AT + 1.0) / 2.0, _WEIGHT / 2.0
@@ -56,6 +58,28 @@ def bumpy(scene: Scene, seed: int, pixels: int = 40) -> Surface:
     return Surface(Topography(heights, (0.25 * radius, 0.25 * radius)), radius, scene.tip.half_angle)
 
 
+def made_of(scene: Scene, body: Surface, seed: int, contrast: tuple[float, float] = (30.0, 10.0)) -> Surface:
+    """The same body, with a modulus and, where the scene holds, an adhesion that are the scene's and up to so many
+    times more: pixel by pixel, in two materials, or in waves."""
+    rng = np.random.default_rng(1000 + seed)
+    shape = body.topography.shape
+    y, x = np.mgrid[0 : shape[0], 0 : shape[1]]
+
+    def pattern() -> Floats:
+        phase, turn = rng.uniform(0.0, 2.0 * np.pi, 2)
+        wave = 0.5 + 0.5 * np.sin(phase + (x * np.cos(turn) + y * np.sin(turn)) * rng.uniform(0.2, 1.0))
+        kinds = (rng.random(shape), wave, (wave > 0.5).astype(float))
+        return np.asarray(kinds[int(rng.integers(3))])
+
+    stiff, sticky = (rng.uniform(1.0, most) ** pattern() for most in contrast)
+    given = {"youngs_modulus": np.clip(scene.sample.youngs_modulus * stiff, 1e2, 1e13)}
+    facts = scene.plan(rtol=0.0).explain()
+    if facts["adhesion_source"] != "none":
+        pulled = sum(-scene.plan(rtol=0.0).law(name, 0.0).F for name in ("vdw",)) / (2.0 * np.pi * scene.tip.radius)
+        given["work_of_adhesion"] = np.clip((facts["work_of_adhesion"] + max(pulled, 0.0)) * sticky, 0.0, 10.0)
+    return Surface(body.topography, body.tip_radius, body.tip_half_angle, **given)
+
+
 def without_radii(surface: Surface) -> Surface:
     """The same heights, their curvature not asked for."""
     return Surface(dataclasses.replace(surface.topography, heights=dilated(surface)))
@@ -75,11 +99,11 @@ def far_gap(plan: Plan) -> float:
     return float(10.0 * max(facts["release_gap"], facts["capture_gap"], 1e-10, 0.002 * facts["radius"]))
 
 
-def _breaks(plan: Plan, scene: Scene, release: Floats, deepest: float) -> Floats:
-    """Ends of the pieces (n, m), rising, from the deepest gap to far away, for release gaps (n,)."""
+def _breaks(plan: Plan, scene: Scene, release: Floats, touch: Floats, deepest: float) -> Floats:
+    """Ends of the pieces (n, m), rising, from the deepest gap to far away, for gaps of release and first touch (n,)."""
     facts = plan.explain()
     reach, ones = far_gap(plan), np.ones_like(release)
-    singular = [release]
+    singular = [release, touch]
     singular += [
         gap * ones
         for gap in (facts["capture_gap"], scene.adhesion.equilibrium_distance, 0.0, scene.medium.brush_thickness)
@@ -110,12 +134,22 @@ def _vertical(gaps: Floats, x: Floats, y: Floats, ground: Floats) -> Floats:
 
 def release_gaps(plan: Plan, poses: Floats) -> Floats:
     """Where a contact over each place lets go, by bisection of what ``step`` answers; ``poses`` on the surface."""
-    low, high = np.full(len(poses), -far_gap(plan)), np.full(len(poses), 1.5 * far_gap(plan))
     held = np.tile([1.0, 0.0, 0.0], (len(poses), 1))
+    return _last_gap(plan, poses, lambda there: step(plan, held, there)[0][:, 0] > 0)
+
+
+def touch_gaps(plan: Plan, poses: Floats) -> Floats:
+    """Where a contact over each place has no radius any more, by bisection."""
+    contact = Interaction(plan, "retract")
+    return _last_gap(plan, poses, lambda there: np.asarray(contact.eval(there).a > 0.0))
+
+
+def _last_gap(plan: Plan, poses: Floats, holds: Callable[[Floats], NDArray[np.bool_]]) -> Floats:
+    low, high = np.full(len(poses), -far_gap(plan)), np.full(len(poses), 1.5 * far_gap(plan))
     for _ in range(70):
         middle = 0.5 * (low + high)
-        after, _ = step(plan, held, poses + np.stack([0 * middle, 0 * middle, middle], axis=1))
-        low, high = np.where(after[:, 0] > 0, middle, low), np.where(after[:, 0] > 0, high, middle)
+        held = holds(poses + np.stack([0 * middle, 0 * middle, middle], axis=1))
+        low, high = np.where(held, middle, low), np.where(held, high, middle)
     return low
 
 
@@ -125,7 +159,7 @@ def random_walks(plan: Plan, scene: Scene, rng: np.random.Generator, count: int,
     far, deepest = far_gap(plan), -float(facts["largest_indentation"])
     near = max(facts["release_gap"], facts["capture_gap"], -deepest)
     zero = np.zeros(1)
-    ends = _breaks(plan, scene, np.array([facts["release_gap"]]), deepest)
+    ends = _breaks(plan, scene, np.array([facts["release_gap"]]), touch_gaps(plan, np.zeros((1, 3))), deepest)
     potential = {}
     for attached in (False, True):
         pieces = _line_work(plan, attached, _vertical(ends, zero, zero, zero))[0]
@@ -161,13 +195,15 @@ def random_walks(plan: Plan, scene: Scene, rng: np.random.Generator, count: int,
 
 
 def _across(plan: Plan, attached: bool, surface: Surface, corners: list[Floats]) -> Floats:
-    """Work (n,) along x, then y, over the surface: ``corners`` are rows x, y, gap; pieces end at the pixels."""
+    """Work (n,) along x, then y, over the surface: ``corners`` are rows x, y, gap; pieces end at the pixels, and go
+    on in parts where the properties change from one to the next."""
+    parts = 2 if surface.youngs_modulus is None else 16
     pixel = surface.topography.pixel_size[1]
     work = np.zeros(len(corners[0]))
     for a, b in itertools.pairwise(corners):
         along = 0 if np.any(a[:, 0] != b[:, 0]) else 1
         low, high = np.minimum(a[:, along], b[:, along]), np.maximum(a[:, along], b[:, along])
-        lines = np.floor(low / pixel)[:, None] + np.arange(1, 9) / 2.0
+        lines = np.floor(low / pixel)[:, None] + np.arange(1, 4 * parts + 1) / parts
         stops = np.concatenate(
             [low[:, None], np.clip(lines * pixel, low[:, None], high[:, None]), high[:, None]], axis=1
         )
@@ -199,7 +235,7 @@ def random_laps(plan: Plan, scene: Scene, surface: Surface, rng: np.random.Gener
     work = _across(plan, True, surface, in_contact) + _across(plan, False, surface, back)
     capture, release = np.full(count, facts["capture_gap"]), release_gaps(plan, on_b)
     for on, depth, fold, sign in ((on_a, depths[:, 0], capture, -1.0), (on_b, depths[:, 1], release, 1.0)):
-        ends = _breaks(plan, scene, fold, deepest)
+        ends = _breaks(plan, scene, fold, touch_gaps(plan, on), deepest)
         inside, outside = np.clip(ends, depth[:, None], fold[:, None]), np.maximum(ends, fold[:, None])
         work += sign * _line_work(plan, True, _vertical(inside, *on.T)).sum(axis=1)
         work += sign * _line_work(plan, False, _vertical(outside, *on.T)).sum(axis=1)

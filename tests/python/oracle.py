@@ -78,6 +78,18 @@ class Oracle:
             capture = min(2.0 * medium.film_thickness, reach)
         return Adhesion(float(work), reach, 0.0 if self.is_jkr else capture)
 
+    def over(self, modulus: float | None, work: float | None) -> Oracle:
+        """The same scene on a sample of another E [Pa], with another w [J/m2] over the same range."""
+        scene = self.scene.copy()
+        scene.sample.youngs_modulus = scene.sample.youngs_modulus if modulus is None else modulus
+        if work is not None:
+            scene.adhesion.given, scene.adhesion.work_of_adhesion = "work_of_adhesion", work
+        made = Oracle(scene)
+        if work is not None:
+            made.adhesion = made.adhesion._replace(work=work)
+            made.left = work - made.tail
+        return made
+
     # ---- contact ----
 
     def contact(self, radius: float | None = None) -> oracle_contact.Contact:

@@ -138,13 +138,32 @@ def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Genera
         plan = scene.plan(rtol, surface=body, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
         return refusal
-    truth, worst, hold = oracle_of(scene, plan), 0.0, True
+    worst, hold = 0.0, True
+    own = oracle_of(scene, plan) if body.work_of_adhesion is None else Oracle(scene)
     for _ in range(5):
         x, y = rng.uniform(0.1 * body.size[0], 0.8 * body.size[0], 2)
         place = Place(x, y, float(body.height(x, y)), float(body.radius_map.radius(x, y).radius))
+        modulus, work = (mean_at(pixels, body, x, y) for pixels in (body.youngs_modulus, body.work_of_adhesion))
+        truth = own if modulus is None and work is None else own.over(modulus, work)
         outcome = _compare_at(place, plan, truth, gaps_of(plan, scene, 12, truth.roots(place.radius)))
         worst, hold = float(np.maximum(worst, outcome.error)), hold and outcome.folds_hold
     return Outcome(plan, worst, hold)
+
+
+def mean_at(pixels: Floats | None, body: Surface, x: float, y: float) -> float | None:
+    """A property at a place: the mean of its pixels by the weights of the cubic B-spline; None where not given."""
+    if pixels is None:
+        return None
+    dy, dx = body.topography.pixel_size
+    weights = (_spline(place / pixel - np.arange(count)) for place, pixel, count in
+               zip((y, x), (dy, dx), pixels.shape, strict=True))  # fmt: skip
+    return float(next(weights) @ pixels @ next(weights))
+
+
+def _spline(u: Floats) -> Floats:
+    """B(u) of Unser (1999), 0 from two pixels on."""
+    a = np.abs(u)
+    return np.where(a < 1.0, 2.0 / 3.0 - a**2 + a**3 / 2.0, np.clip(2.0 - a, 0.0, None) ** 3 / 6.0)
 
 
 class Place(NamedTuple):

@@ -119,6 +119,10 @@ class RadiusMap:
     @property
     def limited(self) -> int: ...
 
+class Properties:
+    def __init__(self, surface: Surface, youngs_modulus: Floats | None, work_of_adhesion: Floats | None) -> None: ...
+    def at(self, surface: Surface, x: Floats, y: Floats) -> tuple[Floats, Floats]: ...
+
 def dilate(heights: Floats, dy: float, dx: float, radius: float, half_angle: float, /) -> Floats: ...
 def grating(
     ny: int, nx: int, dy: float, dx: float, period: float, height: float, duty: float, offset: float, /
@@ -160,7 +164,13 @@ def jury_limit(rig: Rig, period: float, /) -> float: ...
 
 class Terrain:
     def __init__(
-        self, scene: Scene, demand: Demand, rig: Rig | None, surface: Surface | None, radii: RadiusMap | None
+        self,
+        scene: Scene,
+        demand: Demand,
+        rig: Rig | None,
+        surface: Surface | None,
+        radii: RadiusMap | None,
+        properties: Properties | None,
     ) -> None: ...
     @property
     def plan(self) -> Plan: ...

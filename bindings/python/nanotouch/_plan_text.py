@@ -27,6 +27,7 @@ def text_of(facts: dict[str, Any]) -> str:
     lines += _yielding(facts)
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
+    lines += _properties(facts)
     lines.append(_total(facts))
     lines.append(_numbers(contact, facts))
     if facts["probe_noise"] > 0.0:
@@ -97,6 +98,26 @@ def _surface(contact: Term, facts: dict[str, Any]) -> str:
     if contact.form.startswith("local"):
         return f"surface: curved, effective radius {radii}; the tip's own {own} everywhere would err by {error}"
     return f"surface: curvature left out, the tip's own {own} in place of {radii}, which errs by {error}"
+
+
+def _properties(facts: dict[str, Any]) -> list[str]:
+    """What the surface is made of."""
+    words = {"youngs_modulus": ("Young's modulus", "Pa"), "work_of_adhesion": ("w", "J/m2")}
+    ranges = [
+        f"{words[name][0]} {in_words(least, words[name][1])} to {in_words(largest, words[name][1])}"
+        for name, (least, largest) in facts["properties"].items()
+    ]
+    if not ranges:
+        return []
+    least = " and ".join(
+        word for name, word in (("youngs_modulus", "softest"), ("work_of_adhesion", "least adhesive"))
+        if name in facts["properties"]
+    )  # fmt: skip
+    pull = f", pull-off up to {in_words(facts['largest_pull_off_force'], 'N')}" if _holds(facts) else ""
+    return [
+        f"surface: made of something else at each place, {', '.join(ranges)}{pull}; numbers of the contact are those "
+        f"of the {least} place"
+    ]
 
 
 def _total(facts: dict[str, Any]) -> str:

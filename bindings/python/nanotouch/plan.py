@@ -210,14 +210,8 @@ def terrain_of(scene: Scene, surface: Surface | None, accuracy: float = 0.01) ->
 def make_terrain(scene: Scene, demand: Demand, probe: Rig | None, surface: Surface | None) -> _core.Terrain:
     """Surface, effective radii, bank of tables and plan of a scene, each made once (docs/surface.md). A surface that no
     tip has dilated has no radii."""
-    dilated = surface is not None and surface.tip_radius is not None
-    return _core.Terrain(
-        scene.core,
-        demand.core,
-        None if probe is None else probe.core,
-        None if surface is None else surface.core,
-        surface.radius_map.core if surface is not None and dilated else None,
-    )
+    parts = (None, None, None) if surface is None else surface.parts
+    return _core.Terrain(scene.core, demand.core, None if probe is None else probe.core, *parts)
 
 
 class Reach(NamedTuple):

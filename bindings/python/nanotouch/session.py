@@ -98,12 +98,11 @@ class Session:
         self._scales = [wanted.gains.alpha_p, wanted.gains.alpha_f]
         self._mode: Mode = mode  # that it is in now
         faults = options.get("faults")
-        dilated = surface is not None and surface.tip_radius is not None
+        parts = (None, None, None) if surface is None else surface.parts
         with self.scene.naming_terms():
             self.core = _core.Session(
                 self.scene.core, self.rig.core, wanted.core, {
-                    "surface": None if surface is None else surface.core,
-                    "radii": surface.radius_map.core if surface is not None and dilated else None,
+                    **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
                     "minimum_margin": self.minimum_margin, "relative_accuracy": options.get("rtol", 0.01),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import as_floats, check_between, plain
+from nanotouch._arrays import Floats, as_floats, check_between, plain
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
@@ -28,25 +28,58 @@ class Surface:
     tip_radius : float, optional
         R of the tip [m]; with ``tip_half_angle`` [rad] the heights are dilated by the tip (sphere into cone). Without
         it the heights are taken as they are.
+    youngs_modulus, work_of_adhesion : ndarray (ny, nx), optional
+        E of the sample [Pa] and w [J/m^2] at each pixel, in place of the scene's, from a force map
+        (:func:`nanotouch.maps.to_surface`) or drawn. Between the pixels they are as smooth as the heights and never
+        outside their range; w is nowhere below a thousandth of its largest value.
     """
 
-    def __init__(self, topography: Topography, tip_radius: float | None = None, tip_half_angle: float = 0.3) -> None:
+    def __init__(
+        self,
+        topography: Topography,
+        tip_radius: float | None = None,
+        tip_half_angle: float = 0.3,
+        *,
+        youngs_modulus: ArrayLike | None = None,
+        work_of_adhesion: ArrayLike | None = None,
+    ) -> None:
         dy, dx = topography.pixel_size
-        heights = np.pad(topography.heights, ((0, 1), (0, 1)), mode="edge")
+        heights = _wider(topography.heights)
         if tip_radius is not None:
             heights = _core.dilate(heights, dy, dx, tip_radius, tip_half_angle)
         self.topography = topography
         self.tip_radius = tip_radius
         self.tip_half_angle = tip_half_angle
         self.core = _core.Surface(heights, dy, dx, overwrite=True)  # `heights` is nobody else's
+        self.youngs_modulus = _property("youngs_modulus", "Pa", youngs_modulus, topography)
+        self.work_of_adhesion = _property("work_of_adhesion", "J/m^2", work_of_adhesion, topography)
+        given = [None if one is None else _wider(one) for one in (self.youngs_modulus, self.work_of_adhesion)]
+        is_made = any(one is not None for one in given)
+        self._properties = _core.Properties(self.core, *given) if is_made else None
 
     @classmethod
-    def touched_by(cls, scene: Scene, topography: Topography) -> Surface:
-        """Dilated by the tip of a scene, as a session or a plan of that scene needs it."""
-        return cls(topography, scene.tip.radius, scene.tip.half_angle)
+    def touched_by(cls, scene: Scene, topography: Topography, **properties: ArrayLike) -> Surface:
+        """Dilated by the tip of a scene, as a session or a plan of that scene needs it; ``properties`` as of a
+        Surface."""
+        return cls(topography, scene.tip.radius, scene.tip.half_angle, **properties)
 
     def __reduce__(self) -> Any:
-        return type(self), (self.topography, self.tip_radius, self.tip_half_angle)
+        made_of = self.topography, self.tip_radius, self.tip_half_angle, self.youngs_modulus, self.work_of_adhesion
+        return _again, made_of
+
+    @property
+    def parts(self) -> tuple[_core.Surface, _core.RadiusMap | None, _core.Properties | None]:
+        """What a plan or a session borrows: heights, effective radii (where a tip has dilated them), properties."""
+        return self.core, None if self.tip_radius is None else self.radius_map.core, self._properties
+
+    def properties(self, x: ArrayLike, y: ArrayLike) -> Properties:
+        """What the sample is made of over (x, y) [m], broadcast."""
+        xs, ys = np.broadcast_arrays(as_floats(x, "x"), as_floats(y, "y"))
+        if self._properties is None:
+            return Properties(None, None)
+        columns = self._properties.at(self.core, np.array(xs, order="C"), np.array(ys, order="C"))
+        given = (self.youngs_modulus, self.work_of_adhesion)
+        return Properties(*(None if of is None else plain(one) for of, one in zip(given, columns, strict=True)))
 
     @property
     def size(self) -> tuple[float, float]:
@@ -63,6 +96,15 @@ class Surface:
     def radius_map(self) -> RadiusMap:
         """Effective radius of the contact over the surface, made at first use."""
         return RadiusMap(self)
+
+
+class Properties(NamedTuple):
+    """What a sample is made of; arrays of the broadcast shape, or floats; None where it is as the scene says."""
+
+    youngs_modulus: Any
+    """E of the sample [Pa]"""
+    work_of_adhesion: Any
+    """w [J/m^2]"""
 
 
 class Radii(NamedTuple):
@@ -138,6 +180,42 @@ def flat(size: float = 6e-6, pixels: int = 64) -> Topography:
     """A flat at z = 0."""
     pixel = _pixel(size, pixels)
     return Topography(heights=np.zeros((pixels, pixels)), pixel_size=(pixel, pixel), name="flat")
+
+
+def _wider(pixels: Floats) -> Floats:
+    """With the last row and column once more: the extent is N pixels."""
+    return np.pad(pixels, ((0, 1), (0, 1)), mode="edge")
+
+
+def _property(name: str, unit: str, given: ArrayLike | None, topography: Topography) -> Floats | None:
+    """One number for each height, read-only; numbers that are none are refused with their place."""
+    if given is None:
+        return None
+    values = as_floats(given, name)
+    if values.shape != topography.shape:
+        raise InvalidValue(f"{name}: shape {values.shape}, expected that of the heights, {topography.shape}")
+    wrong = ~(values > 0.0) | ~np.isfinite(values)
+    if wrong.any():
+        row, column = (int(i) for i in np.argwhere(wrong)[0])
+        raise InvalidValue(
+            f"{name}[{row}, {column}] = {values[row, column]:g} {unit}: it must be above 0 at each place "
+            f"({int(wrong.sum())} of {wrong.size} are not)"
+        )
+    values = values.copy()
+    values.flags.writeable = False
+    return values
+
+
+def _again(
+    topography: Topography,
+    tip_radius: float | None,
+    tip_half_angle: float,
+    youngs_modulus: Floats | None,
+    work_of_adhesion: Floats | None,
+) -> Surface:
+    return Surface(
+        topography, tip_radius, tip_half_angle, youngs_modulus=youngs_modulus, work_of_adhesion=work_of_adhesion
+    )
 
 
 def _pixel(size: float, pixels: int) -> float:

@@ -24,6 +24,20 @@ static py::list warnings_of(const nt_plan &plan)
     return warnings;
 }
 
+// {name: (least, largest)} of what the surface is made of
+static py::dict properties_of(const nt_plan &plan)
+{
+    py::dict out;
+    if (!plan.properties)
+        return out;
+    const nt_surface &modulus = plan.properties->youngs_modulus, &work = plan.properties->work_of_adhesion;
+    if (modulus.coefficients)
+        out["youngs_modulus"] = py::make_tuple(modulus.height_minimum, modulus.height_maximum);
+    if (work.coefficients)
+        out["work_of_adhesion"] = py::make_tuple(work.height_minimum, work.height_maximum);
+    return out;
+}
+
 static void add_numbers(const nt_plan &plan, py::dict &out)
 {
     out["bound"] = plan.bound.force_error;
@@ -56,6 +70,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["least_radius"] = plan.radii ? plan.radii->minimum : plan.contact.radius;
     out["largest_radius"] = plan.radii ? plan.radii->maximum : plan.contact.radius;
     out["curvature_error"] = plan.curvature_error;
+    out["properties"] = properties_of(plan);
 }
 
 static py::dict as_dict(const nt_plan &plan)

@@ -34,6 +34,8 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     made->radii = options["radii"].cast<std::shared_ptr<RadiusMap>>();
     setup.surface = made->surface ? &made->surface->surface : nullptr;
     setup.radii = made->radii ? &made->radii->map : nullptr;
+    made->properties = options["properties"].cast<std::shared_ptr<Properties>>();
+    setup.properties = made->properties ? &made->properties->properties : nullptr;
     const Array path = options["path"].cast<Array>();
     setup.path = path.data();
     setup.path_count = path.shape(0);

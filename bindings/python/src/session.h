@@ -12,6 +12,7 @@ struct Session {
     nt_session *handle = nullptr;
     std::shared_ptr<Surface> surface; // these outlive the handle, as the law does
     std::shared_ptr<RadiusMap> radii;
+    std::shared_ptr<Properties> properties;
     OwnLaw law;
     std::shared_ptr<Half> master, slave;             // null: simulated
     std::unique_ptr<Described<nt_settings>> amounts; // what the law amounts to, where that is known

@@ -2,6 +2,8 @@
 // surface.h
 #include "surface.h"
 
+#include <optional>
+
 static nt_height_map map_of(const Array &heights, double dy, double dx)
 {
     if (heights.ndim() != 2)
@@ -98,6 +100,47 @@ static py::tuple radii_at(const RadiusMap &self, const Array &x, const Array &y)
     return py::make_tuple(radius, dx, dy);
 }
 
+static std::shared_ptr<Properties> make_properties(const Surface &surface, const std::optional<Array> &youngs_modulus,
+                                                   const std::optional<Array> &work_of_adhesion)
+{
+    auto made = std::make_shared<Properties>();
+    const std::optional<Array> *given[2] = {&youngs_modulus, &work_of_adhesion};
+    const double *values[2] = {nullptr, nullptr};
+    for (int i = 0; i < 2; ++i)
+        if (*given[i]) {
+            const Array &array = **given[i];
+            if (array.ndim() != 2 || array.shape(0) != surface.surface.ny || array.shape(1) != surface.surface.nx)
+                throw py::value_error("properties must have the shape of the surface");
+            made->values[i] = array;
+            values[i] = array.data();
+        }
+    nt_problem problem{};
+    raise_on(nt_properties_init(&made->properties, &surface.surface, values[0], values[1], &problem), problem,
+             "surface");
+    return made;
+}
+
+// {E_s, w}, 0 where there is none
+static py::tuple properties_at(const Properties &self, const Surface &surface, const Array &x, const Array &y)
+{
+    if (x.size() != y.size())
+        throw py::value_error("x and y must have the same shape");
+    const std::vector<py::ssize_t> shape(x.shape(), x.shape() + x.ndim());
+    py::array_t<double> modulus(shape), work(shape);
+    double *out[2] = {modulus.mutable_data(), work.mutable_data()};
+    const double *xs = x.data(), *ys = y.data();
+    const py::ssize_t count = x.size();
+    {
+        py::gil_scoped_release release;
+        for (py::ssize_t i = 0; i < count; ++i) {
+            const nt_place place = nt_surface_place(&surface.surface, nullptr, &self.properties, xs[i], ys[i]);
+            out[0][i] = place.youngs_modulus.value;
+            out[1][i] = place.work_of_adhesion.value;
+        }
+    }
+    return py::make_tuple(modulus, work);
+}
+
 static py::array_t<double> sample(double (*height)(const void *, double, double), const void *what, long ny, long nx,
                                   double dy, double dx)
 {
@@ -121,6 +164,9 @@ void bind_surface(py::module_ &module)
         .def_property_readonly("minimum", [](const RadiusMap &self) { return self.map.minimum; })
         .def_property_readonly("maximum", [](const RadiusMap &self) { return self.map.maximum; })
         .def_property_readonly("limited", [](const RadiusMap &self) { return self.map.limited; });
+    py::class_<Properties, std::shared_ptr<Properties>>(module, "Properties")
+        .def(py::init(&make_properties), py::arg("surface"), py::arg("youngs_modulus"), py::arg("work_of_adhesion"))
+        .def("at", &properties_at, py::arg("surface"), py::arg("x"), py::arg("y"));
     module.def("dilate", &dilate);
     module.def("grating",
                [](long ny, long nx, double dy, double dx, double period, double height, double duty, double offset) {

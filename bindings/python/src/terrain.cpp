@@ -9,7 +9,7 @@
 
 static std::unique_ptr<Terrain> make(const Described<nt_scene> &scene, const Described<nt_demand> &demand,
                                      const Described<nt_rig> *rig, std::shared_ptr<Surface> surface,
-                                     std::shared_ptr<RadiusMap> radii)
+                                     std::shared_ptr<RadiusMap> radii, std::shared_ptr<Properties> properties)
 {
     nt_terrain_setup setup = nt_terrain_defaults();
     setup.scene = scene.value;
@@ -17,6 +17,7 @@ static std::unique_ptr<Terrain> make(const Described<nt_scene> &scene, const Des
     setup.probe = rig ? &rig->value.probe : nullptr;
     setup.surface = surface ? &surface->surface : nullptr;
     setup.radii = radii ? &radii->map : nullptr;
+    setup.properties = properties ? &properties->properties : nullptr;
     nt_terrain *made = nullptr;
     nt_problem problem{};
     nt_status status;
@@ -26,7 +27,8 @@ static std::unique_ptr<Terrain> make(const Described<nt_scene> &scene, const Des
     }
     raise_on(status, problem, "plan");
     auto terrain = std::make_unique<Terrain>();
-    *terrain = {std::move(surface), std::move(radii), std::shared_ptr<nt_terrain>(made, nt_terrain_close)};
+    *terrain = {std::move(surface), std::move(radii), std::move(properties),
+                std::shared_ptr<nt_terrain>(made, nt_terrain_close)};
     return terrain;
 }
 
@@ -81,7 +83,8 @@ static py::tuple reach_area(const Terrain &self, double x, double y,
 void bind_terrain(py::module_ &module)
 {
     py::class_<Terrain>(module, "Terrain")
-        .def(py::init(&make), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("surface"), py::arg("radii"))
+        .def(py::init(&make), py::arg("scene"), py::arg("demand"), py::arg("rig"), py::arg("surface"), py::arg("radii"),
+             py::arg("properties"))
         .def_property_readonly("plan", py::cpp_function(&plan_of, py::keep_alive<0, 1>())) // it borrows all the rest
         .def("reach_path", &reach_path, py::arg("points"))
         .def("reach_area", &reach_area, py::arg("x"), py::arg("y"), py::arg("rectangle") = py::none());

@@ -126,19 +126,19 @@ typedef struct nt_plan {
     double length;                 /* the shortest distance over which the force changes its shape [m] */
     nt_contact_validity validity;  /* of the contact law at the largest load */
 
-    const nt_surface *surface;  /* dilated surface, borrowed; NULL: flat at z = 0 */
-    const nt_radius_map *radii; /* borrowed; NULL: the tip's own radius everywhere */
-    const nt_maugis_bank *bank; /* borrowed; NULL: none */
+    const nt_surface *surface;       /* dilated surface, borrowed; NULL: flat at z = 0 */
+    const nt_radius_map *radii;      /* borrowed; NULL: the tip's own radius everywhere */
+    const nt_maugis_bank *bank;      /* borrowed; NULL: none */
     const nt_properties *properties; /* borrowed; NULL: those of the scene everywhere */
     nt_contact least, most;          /* of each of R, E* and w over the surface; one range of adhesion */
     double tip_compliance;           /* (1 - nu_t^2)/E_t [1/Pa] */
     double sample_factor;            /* 1 - nu_s^2: 1/E* = tip_compliance + sample_factor/E_s [-] */
     double tail;                     /* what the tails pull of w at each place (E5b) [J/m^2] */
     int corner;                      /* while it is made: NT_CORNER_* of the surface at which `contact` is */
-    nt_yield_table yield;       /* of a sample that yields to forces beside contact */
-    double elastic_number;      /* e of the terms beside contact, the largest in the range [-] */
-    double rigid_error;         /* of adding them on the undeformed gap, in the norm of the demand [-] */
-    double curvature_error;     /* of leaving the curvature of the surface out, in the norm of the demand [-] */
+    nt_yield_table yield;            /* of a sample that yields to forces beside contact */
+    double elastic_number;           /* e of the terms beside contact, the largest in the range [-] */
+    double rigid_error;              /* of adding them on the undeformed gap, in the norm of the demand [-] */
+    double curvature_error;          /* of leaving the curvature of the surface out, in the norm of the demand [-] */
 } nt_plan;
 
 /* What a plan is made from. */

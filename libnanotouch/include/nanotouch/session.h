@@ -25,13 +25,13 @@ typedef struct nt_session_setup {
     nt_demand demand;
     nt_settings settings;
     nt_mode mode;
-    nt_height_map map;          /* heights, read by nt_session_open only; map.heights NULL: none */
-    int dilated;                /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
-    const nt_surface *surface;  /* dilated by this tip; NULL: flat at z = 0, or the map */
-    const nt_radius_map *radii; /* of `surface`; NULL: its curvature is not felt */
+    nt_height_map map;               /* heights, read by nt_session_open only; map.heights NULL: none */
+    int dilated;                     /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
+    const nt_surface *surface;       /* dilated by this tip; NULL: flat at z = 0, or the map */
+    const nt_radius_map *radii;      /* of `surface`; NULL: its curvature is not felt */
     const nt_properties *properties; /* on the grid of `surface` or `map`; NULL: the scene's everywhere */
-    double x, y;                /* where it starts [m] */
-    const double *path;         /* path_count points (x, y) that the tip will follow [m]; NULL: it may go anywhere */
+    double x, y;                     /* where it starts [m] */
+    const double *path; /* path_count points (x, y) that the tip will follow [m]; NULL: it may go anywhere */
     long path_count;
     double clearance; /* L, height of the tip above the surface at the start [m] */
     double rise; /* how far the master shall be able to draw back from a rising surface [m]; NaN: what is reached */
@@ -142,8 +142,8 @@ NT_API nt_status nt_session_clutch(nt_session *session, int open);
 /* Changes one field of nt_settings_fields (NT_EVENT_SETTING) or nt_scene_fields (NT_EVENT_SCENE), by its name. Plan,
  * bank, margins and guarantee are made anew outside the loop, which runs on meanwhile, and take the place of the old
  * ones at once. NT_E_ARGUMENT for a name that there is not, or that cannot change while open ("gains.rate",
- * "gains.delay", "gains.alpha_p", "gains.alpha_f": rescale; "tip.radius", "tip.half_angle" over a surface; what a surface with properties gives at each place); else
- * as nt_session_open. The cantilever's model stays. */
+ * "gains.delay", "gains.alpha_p", "gains.alpha_f": rescale; "tip.radius", "tip.half_angle" over a surface; what a
+ * surface with properties gives at each place); else as nt_session_open. The cantilever's model stays. */
 NT_API nt_status nt_session_change(nt_session *session, nt_event_kind kind, const char *field, double value,
                                    nt_problem *problem);
 /* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED

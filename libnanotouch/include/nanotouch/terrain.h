@@ -15,21 +15,21 @@ typedef struct nt_terrain nt_terrain;
 
 /* What a terrain is made of: heights, or a surface that is there already, or neither for a flat at z = 0. */
 typedef struct nt_terrain_setup {
-    nt_scene scene;             /* its tip (tip.radius, tip.half_angle) is the one that touches */
-    nt_demand demand;           /* of the plan; the bank is as fine as it asks */
-    const nt_probe *probe;      /* only adds probe_noise, which the plan tells; NULL: none */
-    nt_height_map map;          /* heights, read by nt_terrain_make only; map.heights NULL: none */
-    int dilated;                /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
-    const nt_surface *surface;  /* dilated by this tip, borrowed until nt_terrain_close; NULL: none */
-    const nt_radius_map *radii; /* of `surface`, borrowed; NULL: its curvature is not felt */
+    nt_scene scene;                  /* its tip (tip.radius, tip.half_angle) is the one that touches */
+    nt_demand demand;                /* of the plan; the bank is as fine as it asks */
+    const nt_probe *probe;           /* only adds probe_noise, which the plan tells; NULL: none */
+    nt_height_map map;               /* heights, read by nt_terrain_make only; map.heights NULL: none */
+    int dilated;                     /* of the map; 0: heights of the body, 1: of the apex of this tip at first touch */
+    const nt_surface *surface;       /* dilated by this tip, borrowed until nt_terrain_close; NULL: none */
+    const nt_radius_map *radii;      /* of `surface`, borrowed; NULL: its curvature is not felt */
     const nt_properties *properties; /* on the grid of `surface` or `map`, borrowed; NULL: the scene's everywhere */
 } nt_terrain_setup;
 /* The paper's scene, 1 % of the force, no probe, a flat at z = 0. */
 NT_API nt_terrain_setup nt_terrain_defaults(void);
 
 /* Makes surface, radii (nt_radius_limits_defaults), bank and plan, in this order, each once: 0.5 to 1 s at 1024 x 1024
- * pixels, most of it dilation. On failure *problem (NULL allowed) names the field of scene, demand, probe, map, surface,
- * radii or properties with its valid range; NT_E_ARGUMENT for a map beside a surface, or radii without one; as
+ * pixels, most of it dilation. On failure *problem (NULL allowed) names the field of scene, demand, probe, map,
+ * surface, radii or properties with its valid range; NT_E_ARGUMENT for a map beside a surface, or radii without one; as
  * nt_plan_make for a demand that cannot be kept; NT_E_NO_MEMORY. The terrain belongs to the caller: nt_terrain_close.
  * Uses the heap; not real-time. Immutable afterwards, may be shared by threads. */
 NT_API nt_status nt_terrain_make(nt_terrain **terrain, const nt_terrain_setup *setup, nt_problem *problem);

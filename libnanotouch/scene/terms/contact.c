@@ -15,7 +15,16 @@
 #define ROOTS 4e-11    /* and of stiffness and radius, which go as a root there: 32 DBL_EPSILON over twice 1e-4 */
 
 /* The rows of `forms` whose words and cost depend on more than the form; before them those of nt_shape_kind. */
-enum { IN_PLACE_OF_SPHERE = 6, IN_PLACE_OF_BLUNTED, LOCAL_HERTZ, LOCAL_MAUGIS, MADE_HERTZ, MADE_SHAPE, MADE_MAUGIS, OTHERS };
+enum {
+    IN_PLACE_OF_SPHERE = 6,
+    IN_PLACE_OF_BLUNTED,
+    LOCAL_HERTZ,
+    LOCAL_MAUGIS,
+    MADE_HERTZ,
+    MADE_SHAPE,
+    MADE_MAUGIS,
+    OTHERS
+};
 static const nt_term_form forms[] = {
     {NT_FORM_SHAPE, 3.0, "Hertz"},
     {NT_FORM_SHAPE, 55.0, "law of the sphere"},
@@ -322,8 +331,7 @@ static nt_term_step advance(const void *law, void *state, const nt_place *place,
     if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF)
         return step;
     if (*attached != before) {
-        const double where = *attached ? plan->capture_gap
-                                       : nt_plan_last_hold(nt_plan_release_gap(plan, place));
+        const double where = *attached ? plan->capture_gap : nt_plan_last_hold(nt_plan_release_gap(plan, place));
         const double U = nt_plan_contact_at(plan, place, where).law.U;
         step.dissipated = fmax(0.0, *attached ? -U : U);
     }
