@@ -21,9 +21,8 @@ static void add(nt_law_value *sum, nt_law_value term)
 nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
 {
     if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form)) {
-        const nt_radius_map *radii = nt_plan_has_local_form(plan) ? plan->radii : NULL;
-        nt_place found = nt_surface_place(plan->surface, radii, plan->properties, x, y);
-        if (!radii)
+        nt_place found = nt_surface_place(plan->surface, plan->followed, plan->properties, x, y);
+        if (!plan->followed)
             found.radius.radius = plan->contact.radius;
         return found;
     }
@@ -119,16 +118,18 @@ nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interacti
     const nt_place place = nt_interaction_place(plan, pose->x, pose->y);
     const double gap = pose->z - place.surface.z;
     const vertical here = eval_at(plan, state, &place, gap);
-    const nt_property_value *E = &place.youngs_modulus, *w = &place.work_of_adhesion;
     /* U(h, R, E_s, w) with h = z - z_s(x, y) and R(x, y), ..: F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx - .. */
-    nt_interaction_value value = {
-        .U = here.law.U,
-        .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx - here.dU_dE * E->dx - here.dU_dw * w->dx,
-        .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy - here.dU_dE * E->dy - here.dU_dw * w->dy,
-        .Fz = here.law.F,
-        .k = here.law.k,
-        .a = here.law.a,
-        .gap = gap};
+    nt_interaction_value value = {.U = here.law.U,
+                                  .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx,
+                                  .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy,
+                                  .Fz = here.law.F,
+                                  .k = here.law.k,
+                                  .a = here.law.a,
+                                  .gap = gap};
+    if (plan->properties) {
+        value.Fx -= here.dU_dE * place.youngs_modulus.dx + here.dU_dw * place.work_of_adhesion.dx;
+        value.Fy -= here.dU_dE * place.youngs_modulus.dy + here.dU_dw * place.work_of_adhesion.dy;
+    }
     return value;
 }
 

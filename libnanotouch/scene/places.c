@@ -157,7 +157,8 @@ static void find_ranges(nt_plan *plan, const nt_contact *most)
 {
     plan->least = plan->contact;
     plan->most = *most;
-    if (plan->radii && nt_plan_has_local_form(plan)) {
+    plan->followed = nt_plan_has_local_form(plan) ? plan->radii : NULL;
+    if (plan->followed) {
         plan->least.radius = plan->radii->minimum;
         plan->most.radius = plan->radii->maximum;
     }

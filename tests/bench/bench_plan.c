@@ -121,6 +121,13 @@ static nt_law_value on_surface(double gap)
     return (nt_law_value){v.U, v.Fz, v.k, v.Fx};
 }
 
+/* With a radius that changes with the gap. */
+static nt_law_value local_at(nt_form form, double gap)
+{
+    const nt_contact contact = nt_plan_contact_of_radius(&plan, (20.0 + 1e9 * gap) * 1e-9);
+    return nt_plan_local_eval(&plan, form, &contact, -gap).law;
+}
+
 /* Bank, radius map and surface of a wavy map. */
 static nt_status report_local(const nt_scene *scene)
 {
@@ -149,12 +156,11 @@ static nt_status report_local(const nt_scene *scene)
     status = nt_plan_make(&plan, &inputs, NULL);
     if (status != NT_OK)
         return status;
-    report("local", MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
-    report("local exact", MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL_EXACT, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
+    report("local", MEASURE(local_at(NT_FORM_LOCAL, gap)));
+    report("local exact", MEASURE(local_at(NT_FORM_LOCAL_EXACT, gap)));
     const nt_adhesion_source source = plan.source;
     plan.source = NT_ADHESION_NONE;
-    report("local, without adhesion",
-           MEASURE(nt_plan_local_eval(&plan, NT_FORM_LOCAL, (20.0 + 1e9 * gap) * 1e-9, -gap).law));
+    report("local, without adhesion", MEASURE(local_at(NT_FORM_LOCAL, gap)));
     plan.source = source;
     report("whole evaluation on a surface", MEASURE(on_surface(gap)));
     return NT_OK;

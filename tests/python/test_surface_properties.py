@@ -108,6 +108,22 @@ def test_a_session_feels_what_is_under_the_tip() -> None:
     assert pulls[0] > 2.0 * pulls[1]
 
 
+def test_a_scan_over_a_level_edge_is_the_law_of_each_place() -> None:
+    """Nothing but the material changes along the path."""
+    scene, (flat, modulus, work) = dry(), stripes()
+    body = Surface.touched_by(scene, flat, youngs_modulus=modulus, work_of_adhesion=work)
+    path = [(100e-9, 150e-9), (220e-9, 150e-9)]
+    session = nt.Session(scene, surface=body, mode="scan", path=path, rtol=1e-4, probe_model="quasi-static")
+    columns = session.run(3.0).columns
+    touching = columns["gap"] < -0.05e-9
+    x, gap = columns["x"][touching], columns["gap"][touching]
+    assert x.min() < 140e-9
+    assert x.max() > 200e-9
+    contact = Interaction(session.plan, "retract")
+    law = contact.eval(np.column_stack([x, np.full_like(x, 150e-9), gap]))
+    np.testing.assert_allclose(columns["tip_force"][touching], law.Fz, rtol=0.0, atol=1e-3 * np.abs(law.Fz).max())
+
+
 def test_a_hand_that_may_go_anywhere_is_planned_for_the_worst_place() -> None:
     """Stiffest contact and strongest pull are those of the whole surface, wherever the touch begins."""
     scene, (flat, modulus, work) = dry(), stripes()

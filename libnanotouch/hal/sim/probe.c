@@ -57,7 +57,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const nt_place place = nt_interaction_place(slave->plan, slave->x, slave->y);
     const double surface = place.surface.z + nt_sim_surface_jump(&slave->link);
     probe_context context = {slave->plan, &slave->interaction, place, slave->truth.gap, slave->law};
-    if (surface != slave->truth.surface_height)
+    const int is_elsewhere = slave->x != slave->law_x || slave->y != slave->law_y;
+    if (surface != slave->truth.surface_height || (is_elsewhere && slave->plan->properties))
         context.gap = NAN; /* another place: nothing is known there */
     const nt_force_field field = {force_at, moved_to, &context, slave->plan->length};
     const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
@@ -68,6 +69,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const double gap = slave->cantilever.tip_height;
     const nt_law_value law = law_there(&context, gap);
     slave->law = law;
+    slave->law_x = slave->x;
+    slave->law_y = slave->y;
     slave->truth = (nt_truth){.gap = gap,
                               .tip_force = {[NT_Z] = law.F},
                               .contact_radius = law.a,

@@ -128,6 +128,7 @@ typedef struct nt_plan {
 
     const nt_surface *surface;       /* dilated surface, borrowed; NULL: flat at z = 0 */
     const nt_radius_map *radii;      /* borrowed; NULL: the tip's own radius everywhere */
+    const nt_radius_map *followed;   /* the same where the contact can follow them, NULL otherwise */
     const nt_maugis_bank *bank;      /* borrowed; NULL: none */
     const nt_properties *properties; /* borrowed; NULL: those of the scene everywhere */
     nt_contact least, most;          /* of each of R, E* and w over the surface; one range of adhesion */

@@ -119,7 +119,8 @@ typedef struct nt_sim_slave {
     double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */
     nt_reading converted;
     nt_truth truth;
-    nt_law_value law; /* of the interaction, at truth.gap */
+    nt_law_value law;    /* of the interaction, at truth.gap */
+    double law_x, law_y; /* and where [m] */
 } nt_sim_slave;
 
 /* Both. All state is inside: copying one, or a half, is a snapshot. */
