@@ -11,11 +11,14 @@ import numpy as np
 
 from nanotouch._words import times
 from nanotouch.curves import CurveReport
+from nanotouch.errors import InvalidValue
+from nanotouch.scene import Scene
 
-from .models import Floats
+from .models import BUILT_IN, Floats
 from .points import Branch
 from .show import Page, Row, as_html, as_text, newton
 from .show import with_sigma as with_sigma
+from .touched import Law, scene_of
 
 Status = Literal["ok", "misfit", "not converged"]
 
@@ -117,6 +120,40 @@ class FitResult:
     def determined(self, key: str) -> bool | None:
         """Whether the curve determines a parameter; None if it was held or known beforehand."""
         return self.identifiable.get("effective_modulus" if key == "youngs_modulus" else key)
+
+    def to_scene(self, *, poisson_ratio: float = 0.3) -> Scene:
+        """The scene that was fitted, to be planned and touched: tip, E of the sample, w and its range.
+
+        Dry, without forces that were not fitted; the tip is silicon, and E that which has the fitted E* with it.
+        JKR's law, which has no range, becomes Maugis-Dugdale's of lambda 20; DMT's of lambda 0.001, as far as the range
+        of adhesion then stays within 10 nm. The spring constant belongs to a rig.
+
+        Parameters
+        ----------
+        poisson_ratio : float
+            Of the sample; it says which E an E* is, and changes no force.
+
+        Raises
+        ------
+        InvalidValue
+            For a law of one's own, and where the curve does not determine what the scene needs.
+        """
+        needed = [key for key in ("effective_modulus", "work_of_adhesion") if key in self.values]
+        unknown = [key for key in needed if self.determined(key) is False]
+        if unknown:
+            raise InvalidValue(f"{self.name}: the curve does not determine {' and '.join(unknown)}: no scene")
+        if self.model not in {model.name for model in BUILT_IN}:
+            raise InvalidValue(f"model {self.model!r} is a law of one's own: a scene cannot have it as its contact")
+        law = Law(
+            model=self.model,
+            radius=self.radius,
+            half_angle=self.half_angle,
+            effective_modulus=self.values["effective_modulus"],
+            work_of_adhesion=self.values.get("work_of_adhesion", 0.0),
+            cohesive_range=self.values.get("cohesive_range", float("nan")),
+            largest_load=float(np.nanmax([self.force.max(), self.pull_off_force])),
+        )
+        return scene_of(law, poisson_ratio)
 
     def show(self, key: str) -> str:
         """One parameter in words: ``"(15.3 +- 0.4) kPa"``, with a warning where the curve does not determine it."""

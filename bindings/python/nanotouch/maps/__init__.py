@@ -5,6 +5,9 @@
 >>> data = nt.maps.fit("map.jpk-force-map", model="hertz", radius=20e-9, resume="map.blocks")    # doctest: +SKIP
 >>> nt.maps.write(data, "map.nc"); nt.maps.draw(data, save="map.png")                            # doctest: +SKIP
 
+>>> scene = nt.maps.to_scene(data)                                                   # doctest: +SKIP
+>>> nt.Session(scene, surface=nt.maps.to_surface(data, scene, fill_by="median")).run()   # doctest: +SKIP
+
 What is stored, how a killed run goes on, how a cluster is used: docs/maps.md.
 """
 
@@ -12,6 +15,10 @@ from .dataset import determined, flag_counts, read, write
 from .picture import draw
 from .run import fit
 from .synthesis import synthesise
+from .touched import to_scene, to_surface
 from .volume import ArrayVolume, CurveVolume
 
-__all__ = ["ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "read", "synthesise", "write"]
+__all__ = [
+    "ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "read", "synthesise", "to_scene",
+    "to_surface", "write",
+]  # fmt: skip
