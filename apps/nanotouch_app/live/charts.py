@@ -59,7 +59,10 @@ class ForceGap:
         self._lever(painter, palette, axes, seen)
         self._now(painter, palette, axes, seen)
         x, y = frame[0] + frame[2] - 14, frame[1] + frame[3] - 16
-        painter.text(x, y, f"pull-off {digits(pull, 'N')}", palette.ink, SMALL, "right")
+        words = f"pull-off {digits(pull, 'N')}" if pull > 1e-3 * seen.load else "nothing pulls"
+        painter.text(x, y, words, palette.ink, SMALL, "right")
+        for place, (name, colour) in enumerate((("way in", palette.accent), ("way out", palette.ink))):
+            painter.text(frame[0] + 58 + 70 * place, frame[1] + 14, name, colour, SMALL)
 
     @staticmethod
     def _law(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:

@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 from nanotouch.view import Section
+from numpy.typing import NDArray
 
 from nanotouch_app.live.look import SMALL, Palette, digits, step_up
 from nanotouch_app.live.painter import Painter
 from nanotouch_app.live.seen import Seen
 
+Floats = NDArray[np.float64]
 Frame = tuple[float, float, float, float]
 POINTS = 120  # from the axis to the edge
 HEADING = 30.0  # [pixels]
@@ -70,7 +72,7 @@ class ContactPanel:
         painter.line(np.stack([x[visible], edge[visible]], axis=1), palette.ink, 1.5)
         flat = view.y(0.0)
         painter.line([[view.left, flat], [view.right, flat]], palette.quiet, 1.0, dashed=True)
-        if np.ptp(sample) > 0.02 * (high - low):
+        if np.abs(tip - rigid)[shown].max(initial=0.0) * view.scale > 2.0:  # seen beside the deformed one
             painter.line(np.stack([x[shown], view.y(rigid[shown])], axis=1), palette.panel, 1.0, dashed=True)
 
     @staticmethod
@@ -115,9 +117,16 @@ class ContactPanel:
             painter.line([[view.x(-a), level], [view.x(a), level]], palette.ink, 1.5)
             painter.text(view.x(0.0), level - 14, f"2a = {digits(2 * a, 'm')}", palette.ink, SMALL, "centre")
         painter.text(x + 12, y + 12, _like(seen), palette.ink, SMALL)
-        state = "touching" if a > 0.0 else "held by its neck" if section.attached and seen.meniscus else (
-            "held" if section.attached else f"apart by {digits(float(seen.frame['gap']), 'm')}")  # fmt: skip
-        painter.text(x + width - 14, y + 12, state, palette.ink, SMALL, "right")
+        painter.text(x + width - 14, y + 12, _state(section, seen), palette.ink, SMALL, "right")
+
+
+def _state(section: Section, seen: Seen) -> str:
+    if section.contact_radius > 0.0:
+        fur = float(seen.world["scene"]["medium"]["brush_thickness"]) > 0.0
+        return "pressed, the fur between" if fur else "touching"
+    if section.attached:
+        return "held by its neck" if seen.meniscus else "held"
+    return f"apart by {digits(float(seen.frame['gap']), 'm')}"
 
 
 class _View:
@@ -143,18 +152,15 @@ class _View:
         return self.level + self.scale * z
 
 
-def _bow(painter: Painter, palette: Palette, view: _View, row: np.ndarray, sign: float) -> None:
-    """The meniscus ends in an arc that is hollow to the outside."""
-    x, low, high = row
-    radius = 0.5 * (high - low)
-    if not 1.0 < radius < 400.0:
+def _bow(painter: Painter, palette: Palette, view: _View, row: Floats, sign: float) -> None:
+    """The meniscus ends in an arc that is hollow to the outside: what is not water there is painted over."""
+    end, low, high = (float(part) for part in row)
+    radius, middle = 0.5 * (high - low), 0.5 * (low + high)
+    if radius < 2.0:
         return
-    angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 15)
-    up = 0.5 * (low + high) + radius * np.sin(angle)
-    inward = x + sign * radius * (1.0 - np.cos(angle))
-    order = np.argsort(inward)
-    rows = np.stack([inward, np.minimum(up, low + high - up), np.maximum(up, low + high - up)], axis=1)
-    painter.area(rows[order], palette.water)
+    along = np.sin(np.linspace(0.0, 0.5 * np.pi, 12))
+    reach = 0.97 * radius * np.sqrt(1.0 - along**2)
+    painter.area(np.stack([end + sign - sign * radius * along, middle - reach, middle + reach], axis=1), palette.panel)
 
 
 def _haze(painter: Painter, palette: Palette, view: _View, section: Section, thickness: float) -> None:

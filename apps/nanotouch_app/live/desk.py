@@ -27,17 +27,18 @@ CLOCK = 0.2  # between two reports of the clock [s]
 class Desk:
     """A window and the wires to it."""
 
-    def __init__(self, topography: Topography) -> None:
+    def __init__(self, topography: Topography, dark: bool = False, recording: Path | None = None) -> None:
         if importlib.util.find_spec("vtkmodules") is None:
             raise MissingExtra("vtk is not installed: pip install 'nanotouch[view]'")
         self.folder = tempfile.TemporaryDirectory(prefix="nanotouch-live-")
         surface = Path(self.folder.name) / "surface.npz"
         np.savez(surface, heights=topography.heights, pixel_size=np.asarray(topography.pixel_size))
         self.said = Path(self.folder.name) / "said.txt"
+        options = [*(["--dark"] if dark else []), *([] if recording is None else ["--recording", str(recording)])]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
         with open(self.said, "wb") as errors:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "nanotouch_app.live.window", str(surface)], stdin=subprocess.PIPE,
+                [sys.executable, "-m", "nanotouch_app.live.window", str(surface), *options], stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE, stderr=errors, env=environment, text=True, bufsize=1,
             )  # fmt: skip
         self.asked: queue.Queue[dict[str, Any]] = queue.Queue()

@@ -30,7 +30,9 @@ _NUMBERS = itertools.count(1)  # of the sessions of this process
 class Host:
     """One session, its hand, its history of changes."""
 
-    def __init__(self, subject: Subject, tell: Callable[[Message], None], out: str | None = None) -> None:
+    def __init__(
+        self, subject: Subject, tell: Callable[[Message], None], out: str | None = None, stepped: bool = False
+    ) -> None:
         self.subject = subject
         self.tell = tell
         self.scene, self.rig = subject.scene.copy(), subject.rig.copy()
@@ -38,7 +40,7 @@ class Host:
         self.done: list[tuple[str, str, Any, Any]] = []
         self.undone: list[tuple[str, str, Any, Any]] = []
         self.speed, self.paused = 1.0, False
-        self.out = out
+        self.out, self.stepped = out, stepped
         self.writer: Any = None
         self.seen = time.monotonic()
         self._open()
@@ -66,9 +68,10 @@ class Host:
         self.hand = Hand(self.session)
         if self.out is not None and self.writer is None:
             self.writer = record.Writer(self.out, self.session.metadata())
-        self.session.start("wall")
-        self.session.set_speed(self.speed)
-        self.session.pause(self.paused)
+        if not self.stepped:
+            self.session.start("wall")
+            self.session.set_speed(self.speed)
+            self.session.pause(self.paused)
 
     def close(self) -> None:
         """End the session; what was recorded is written."""
@@ -96,6 +99,15 @@ class Host:
             self.hand.follow(frame, min(now - self.seen, 0.1) * self.speed)
         self.seen = now
         self._drain()
+
+    def advance(self, duration: float) -> None:
+        """Of a stepped session: run for a time [s], as far as the hand looks in pieces of 10 ms."""
+        for _ in range(max(1, round(100 * duration))):
+            self.session.core.advance(round(0.01 * self.session.rate))
+            frame = self.observer.newest()
+            if frame is not None:
+                self.hand.follow(frame, 0.01)
+            self._drain()
 
     def world(self) -> Message:
         """All that changes only when something is changed."""
@@ -140,6 +152,7 @@ class Host:
     def _do_wheel(self, message: Message) -> None:
         frame = self.observer.newest()
         if frame is not None:
+            self.hand.presses = False
             self.hand.step_down(message["steps"], frame)
 
     def _do_press(self, message: Message) -> None:

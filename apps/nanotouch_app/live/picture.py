@@ -12,6 +12,7 @@ from nanotouch_app.live.charts import ForceGap, History
 from nanotouch_app.live.contact import ContactPanel
 from nanotouch_app.live.look import DARK, LIGHT, SMALL, Palette, digits, step_up, unit
 from nanotouch_app.live.painter import Painter
+from nanotouch_app.live.reel import Reel
 from nanotouch_app.live.seen import Seen
 from nanotouch_app.live.sliders import Sliders
 from nanotouch_app.live.stage import Stage
@@ -20,7 +21,7 @@ Frame = tuple[float, float, float, float]
 EDGE, TOP, STATUS, CONTROLS = 12.0, 40.0, 56.0, 122.0  # [pixels]
 NARROW = 900.0  # below this width the right column goes away
 BAND = 0.15  # of the picture's height: the band under the largest planned force
-RING = 13.0  # [pixels]
+RING, MARGIN = 13.0, 16.0  # [pixels]
 
 
 class Layout:
@@ -54,6 +55,7 @@ class Picture:
         self.vtk, self.window, self.seen = vtk, window, Seen()
         self.palette: Palette = LIGHT
         self.help = False
+        self.reel: Reel | None = None
         self.drawings = 0
         self.layout = Layout(*window.GetSize())
         window.SetNumberOfLayers(3)
@@ -113,12 +115,33 @@ class Picture:
         """Behind the scene: the panels."""
         seen, palette, layout = self.seen, self.palette, self.layout
         readings.top(painter, palette, layout.top, seen)
-        self.sliders.draw(painter, palette, seen)
-        readings.status(painter, palette, layout.status, seen)
+        if self.reel is None:
+            self.sliders.draw(painter, palette, seen)
+        else:
+            self._time_line(painter, self.reel)
+        readings.status(painter, palette, layout.status, seen, self._about())
         if layout.column:
             self.contact.draw(painter, palette, layout.contact, seen)
             self.law.draw(painter, palette, layout.law, seen)
             self.history.draw(painter, palette, layout.history, seen)
+
+    def _time_line(self, painter: Painter, reel: Reel) -> None:
+        """The whole recording: least and largest force of each pixel, and where we are."""
+        palette, frame = self.palette, self.layout.controls
+        x, y, width, height = frame
+        painter.box(frame, palette.panel, palette.line)
+        across = width - 2.0 * MARGIN
+        low, high = reel.extremes(int(across))
+        size = max(float(high.max()), -float(low.min()), 1e-15)
+        middle = y + 0.55 * height
+        along = x + MARGIN + np.linspace(0.0, across, len(low))
+        up = 0.32 * height / size
+        painter.area(np.stack([along, middle + up * low - 0.6, middle + up * high + 0.6], axis=1), palette.accent)
+        at = x + MARGIN + across * reel.at / max(reel.length, 1e-9)
+        painter.line([[at, y + 26], [at, y + height - 8]], palette.hold, 2.0)
+        painter.text(x + MARGIN, y + 14, f"{reel.at:.2f} s of {reel.length:.2f} s", palette.ink, SMALL)
+        painter.text(x + width - MARGIN, y + 14, "force on the tip over time; drag to go there", palette.quiet, SMALL,
+                     "right")  # fmt: skip
 
     def foreground(self, painter: Painter) -> None:
         """Over the scene: ring and band, scales, bars, help."""
@@ -126,7 +149,6 @@ class Picture:
             self._proxy(painter)
             self._scales(painter)
         readings.bars(painter, self.palette, self.layout.bars, self.seen)
-        self._about(painter)
         if self.help:
             readings.help_panel(painter, self.palette, self.layout.help)
 
@@ -168,19 +190,13 @@ class Picture:
         drawn = "" if self.stage.factor == 1.0 else f", drawn {self.stage.factor:g} times as high"
         painter.text(x + width + 10, y, f"heights 0 to {digits(relief, 'm')}{drawn}", self.palette.ink, SMALL)
 
-    def _about(self, painter: Painter) -> None:
+    def _about(self) -> str:
         """What a slider does, while the pointer is over it."""
         slider = self.sliders.held or self.sliders.hovered
-        x, y, _, height = self.layout.view
         if slider is None:
-            painter.text(x + 16, y + height - 18, str(self.seen.world.get("felt", "")), self.palette.quiet, SMALL)
-            return
-        field = slider.about
-        unit_name = field.unit or "of 1"
-        words = f"{field.doc} ({field.name}): {digits(slider.low, field.unit)} to {digits(slider.high, field.unit)}"
-        painter.text(
-            x + 16, y + height - 18, words if field.unit else f"{words} {unit_name}", self.palette.accent, SMALL
-        )
+            return ""
+        ends = " to ".join(slider.told(value) for value in (slider.low, slider.high))
+        return f"{slider.about.doc} ({slider.field}): {ends}"
 
 
 class _Item:

@@ -32,8 +32,9 @@ def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
     x, y, width, height = frame
     middle = y + 0.5 * height
     painter.text(x + 4, middle, f"{seen.world.get('title', '')}", palette.ink, TITLE, bold=True)
-    painter.text(x + 20 + painter.width_of(str(seen.world.get("title", "")), TITLE), middle,
-                 seen.world.get("source", "simulated, wall pace"), palette.quiet)  # fmt: skip
+    start = x + 28 + 1.1 * painter.width_of(str(seen.world.get("title", "")), TITLE)
+    words = [seen.world.get("source", "simulated, wall pace"), seen.world.get("felt", "")]
+    painter.text(start, middle, "  ·  ".join(filter(None, words)), palette.quiet, SMALL)
     clock = seen.clock
     parts = [f"{clock['speed']:g}x"]
     if clock["slowdown"] > 1.05 and not clock["paused"]:
@@ -82,7 +83,7 @@ def _squeezed(share: float) -> float:
     return math.copysign(math.sqrt(min(abs(share), 1.0)), share)
 
 
-def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
+def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: str = "") -> None:
     """State and why; what touches; how accurate, how far from the limit, what is guaranteed."""
     x, y, width, height = frame
     painter.box(frame, palette.panel, palette.line)
@@ -102,7 +103,9 @@ def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None
         painter.text(x + 110, upper, _facts(seen), palette.ink)
     note = next((entry for entry in reversed(seen.notes) if time.monotonic() - entry[0] < NOTED), None)
     lower = y + 16
-    if note is not None:
+    if about:
+        painter.text(x + 32, lower, about, palette.accent, SMALL)
+    elif note is not None:
         painter.text(x + 32, lower, _cut(note[1]), palette.bad if note[2] else palette.hold, SMALL)
     else:
         painter.text(x + 32, lower, f"{seen.world.get('hint', '')}", palette.quiet, SMALL)
@@ -112,9 +115,10 @@ def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None
 
 def _facts(seen: Seen) -> str:
     radius = float(seen.reading["contact_radius"])
+    gap = float(seen.reading["gap"])
     touch = f"contact of {digits(radius, 'm')} radius" if radius > 0.0 else (
-        f"apart by {digits(float(seen.reading['gap']), 'm')}")  # fmt: skip
-    bound = 100.0 * float(seen.world["bound"])
+        f"apart by {digits(gap, 'm')}" if gap > 0.0 else f"pressed in by {digits(-gap, 'm')}")  # fmt: skip
+    bound = max(100.0 * float(seen.world["bound"]), 0.01)
     margin = float(seen.world["margin"])
     told = "no loop closes through this hand" if not math.isfinite(margin) else f"margin {margin:.3g}"
     return (

@@ -12,6 +12,8 @@ import numpy as np
 from nanotouch import view
 from numpy.typing import NDArray
 
+from nanotouch_app.live.reel import Reel
+
 Floats = NDArray[np.float64]
 
 HISTORY = 10.0  # of the chart over time [s]
@@ -74,9 +76,9 @@ class Seen:
         self.reach = max(3.0 * max(end for end in ends if np.isfinite(end)), 0.4 * self.depth, 3e-9)
         if self.plan.pull_off_force < 1e-3 * self.load:  # nothing holds: what repels from far away is what is felt
             self.reach = max(self.reach, min(self.plan.cutoff_gap(0.01 * self.load), 5.0 * self.depth))
-        self.curve = view.curve(self.plan, -1.5 * self.depth, 4.0 * self.reach)
+        self.curve = view.curve(self.plan, -1.5 * self.depth, 11.0 * self.reach)
 
-    def look(self, observer: nt.frames.Observer) -> None:
+    def look(self, observer: nt.frames.Observer | Reel) -> None:
         """Take the frames that have come since."""
         frames = observer.read()
         self.missed = observer.missed
@@ -86,12 +88,16 @@ class Seen:
             return
         self.arrived = now
         if self.frame is not None and frames["time"][0] < float(self.frame["time"]):  # rewound
-            self.slices.clear()
-            self.tail.clear()
+            self.forget()
         self._keep(frames)
         self.frame = frames[-1]
         if now - self.read_at > READINGS:
             self.read_at, self.reading = now, self.frame
+
+    def forget(self) -> None:
+        """What came before belongs to another time."""
+        for kept in (self.slices, self.tail, self.trace):
+            kept.clear()
 
     def _keep(self, frames: Any) -> None:
         force = frames["tip_force"][:, 2]

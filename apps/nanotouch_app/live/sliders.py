@@ -20,9 +20,9 @@ KINDS: dict[str, Any] = {"scene": nt.Scene, "settings": nt.Settings, "rig": nt.R
 # what, field, name, and where the slider ends, as factors of the value that it begins with; 0: the field's own ends
 OFFERED = (
     ("scene", "medium.relative_humidity", "humidity", 0.0, 0.95),
-    ("scene", "sample.youngs_modulus", "modulus of the sample", 0.02, 20.0),
+    ("scene", "sample.youngs_modulus", "sample modulus", 0.02, 20.0),
     ("scene", "adhesion.work_of_adhesion", "work of adhesion", 0.1, 4.0),
-    ("scene", "tip.radius", "radius of the tip", 0.5, 4.0),
+    ("scene", "tip.radius", "tip radius", 0.5, 4.0),
     ("rig", "probe.spring_constant", "spring constant", 0.1, 10.0),
     ("settings", "gains.coupling_stiffness", "spring to the hand", 0.1, 4.0),
     ("settings", "gains.alpha_f", "scaling of forces", 0.1, 10.0),
@@ -65,6 +65,14 @@ class Slider:
         else:
             value = self.low + place * (self.high - self.low)
         return float(f"{value:.3g}")
+
+    def told(self, value: float) -> str:
+        """The value in words, with its unit."""
+        if self.field.endswith("humidity"):
+            return f"{100.0 * value:.0f} %"
+        if self.about.unit == "N/N":
+            return f"{value / 1e6:.3g} million"
+        return digits(value, self.about.unit).replace("^2", "²").replace("^3", "³")
 
     @property
     def about(self) -> nt.description.Field:
@@ -146,8 +154,7 @@ class Sliders:
             track = bottom + 14
             knob = left + width * shown.place
             painter.text(left, bottom + 37, slider.name, palette.ink, SMALL)
-            unit = slider.about.unit
-            words = f"{100 * value:.0f} %" if slider.field.endswith("humidity") else digits(value, unit)
+            words = slider.told(value)
             waits = slider.field in seen.waiting
             painter.text(left + width, bottom + 37, ("… " if waits else "") + words,
                          palette.accent if held or waits else palette.ink, SMALL, "right")  # fmt: skip

@@ -208,8 +208,8 @@ class Stage:
         length, width = LEVER
         bend = BEND * max(-1.5, min(1.5, seen.force / seen.load)) if seen.load > 0.0 else 0.0
         s = np.linspace(0.0, 1.0, LEVER_POINTS)
-        z = apex[2] + TIP_HEIGHT - bend * (1.0 - 0.5 * (3.0 * s**2 - s**3)) + 0.02 * (1 - s)
-        y = apex[1] + 0.04 + length * (1.0 - s)
+        z = apex[2] + TIP_HEIGHT - bend * (1.0 - 0.5 * (3.0 * s**2 - s**3)) + 0.03 * (1.0 - s)
+        y = apex[1] - 0.05 + length * (1.0 - s)
         rows = [np.stack([np.full_like(s, apex[0] + side * width / 2), y, z], axis=1) for side in (-1.0, 1.0)]
         self.ribbon.SetPoints(points(self.vtk, np.concatenate(rows)))
         self.ribbon.Modified()

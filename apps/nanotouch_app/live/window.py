@@ -4,20 +4,24 @@ of JSON on its input, and asks by lines on its output; frames come through share
 
 from __future__ import annotations
 
+import argparse
 import json
 import queue
 import sys
 import threading
 import time
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
+from nanotouch import record
 from nanotouch.errors import DeviceError, require
 
 from nanotouch_app.live.look import HEIGHT, WIDTH
-from nanotouch_app.live.picture import Picture, save
+from nanotouch_app.live.picture import MARGIN, Picture, save
+from nanotouch_app.live.reel import Reel, world_of
 
 FASTEST = 1.0 / 60.0  # between two pictures [s]
 SHARE = 0.5  # of one processor at most that drawing takes
@@ -33,7 +37,7 @@ ARROW_PIXELS = 4.0
 class Window:
     """VTK's window with mouse and keys."""
 
-    def __init__(self, surface: str) -> None:
+    def __init__(self, surface: str, dark: bool = False, recording: str | None = None) -> None:
         self.vtk = require("vtk", "view")
         with np.load(surface) as stored:
             heights, pixel_size = stored["heights"], stored["pixel_size"]
@@ -42,6 +46,9 @@ class Window:
         self.window.SetSize(WIDTH, HEIGHT)
         self.window.SetWindowName("nanotouch live")
         self.picture = Picture(self.vtk, self.window, heights, pixel_size)
+        if dark:
+            self.picture.turn_light()
+        self.reel = None if recording is None else Reel(record.read(recording))
         self.interactor = self.vtk.vtkRenderWindowInteractor()
         self.interactor.SetRenderWindow(self.window)
         self.interactor.SetInteractorStyle(self.vtk.vtkInteractorStyleUser())
@@ -55,8 +62,11 @@ class Window:
         ):  # fmt: skip
             self.interactor.AddObserver(event, answer)
         self.told: queue.Queue[dict[str, Any]] = queue.Queue()
-        self.observer: nt.frames.Observer | None = None
+        self.observer: nt.frames.Observer | Reel | None = self.reel
         self.name = ""
+        if self.reel is not None and recording is not None:
+            self.picture.hear(world_of(record.read(recording), Path(recording).name))
+            self.picture.reel = self.reel
         self.dragging, self.at = "", np.zeros(2)
         self.open = True
 
@@ -76,6 +86,8 @@ class Window:
             if begun < due:
                 time.sleep(min(due - begun, 0.004))
                 continue
+            if self.reel is not None:
+                self.picture.hear(self.reel.clock())
             if self.observer is not None:
                 self.picture.seen.look(self.observer)
             self.picture.render()
@@ -112,6 +124,8 @@ class Window:
     def ask(self, what: str | dict[str, Any], **more: Any) -> None:
         """Ask the host for something."""
         message = {"do": what, **more} if isinstance(what, str) else what
+        if self.reel is not None:
+            self.reel.answer(message)
         try:
             print(json.dumps(message), flush=True)
         except BrokenPipeError:
@@ -126,19 +140,30 @@ class Window:
     def _pointer(self) -> Any:
         return np.array(self.interactor.GetEventPosition(), dtype=float)
 
-    def _in_view(self, at: Any) -> bool:
-        x, y, width, height = self.picture.layout.view
+    @staticmethod
+    def _in(frame: tuple[float, float, float, float], at: Any) -> bool:
+        x, y, width, height = frame
         return bool(x <= at[0] <= x + width and y <= at[1] <= y + height)
+
+    def _scrub(self) -> None:
+        """The recording goes to where the pointer is on its time line."""
+        if self.reel is not None:
+            x, _, width, _ = self.picture.layout.controls
+            self.reel.jump(self.reel.length * (self.at[0] - x - MARGIN) / (width - 2.0 * MARGIN))
+            self.picture.seen.forget()
 
     def left(self, *_: Any) -> None:
         """Take the tip, or a slider."""
         self.at = self._pointer()
         slider = self.picture.sliders.at(*self.at)
-        if slider is not None:
+        if self.reel is not None and self._in(self.picture.layout.controls, self.at):
+            self.dragging = "time"
+            self._scrub()
+        elif slider is not None:
             self.dragging = "slider"
             self.picture.sliders.held = slider
             self.picture.sliders.drag(self.at[0])
-        elif self._in_view(self.at):
+        elif self._in(self.picture.layout.view, self.at):
             self.dragging = "tip"
 
     def right(self, *_: Any) -> None:
@@ -166,6 +191,8 @@ class Window:
         fine = FINE if self.interactor.GetShiftKey() else 1.0
         if self.dragging == "slider":
             self.picture.sliders.drag(at[0])
+        elif self.dragging == "time":
+            self._scrub()
         elif self.dragging == "tip":
             self._drag(fine * way)
         elif self.dragging == "height":
@@ -228,8 +255,13 @@ class Window:
 
 
 def main(arguments: list[str]) -> int:
-    """Run the window over a surface."""
-    Window(arguments[0]).run()
+    """Run the window over a surface, of a session or of a recording."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("surface")
+    parser.add_argument("--dark", action="store_true")
+    parser.add_argument("--recording")
+    args = parser.parse_args(arguments)
+    Window(args.surface, args.dark, args.recording).run()
     return 0
 
 

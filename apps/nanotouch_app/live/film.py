@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Films and pictures of the live view without a display: a script takes the place of the person, and the session runs
+as far as each picture needs, so that the same command makes the same film on any machine."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from nanotouch.errors import Error, require
+
+from nanotouch_app.live.arrays import pixels
+from nanotouch_app.live.host import Host
+from nanotouch_app.live.look import HEIGHT, WIDTH
+from nanotouch_app.live.picture import Picture
+from nanotouch_app.live.subject import Subject
+
+RATE = 8.0  # pictures per second
+GIF_WIDTH, GIF_COLOURS = 960, 64
+Act = tuple[float, dict[str, Any]]
+"""a duration [s], and what is asked at its beginning"""
+Part = tuple[Subject, list[Act]]
+
+PRESS: list[Act] = [(0.8, {}), (2.2, {"do": "press", "on": True}), (1.5, {}), (3.0, {"do": "press", "on": False})]
+
+
+class Studio:
+    """A host without a clock, and a picture without a display."""
+
+    def __init__(self, subject: Subject, dark: bool = False) -> None:
+        vtk = require("vtk", "view")
+        self.vtk, self.window = vtk, vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(True)
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(WIDTH, HEIGHT)
+        self.picture = Picture(vtk, self.window, subject.topography.heights, subject.topography.pixel_size)
+        if dark:
+            self.picture.turn_light()
+        self.host = Host(subject, self.picture.hear, stepped=True)
+        self.picture.hear(self.host.world())
+        self.look()
+
+    def look(self) -> None:
+        """Take in what the session has done; another session may have taken its place."""
+        self.picture.hear(self.host.clock())
+        self.picture.seen.look(self.host.observer)
+
+    def play(self, script: list[Act]) -> Iterator[Any]:
+        """Pictures of a script, as bytes (height, width, 3), RATE of them for each second of it."""
+        owed = 0.0
+        for duration, request in script:
+            if "say" in request:
+                self.picture.seen.notes.append((time.monotonic() + 1e6, request["say"], False))
+            if "do" in request:
+                self.host.answer(request)
+            owed += duration
+            while owed > 1.0 / RATE:
+                owed -= 1.0 / RATE
+                self.host.advance(1.0 / RATE)
+                self.look()
+                self.picture.render()
+                yield pixels(self.vtk, self.window)
+
+    def close(self) -> None:
+        """End the session."""
+        self.host.close()
+
+
+def write(parts: Sequence[Part], path: Path, progress: Callable[[float], None], dark: bool = False) -> None:
+    """Film scripts one after another as GIF, MP4, or, of their end, PNG."""
+    save = {".gif": _gif, ".mp4": _mp4, ".png": _png}.get(path.suffix.lower())
+    if save is None:
+        raise Error(f"{path}: a film ends in .gif or .mp4, a picture in .png")
+    total = RATE * sum(duration for _, script in parts for duration, _ in script)
+    save(_filmed(parts, dark, lambda number: progress(min(number / total, 1.0))), path)
+
+
+def _filmed(parts: Sequence[Part], dark: bool, told: Callable[[int], None]) -> Iterator[Any]:
+    number = 0
+    for subject, script in parts:
+        studio = Studio(subject, dark)
+        try:
+            for picture in studio.play(script):
+                number += 1
+                told(number)
+                yield picture
+        finally:
+            studio.close()
+
+
+def _gif(pictures: Iterator[Any], path: Path) -> None:
+    image = require("PIL.Image", "app")
+    height = round(GIF_WIDTH * HEIGHT / WIDTH)
+    small = [image.fromarray(np.ascontiguousarray(one)).resize((GIF_WIDTH, height), image.LANCZOS) for one in pictures]
+    table = small[len(small) // 2].quantize(GIF_COLOURS, method=image.Quantize.MEDIANCUT)
+    flat = [one.quantize(palette=table, dither=image.Dither.NONE) for one in small]
+    flat[0].save(path, save_all=True, append_images=flat[1:], duration=round(1000 / RATE), loop=0, optimize=True)
+
+
+def _mp4(pictures: Iterator[Any], path: Path) -> None:
+    if shutil.which("ffmpeg") is None:
+        raise Error(f"{path}: ffmpeg is not installed: apt-get install ffmpeg; a .gif needs none")
+    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{WIDTH}x{HEIGHT}",
+               "-r", f"{RATE:g}", "-i", "-", "-pix_fmt", "yuv420p", str(path)]  # fmt: skip
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as film:
+        assert film.stdin is not None
+        for picture in pictures:
+            film.stdin.write(np.ascontiguousarray(picture).tobytes())
+        film.stdin.close()
+        if film.wait():
+            raise Error(f"{path}: ffmpeg ended with status {film.returncode}")
+
+
+def _png(pictures: Iterator[Any], path: Path) -> None:
+    image = require("PIL.Image", "app")
+    last = None
+    for last in pictures:  # noqa: B007 the last one is what is wanted
+        pass
+    if last is not None:
+        image.fromarray(np.ascontiguousarray(last)).save(path)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A recording that is played: it gives frames as an observer of a running session does, at the pace of the clock."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+from nanotouch.record import Recording
+
+STEP = 1e-3  # of a single step [s]
+SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
+
+
+def frames_of(recording: Recording) -> Any:
+    """The rows of a recording as frames; NaN for what it does not hold."""
+    frames = np.zeros(len(recording), dtype=nt.frames.FRAME)
+    for name in frames.dtype.names or ():
+        if np.issubdtype(frames.dtype[name].base, np.floating):
+            frames[name] = np.nan
+    frames["time"] = recording.time
+    frames["sequence"] = np.arange(len(recording))
+    for axis, name in enumerate(("x", "y")):
+        frames["tip_position"][:, axis] = recording.columns[name] if name in recording else 0.0
+    frames["tip_position"][:, 2] = recording.tip_height
+    frames["base_height"] = recording.tip_height - recording.deflection
+    frames["deflection"] = recording.deflection
+    frames["tip_force"][:, 2] = recording.columns["tip_force"] if "tip_force" in recording else recording.slave_force
+    for name in ("gap", "contact_radius", "state", "reasons"):
+        if name in recording:
+            frames[name] = recording.columns[name]
+    return frames
+
+
+class Reel:
+    """Frames of a recording between the last look and now."""
+
+    missed = 0
+
+    def __init__(self, recording: Recording) -> None:
+        self.frames = frames_of(recording)
+        self.length = float(self.frames["time"][-1] - self.frames["time"][0])
+        self.at, self.speed, self.paused = 0.0, 1.0, False
+        self.looked = time.monotonic()
+        self.shown = 0
+        self._extremes: tuple[Any, Any] | None = None
+
+    def read(self, count: int = 0) -> Any:
+        """The next frames; all that lie between, whatever the speed."""
+        now = time.monotonic()
+        if not self.paused:
+            self.at = min(self.at + self.speed * (now - self.looked), self.length)
+        self.looked = now
+        end = int(np.searchsorted(self.frames["time"], self.frames["time"][0] + self.at, side="right"))
+        start, self.shown = min(self.shown, end), end
+        return self.frames[start:end]
+
+    def extremes(self, count: int) -> tuple[Any, Any]:
+        """Least and largest force of each of so many parts [N]."""
+        if self._extremes is None or len(self._extremes[0]) != count:
+            force = np.nan_to_num(self.frames["tip_force"][:, 2])
+            starts = np.linspace(0, len(force) - 1, count + 1)[:-1].astype(int)
+            self._extremes = (np.minimum.reduceat(force, starts), np.maximum.reduceat(force, starts))
+        return self._extremes
+
+    def jump(self, at: float) -> None:
+        """To a time from the beginning [s]; the two seconds before it are shown, too."""
+        self.at = min(max(at, 0.0), self.length)
+        self.shown = int(np.searchsorted(self.frames["time"], self.frames["time"][0] + self.at - 2.0))
+
+    def answer(self, message: dict[str, Any]) -> None:
+        """Pause, step, speed, rewind."""
+        match message["do"]:
+            case "pause":
+                self.paused = not self.paused
+            case "step":
+                self.paused, self.at = True, min(self.at + STEP, self.length)
+            case "rewind":
+                self.jump(self.at - 5.0)
+            case "slower" | "faster" as way:
+                place = SPEEDS.index(self.speed) + (1 if way == "faster" else -1)
+                self.speed = SPEEDS[min(max(place, 0), len(SPEEDS) - 1)]
+
+    def clock(self) -> dict[str, Any]:
+        """As a host tells it."""
+        return {"tell": "clock", "speed": self.speed, "paused": self.paused or self.at >= self.length, "slowdown": 1.0,
+                "recorded": False}  # fmt: skip
+
+
+def surface_of(recording: Recording) -> nt.Topography:
+    """What is known of the surface: the heights that the tip has met, along x; a flat where it met none."""
+    x, y = (recording.columns[name] if name in recording else np.zeros(len(recording)) for name in ("x", "y"))
+    height = recording.columns.get("surface_height", np.zeros(len(recording)))
+    size = max(float(x.max()), float(y.max()), 25.0 * float(recording.metadata["scene"]["tip"]["radius"])) * 1.2
+    line = np.interp((np.arange(64) + 0.5) * size / 64, *_sorted(x, height))
+    return nt.Topography(heights=np.tile(line, (64, 1)), pixel_size=(size / 64, size / 64), name="what was met")
+
+
+def _sorted(x: Any, height: Any) -> tuple[Any, Any]:
+    good = np.isfinite(height)
+    if not good.any():
+        return np.zeros(1), np.zeros(1)
+    places, first = np.unique(x[good], return_index=True)
+    return places, height[good][first]
+
+
+def world_of(recording: Recording, name: str) -> dict[str, Any]:
+    """As a host tells it: scene, rig and settings that the recording was made with."""
+    about = recording.metadata
+    scene = nt.Scene(**about["scene"])
+    plan = scene.plan()
+    return {
+        "tell": "world", "title": name, "source": "recording", "felt": "", "hint": "drag the time line; P: pause",
+        "scene": scene.to_dict(), "rig": about["rig"], "settings": about["settings"], "bound": plan.bound,
+        "stiffness": about["spring_constant"], "margin": about.get("stability_margin") or np.inf,
+        "force": about["settings"]["limits"]["force"], "undo": 0, "redo": 0, "law": plan.contact_law, "warnings": [],
+    }  # fmt: skip
