@@ -48,6 +48,7 @@ bench:  ## what one call costs on this machine; JSON in build/release/tests/benc
 	@tools/setup.sh test
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target bench
+	@$(VENV)/python tests/bench/bench_session.py
 
 # generated tables keep the generator's lines
 C_FILES = $(filter-out tests/reference/%_table.h, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
