@@ -171,6 +171,8 @@ nt_status nt_session_rewind(nt_session *session, double duration, nt_problem *pr
 nt_status nt_session_inject(nt_session *session, const nt_fault *fault)
 {
     nt_fault shifted = *fault;
+    if (nt_session_is_running(session))
+        return NT_E_STATE;
     if (fault->start < 0.0)
         return NT_E_RANGE;
     shifted.start += (double)session->flights * session->now->touch.period;

@@ -86,12 +86,10 @@ static nt_status apply(nt_session *session, const nt_call *call)
 
 static void answer(nt_session *session, const nt_call *call, nt_status status)
 {
-    if (call->id == 0) {
-        atomic_store_explicit(&session->call_status, (int)status, memory_order_release);
-        return;
-    }
     const nt_answer found = {.id = call->id, .tick = session->touch_state.ticks, .status = (int32_t)status};
-    nt_frames_answer(session->frames, &found);
+    if (call->id != 0)
+        nt_frames_answer(session->frames, &found);
+    atomic_store_explicit(&session->call_status, (int)status, memory_order_release);
 }
 
 static void take_all(nt_session *session)
@@ -178,15 +176,11 @@ static nt_call call_of(const nt_request *request)
 void nt_session_serve_clients(nt_session *session)
 {
     nt_request request;
-    free_retired(session);
     while (nt_ring_pop(&session->clients, &request, 1) == 1) {
         nt_call call = call_of(&request);
         nt_session_lock(session);
         call.refused = nt_session_prepare(session, &call, NULL);
-        if (call.refused == NT_OK)
-            remember(session, &call.event);
-        if (nt_ring_push(&session->calls, &call) != NT_OK)
-            nt_composition_close(call.next, session->now); /* the client asks again */
+        (void)nt_session_ask(session, &call); /* the loop answers; where it does not, the client asks again */
         nt_session_unlock(session);
     }
 }

@@ -103,6 +103,8 @@ static void who_calls_what_while_it_runs(void **state)
     assert_int_equal(nt_session_advance(session, 1), NT_E_STATE);
     assert_int_equal(nt_session_snapshot(session, &snapshot), NT_E_STATE);
     assert_int_equal(nt_session_publish(session, NULL), NT_E_STATE);
+    const nt_fault fault = {.kind = NT_FAULT_DEVICE_LOST, .channel = NT_CHANNEL_RIG, .duration = 1.0};
+    assert_int_equal(nt_session_inject(session, &fault), NT_E_STATE);
     assert_int_equal(nt_session_halt(session), NT_OK);
     assert_int_equal(nt_session_progress(session).runs, 0);
     nt_session_read(session, records, MOST);
