@@ -48,6 +48,7 @@ static nt_status run(nt_session *session, const nt_input *input, summary *s)
 int main(void)
 {
     nt_session_setup setup = nt_session_defaults();
+    setup.settings = nt_settings_defaults(&setup.rig); /* 2 N press harder than the scene's largest load */
     nt_session *session = NULL;
     nt_problem problem = {0};
     nt_status status = nt_session_open(&session, &setup, &problem);

@@ -101,6 +101,12 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
     return settings;
 }
 
+void nt_settings_keep_to(nt_settings *settings, double load)
+{
+    settings->limits.force = fmin(settings->limits.force, load);
+    settings->gains.set_point = fmin(settings->gains.set_point, 0.5 * load);
+}
+
 const nt_field *nt_settings_fields(int *count)
 {
     if (count)

@@ -23,6 +23,7 @@ nt_session_setup nt_session_defaults(void)
                               .ring_capacity = 65536,
                               .minimum_margin = 1.5,
                               .preflight = 1};
+    nt_settings_keep_to(&setup.settings, setup.scene.range.maximum_load);
     return setup;
 }
 

@@ -149,6 +149,7 @@ static loop pressed, pressed_slow; /* at rest in contact at 3 N, RUN; at 10 kHz 
 static inline int press_at(loop *l, double rate)
 {
     nt_session_setup setup = nt_session_defaults();
+    setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
     setup.clearance = 20e-9;
     setup.settings.gains.rate = rate;
     if (loop_open(l, &setup) != NT_OK)

@@ -48,11 +48,27 @@ static void every_field_is_refused_by_name(void **state)
     }
 }
 
+static void they_keep_to_a_load(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    settings.gains.set_point = 0.3e-6;
+    const nt_settings before = settings;
+    nt_settings_keep_to(&settings, INFINITY);
+    assert_memory_equal(&settings, &before, sizeof settings);
+    nt_settings_keep_to(&settings, 0.4e-6);
+    assert_true(settings.limits.force == 0.4e-6 && settings.gains.set_point == 0.2e-6);
+    nt_settings_keep_to(&settings, 0.5e-6); /* never raises */
+    assert_true(settings.limits.force == 0.4e-6 && settings.gains.set_point == 0.2e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_are_valid_and_inside_the_rig),
         cmocka_unit_test(every_field_is_refused_by_name),
+        cmocka_unit_test(they_keep_to_a_load),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

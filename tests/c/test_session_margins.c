@@ -121,6 +121,7 @@ static void a_margin_of_one_and_a_half_is_calm(void **state)
     for (int i = 0; i < 12; i++) {
         static loop l;
         nt_session_setup setup = nt_session_defaults();
+        setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
         nt_gains *gains = &setup.settings.gains;
         gains->rate = 1e3 * (1.0 + floor(12.0 * nt_random_uniform(&random)));
         gains->delay = floor(3.0 * nt_random_uniform(&random));
@@ -158,6 +159,7 @@ static double speed_in_the_end(const brave_loop *brave)
 {
     static loop l;
     nt_session_setup setup = nt_session_defaults();
+    setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
     setup.settings.gains.rate = brave->rate;
     setup.settings.gains.delay = brave->delay;
     setup.settings.gains.force_gain = brave->force_gain;
@@ -255,6 +257,7 @@ static void topography_trips_nothing(void **state)
     assert_int_equal(nt_surface_init(&surface, &map, coefficients), NT_OK);
     static loop l;
     nt_session_setup setup = nt_session_defaults();
+    setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
     setup.surface = &surface;
     setup.x = setup.y = 0.2e-6;
     setup.clearance = 20e-9;

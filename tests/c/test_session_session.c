@@ -50,6 +50,7 @@ static void a_touch_from_approach_to_pull_off(void **state)
 {
     (void)state;
     nt_session_setup setup = nt_session_defaults();
+    setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
     nt_session *session = open_session(&setup);
     const nt_plan *plan = nt_session_plan(session);
     static const double script[][2] = {{0.2, 3.0}, {2.0, 3.0}, {-0.3, 4.0}};
@@ -98,6 +99,7 @@ static void forces_agree_at_rest_for_any_gain(void **state)
     for (int i = 0; i < 5; i++)
         for (int j = 0; j < 3; j++) {
             nt_session_setup setup = nt_session_defaults();
+            setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
             setup.settings.gains.force_gain = gains[i];
             setup.clearance = 20e-9;
             setup.seed = (uint64_t)(10 * i + j);
@@ -230,7 +232,8 @@ static void a_full_ring_runs_nothing_and_drops_nothing(void **state)
 static void the_emergency_stop(void **state)
 {
     (void)state;
-    const nt_session_setup setup = nt_session_defaults();
+    nt_session_setup setup = nt_session_defaults();
+    setup.settings = nt_settings_defaults(&setup.rig); /* it may press as hard as the rig can */
     const nt_limits *limits = &setup.settings.limits;
     nt_session *session = open_session(&setup);
     feel(session, 2.0, 0.5, 4.0);

@@ -102,8 +102,7 @@ def settings_for_path(
     settings.gains.alpha_p, settings.gains.alpha_f = _core.scaling_heuristic(rig.core, slave_path, ATTRACTION_RANGE)
     if force_range is not None:
         settings.gains.alpha_f = margins.heuristic_alpha_f(rig, ForceRange(*force_range))
-    settings.limits.force = min(settings.limits.force, load)
-    settings.gains.set_point = min(settings.gains.set_point, 0.5 * load)
+    settings.core.keep_to(load)
     return settings
 
 

@@ -100,7 +100,9 @@ void bind_descriptions(py::module_ &module)
     fields = nt_rig_fields(&count);
     bind_described<nt_rig>(module, "Rig", fields, count, nt_rig_defaults, nt_rig_check);
     fields = nt_settings_fields(&count);
-    bind_described<nt_settings>(module, "Settings", fields, count, settings_of_default_rig, nt_settings_check);
+    bind_described<nt_settings>(module, "Settings", fields, count, settings_of_default_rig, nt_settings_check)
+        .def("keep_to",
+             [](Described<nt_settings> &settings, double load) { nt_settings_keep_to(&settings.value, load); });
     module.def("settings_for",
                [](const Described<nt_rig> &rig) { return Described<nt_settings>{nt_settings_defaults(&rig.value)}; });
     module.def("scaling_heuristic", [](const Described<nt_rig> &rig, double slave_path, double attraction) {

@@ -50,8 +50,8 @@ typedef struct nt_session_setup {
     void *say_context;
 } nt_session_setup;
 
-/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with
- * preflight. */
+/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with preflight. The force
+ * limit is the scene's largest load. For another scene or rig: nt_settings_defaults, nt_settings_keep_to. */
 NT_API nt_session_setup nt_session_defaults(void);
 
 /* What the operator does next: a simulated hand and the tip go there on a straight line, then stay. */
@@ -147,7 +147,7 @@ NT_API nt_status nt_session_clutch(nt_session *session, int open);
 NT_API nt_status nt_session_change(nt_session *session, nt_event_kind kind, const char *field, double value,
                                    nt_problem *problem);
 /* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED
- * where none is simulated. */
+ * where none is simulated, NT_E_STATE while the session runs in its thread. */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
 
 /* --- run, as fast as it goes --- */
