@@ -50,8 +50,8 @@ typedef struct nt_session_setup {
     void *say_context;
 } nt_session_setup;
 
-/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with preflight. The force
- * limit is the scene's largest load. For another scene or rig: nt_settings_defaults, nt_settings_keep_to. */
+/* The paper's scene and rig, touch mode on a flat, 0.1 um above it, 65 536 records, margin 1.5, with preflight. The
+ * force limit is the scene's largest load. For another scene or rig: nt_settings_defaults, nt_settings_keep_to. */
 NT_API nt_session_setup nt_session_defaults(void);
 
 /* What the operator does next: a simulated hand and the tip go there on a straight line, then stay. */

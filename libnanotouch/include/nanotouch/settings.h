@@ -80,8 +80,8 @@ typedef struct nt_settings {
 /* 10 kHz, K_f = 2, scaling by the heuristic rule for a slave path of 0.4 um, limits inside the rig's ranges; the
  * impedance law if the rig has no gauge. */
 NT_API nt_settings nt_settings_defaults(const nt_rig *rig);
-/* Lowers what would press harder than a load [N], as the largest one of a scene: the force limit to it, the set-point to
- * half of it. Infinity lowers nothing. */
+/* Lowers what would press harder than a load [N], as the largest one of a scene: the force limit to it, the set-point
+ * to half of it. Infinity lowers nothing. */
 NT_API void nt_settings_keep_to(nt_settings *settings, double load);
 /* The table of gains and limits; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_settings_fields(int *count);
