@@ -1,8 +1,58 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What observers see of one tick. */
+ * What observers see of one tick.
+ *
+ * The outer radius c of the cohesive zone follows from what is known already, without iteration. In contact Maugis
+ * (1992) has delta = a^2/R - (2 sigma0/E*) sqrt(c^2 - a^2). Apart (a = 0) the zone ends where the gap is h0 = w/sigma0:
+ * delta = c^2/(2R) - 4 sigma0 c/(pi E*) - h0, whose larger c is the stable one. Where a meniscus is the source of
+ * adhesion, its Laplace pressure is sigma0: c is where it ends. */
 #include <math.h>
 
+#include "nanotouch/material.h"
 #include "session/state.h"
+
+static int has_zone(const nt_plan *plan)
+{
+    switch (plan->terms[NT_PLAN_CONTACT].form) {
+    case NT_FORM_TABLE:
+    case NT_FORM_POLISHED:
+    case NT_FORM_EXACT:
+    case NT_FORM_LOCAL:
+    case NT_FORM_LOCAL_EXACT:
+        return plan->contact.work_of_adhesion > 0.0 && isfinite(plan->lambda);
+    default:
+        return 0;
+    }
+}
+
+/* At indentation -gap over a place of radius R [m]. */
+static double zone_at(const nt_contact *contact, double R, double gap, double a)
+{
+    const double sigma0 = contact->cohesive_stress, E = contact->effective_modulus;
+    if (a > 0.0) {
+        const double b = 0.5 * E / sigma0 * (a * a / R + gap);
+        return b > 0.0 ? sqrt(a * a + b * b) : a; /* the a of a table is not exact */
+    }
+    const double q = 4.0 * sigma0 / (NT_PI * E);
+    const double square = q * q + 2.0 * (contact->work_of_adhesion / sigma0 - gap) / R;
+    return square >= 0.0 ? R * (q + sqrt(square)) : 0.0;
+}
+
+/* 0 where nothing holds them together; NaN where no law of the plan knows. */
+static double cohesive_radius(const nt_session *session, const nt_record *record)
+{
+    if (!session->simulates[NT_HALF_SLAVE] || isnan(record->gap))
+        return NAN;
+    const nt_sim_slave *slave = &session->sim.slave;
+    const nt_plan *plan = slave->plan;
+    if (!has_zone(plan))
+        return NAN;
+    if (record->contact_radius == 0.0 && !slave->interaction.attached)
+        return 0.0;
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
+    const int is_local = form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
+    const double R = is_local ? nt_interaction_place(plan, slave->x, slave->y).radius.radius : plan->contact.radius;
+    return zone_at(&plan->contact, R, record->gap, record->contact_radius);
+}
 
 nt_frame nt_session_frame(const nt_session *session, const nt_record *record)
 {
@@ -22,6 +72,9 @@ nt_frame nt_session_frame(const nt_session *session, const nt_record *record)
     }
     frame.gap = record->gap;
     frame.contact_radius = record->contact_radius;
+    frame.cohesive_radius = cohesive_radius(session, record);
+    if (session->simulates[NT_HALF_SLAVE])
+        frame.neck_radius = session->sim.slave.plan->source == NT_ADHESION_MENISCUS ? frame.cohesive_radius : 0.0;
     frame.state = record->state;
     frame.reasons = record->reasons;
     frame.phase = record->phase;

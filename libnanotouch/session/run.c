@@ -106,9 +106,12 @@ static nt_record *next_record(nt_session *session)
 
 static nt_status keep(nt_session *session, const nt_record *record)
 {
-    if (session->frames) {
-        const nt_frame frame = nt_session_frame(session, record);
-        nt_frames_publish(session->frames, &frame);
+    if (session->frames || session->stepped) {
+        const nt_frame frame = nt_session_frame(session, record); /* before the halves go on */
+        if (session->frames)
+            nt_frames_publish(session->frames, &frame);
+        if (session->stepped)
+            *session->stepped = frame;
     }
     if (record != &session->unkept)
         nt_ring_add(&session->ring);
@@ -175,10 +178,12 @@ nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *
         status = nt_session_aim(session, input, NULL);
     if (status != NT_OK)
         return status;
-    const nt_record *record = next_record(session);
+    nt_frame shown;
+    session->stepped = &shown;
     status = nt_session_tick(session);
+    session->stepped = NULL;
     if (status == NT_OK)
-        *frame = nt_session_frame(session, record);
+        *frame = shown;
     return status;
 }
 

@@ -47,6 +47,7 @@ struct nt_session {
     double borders[2][2];               /* of the surface, x and y [m]; with master_travel for inputs of any thread */
     int64_t deadline;                   /* of the next tick before it runs, where a half has a clock of its own [ns] */
     nt_frames *frames;
+    nt_frame *stepped; /* nt_session_step wants this tick's; else NULL */
     /* between threads */
     atomic_uint stop; /* emergency stop: STOP_HELD, STOP_UNSEEN (run.c) */
     atomic_ullong dropped;

@@ -68,7 +68,7 @@ static nt_status read_half(void *context, nt_reading *reading)
     const double felt = NAN;
     const uint32_t valid = 1u << NT_Z;
 #else
-    const double felt = 0.5 * fmax(0.0, h->position - SURFACE) + 1e-12 * (double)(h->calls % 5u);
+    const double felt = (h->position > SURFACE ? 0.5 * (h->position - SURFACE) : 0.0) + 1e-12 * (double)(h->calls % 5u);
     const uint32_t valid = 1u << NT_Z | 1u << (NT_READS_FELT + NT_Z);
 #endif
     *reading = (nt_reading){.size = size,

@@ -35,8 +35,8 @@ typedef struct nt_frame {
     double motor_force[3];     /* what the hand feels [N] */
     double gap;                /* h [m] */
     double contact_radius;     /* a [m] */
-    double cohesive_radius;    /* c, where the adhesive zone ends [m] */
-    double neck_radius;        /* of the meniscus [m] */
+    double cohesive_radius;    /* c, where the adhesive zone ends; 0 where there is none, NaN where no law knows [m] */
+    double neck_radius;        /* of the meniscus, c where it is the source of adhesion; else 0 [m] */
     uint32_t state;            /* nt_state */
     uint32_t reasons;          /* NT_REASON_* */
     uint32_t phase;            /* nt_phase */
