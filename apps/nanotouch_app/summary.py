@@ -56,13 +56,12 @@ def before(session: nt.Session) -> str:
     """What is known before anything moves: how near the loop is to its limit, what holds whatever the operator does,
     and with how many steps the hand feels it."""
     found = session.margins()
-    margin = f"{found.least:.3g} ({found.rule}; 1 is the limit)" if math.isfinite(found.least) else "none needed"
     travel = session.clearance + INDENTATION_RANGE + session.relief
     budget = margins.resolution(session.rig, session.settings, travel)
     verdict = "" if found.refusal is None else f"; ARMED AGAINST THE VERDICT, {found.refusal}"
     lines = [
         f"loop:    {session.control} control at {session.rate / 1e3:g} kHz, {session.probe_model} probe; "
-        f"stability margin {margin}{verdict}",
+        f"stability margin {found.verdict}{verdict}",
         f"limits:  {session.guarantee()}",
         *(f"steps:   {line}" for line in str(budget).splitlines()),
     ]

@@ -92,6 +92,7 @@ static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double conta
     margins.exact_limit = limits.loop_stiffness;
     margins.exact_frequency = limits.angle / (2.0 * NT_PI) * gains->rate;
     margins.force_gain_limit = limits.force_gain;
+    margins.integral_limit = limits.stage_gain * gains->rate;
     return margins;
 }
 
@@ -115,12 +116,20 @@ static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, cons
         NT_VERDICT(coupling, "virtual coupling"),
     };
     enum { VERDICTS = (int)(sizeof verdicts / sizeof verdicts[0]) };
-    const int first = rig->master.motor != 0.0 ? 0 : VERDICTS - 1; /* without a motor no loop closes through the hand */
-    nt_verdict least = verdicts[first];
-    for (int i = first + 1; i < VERDICTS; i++)
+    nt_verdict least = verdicts[0];
+    for (int i = 1; i < VERDICTS; i++)
         if (!(verdicts[i].margin >= least.margin))
             least = verdicts[i];
     return least;
+}
+
+/* Without a motor no loop closes through the hand: a virtual coupling and the stage's own loop are left. */
+static nt_verdict judge_without_motor(const nt_margins *margins, const nt_gains *gains, double coupling)
+{
+    const nt_verdict coupled = NT_VERDICT(coupling, "virtual coupling");
+    const nt_verdict stage = NT_VERDICT(margins->integral_limit / gains->stage_integral, "stage integral");
+    const nt_verdict least = gains->stage_integral > 0.0 && !(stage.margin >= coupling) ? stage : coupled;
+    return isinf(least.margin) ? (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed") : least;
 }
 
 nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
@@ -137,14 +146,15 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
     }
     *margins = compute(&shape.rig, &shape.gains, shape.contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
-        return (nt_verdict)NT_VERDICT(INFINITY, "none");
+        return (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed");
     if (mode != NT_MODE_TOUCH)
         return (nt_verdict)NT_VERDICT(margins->height_margin, "height servo");
     const double coupling =
         nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness,
                                  hop_delay(&shape.rig, &shape.gains) + slave_delay(&shape.rig, &shape.gains));
     const nt_verdict stage = NT_VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
-    const nt_verdict touch = judge_touch(margins, &shape.rig, &shape.gains, coupling);
+    const nt_verdict touch = rig->master.motor != 0.0 ? judge_touch(margins, &shape.rig, &shape.gains, coupling)
+                                                      : judge_without_motor(margins, &shape.gains, coupling);
     return stage.margin >= touch.margin ? touch : stage;
 }
 

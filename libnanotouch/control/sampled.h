@@ -74,6 +74,7 @@ typedef struct nt_sampled_limits {
     double loop_stiffness; /* kappa, K_f given [N/m] */
     double angle;          /* at which it oscillates there, w T [rad] */
     double force_gain;     /* K_f, in air or with alpha_f alpha_p k_eff given, whichever comes first [-] */
+    double stage_gain;     /* g of the stage's own loop, whatever the master does [-] */
 } nt_sampled_limits;
 /* reflected_stiffness: alpha_f alpha_p k_eff [N/m]. */
 nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness);

@@ -123,14 +123,18 @@ static void march(const asked *question, crossing found[GAINS])
 
 nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness)
 {
-    nt_sampled_limits limits = {0.0, NAN, 0.0};
-    if (!(loop->master.damping > 0.0))
-        return limits; /* nothing takes out what the holds put in */
-    const asked question = {loop, force_gain, reflected_stiffness};
+    const int is_damped = loop->master.damping > 0.0;
+    nt_sampled_loop walked = *loop;
+    if (!is_damped) /* the stage's own loop does not ask the master */
+        walked.master.damping = walked.master.mass / walked.master.period;
+    const asked question = {&walked, force_gain, reflected_stiffness};
     crossing found[GAINS];
     for (int which = 0; which < GAINS; which++)
         found[which] = (crossing){INFINITY, NAN};
     march(&question, found);
+    nt_sampled_limits limits = {0.0, NAN, 0.0, found[STAGE_GAIN].limit};
+    if (!is_damped)
+        return limits; /* nothing takes out what the holds put in */
     if (stage_gain(loop) >= found[STAGE_GAIN].limit)
         return limits;
     if (force_gain < found[FORCE_GAIN_IN_AIR].limit) {

@@ -76,11 +76,45 @@ static void a_held_master_touches(void **state)
     nt_session_close(session);
 }
 
-/* The verdict is the virtual coupling's: without a motor nothing else closes a loop through the hand. */
+/* Without a motor or a coupling the stage's integral is the only loop; beyond its limit the stage oscillates. */
+static void its_margin_is_that_of_the_stage(void **state)
+{
+    (void)state;
+    nt_session_setup setup = held_setup();
+    setup.settings.gains.coupling_stiffness = setup.settings.gains.coupling_damping = 0.0;
+    setup.minimum_margin = 0.0;
+    setup.preflight = 0;
+    nt_margins margins;
+    nt_verdict verdict = nt_margins_judge(&setup.rig, &setup.settings, 100.0, NT_MODE_TOUCH, &margins);
+    assert_string_equal(verdict.rule, "stage integral");
+    assert_true(verdict.margin == margins.integral_limit / setup.settings.gains.stage_integral);
+    const double shares[] = {0.8, 1.25};
+    for (int i = 0; i < 2; i++) {
+        setup.settings.gains.stage_integral = shares[i] * margins.integral_limit;
+        nt_session *session = open_session(&setup);
+        hold_at(session, 5e-9 / setup.settings.gains.alpha_p, 0.01);
+        run(session, records, 10000);
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int k = 5000; k < 10000; k++) {
+            low = smaller(low, records[k].stage_position[NT_Z]);
+            high = larger(high, records[k].stage_position[NT_Z]);
+        }
+        print_message("integral at %.2f of its limit: stage within %.1f nm\n", shares[i], 1e9 * (high - low));
+        assert_int_equal(high - low > 20e-9, shares[i] > 1.0);
+        nt_session_close(session);
+    }
+    setup.settings.gains.stage_integral = 0.0;
+    verdict = nt_margins_judge(&setup.rig, &setup.settings, 100.0, NT_MODE_TOUCH, &margins);
+    assert_true(isinf(verdict.margin));
+    assert_string_equal(verdict.rule, "none: no loop is closed");
+}
+
+/* A coupling closes one through its own spring. */
 static void its_margin_is_that_of_the_coupling(void **state)
 {
     (void)state;
     nt_session_setup setup = held_setup();
+    setup.settings.gains.stage_integral = 0.0;
     nt_session *session = open_session(&setup);
     const double stiffness = nt_session_plan(session)->maximum_stiffness;
     nt_margins margins;
@@ -380,6 +414,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_held_master_touches),
+        cmocka_unit_test(its_margin_is_that_of_the_stage),
         cmocka_unit_test(its_margin_is_that_of_the_coupling),
         cmocka_unit_test(a_master_of_three_axes_leads_the_tip),
         cmocka_unit_test(a_stage_of_one_axis_touches_where_it_starts),

@@ -59,6 +59,8 @@ class Margins(NamedTuple):
     """at which it then oscillates [Hz]; NaN where there is no limit"""
     force_gain_limit: float
     """K_f at which it is, in air or at the contact, whichever comes first"""
+    integral_limit: float
+    """integral gain at which the stage's own loop oscillates, whoever holds the master [1/s]"""
     bandwidth: float
     """up to here the hand feels the contact's stiffness within 3 dB [Hz]"""
     least: float
@@ -75,6 +77,13 @@ class Margins(NamedTuple):
     """Z-width, upper end: the stiffest contact at the hand, alpha_f alpha_p k_eff, that is passive by R1 [N/m]"""
     stable_stiffness: float
     """the stiffest that is stable [N/m]"""
+
+    @property
+    def verdict(self) -> str:
+        """The smallest margin in words."""
+        if math.isinf(self.least):
+            return "none is needed: no loop is closed, the stage goes where it is told"
+        return f"{self.least:.3g} ({self.rule}; 1 is the limit)"
 
     @property
     def refusal(self) -> str | None:

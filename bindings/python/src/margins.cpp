@@ -24,6 +24,7 @@ static py::dict margins(const Rig &rig, const Settings &settings, double stiffne
     out["exact_limit"] = m.exact_limit;
     out["exact_frequency"] = m.exact_frequency;
     out["force_gain_limit"] = m.force_gain_limit;
+    out["integral_limit"] = m.integral_limit;
     out["bandwidth"] = nt_margins_bandwidth(&shape.rig, &shape.gains, shape.contact_stiffness);
     out["least"] = verdict.margin;
     out["rule"] = verdict.rule;

@@ -25,6 +25,7 @@ typedef struct nt_margins {
     double exact_limit;       /* kappa at which the sampled loop, hand and filters included, is unstable [N/m] */
     double exact_frequency;   /* at which it then oscillates [Hz]; NaN if exact_limit is infinite */
     double force_gain_limit;  /* K_f at which it is, in air or at the stiffest contact, whichever comes first [-] */
+    double integral_limit; /* integral gain at which the stage's own loop oscillates, whoever holds the master [1/s] */
 } nt_margins;
 /* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). */
 NT_API nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
@@ -37,8 +38,10 @@ typedef struct nt_verdict {
 } nt_verdict;
 /* The margins of these settings' law into *margins, and the verdict. In touch: R1 and the exact limit over kappa, K_f's
  * limit over K_f, the motor's force over one step and over three standard deviations of its noise, and the virtual
- * coupling. Topography and approach: the height servo alone. A curve moves no master: infinite. A law of one's own is
- * tried first (nt_margins_own_law); where that does not succeed, all but the height servo's is NaN. */
+ * coupling; of a master without a motor only that and integral_limit over the stage's integral, and where there is
+ * neither no loop is closed: infinite. Topography and approach: the height servo alone. A curve moves no master:
+ * infinite. A law of one's own is tried first (nt_margins_own_law); where that does not succeed, all but the height
+ * servo's is NaN. */
 NT_API nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
                                    nt_mode mode, nt_margins *margins);
 /* The settings with which the default law does what a law of one's own does, found by calling that law some hundred
