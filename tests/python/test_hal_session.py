@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Halves written in Python in a session: a slave of one axis."""
+"""Halves written in Python in a session: a slave of one axis, what halves say, a position device's margin."""
 
 from __future__ import annotations
 
+import logging
 import math
+from typing import Any
 
 import nanotouch as nt
 import numpy as np
+import pytest
 from nanotouch.hal import Action, Capabilities, Reading
 
 
@@ -40,3 +43,34 @@ def test_slave_of_one_axis_touches() -> None:
     assert (columns["x"][0], columns["y"][0]) == (1e-6, 2e-6)
     assert str(touch.guarantee()).endswith("the tip stays at its place, for the stage has one axis")
     assert "one axis" not in str(nt.Session().guarantee())
+
+
+def test_what_a_half_says_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    class Talking(OneAxis):
+        def open(self, host: Any) -> None:
+            self.host = host
+            host.say("found at port 100 %")
+
+        def disarm(self) -> None:
+            self.host.say("lifted")
+
+    touch = nt.Session(rig=nt.Rig(stage={"axes": 1}), slave=Talking())
+    del touch
+    said = [(record.name, record.levelno, record.getMessage()) for record in caplog.records]
+    assert said == [
+        ("nanotouch.hal", logging.WARNING, "found at port 100 %"),
+        ("nanotouch.hal", logging.WARNING, "lifted"),
+    ]
+
+
+def test_margin_of_a_position_device_is_said_in_words() -> None:
+    rig = nt.Rig(master={"motor": "no", "gauge": "no", "rate": 125})
+    found = nt.Session(rig=rig).margins()
+    assert found.rule == "stage integral"
+    assert found.verdict == f"{found.least:.3g} (stage integral; 1 is the limit)"
+    settings = nt.Settings.for_rig(rig)
+    settings.gains.stage_integral = 0.0
+    free = nt.margins.compute(rig, settings, 100.0)
+    assert math.isinf(free.least)
+    assert free.refusal is None
+    assert free.verdict == "none is needed: no loop is closed, the stage goes where it is told"

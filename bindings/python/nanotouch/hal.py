@@ -121,7 +121,8 @@ class _Half:
     """for :meth:`configure`"""
 
     def open(self, host: _core.Host) -> None:
-        """Find the device. ``host.now()`` is the loop's clock [ns], ``host.say(text)`` a line for the user."""
+        """Find the device. ``host.now()`` is the loop's clock [ns], ``host.say(text)`` a line for the user: a
+        session logs it as a warning of the logger ``nanotouch.hal``."""
 
     def describe(self) -> Capabilities:
         """What it can do."""

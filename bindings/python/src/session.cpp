@@ -21,6 +21,17 @@ static void take_halves(Session &made, nt_session_setup &setup, const py::dict &
     }
 }
 
+// What a half tells the user goes where Python's programs look for it.
+static void say_line(void *, const char *text)
+{
+    const py::gil_scoped_acquire gil;
+    try {
+        py::module_::import("logging").attr("getLogger")("nanotouch.hal").attr("warning")("%s", text);
+    } catch (py::error_already_set &error) {
+        error.discard_as_unraisable("nanotouch.hal");
+    }
+}
+
 static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
                                              const Described<nt_settings> &settings, const py::dict &options)
 {
@@ -59,6 +70,7 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     if (py::len(path) > 1 && rig.value.master.axes > 1.0)
         setup.path = nullptr; // the hand leads the tip anywhere
     take_halves(*made, setup, options);
+    setup.say = say_line;
     nt_problem problem{};
     const nt_status status = nt_session_open(&made->handle, &setup, &problem);
     made->rethrow(); // it has been tried
