@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "nanotouch/material.h"
+#include "scene/parts.h"
 #include "session/state.h"
 
 static int has_zone(const nt_plan *plan)
@@ -24,10 +25,12 @@ static int has_zone(const nt_plan *plan)
     }
 }
 
-/* At indentation -gap over a place of radius R [m]. */
-static double zone_at(const nt_contact *contact, double R, double gap, double a)
+/* At indentation -gap. */
+static double zone_at(const nt_contact *contact, double gap, double a)
 {
-    const double sigma0 = contact->cohesive_stress, E = contact->effective_modulus;
+    const double sigma0 = contact->cohesive_stress, E = contact->effective_modulus, R = contact->radius;
+    if (contact->work_of_adhesion == 0.0) /* of this place */
+        return NAN;
     if (a > 0.0) {
         const double b = 0.5 * E / sigma0 * (a * a / R + gap);
         return b > 0.0 ? sqrt(a * a + b * b) : a; /* the a of a table is not exact */
@@ -48,10 +51,11 @@ static double cohesive_radius(const nt_session *session, const nt_record *record
         return NAN;
     if (record->contact_radius == 0.0 && !slave->interaction.attached)
         return 0.0;
-    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    const int is_local = form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
-    const double R = is_local ? nt_interaction_place(plan, slave->x, slave->y).radius.radius : plan->contact.radius;
-    return zone_at(&plan->contact, R, record->gap, record->contact_radius);
+    if (!nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
+        return zone_at(&plan->contact, record->gap, record->contact_radius);
+    const nt_place place = nt_interaction_place(plan, slave->x, slave->y);
+    const nt_contact here = nt_plan_contact_of_place(plan, &place);
+    return zone_at(&here, record->gap, record->contact_radius);
 }
 
 nt_frame nt_session_frame(const nt_session *session, const nt_record *record)
