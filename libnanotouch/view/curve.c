@@ -19,7 +19,7 @@ static double inner_end(const nt_plan *plan)
 
 static double outer_end(const nt_plan *plan, const nt_place *place)
 {
-    const double release = nt_plan_release_gap(plan, radius_at(plan, place));
+    const double release = nt_plan_release_gap(plan, place);
     return isfinite(release) ? fmax(release, inner_end(plan)) : inner_end(plan);
 }
 
