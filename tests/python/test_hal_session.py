@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import logging
 import math
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
@@ -43,6 +44,21 @@ def test_slave_of_one_axis_touches() -> None:
     assert (columns["x"][0], columns["y"][0]) == (1e-6, 2e-6)
     assert str(touch.guarantee()).endswith("the tip stays at its place, for the stage has one axis")
     assert "one axis" not in str(nt.Session().guarantee())
+
+
+def test_slave_of_ones_own_is_recorded_and_replayed(tmp_path: Path) -> None:
+    """Its start height is not known, which a file has to bear."""
+    pytest.importorskip("mcap")
+    touch = nt.Session(rig=nt.Rig(stage={"axes": 1}), slave=OneAxis())
+    file = tmp_path / "own.mcap"
+    with nt.record.Writer(file, touch.metadata()) as writer:
+        writer.append(touch.advance(1.0, nt.Input(0.3, math.nan, math.nan, 0.3)))
+        writer.update(touch.metadata())
+    recording = nt.record.read(file)
+    assert recording.metadata["start_height"] is None
+    again = recording.replay()
+    np.testing.assert_array_equal(again.stage_command, recording.stage_command)
+    np.testing.assert_array_equal(again.state, recording.state)
 
 
 def test_what_a_half_says_is_logged(caplog: pytest.LogCaptureFixture) -> None:

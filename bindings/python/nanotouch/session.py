@@ -314,7 +314,7 @@ class Session:
             "alpha_p": self._opened_with["settings"]["gains"]["alpha_p"],
             "alpha_f": self._opened_with["settings"]["gains"]["alpha_f"],
             "spring_constant": self.rig.probe.spring_constant,
-            "start_height": self.core.start_height,
+            "start_height": None if math.isnan(self.core.start_height) else self.core.start_height,
             "master_start": self.core.master_start,
             "control": self.control,
             "amounts": None if self._amounts is None else self._amounts.to_dict(),
