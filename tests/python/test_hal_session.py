@@ -11,6 +11,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
+from nanotouch.errors import InvalidValue
 from nanotouch.hal import Action, Capabilities, Reading
 
 
@@ -56,6 +57,8 @@ def test_slave_of_ones_own_is_recorded_and_replayed(tmp_path: Path) -> None:
         writer.update(touch.metadata())
     recording = nt.record.read(file)
     assert recording.metadata["start_height"] is None
+    with pytest.raises(InvalidValue, match="lacks 'start_height'"):
+        recording.parameter("start_height")
     again = recording.replay()
     np.testing.assert_array_equal(again.stage_command, recording.stage_command)
     np.testing.assert_array_equal(again.state, recording.state)

@@ -87,7 +87,7 @@ class Recording:
 
     def parameter(self, name: str) -> float:
         """A number of the metadata that the recording cannot be read without, such as ``alpha_f``."""
-        if name not in self.metadata:
+        if self.metadata.get(name) is None:  # null: what is not known, such as the start height of a real stage
             present = ", ".join(self.metadata) or "nothing"
             raise InvalidValue(f"the recording's metadata lacks {name!r}; it has: {present}")
         return float(self.metadata[name])

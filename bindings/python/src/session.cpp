@@ -27,8 +27,8 @@ static void say_line(void *, const char *text)
     const py::gil_scoped_acquire gil;
     try {
         py::module_::import("logging").attr("getLogger")("nanotouch.hal").attr("warning")("%s", text);
-    } catch (py::error_already_set &error) {
-        error.discard_as_unraisable("nanotouch.hal");
+    } catch (py::error_already_set &) { // the interpreter shuts down
+        PySys_FormatStderr("%s\n", text);
     }
 }
 
