@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import warnings
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from nanotouch_app.quantity import parse_quantity
 FILES = ("image.json", "image.png", "image.gwy", "grains.csv", "tip.csv")
 LISTED = 10  # particles printed; the table holds all
 EPILOG = """examples:
-  nanotouch image scan.ibw                                level by plane and rows, roughness
+  nanotouch image scan.ibw                                level, roughness
   nanotouch image dots.tiff --scars --grains              quantum dots: a table of them in grains.csv
   nanotouch image grating.gwy --level poly2+rows --tip 10nm,0.3rad"""
 
@@ -40,8 +41,8 @@ def add_parser(subparsers: Any) -> None:
     what.add_argument("--untrusted", action="store_true", help="read it in a guarded process")
     steps = parser.add_argument_group("what is done, in this order")
     steps.add_argument(
-        "--level", default="plane+rows", metavar="METHOD",
-        help="plane, poly2 .. poly6, rows, medians, terraces, joined by +; none (default: %(default)s)",
+        "--level", default="auto", metavar="METHOD",
+        help="auto, or plane, poly2 .. poly6, lines, rows, medians, terraces, joined by +; none (default: %(default)s)",
     )  # fmt: skip
     steps.add_argument("--scars", action="store_true", help="repair streaks along the fast axis")
     steps.add_argument("--despeckle", action="store_true", help="repair isolated wrong pixels")
@@ -115,6 +116,7 @@ def _repaired(image: images.Topography, args: argparse.Namespace, facts: dict[st
             facts["tilt"] = {"dz_dy": levelled.tilt[0], "dz_dx": levelled.tilt[1]}
             facts["terraces"] = [{"height_m": t.height, "share": t.share} for t in levelled.terraces]
             facts["warnings"] = list(levelled.warnings)
+            facts["levelling"] = [asdict(candidate) for candidate in levelled.candidates]
         if args.scars:
             image, scars = images.repair_scars(image)
             print(scars)

@@ -88,7 +88,7 @@ def levelling() -> None:
     compare("level plane+rows", lambda: images.level(image, "plane+rows"), peers)
     if ST is not None:
         plane: dict[str, Work] = {"SurfaceTopography plane": lambda: peer.detrend("height").heights()}
-        compare("level plane", lambda: images.level(image), plane)
+        compare("level plane", lambda: images.level(image, "plane"), plane)
         theirs = peer.detrend("height").scan_line_align(degree=0).heights().T
         off = images.level(image, "plane+rows")[0].heights - theirs
         print(f"{'':4}difference {off.std() * 1e9:.2g} nm rms of {theirs.std() * 1e9:.3g} nm (offsets were 1 nm rms)")

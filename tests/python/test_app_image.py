@@ -42,9 +42,10 @@ def test_dots_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert said.err == ""
     assert {path.name for path in out.iterdir()} == {"image.json", "image.png", "image.gwy", "grains.csv"}
     assert "by SurfaceTopography/gwy, 256 x 256 pixels, 0.5 x 0.5 um" in said.out
-    assert "plane+rows levelling: height range" in said.out
+    assert "auto levelling: height range" in said.out
     assert "a tilt of 1.28 degrees" in said.out
-    assert "rows: removed 0 nm; no offsets" in said.out
+    assert "chosen: plane+lines, " in said.out
+    assert "runner-up: plane+rows, " in said.out
     with open(out / "grains.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 12
@@ -136,7 +137,7 @@ def test_what_touch_makes_of_every_real_image(file: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         clean, (level_report, _) = images.prepare(images.read(file))
-    plane = images.level(images.read(file))[0]
+    plane = images.level(images.read(file), "plane")[0]
     rows = level_report.steps[1].removed_range
     assert rows <= 0.25 * plane.height_range
     assert np.abs((clean.heights - plane.heights)[~clean.mask]).max() <= 1.2 * rows + 1e-9

@@ -109,7 +109,7 @@ def test_missing_heights_are_filled_and_everything_works_on_them(masked: bool) -
     np.testing.assert_array_equal(heights[~hole], slope[~hole])
     assert slope.min() <= heights.min()
     assert heights.max() <= slope.max()
-    levelled, report = images.level(images.Topography(heights, PIXEL, mask=mask))
+    levelled, report = images.level(images.Topography(heights, PIXEL, mask=mask), "plane")
     assert report.tilt == pytest.approx((1.0, 1e-9 / PIXEL[1]), rel=1e-9)
     assert np.abs(levelled.heights[~hole]).max() < 1e-18
     whole = slope.copy()

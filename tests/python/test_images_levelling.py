@@ -20,6 +20,10 @@ def topography(heights: synthetic.Array) -> images.Topography:
     return images.Topography(heights, (SIDE / heights.shape[0], SIDE / heights.shape[1]))
 
 
+def plane(image: images.Topography, **options: object) -> tuple[images.Topography, images.LevelReport]:
+    return images.level(image, "plane", **options)  # type: ignore[arg-type]
+
+
 def terrace_slopes(heights: synthetic.Array, ridge: np.ndarray) -> list[float]:
     """Least-squares slopes along y and x within ridges and within grooves, as height over the whole side [m]."""
     j, i = np.indices(heights.shape)
@@ -37,7 +41,7 @@ def test_a_tilted_grating_keeps_its_step_and_gets_level_terraces(along_y: bool, 
     """480 nm on 5 degrees, in both directions (row alignment would leave 0 nm of it in one of them)."""
     heights, ridge = synthetic.grating(duty=duty, along_y=along_y)
     rough = noise * np.random.default_rng(2).standard_normal(heights.shape)
-    levelled, report = images.level(topography(synthetic.tilted(heights + rough, SIDE, 0.8 * SLOPE, 0.6 * SLOPE)))
+    levelled, report = plane(topography(synthetic.tilted(heights + rough, SIDE, 0.8 * SLOPE, 0.6 * SLOPE)))
     step = np.median(levelled.heights[ridge]) - np.median(levelled.heights[~ridge])
     assert step == pytest.approx(480e-9, rel=1e-3)
     # over the whole side: 1 nm of noise on 16 384 pixels fixes a slope to 0.03 nm; terraces are a part of the side
@@ -54,7 +58,7 @@ def test_an_ordinary_plane_fit_would_not_do() -> None:
     terms = np.column_stack([np.ones(heights.size), j.ravel(), i.ravel()])
     plain = heights - (terms @ np.linalg.lstsq(terms, heights.ravel(), rcond=None)[0]).reshape(heights.shape)
     assert np.abs(terrace_slopes(plain, ridge)).max() > 20e-9
-    levelled, _ = images.level(topography(heights))
+    levelled, _ = plane(topography(heights))
     assert np.abs(terrace_slopes(levelled.heights, ridge)).max() < 1e-15
 
 
@@ -63,7 +67,7 @@ def test_a_grating_with_sloping_walls() -> None:
     heights, ridge = synthetic.grating(256, duty=0.4)
     soft = cv2.blur(heights, (5, 1), borderType=cv2.BORDER_REPLICATE)
     noise = 0.5e-9 * np.random.default_rng(3).standard_normal(soft.shape)
-    levelled, _ = images.level(topography(synthetic.tilted(soft + noise, SIDE, -SLOPE, SLOPE)))
+    levelled, _ = plane(topography(synthetic.tilted(soft + noise, SIDE, -SLOPE, SLOPE)))
     inner = cv2.erode(ridge.astype(np.uint8), np.ones((1, 7))) > 0
     outer = cv2.erode((~ridge).astype(np.uint8), np.ones((1, 7))) > 0
     step = np.median(levelled.heights[inner]) - np.median(levelled.heights[outer])
@@ -77,19 +81,19 @@ def test_dots_on_a_flat_and_a_coarsely_digitised_slope() -> None:
     for cy, cx in rng.integers(0, 64, (20, 2)):  # all in one quarter: a plain plane would tilt
         flat = np.maximum(flat, 20e-9 - 2e-9 * np.hypot(y - cy, x - cx))
     slope = synthetic.tilted(flat, SIDE, 2e-3, -1e-3)
-    levelled, _ = images.level(topography(slope))
+    levelled, _ = plane(topography(slope))
     bare = flat == 0
     assert np.ptp(levelled.heights[bare]) < 1.0e-9
     for steeper in (1.0, 10.0):  # to three steps of the digitiser from pixel to pixel
         slope = synthetic.tilted(flat, SIDE, 2e-3 * steeper, -1e-3 * steeper)
-        coarse, _ = images.level(topography(np.round(slope / 0.5e-9) * 0.5e-9))
+        coarse, _ = plane(topography(np.round(slope / 0.5e-9) * 0.5e-9))
         assert np.ptp(coarse.heights[bare]) < 2.0e-9  # the digitiser's step of 0.5 nm shows, no more
 
 
 def test_a_smooth_surface_gets_the_ordinary_plane() -> None:
     rng = np.random.default_rng(5)
     film = cv2.GaussianBlur(rng.standard_normal((128, 128)), (0, 0), 4.0) * 10e-9
-    levelled, report = images.level(topography(synthetic.tilted(film, SIDE, 0.01, -0.02)))
+    levelled, report = plane(topography(synthetic.tilted(film, SIDE, 0.01, -0.02)))
     # the film's own least-squares plane is the uncertainty of what "level" means
     j, i = np.indices(film.shape)
     terms = np.column_stack([np.ones(film.size), j.ravel(), i.ravel()])
@@ -101,20 +105,20 @@ def test_a_smooth_surface_gets_the_ordinary_plane() -> None:
 
 def test_levelling_is_idempotent_and_masks() -> None:
     heights, _ = synthetic.grating(duty=0.4)
-    once, _ = images.level(topography(synthetic.tilted(heights, SIDE, 0.01, 0.02)))
-    twice, report = images.level(once)
+    once, _ = plane(topography(synthetic.tilted(heights, SIDE, 0.01, 0.02)))
+    twice, report = plane(once)
     np.testing.assert_allclose(twice.heights, once.heights, rtol=0, atol=1e-18)
     assert report.removed_range < 1e-17
     # half of the image is another slope: masked away, it does not matter
     half = np.zeros(heights.shape, bool)
     half[64:] = True
     folded = np.where(half, 1e-6, synthetic.tilted(heights, SIDE, 0.01, 0.02))
-    assert images.level(topography(folded), mask=half)[1].tilt == pytest.approx((0.01, 0.02), rel=1e-9)
+    assert plane(topography(folded), mask=half)[1].tilt == pytest.approx((0.01, 0.02), rel=1e-9)
     for wrong in ("planes", "poly9", "plane+", ""):
         with pytest.raises(InvalidValue, match="method"):
             images.level(once, method=wrong)
     with pytest.raises(InvalidValue, match="mask: leaves 0 pixels"):
-        images.level(once, mask=np.ones(heights.shape, bool))
+        plane(once, mask=np.ones(heights.shape, bool))
 
 
 def test_speckles_go_and_everything_else_stays() -> None:

@@ -44,7 +44,7 @@ def test_scars_on_a_tilted_grating_are_repaired_and_its_step_is_kept(along_y: bo
     np.testing.assert_array_equal(repaired.heights[~repaired.mask], scarred[~repaired.mask])  # not even rounded
     # between two rows of noise: five standard deviations of the mean and of the pixel beneath
     assert np.abs(repaired.heights - clean)[repaired.mask].max() < 6 * NOISE
-    flat = images.level(repaired)[0].heights
+    flat = images.level(repaired, "plane")[0].heights
     assert np.median(flat[ridge]) - np.median(flat[~ridge]) == pytest.approx(480e-9, rel=1e-3)
 
 

@@ -10,7 +10,8 @@ from .channel import Channel, Plane
 from .despeckling import DespeckleReport, despeckle
 from .filling import fill
 from .filters import gaussian, median
-from .levelling import LevelReport, LevelStep, level, prepare
+from .level_report import Candidate, LevelReport, LevelStep
+from .levelling import level, prepare
 from .particles import GrainTable, grains
 from .pictures import draw
 from .pyramid import MipLevel, mip_levels
@@ -23,6 +24,7 @@ from .topography import Topography
 from .writing import write
 
 __all__ = [
+    "Candidate",
     "Channel",
     "DespeckleReport",
     "GrainTable",

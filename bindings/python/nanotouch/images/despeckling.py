@@ -14,6 +14,7 @@ from ._robust import MAD
 from .topography import Topography
 
 _SPECKLE = 6.0  # standard deviations from the surroundings: one in 5e8 pixels of Gaussian noise
+_HIGHER = (4.0, 16.0)  # times the threshold, at which groups are looked at again
 _SPECKLE_SIZE = 2  # [pixel]; more pixels in one piece are a structure
 
 
@@ -60,8 +61,10 @@ def despeckle(topography: Topography) -> tuple[Topography, DespeckleReport]:
     off = normal - smooth
     # The floor keeps single steps of a coarsely digitised image from counting as speckles.
     threshold = _SPECKLE * max(MAD * float(np.median(np.abs(off))), 1e-3 * float(np.ptp(smooth)))
-    suspect = np.abs(off) > threshold
-    speckle = suspect & _small_groups(suspect, cv2) & _apart(normal, suspect, threshold, cv2)
+    speckle = np.zeros(z.shape, bool)
+    for least in (threshold, *(threshold * factor for factor in _HIGHER)):  # a spike may stand among lesser suspects
+        suspect = np.abs(off) > least
+        speckle |= suspect & _small_groups(suspect, cv2) & _apart(normal, suspect, least, cv2)
     count = int(np.count_nonzero(speckle))
     heights = z.copy()
     heights[speckle] = smooth[speckle].astype(np.float64) * scale + centre

@@ -71,7 +71,7 @@ def analyse(strips: Floats) -> RowProfile:
     """Tell offsets from structures. strips: (ny, columns), means over blocks along x [m], NaN where not to count."""
     steps = np.diff(strips, axis=0)
     half = steps.shape[1] // 2
-    profile = _profile(steps)
+    profile = summed(steps)
     guide = _running_median(profile)
     rounding = 1e-9 * float(np.nanmax(strips) - np.nanmin(strips))
     spread = max(MAD * float(np.median(np.abs(profile - guide))), rounding)
@@ -79,7 +79,7 @@ def analyse(strips: Floats) -> RowProfile:
     weights = _weights(guide, usual, spread)
     kept = _straightened(_local_lines(profile, weights), profile, guide, usual, spread)
     offsets = profile - kept
-    left, right = (p - _local_lines(p, weights) for p in (_profile(steps[:, :half]), _profile(steps[:, half:])))
+    left, right = (p - _local_lines(p, weights) for p in (summed(steps[:, :half]), summed(steps[:, half:])))
     power = float(np.sqrt((left @ left) * (right @ right)))
     agreed = power > len(profile) * rounding**2 and left @ right >= max(_AGREED, 4.0 / np.sqrt(len(profile))) * power
     period = _period(offsets) if agreed else None
@@ -102,7 +102,7 @@ def analyse(strips: Floats) -> RowProfile:
     )
 
 
-def _profile(steps: Floats) -> Floats:
+def summed(steps: Floats) -> Floats:
     """Sums of the medians from row to row; pairs of rows without a known difference count as level."""
     ordered = np.sort(steps, axis=1)  # NaN last
     known = np.count_nonzero(np.isfinite(steps), axis=1)
