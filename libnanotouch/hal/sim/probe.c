@@ -54,9 +54,9 @@ double nt_sim_surface_height(const nt_sim_slave *slave)
 
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
-    const nt_place place = nt_interaction_place(slave->plan, slave->x, slave->y);
-    const double surface = place.surface.z + nt_sim_surface_jump(&slave->link);
-    probe_context context = {slave->plan, &slave->interaction, place, slave->truth.gap, slave->law};
+    probe_context context = {slave->plan, &slave->interaction, nt_interaction_place(slave->plan, slave->x, slave->y),
+                             slave->truth.gap, slave->law};
+    const double surface = context.place.surface.z + nt_sim_surface_jump(&slave->link);
     const int is_elsewhere = slave->x != slave->law_x || slave->y != slave->law_y;
     if (surface != slave->truth.surface_height || (is_elsewhere && slave->plan->properties))
         context.gap = NAN; /* another place: nothing is known there */
