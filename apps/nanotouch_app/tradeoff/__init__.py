@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measure speed and accuracy on this machine: every contact model and tier over lambda and load; the plans of every
-preset over the accuracy demanded; and of the simulated rig over loop rate, probe model and sub-step."""
+preset over the accuracy demanded, by themselves and felt in the loop; the simulated rig over loop rate, probe model and
+sub-step."""
 
 from __future__ import annotations
 
@@ -13,9 +14,12 @@ from nanotouch.plots import saved
 from nanotouch.record import write_csv
 
 from nanotouch_app import output
-from nanotouch_app.tradeoff import drawing, errors, measure, page, plans, plant
+from nanotouch_app.tradeoff import answer, drawing, errors, measure, page, plans, plant
 
-FILES = ("tradeoff.csv", "tradeoff.png", "errormap.csv", "errormap.png", "plans.csv", "plans.png", "plant.csv")
+FILES = (
+    "tradeoff.png", "tradeoff.csv", "laws.csv", "loop.csv", "errormap.csv", "errormap.png", "plans.csv", "plans.png",
+    "plant.csv",
+)  # fmt: skip
 
 
 def add_parser(subparsers: Any) -> None:
@@ -42,23 +46,41 @@ def run(args: argparse.Namespace) -> int:
             rows = measure.trade(args.quick, progress)
         with output.progress_bar("plans") as progress:
             planned = plans.trade(args.quick, progress)
+        with output.progress_bar("plans in the loop") as progress:
+            felt = plant.plans(args.quick, progress)
         with output.progress_bar("simulated rig") as progress:
             ways = plant.trade(args.quick, progress)
-        how = "nanotouch tradeoff" + (" --quick" if args.quick else "")
-        comments = {"command": how, **{f"loads, {name}": words for name, words in errors.WORDS.items()}}
-        write_csv(out / "tradeoff.csv", measure.trade_columns(rows), comments)
-        write_csv(out / "errormap.csv", measure.map_columns(maps), {"command": how, "against": "exact Maugis-Dugdale"})
-        write_csv(out / "plans.csv", plans.columns(planned), {"command": how, "against": "nanotouch.reference"})
-        write_csv(
-            out / "plant.csv", plant.columns(ways), {"command": how, "against": f"sub-step {plant.REFERENCE} rad"}
-        )
-        saved(drawing.trade(rows), out / "tradeoff.png", dpi=140)
-        saved(drawing.maps(maps), out / "errormap.png", dpi=140)
-        saved(plans.draw(planned), out / "plans.png", dpi=140)
+        points = answer.points(rows, felt, 3 if args.quick else 200)
+        _write(out, "nanotouch tradeoff" + (" --quick" if args.quick else ""), maps, rows, planned, felt, ways, points)
         if args.doc:
-            page.write(args.doc, maps, rows, planned)
+            page.write(args.doc, maps, rows, planned, felt, ways, points)
+        print(answer.sentences(points))
         print(page.summary(rows))
         print(plans.summary(planned))
         print(plant.summary(ways))
         print(f"written to {out}/: {', '.join(FILES)}" + (f"; {args.doc}" if args.doc else ""))
     return 0
+
+
+def _write(
+    out: Path,
+    how: str,
+    maps: measure.Maps,
+    rows: list[measure.Row],
+    planned: list[plans.Row],
+    felt: list[plant.Planned],
+    ways: list[plant.Row],
+    points: list[answer.Point],
+) -> None:
+    """All tables and pictures."""
+    command = {"command": how}
+    loads = {f"loads, {name}": words for name, words in errors.WORDS.items()}
+    write_csv(out / "laws.csv", measure.trade_columns(rows), command | loads)
+    write_csv(out / "tradeoff.csv", answer.columns(points), command)
+    write_csv(out / "loop.csv", plant.plan_columns(felt), command | {"against": "everything exact"})
+    write_csv(out / "errormap.csv", measure.map_columns(maps), command | {"against": "exact Maugis-Dugdale"})
+    write_csv(out / "plans.csv", plans.columns(planned), command | {"against": "nanotouch.reference"})
+    write_csv(out / "plant.csv", plant.columns(ways), command | {"against": "the dynamic probe, finest sub-step"})
+    saved(answer.draw(points), out / "tradeoff.png", dpi=140)
+    saved(drawing.maps(maps), out / "errormap.png", dpi=140)
+    saved(plans.draw(planned), out / "plans.png", dpi=140)

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The two pictures: cost against error with the Pareto fronts, and error maps with the paper's thresholds."""
+"""The error maps of the contact models, with the paper's thresholds."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,69 +11,9 @@ from nanotouch.plots import new_figure
 
 from nanotouch_app.tradeoff import errors
 from nanotouch_app.tradeoff.errors import CONTROLS, Control
-from nanotouch_app.tradeoff.measure import ROUNDING, Maps, Row, front
+from nanotouch_app.tradeoff.measure import Maps
 from nanotouch_app.tradeoff.rules import HERTZ_LOAD, SPREAD, THRESHOLDS
 from nanotouch_app.tradeoff.solvers import HERTZ
-
-MARKERS = "svD^o*Ph"
-
-
-def trade(rows: list[Row]) -> Any:
-    """Error against cost: adhesive and moderate loads (rows), against exact MD and Lennard-Jones (columns)."""
-    figure = new_figure(13.0, 9.5)
-    panels = figure.subplots(2, 2, sharex=True)
-    truths: tuple[tuple[str, Callable[[Row], float]], ...] = (
-        ("exact Maugis-Dugdale", lambda row: row.against_exact),
-        ("Lennard-Jones sphere, indentation from zero load", lambda row: row.against_lennard_jones_rezeroed),
-    )
-    for line, within in zip(panels, ("adhesive", "moderate"), strict=True):
-        for panel, (truth, error) in zip(line, truths, strict=True):
-            _trade_panel(panel, [row for row in rows if row.loads == within], error)
-            panel.set_title(f"against {truth}\n{errors.WORDS[within]}", loc="left", fontsize="medium")
-    for panel in panels[:, 0]:
-        panel.set_ylabel("largest |ΔF| / max(|F|, |F_pull-off|) under grips [-]")
-    for panel in panels[-1]:
-        panel.set_xlabel("time per element of an array [ns], this machine, through Python")
-    _trade_legends(figure, rows)
-    return figure
-
-
-def _trade_panel(panel: Any, rows: list[Row], error: Callable[[Row], float]) -> None:
-    lambdas = sorted({row.lam for row in rows})
-    names = _names(rows)
-    for lam in lambdas:
-        group = [row for row in rows if row.lam == lam and not math.isnan(error(row))]
-        if not group:
-            continue
-        colour = _colour(lam, lambdas)
-        for row in group:
-            marker = MARKERS[names.index(row.solver)]
-            panel.plot(row.nanoseconds, max(error(row), ROUNDING), marker, color=colour, ms=7, mec="k", mew=0.4)
-        best = front(group, error)
-        height = [max(error(row), ROUNDING) for row in best]
-        panel.step([row.nanoseconds for row in best], height, where="post", color=colour, lw=1.1, alpha=0.8)
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    panel.xaxis.set_minor_formatter(require("matplotlib.ticker", "app").NullFormatter())
-    panel.grid(alpha=0.3)
-
-
-def _trade_legends(figure: Any, rows: list[Row]) -> None:
-    line = require("matplotlib.lines", "app").Line2D
-    lambdas, names = sorted({row.lam for row in rows}), _names(rows)
-    shapes = [line([], [], color="0.4", marker=MARKERS[i], ls="", label=name) for i, name in enumerate(names)]
-    fronts = [line([], [], color=_colour(lam, lambdas), label=f"λ = {lam:g}") for lam in lambdas]
-    title = "steps: Pareto front of a λ"
-    figure.legend(handles=[*shapes, *fronts], loc="outside right center", frameon=False, title=title, fontsize="small")
-
-
-def _names(rows: list[Row]) -> list[str]:
-    return list(dict.fromkeys(row.solver for row in rows))
-
-
-def _colour(lam: float, lambdas: list[float]) -> Any:
-    place = lambdas.index(lam) / max(len(lambdas) - 1, 1)
-    return require("matplotlib", "app").colormaps["turbo"](0.05 + 0.9 * place)
 
 
 def maps(found: Maps) -> Any:

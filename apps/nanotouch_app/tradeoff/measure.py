@@ -94,19 +94,6 @@ def maps(quick: bool, progress: Callable[[float], None]) -> Maps:
     return Maps(lambdas, loads, error)
 
 
-def front(rows: list[Row], error: Callable[[Row], float]) -> list[Row]:
-    """The Pareto front, cheapest first: each cheaper than all that are better by more than a thousandth."""
-
-    def worth(row: Row) -> float:
-        return max(error(row), 10.0 * ROUNDING)
-
-    best: list[Row] = []
-    for row in sorted(rows, key=lambda row: (row.nanoseconds, error(row))):
-        if not best or worth(row) < 0.999 * worth(best[-1]):
-            best.append(row)
-    return best
-
-
 def map_columns(found: Maps) -> dict[str, Floats]:
     """The maps as a table, header with unit to values; lambda varies slowest."""
     lam, load = np.meshgrid(found.lambdas, found.loads, indexing="ij")

@@ -145,37 +145,25 @@ def summary(rows: list[Row]) -> str:
 
 
 def draw(rows: list[Row]) -> Any:
-    """A panel for each preset: the step of the cost, and at each step the bound and the error."""
-    figure = new_figure(14.0, 7.0)
-    panels = figure.subplots(2, math.ceil(len(PRESETS) / 2), sharex=True, sharey=True).ravel()
-    for panel, name in zip(panels, PRESETS, strict=False):
-        _panel(panel, [row for row in rows if row.preset == name])
-        panel.set_title(name.replace("_", " "), loc="left", fontsize="medium")
-    for panel in panels[len(PRESETS) :]:
-        panel.axis("off")
-    handles, labels = panels[0].get_legend_handles_labels()
-    panels[-1].legend(handles, labels, loc="center", frameon=False)
-    figure.supxlabel("|ΔF| / max(|F|, pull-off force) [-]", fontsize="medium")
-    figure.supylabel("cost of one evaluation [Hertz evaluations]", fontsize="medium")
-    return figure
-
-
-def _panel(panel: Any, rows: list[Row]) -> None:
-    kinds = [step[0] for step in steps(rows) if step[0].forms != REFUSED]
-    costs, bounds = [row.cost for row in kinds], [row.bound for row in kinds]
-    # a plan serves demands down to its bound
-    panel.step([RTOLS[0], *bounds], [costs[0], *costs], where="pre", color="tab:blue", label="what a demand costs")
-    panel.plot(bounds, costs, "o", color="tab:blue", label="bound of the plan")
-    panel.plot(
-        [max(row.error, ROUNDING) for row in kinds], costs, "x", color="tab:red", ms=8, mew=2,
-        label=f"largest error against the reference\n(below {ROUNDING:g} drawn there)",
-    )  # fmt: skip
-    panel.axhline(rows[0].full_cost, color="0.5", ls="--", lw=1.0, label="everything on, exact")
+    """One panel: at which cost each preset keeps which bound, and how far the plan really is off."""
+    figure = new_figure(9.5, 6.0)
+    panel = figure.subplots()
+    for name in PRESETS:
+        kinds = [step[0] for step in steps(rows) if step[0].preset == name and step[0].forms != REFUSED]
+        costs, bounds = [row.cost for row in kinds], [row.bound for row in kinds]
+        # a plan serves demands down to its bound
+        (line,) = panel.step([RTOLS[0], *bounds], [costs[0], *costs], where="pre", label=name.replace("_", " "))
+        panel.plot(bounds, costs, "o", color=line.get_color())
+        panel.plot([max(row.error, ROUNDING) for row in kinds], costs, "x", color=line.get_color())
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.set_xlim(1.0, 0.4 * ROUNDING)
-    ticks = (10, 20, 50, 100, 200, 500)
+    ticks = (10, 20, 50, 100, 200)
     panel.set_yticks(ticks, [f"{tick}" for tick in ticks])
+    panel.set_ylim(8.0, 250.0)
     panel.yaxis.set_minor_formatter(require("matplotlib.ticker", "app").NullFormatter())
-    panel.set_ylim(8.0, 500.0)
+    panel.set_xlabel("|ΔF| / max(|F|, pull-off force) [-]: demanded (line), bound (dots), error (crosses)")
+    panel.set_ylabel("cost of one evaluation [Hertz evaluations]")
     panel.grid(alpha=0.3)
+    figure.legend(loc="outside upper center", ncols=4, frameon=False, fontsize="small")
+    return figure

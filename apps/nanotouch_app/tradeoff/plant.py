@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Loop rate, probe model and sub-step of the simulated rig: what a second of touch costs, and how far it is off."""
+"""The simulated rig: what a period of touch costs and how far it is off, by loop rate, probe, sub-step and plan."""
 
 from __future__ import annotations
 
@@ -8,14 +8,24 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from nanotouch import Input, Rig, Session
+from nanotouch import Input, Plan, Rig, Session
 from nanotouch.session import ProbeModel, settings_for_path
 from numpy.typing import NDArray
 
-REFERENCE = 0.1
-"""sub-step that all others are compared with [rad]"""
+Floats = NDArray[np.float64]
+
+REFERENCE, QUICK_REFERENCE = 0.0125, 0.05
+"""sub-steps that all others are compared with [rad]"""
 SUBSTEPS = (0.25, 1.0, 4.0, 16.0, 60.0)
+ORDER = 2
+"""of the integrator: half the sub-step, a quarter of the error"""
 CLEARANCE = 2e-9
+RATE = 10e3
+"""of the loop in which plans are compared [Hz]"""
+SUBSTEP = 1.0
+"""of the dynamic probe there [rad]"""
+RTOLS = (0.3, 1e-2, 1e-3, 1e-9, 0.0)
+"""accuracies asked of the plans; 0: everything exact, the truth of the others"""
 
 
 class Row(NamedTuple):
@@ -28,55 +38,142 @@ class Row(NamedTuple):
     """NaN for the quasi-static probe [rad]"""
     cost: float
     """processor time per simulated time [-]"""
-    force_error: float
-    """RMS of the tip's force against the finest sub-step at this rate, over its largest value; in the second half, once
-    the ringing of the jump-in is over [-]"""
+    peak: float
+    """largest error of the tip's force over the whole run, over the largest force [-]"""
+    rms: float
+    """its root mean square over the whole run [-]"""
+    reference_error: float
+    """largest error of the reference itself, by Richardson's extrapolation [-]"""
 
 
-def _touch(rate: float, model: ProbeModel, substep: float, duration: float) -> tuple[NDArray[np.float64], float]:
-    """Force on the tip over time, and processor time per simulated time. No thermal motion: the same every time."""
+class Planned(NamedTuple):
+    """The same touch with one plan, beside the one in which everything is exact."""
+
+    probe: str
+    rtol: float
+    forms: str
+    bound: float
+    """of the plan [-]"""
+    share: float
+    """of the loop's period that one period's work takes [-]"""
+    peak: float
+    """largest error of the force that is felt, over the largest [-]"""
+    rms: float
+
+
+class Touch(NamedTuple):
+    """What one run gave."""
+
+    tip: Floats
+    felt: Floats
+    """force on the tip and the force that the loop measures and hands to the hand [N]"""
+    cost: float
+    """processor time per simulated time [-]"""
+    plan: Plan
+
+
+def touch(rate: float, model: ProbeModel, substep: float, duration: float, rtol: float | None = None) -> Touch:
+    """One touch without thermal motion: the same every time."""
     rig = Rig(probe={"temperature": 0.0})
-    settings = settings_for_path(rig, clearance=CLEARANCE)
+    demand = {} if rtol is None else {"rtol": rtol}
     session = Session(
-        rig=rig, settings=settings, rate=rate, clearance=CLEARANCE, preflight=False, probe_model=model, substep=substep
-    )
+        rig=rig, settings=settings_for_path(rig, clearance=CLEARANCE), rate=rate, clearance=CLEARANCE, preflight=False,
+        probe_model=model, **({} if model == "quasi-static" else {"substep": substep}), **demand,
+    )  # fmt: skip
     push = Input(1.0, *session.path[0], 0.1 * duration)
     start = time.process_time()
-    force = session.advance(duration, push)["tip_force"]
-    return force, (time.process_time() - start) / duration
+    columns = session.advance(duration, push)
+    cost = (time.process_time() - start) / duration
+    return Touch(columns["tip_force"], columns["slave_force"], cost, session.plan)
+
+
+def differs(found: Floats, truth: Floats) -> tuple[float, float]:
+    """Largest and RMS difference over the whole run, over the largest force [-]."""
+    difference, scale = found - truth, float(np.abs(truth).max())
+    return float(np.abs(difference).max()) / scale, float(np.sqrt(np.mean(difference**2))) / scale
 
 
 def trade(quick: bool, progress: Callable[[float], None] | None = None) -> list[Row]:
-    """All ways; some ten seconds, or two."""
-    duration = 0.05 if quick else 0.1
+    """All ways at all rates; half a minute, or some seconds."""
+    duration, finest = (0.05, QUICK_REFERENCE) if quick else (0.1, REFERENCE)
     ways: list[tuple[ProbeModel, float]] = [("quasi-static", np.nan), *(("dynamic", s) for s in SUBSTEPS)]
     rates = (1e3, 10e3) if quick else (1e3, 10e3, 100e3)
     rows: list[Row] = []
     for number, rate in enumerate(rates):
-        reference, _ = _touch(rate, "dynamic", REFERENCE, duration)
-        scale = float(np.abs(reference).max())
+        coarser, reference = (touch(rate, "dynamic", step, duration).tip for step in (2.0 * finest, finest))
+        own = differs(coarser, reference)[0] / (2**ORDER - 1)
         for model, substep in ways:
-            force, cost = _touch(rate, model, SUBSTEPS[0] if np.isnan(substep) else substep, duration)
-            difference = (force - reference)[len(force) // 2 :]
-            error = float(np.sqrt(np.mean(difference**2))) / scale
-            rows.append(Row(rate, model, substep, cost, error))
+            found = touch(rate, model, substep, duration)
+            rows.append(Row(rate, model, substep, found.cost, *differs(found.tip, reference), own))
         if progress is not None:
             progress((number + 1) / len(rates))
     return rows
 
 
+def plans(quick: bool, progress: Callable[[float], None] | None = None) -> list[Planned]:
+    """The default scene's plans in the loop, each with both probes; some ten seconds, or two."""
+    models: tuple[ProbeModel, ...] = ("quasi-static", "dynamic")
+    duration, runs = (0.05, 1) if quick else (0.2, 3)
+    rows: list[Planned] = []
+    for number, model in enumerate(models):
+        found = {rtol: _cheapest(model, duration, rtol, runs) for rtol in RTOLS}
+        for rtol, made in found.items():
+            forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in made.plan.terms)
+            rows.append(Planned(model, rtol, forms, made.plan.bound, made.cost, *differs(made.felt, found[0.0].felt)))
+        if progress is not None:
+            progress((number + 1) / len(models))
+    return rows
+
+
+def _cheapest(model: ProbeModel, duration: float, rtol: float, runs: int) -> Touch:
+    """Of several equal runs: whatever else a machine does only adds."""
+    return min((touch(RATE, model, SUBSTEP, duration, rtol) for _ in range(runs)), key=lambda made: made.cost)
+
+
 def columns(rows: list[Row]) -> dict[str, list[object]]:
     """The trade as a table."""
-    headers = ("loop rate [Hz]", "probe (name)", "sub-step [rad]", "processor time per time [-]", "force error [-]")
+    headers = (
+        "loop rate [Hz]", "probe (name)", "sub-step [rad]", "processor time per time [-]", "largest force error [-]",
+        "RMS force error [-]", "largest error of the reference itself [-]",
+    )  # fmt: skip
+    return {header: list(values) for header, values in zip(headers, zip(*rows, strict=True), strict=True)}
+
+
+def plan_columns(rows: list[Planned]) -> dict[str, list[object]]:
+    """The plans in the loop as a table."""
+    headers = (
+        "probe (name)", "demanded [-]", "plan (name)", "bound [-]", "share of the period [-]",
+        "largest error of the felt force [-]", "RMS error of the felt force [-]",
+    )  # fmt: skip
     return {header: list(values) for header, values in zip(headers, zip(*rows, strict=True), strict=True)}
 
 
 def summary(rows: list[Row]) -> str:
     """A table for the terminal."""
-    lines = ["loop [Hz]  probe         sub-step [rad]  times real time  force error"]
+    lines = ["loop [Hz]  probe         sub-step [rad]  times real time  largest error  RMS error  of the reference"]
     for row in rows:
         substep = "" if np.isnan(row.substep) else f"{row.substep:g}"
         lines.append(
-            f"{row.rate:9.0f}  {row.probe:12s}  {substep:>14s}  {1.0 / row.cost:15.3g}  {row.force_error:11.2g}"
+            f"{row.rate:9.0f}  {row.probe:12s}  {substep:>14s}  {1.0 / row.cost:15.3g}  {row.peak:13.2g}  "
+            f"{row.rms:9.2g}  {row.reference_error:16.1g}"
         )
     return "\n".join(lines)
+
+
+def section(rows: list[Row]) -> str:
+    """Of the page on accuracy."""
+    lines = ["| loop | probe | sub-step | times real time | largest error | RMS error |", "|" + " --- |" * 6]
+    for row in rows:
+        substep = "" if np.isnan(row.substep) else f"{row.substep:g} rad"
+        lines.append(
+            f"| {row.rate / 1e3:g} kHz | {row.probe} | {substep} | {1.0 / row.cost:.2g} | {100 * row.peak:.2g} % | "
+            f"{100 * row.rms:.2g} % |"
+        )
+    worst = max(row.reference_error for row in rows)
+    return f"""## The simulated rig: probe model and sub-step
+
+The same touch, down through the jump-in and pressed. Errors are those of the tip's force over the whole run, jump-in
+included, over its largest value. The reference is the dynamic probe at {REFERENCE:g} rad; its own largest error is
+{100 * worst:.1g} %, by Richardson's extrapolation. `plant.csv` holds the numbers.
+
+{chr(10).join(lines)}"""
