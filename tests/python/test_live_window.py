@@ -11,10 +11,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
+from nanotouch_app.live.picture import Layout
 from nanotouch_app.live.subject import of_preset
 
 PATIENCE = 60.0  # of a loaded machine that draws in software [s]
@@ -40,6 +42,8 @@ def screen() -> Iterator[str]:
 
 class Live:
     """Host and window, served by hand."""
+
+    size = (1440, 900)
 
     def __init__(self, screen: str, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv("DISPLAY", screen)
@@ -72,6 +76,48 @@ class Live:
         raise AssertionError(f"it never came; asked was {self.asked[-5:]}")
 
 
+def _slide_to_dry(live: Live) -> None:
+    """The slider of humidity to its left end: the pull-off becomes that of the law in dry air."""
+    x, y, _, height = Layout(*live.size).controls
+    live.x("mousemove", round(x + 100), round(live.size[1] - (y + height - 8 - 38)))
+    live.x("mousedown", 1)
+    live.x("mousemove", round(x + 4), round(live.size[1] - (y + height - 8 - 38)))
+    live.x("mouseup", 1)
+    live.serve(lambda frame: live.host.session.scene["medium.relative_humidity"] == 0.0)
+    dry, _ = nt.presets.silicon_in_air()
+    dry["medium.relative_humidity"] = 0.0
+    assert live.host.session.plan.pull_off_force == pytest.approx(dry.plan().pull_off_force, rel=1e-9)
+
+
+def _recorded(path: Path, desk: Desk | None) -> Any:
+    """A scripted touch of a stepped session, with a window that watches it or without."""
+    host = Host(of_preset("silicon_in_air"), lambda message: None, out=str(path), stepped=True)
+    if desk is not None:
+        desk.tell(host.world())
+    host.advance(0.1)
+    for request, duration in (({"do": "press", "on": True}, 0.8), ({"do": "wheel", "steps": -4.0}, 0.2),
+                              ({"do": "press", "on": False}, 0.5)):  # fmt: skip
+        host.answer(request)
+        host.advance(duration)
+    host.close()
+    return nt.record.read(path)
+
+
+def test_a_window_changes_no_bit_of_a_recording(screen: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    alone = _recorded(tmp_path / "alone.mcap", None)
+    monkeypatch.setenv("DISPLAY", screen)
+    desk = Desk(of_preset("silicon_in_air").topography)
+    try:
+        desk.wait_ready()
+        watched = _recorded(tmp_path / "watched.mcap", desk)
+        assert desk.process.poll() is None
+    finally:
+        desk.close()
+    assert len(alone) == len(watched) == 16_000
+    for name, column in alone.columns.items():
+        assert column.tobytes() == watched.columns[name].tobytes(), name
+
+
 def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     live = Live(screen, monkeypatch)
     try:
@@ -92,6 +138,7 @@ def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatc
         assert pixels.shape == (900, 1440, 3)
         assert len(np.unique((pixels * 255).astype(int).reshape(-1, 3), axis=0)) > 500
         live.x("key", "p")
+        _slide_to_dry(live)
         live.x("key", "q")
         live.serve(lambda frame: any(one["do"] == "leave" for one in live.asked))
         ticks = live.host.session.progress.ticks
@@ -99,3 +146,24 @@ def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatc
     finally:
         live.host.close()
         live.desk.close()
+
+
+def test_a_session_opens_a_window_that_watches(screen: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DISPLAY", screen)
+    session = nt.Session(seed=1)
+    window = session.live()
+    try:
+        watched = session.run(0.5)
+        assert window.poll() is None
+    finally:
+        window.communicate(timeout=PATIENCE)  # its input ends, and so does it
+    alone = nt.Session(seed=1).run(0.5)
+    assert watched.gap.tobytes() == alone.gap.tobytes()
+    assert window.returncode == 0
+
+
+def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("vtkmodules")
+    monkeypatch.setattr("nanotouch._live.WINDOW", "nanotouch_app.live.nothing")
+    with pytest.raises(nt.Error, match="could not be opened"):
+        nt.Session(seed=1, recorded=False).live()

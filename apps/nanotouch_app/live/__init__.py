@@ -39,8 +39,9 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "what", nargs="?", default="silicon_in_air", metavar="PRESET|IMAGE|CURVE|SCENE|RECORDING",
-        help="what is touched: a preset, an AFM image, a force curve, a TOML file, a recording (default: %(default)s)",
+        "what", nargs="?", default="silicon_in_air", metavar="PRESET|IMAGE|CURVE|MAP|SCENE|RECORDING",
+        help="what is touched: a preset, an AFM image, a force curve, a map.nc, a TOML file; or a recording "
+             "(default: %(default)s)",
     )  # fmt: skip
     parser.add_argument("--list", action="store_true", help="show the presets and end")
     parser.add_argument("--radius", metavar="LENGTH", help="of the tip that measured CURVE, as 30nm")

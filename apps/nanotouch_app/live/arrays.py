@@ -30,7 +30,7 @@ def quads(vtk: Any, rows: int, columns: int) -> Any:
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     four = np.stack([np.full_like(corner, 4), corner, corner + 1, corner + columns + 1, corner + columns], axis=1)
     cells = vtk.vtkCellArray()
-    cells.SetCells(len(corner), _support().numpy_to_vtkIdTypeArray(four.ravel(), deep=True))
+    cells.ImportLegacyFormat(_support().numpy_to_vtkIdTypeArray(four.ravel(), deep=True))
     return cells
 
 

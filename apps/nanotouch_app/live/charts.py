@@ -78,6 +78,8 @@ class ForceGap:
         gap, force = float(seen.frame["gap"]), float(seen.frame["tip_force"][2])
         ends = np.array([axes.x[0], axes.x[1]])
         line = np.stack([ends, force + spring * (ends - gap)], axis=1)
+        if not (line[:, 1].max() > axes.y[0] and line[:, 1].min() < axes.y[1]):
+            return
         low, high = sorted((gap + (axes.y[0] - force) / spring, gap + (axes.y[1] - force) / spring))
         ends = np.clip(ends, low, high)
         line = np.stack([ends, force + spring * (ends - gap)], axis=1)

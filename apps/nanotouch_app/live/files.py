@@ -4,7 +4,6 @@ scene."""
 
 from __future__ import annotations
 
-import math
 import warnings
 from pathlib import Path
 
@@ -21,8 +20,6 @@ MOST_PIXELS = 1024  # of an image that is touched, to a side
 EXTENT = 25.0  # of the relief that is made for a scene, in radii of the tip
 ROUGHNESS = 0.01  # its height over the same
 CURVE_TIP = 20e-9  # [m]; assumed, and told, where nobody gives the radius
-POISSON = 0.3  # of a sample of which nobody knows it
-DUGDALE = 16.0 / (9.0 * math.sqrt(3.0))  # sigma0 z0/w of an atomic potential
 
 
 def of(what: str, radius: float | None = None) -> Subject:
@@ -34,6 +31,8 @@ def of(what: str, radius: float | None = None) -> Subject:
         raise InvalidValue(f"{what}: neither a file nor a preset; presets are {', '.join(PRESETS)}")
     if path.suffix.lower() == ".toml":
         return of_scene(path)
+    if path.suffix.lower() == ".nc":
+        return of_map(path)
     try:
         return of_image(path)
     except Error as no_image:
@@ -69,6 +68,19 @@ def of_image(path: Path) -> Subject:
     return Subject(path.stem, topography.name or path.stem, scene, rig, topography, felt, "Feel your own surface.")
 
 
+def of_map(path: Path) -> Subject:
+    """The map.nc of ``nanotouch map``: each place has the modulus and the adhesion that were found there."""
+    data = nt.maps.read(path)
+    scene = nt.maps.to_scene(data)
+
+    def surface(touching: nt.Scene) -> nt.Surface:
+        return nt.maps.to_surface(data, touching, fill_by="neighbours")
+
+    felt = "Your map: height, modulus and adhesion of each place are those that were fitted."
+    hint = "Drag from a soft place to a hard one at a steady force."
+    return Subject(path.stem, path.stem, scene, nt.Rig(), surface(scene).topography, felt, hint, surface)
+
+
 def of_curve(path: Path, radius: float | None = None) -> Subject:
     """A force curve: its fit by Maugis-Dugdale is the scene, its lever the lever."""
     return of_fit(curves.read(path)[0], path.stem, radius)
@@ -78,27 +90,10 @@ def of_fit(curve: nt.ForceCurve, name: str, radius: float | None = None) -> Subj
     """The same of a curve that has been read; ``radius`` [m] of its tip."""
     tip = CURVE_TIP if radius is None else radius
     result = fitting.fit_curve(curve, "maugis", radius=tip)
-    scene, rig = scene_of_fit(result), nt.Rig()
+    scene, rig = result.to_scene(), nt.Rig()
     rig["probe.spring_constant"] = result.spring_constant
     modulus, energy = result.values["effective_modulus"], result.values["work_of_adhesion"]
     assumed = "" if radius is not None else f"; R = {in_words(tip, 'm', 3)} is assumed (--radius)"
     felt = (f"Your curve: pull-off {in_words(result.measured_pull_off_force, 'N', 3)}, work of adhesion "
             f"{in_words(energy, 'J/m^2', 3)}, E* {in_words(modulus, 'Pa', 3)}{assumed}.")  # fmt: skip
     return Subject(name, name, scene, rig, _made_for(scene, name), felt, "Touch what you have measured.")
-
-
-def scene_of_fit(result: nt.FitResult) -> nt.Scene:
-    """The contact that was fitted, in dry air: all adhesion acts in contact, over the range that was found."""
-    scene = nt.Scene()
-    silicon = (1.0 - scene.tip.poisson_ratio**2) / scene.tip.youngs_modulus
-    rest = max(1.0 / result.values["effective_modulus"] - silicon, 1e-3 / result.values["effective_modulus"])
-    scene["tip.radius"] = result.radius
-    scene["sample.poisson_ratio"] = POISSON
-    scene["sample.youngs_modulus"] = (1.0 - POISSON**2) / rest
-    scene["medium.relative_humidity"] = scene["medium.film_thickness"] = 0.0
-    scene["adhesion.hamaker_constant"] = 0.0
-    scene["adhesion.work_of_adhesion"] = result.values.get("work_of_adhesion", 0.0)
-    if "cohesive_range" in result.values:
-        scene["adhesion.equilibrium_distance"] = DUGDALE * result.values["cohesive_range"]
-    scene["range.maximum_load"] = float(max(result.force.max(), result.measured_pull_off_force))
-    return scene

@@ -16,12 +16,12 @@ from nanotouch.errors import Error, require
 
 from nanotouch_app.live.arrays import pixels
 from nanotouch_app.live.host import Host
-from nanotouch_app.live.look import HEIGHT, WIDTH
+from nanotouch_app.live.look import DARK, HEIGHT, LIGHT, WIDTH
 from nanotouch_app.live.picture import Picture
 from nanotouch_app.live.subject import Subject
 
 RATE = 8.0  # pictures per second
-GIF_WIDTH, GIF_COLOURS = 960, 64
+GIF_WIDTH, GIF_COLOURS = 960, 96
 Act = tuple[float, dict[str, Any]]
 """a duration [s], and what is asked at its beginning"""
 Part = tuple[Subject, list[Act]]
@@ -97,9 +97,21 @@ def _gif(pictures: Iterator[Any], path: Path) -> None:
     image = require("PIL.Image", "app")
     height = round(GIF_WIDTH * HEIGHT / WIDTH)
     small = [image.fromarray(np.ascontiguousarray(one)).resize((GIF_WIDTH, height), image.LANCZOS) for one in pictures]
-    table = small[len(small) // 2].quantize(GIF_COLOURS, method=image.Quantize.MEDIANCUT)
+    table = _table(image, small)
     flat = [one.quantize(palette=table, dither=image.Dither.NONE) for one in small]
     flat[0].save(path, save_all=True, append_images=flat[1:], duration=round(1000 / RATE), loop=0, optimize=True)
+
+
+def _table(image: Any, pictures: list[Any]) -> Any:
+    """The colours of a few pictures, and each of the palette's own, however small its part is."""
+    own = [colour for palette in (LIGHT, DARK) for colour in vars(palette).values() if isinstance(colour[0], int)]
+    few = [np.asarray(pictures[len(pictures) * part // 5]) for part in range(5)]
+    strip = np.repeat(np.array(own, dtype=np.uint8)[:, None, :], 1, axis=1)
+    sample = image.fromarray(np.concatenate([one[::4, ::4].reshape(-1, 1, 3) for one in few]))
+    found = sample.quantize(GIF_COLOURS - len(own), method=image.Quantize.MEDIANCUT).getpalette()
+    table = image.new("P", (1, 1))
+    table.putpalette([*strip.ravel().tolist(), *found[: 3 * (GIF_COLOURS - len(own))]])
+    return table
 
 
 def _mp4(pictures: Iterator[Any], path: Path) -> None:

@@ -17,7 +17,7 @@ from nanotouch.errors import Error
 from nanotouch.session import settings_for_path
 
 from nanotouch_app.live.hand import Hand, rig_of, settings_of
-from nanotouch_app.live.subject import Subject
+from nanotouch_app.live.subject import Subject, of_preset
 
 SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 REWIND = 5.0  # [s]
@@ -47,7 +47,7 @@ class Host:
 
     def _open(self) -> None:
         extent = max(self.subject.topography.size)
-        surface = nt.Surface.touched_by(self.scene, self.subject.topography)
+        surface = self.subject.touched(self.scene)
         load = float(self.scene.range.maximum_load)
         usual = settings_for_path(self.rig, self.subject.topography.height_range, load=load)
         settings = settings_of(usual, self.rig)
@@ -207,6 +207,16 @@ class Host:
             self.hand.place[:] = held
             self.hand.height = float(frame["tip_position"][2]) - float(frame["tip_force"][2]) / self.hand.stiffness
             self.hand.move((0.0, 0.0, 0.0), frame)
+
+    def _do_preset(self, message: Message) -> None:
+        """Another sample is laid under another tip: a session of its own."""
+        before, self.subject = self.session, of_preset(message["name"])
+        self.scene, self.rig = self.subject.scene.copy(), self.subject.rig.copy()
+        self.overrides, self.done, self.undone = {}, [], []
+        self._open()
+        before.halt()
+        self.tell({"tell": "preset", "name": message["name"]})
+        self.tell(self.world())
 
     # --- changes, and their history ---
 

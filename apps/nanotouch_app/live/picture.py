@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch_app.live import readings
+from nanotouch_app.live import cards, readings
 from nanotouch_app.live.charts import ForceGap, History
 from nanotouch_app.live.contact import ContactPanel
 from nanotouch_app.live.look import DARK, LIGHT, SMALL, Palette, digits, step_up, unit
@@ -16,6 +16,7 @@ from nanotouch_app.live.reel import Reel
 from nanotouch_app.live.seen import Seen
 from nanotouch_app.live.sliders import Sliders
 from nanotouch_app.live.stage import Stage
+from nanotouch_app.live.subject import of_preset
 
 Frame = tuple[float, float, float, float]
 EDGE, TOP, STATUS, CONTROLS = 12.0, 40.0, 56.0, 122.0  # [pixels]
@@ -37,7 +38,8 @@ class Layout:
         floor = 3 * EDGE + STATUS + CONTROLS
         self.view: Frame = (EDGE, floor, left, height - TOP - floor)
         self.bars: Frame = (EDGE + left - 232, floor + 12, 220, 124)
-        self.help: Frame = (EDGE + 40, floor + 20, 480, 70 + 25 * len(readings.HELP))
+        self.cards: Frame = (EDGE + 12, floor + 8, left - 24, height - TOP - floor - 16)
+        self.help: Frame = (EDGE + 40, floor + 20, 520, 70 + 25 * len(readings.HELP))
         base, room = 2 * EDGE + STATUS, height - TOP - 2 * EDGE - STATUS
         shares = (0.36, 0.38, 0.26)
         heights = [share * (room - 2 * EDGE) for share in shares]
@@ -63,12 +65,18 @@ class Picture:
         for layer, renderer in enumerate((self.back, self.scene, self.front)):
             renderer.SetLayer(layer)
             window.AddRenderer(renderer)
-        self.stage = Stage(vtk, self.scene, np.asarray(heights, dtype=float), np.asarray(pixel_size, dtype=float))
-        self.sliders = Sliders()
+        self.cards = False
+        self.lay(heights, pixel_size)
         self.contact, self.law, self.history = ContactPanel(), ForceGap(), History()
         self._paint_on(self.back, self.background)
         self._paint_on(self.front, self.foreground)
         self.dress(LIGHT)
+
+    def lay(self, heights: Any, pixel_size: Any) -> None:
+        """Another surface, before :meth:`dress`."""
+        self.scene.RemoveAllViewProps()
+        self.stage = Stage(self.vtk, self.scene, np.asarray(heights, dtype=float), np.asarray(pixel_size, dtype=float))
+        self.sliders = Sliders()
 
     def _paint_on(self, renderer: Any, paint: Any) -> None:
         item = self.vtk.vtkPythonItem()
@@ -90,6 +98,11 @@ class Picture:
     def hear(self, message: dict[str, Any]) -> None:
         """What the host tells."""
         self.seen.hear(message)
+        if message["tell"] == "preset":
+            topography = of_preset(message["name"]).topography
+            self.lay(topography.heights, topography.pixel_size)
+            self.contact, self.law, self.history = ContactPanel(), ForceGap(), History()
+            self.dress(self.palette)
         if message["tell"] == "world":
             self.sliders.take(message)
             tip = message["scene"]["tip"]
@@ -149,6 +162,8 @@ class Picture:
             self._proxy(painter)
             self._scales(painter)
         readings.bars(painter, self.palette, self.layout.bars, self.seen)
+        if self.cards:
+            cards.draw(painter, self.palette, self.layout.cards, str(self.seen.world.get("title", "")))
         if self.help:
             readings.help_panel(painter, self.palette, self.layout.help)
 

@@ -18,13 +18,23 @@ NOTED = 6.0  # a note stays for so long [s]
 TIP_STEP = 3.0  # forces at the tip are told apart from so many RMS noises of the lever on
 HAND_STEPS = (0.06, 0.01)  # just noticeable difference of a force at the hand: this share, at least this [N]
 HELP = (
-    ("drag", "move the tip over the surface"), ("wheel, right drag", "down and up; shift: ten times finer"),
-    ("space held", "press with a steady force; release lifts"), ("arrows, page up, down", "the same by steps"),
-    ("R", "retract"), ("Enter", "go on after a stop"), ("P, .", "pause, one step of a millisecond"),
-    ("[ ]", "slower, faster"), ("backspace", "rewind by 5 s"), ("Z, shift Z", "undo, redo a change"),
-    ("1 .. 5, 0", "views; drag with the middle button turns"), ("L", "light and dark"), ("S", "save a picture"),
-    ("H", "this help"), ("Q", "leave"),
-)  # fmt: skip
+    ("drag", "move the tip over the surface"),
+    ("wheel, right drag", "down and up; shift: ten times finer"),
+    ("space held", "press with a steady force; release lifts"),
+    ("arrows, page up, down", "the same by steps"),
+    ("R", "retract"),
+    ("Enter", "go on after a stop"),
+    ("P, .", "pause, one step of a millisecond"),
+    ("[ ]", "slower, faster"),
+    ("backspace", "rewind by 5 s"),
+    ("Z, shift Z", "undo, redo a change"),
+    ("1 .. 5, 0", "views; drag with the middle button turns"),
+    ("C", "other samples"),
+    ("L", "light and dark"),
+    ("S", "save a picture"),
+    ("H", "this help"),
+    ("Q", "leave"),
+)
 
 
 def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
@@ -45,7 +55,7 @@ def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
         parts.insert(0, f"rec {int(seen.frame['time']) // 60:02d}:{int(seen.frame['time']) % 60:02d}")
     if seen.world.get("undo"):
         parts.append(f"Z: undo ({seen.world['undo']})")
-    parts.append("H: help")
+    parts.append("C: samples   H: help")
     painter.text(x + width - 4, middle, "   ".join(parts), palette.ink, align="right")
 
 
@@ -65,7 +75,8 @@ def bars(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
     ):
         top_y = y + height - 20 - 58 * number
         painter.text(x + 12, top_y, name, palette.quiet, SMALL)
-        painter.text(x + width - 12, top_y, digits(told * factor, "N"), palette.ink, align="right", bold=True)
+        shown = digits(told * factor, "N") if abs(told * factor) > 0.01 * step else "0 N"
+        painter.text(x + width - 12, top_y, shown, palette.ink, align="right", bold=True)
         left, right, middle = x + 12, x + width - 12, x + 0.5 * width
         level = top_y - 20
         painter.line([[left, level], [right, level]], palette.line, 10.0)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from typing import Any
 
 import nanotouch as nt
@@ -106,13 +107,12 @@ def _sorted(x: Any, height: Any) -> tuple[Any, Any]:
     return places, height[good][first]
 
 
-def world_of(recording: Recording, name: str) -> dict[str, Any]:
-    """As a host tells it: scene, rig and settings that the recording was made with."""
-    about = recording.metadata
+def world_of(about: Mapping[str, Any], name: str, source: str) -> dict[str, Any]:
+    """As a host tells it: scene, rig and settings of a session's metadata."""
     scene = nt.Scene(**about["scene"])
     plan = scene.plan()
     return {
-        "tell": "world", "title": name, "source": "recording", "felt": "", "hint": "drag the time line; P: pause",
+        "tell": "world", "title": name, "source": source, "felt": "", "hint": "",
         "scene": scene.to_dict(), "rig": about["rig"], "settings": about["settings"], "bound": plan.bound,
         "stiffness": about["spring_constant"], "margin": about.get("stability_margin") or np.inf,
         "force": about["settings"]["limits"]["force"], "undo": 0, "redo": 0, "law": plan.contact_law, "warnings": [],

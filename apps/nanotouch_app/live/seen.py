@@ -50,6 +50,10 @@ class Seen:
         match message["tell"]:
             case "world":
                 self._settle(message)
+            case "preset":
+                self.forget()
+                self.frame = self.reading = None
+                self.world = {}
             case "clock":
                 self.clock = message
             case "refused":

@@ -21,9 +21,10 @@ RELIEF = 0.12  # height of the drawn relief where it has to be exaggerated [scen
 TIP_HEIGHT = 0.34  # of the drawn tip [scene units]
 LEVER = (0.55, 0.13)  # length and width of the drawn lever [scene units]
 LEVER_POINTS = 24
+FAR = 0.2  # no tip is drawn higher above the surface than this [scene units]
 BEND = 0.05  # of the lever under the largest load [scene units]
 SHADOW = 0.05  # radius of the soft shadow [scene units]
-VIEWS = {"0": (0.0, 32.0, 1.62), "1": (0.0, 32.0, 1.62), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.6),
+VIEWS = {"0": (0.0, 32.0, 1.72), "1": (0.0, 32.0, 1.72), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.72),
          "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
 
 
@@ -176,9 +177,10 @@ class Stage:
         """Where the tip is drawn: over the drawn surface, at the gap that is true."""
         x, y, z = (float(part) for part in seen.frame["tip_position"])
         gap = float(seen.frame["gap"])
-        ground = self._ground(x, y) if math.isfinite(gap) else z
-        height = (ground + gap if math.isfinite(gap) else z) - self.lowest
-        return np.array([x, y, height]) * self.scale
+        ground = self._ground(x, y)
+        above = (gap if math.isfinite(gap) else z - ground) * self.scale[2]
+        drawn = FAR * math.tanh(above / FAR) if above > 0.0 else above  # a tip far away stays in the picture
+        return np.array([x / self.unit, y / self.unit, (ground - self.lowest) * self.scale[2] + drawn])
 
     def _ground(self, x: float, y: float) -> float:
         rows, columns = self.heights.shape
@@ -242,7 +244,7 @@ class Stage:
         """One of the views 0 .. 5; 4 looks at the tip."""
         turn, height, distance = VIEWS[view]
         middle = at if at is not None and view == "4" else self.centre
-        focus = middle + np.array([0.0, 0.0, 0.055])
+        focus = middle + np.array([0.0, 0.0, 0.1])
         turn, height = math.radians(turn), math.radians(height)
         away = distance * np.array([math.sin(turn) * math.cos(height), -math.cos(turn) * math.cos(height),
                                     math.sin(height)])  # fmt: skip

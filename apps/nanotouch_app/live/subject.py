@@ -28,6 +28,12 @@ class Subject:
     """what the hand feels, in a sentence"""
     hint: str = ""
     """what to try first"""
+    surface: Callable[[nt.Scene], nt.Surface] | None = None
+    """what the tip touches; None: the topography, dilated by it"""
+
+    def touched(self, scene: nt.Scene) -> nt.Surface:
+        """The surface for the tip of a scene."""
+        return nt.Surface.touched_by(scene, self.topography) if self.surface is None else self.surface(scene)
 
     def clearance(self) -> float:
         """Where the tip begins above the surface [m]: where it feels next to nothing."""

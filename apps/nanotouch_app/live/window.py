@@ -17,8 +17,9 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import record
-from nanotouch.errors import DeviceError, require
+from nanotouch.errors import DeviceError, Error, require
 
+from nanotouch_app.live import cards
 from nanotouch_app.live.look import HEIGHT, WIDTH
 from nanotouch_app.live.picture import MARGIN, Picture, save
 from nanotouch_app.live.reel import Reel, world_of
@@ -37,7 +38,9 @@ ARROW_PIXELS = 4.0
 class Window:
     """VTK's window with mouse and keys."""
 
-    def __init__(self, surface: str, dark: bool = False, recording: str | None = None) -> None:
+    def __init__(
+        self, surface: str, dark: bool = False, recording: str | None = None, watched: str | None = None
+    ) -> None:
         self.vtk = require("vtk", "view")
         with np.load(surface) as stored:
             heights, pixel_size = stored["heights"], stored["pixel_size"]
@@ -65,8 +68,11 @@ class Window:
         self.observer: nt.frames.Observer | Reel | None = self.reel
         self.name = ""
         if self.reel is not None and recording is not None:
-            self.picture.hear(world_of(record.read(recording), Path(recording).name))
+            self.picture.hear(world_of(record.read(recording).metadata, Path(recording).name, "recording"))
             self.picture.reel = self.reel
+        self.leads = recording is None and watched is None
+        if watched is not None:
+            self.watch(watched)
         self.dragging, self.at = "", np.zeros(2)
         self.open = True
 
@@ -115,6 +121,12 @@ class Window:
                 self._attach(message["name"])
             self.picture.hear(message)
 
+    def watch(self, name: str) -> None:
+        """Look at a session that this window does not lead."""
+        observer = nt.frames.attach(name)
+        self.observer, self.name = observer, name
+        self.picture.hear(world_of(json.loads(observer.description), name, "watched: its program leads"))
+
     def _attach(self, name: str) -> None:
         try:
             self.observer, self.name = nt.frames.attach(name), name
@@ -126,6 +138,8 @@ class Window:
         message = {"do": what, **more} if isinstance(what, str) else what
         if self.reel is not None:
             self.reel.answer(message)
+        if not self.leads and message["do"] != "ready":
+            return  # nobody listens
         try:
             print(json.dumps(message), flush=True)
         except BrokenPipeError:
@@ -156,7 +170,11 @@ class Window:
         """Take the tip, or a slider."""
         self.at = self._pointer()
         slider = self.picture.sliders.at(*self.at)
-        if self.reel is not None and self._in(self.picture.layout.controls, self.at):
+        if self.picture.cards:
+            name, self.picture.cards = cards.at(self.picture.layout.cards, *self.at), False
+            if name:
+                self.ask("preset", name=name)
+        elif self.reel is not None and self._in(self.picture.layout.controls, self.at):
             self.dragging = "time"
             self._scrub()
         elif slider is not None:
@@ -239,6 +257,8 @@ class Window:
         """What the session does not need to know."""
         if name == "l":
             self.picture.turn_light()
+        elif name == "c":
+            self.picture.cards = not self.picture.cards
         elif name == "h":
             self.picture.help = not self.picture.help
         elif name == "s":
@@ -260,8 +280,13 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("surface")
     parser.add_argument("--dark", action="store_true")
     parser.add_argument("--recording")
+    parser.add_argument("--watch")
     args = parser.parse_args(arguments)
-    Window(args.surface, args.dark, args.recording).run()
+    try:
+        Window(args.surface, args.dark, args.recording, args.watch).run()
+    except Error as error:
+        print(error, file=sys.stderr)
+        return 1
     return 0
 
 

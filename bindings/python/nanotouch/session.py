@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from nanotouch import _core, margins
+from nanotouch import _core, _live, margins
 from nanotouch._control import CONTROLS, Law, choose_control
 from nanotouch._path import MODES, Mode, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
@@ -282,6 +282,8 @@ class Session:
         """Show every tick to observers of this name (:mod:`nanotouch.frames`), in any process of this user."""
         self.core.publish(name)
         self.core.describe(json.dumps(self.metadata()))
+
+    live = _live.watch
 
     def snapshot(self) -> _core.Snapshot:
         """All that a simulated session needs to go on from here."""

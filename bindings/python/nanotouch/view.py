@@ -62,7 +62,7 @@ def section(plan: Plan, scene: Scene, gap: float, force: float, r: ArrayLike) ->
     Of the branches that the law has at a gap [m] the one is drawn whose force is nearest to ``force`` [N].
     """
     distance = as_floats(r, "r")
-    contact = _core.view_contact(plan.core, gap, force, _core.view_tip_share(scene.core))
-    rows = contact.section(distance)
+    pose = (gap, force, _core.view_tip_share(scene.core))
+    rows, contact_radius, cohesive_radius, attached = _core.view_section(plan.core, pose, distance)
     tip, sample, rigid = rows.T
-    return Section(distance, tip, sample, rigid, contact.contact_radius, contact.cohesive_radius, contact.attached)
+    return Section(distance, tip, sample, rigid, contact_radius, cohesive_radius, attached)

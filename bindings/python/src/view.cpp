@@ -18,26 +18,20 @@ static py::array_t<double> curve(const nt_plan &plan, int part, double nearest, 
     return rows;
 }
 
-// Rows of deformed tip, deformed sample, rigid tip at each r.
-static py::array_t<double> section(const nt_view_contact &contact, const Array &r)
+// Of a pose (gap, force, the tip's share): rows of deformed tip, deformed sample, rigid tip at each r; a, c, attached.
+static py::tuple section(const nt_plan &plan, const std::array<double, 3> &at, const Array &r)
 {
+    const nt_view_pose pose = {at[0], at[1], at[2]};
+    const nt_view_contact contact = nt_view_contact_at(&plan, nullptr, &pose);
     py::array_t<double> rows({r.size(), py::ssize_t{3}});
     nt_view_section(&contact, r.data(), reinterpret_cast<nt_view_profile *>(rows.mutable_data()),
                     static_cast<long>(r.size()));
-    return rows;
+    return py::make_tuple(rows, contact.contact_radius, contact.cohesive_radius, contact.attached != 0);
 }
 
 void bind_view(py::module_ &module)
 {
-    py::class_<nt_view_contact>(module, "ViewContact")
-        .def_readonly("contact_radius", &nt_view_contact::contact_radius)
-        .def_readonly("cohesive_radius", &nt_view_contact::cohesive_radius)
-        .def_property_readonly("attached", [](const nt_view_contact &contact) { return contact.attached != 0; })
-        .def("section", &section);
     module.def("view_curve", &curve);
+    module.def("view_section", &section);
     module.def("view_tip_share", [](const Described<nt_scene> &scene) { return nt_view_tip_share(&scene.value); });
-    module.def("view_contact", [](const nt_plan &plan, double gap, double force, double tip_share) {
-        const nt_view_pose pose = {gap, force, tip_share};
-        return nt_view_contact_at(&plan, nullptr, &pose);
-    });
 }

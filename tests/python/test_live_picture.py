@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture without a display: the surface stays as it was sent, films are made, recordings are played, files become
+what is touched."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch import curves
+from nanotouch.errors import Error
+from nanotouch_app import view
+from nanotouch_app.live import files, film, reel
+from nanotouch_app.live.host import Host
+from nanotouch_app.live.subject import of_preset
+from nanotouch_app.main import main
+
+
+@pytest.fixture(scope="module")
+def vtk_works() -> None:
+    """Skip where VTK cannot render."""
+    pytest.importorskip("vtkmodules")
+    works, reason = view.probe()
+    if not works:
+        pytest.skip(reason)
+
+
+@pytest.mark.usefixtures("vtk_works")
+def test_a_moving_tip_rebuilds_nothing_of_the_surface(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(film, "RATE", 4.0)
+    studio = film.Studio(of_preset("silicon_in_air"))
+    try:
+        stage = studio.picture.stage
+        assert stage.mesh.GetNumberOfPolys() * 2 <= 2**17
+        made = (stage.mesh.GetMTime(), stage.mesh.GetPoints().GetMTime(), stage.mesh.GetPolys().GetMTime())
+        studio.host.advance(0.02)
+        studio.look()
+        before = stage.apex(studio.picture.seen)
+        pictures = list(studio.play([(0.3, {}), (0.8, {"do": "press", "on": True})]))
+        assert (stage.mesh.GetMTime(), stage.mesh.GetPoints().GetMTime(), stage.mesh.GetPolys().GetMTime()) == made
+        assert stage.apex(studio.picture.seen)[2] < before[2]
+        assert pictures[-1].shape == (900, 1440, 3)
+        assert np.any(pictures[-1] != pictures[0])
+        x, y = stage.dragged(before, stage.pixel(before + np.array([0.05, 0.02, 0.0])) - stage.pixel(before))
+        assert (x, y) == (pytest.approx(0.05 * stage.unit, rel=0.05), pytest.approx(0.02 * stage.unit, rel=0.05))
+    finally:
+        studio.close()
+
+
+@pytest.mark.usefixtures("vtk_works")
+def test_a_film_is_made_without_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    image = pytest.importorskip("PIL.Image")
+    monkeypatch.setattr(film, "RATE", 1.0)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    out = tmp_path / "touch.gif"
+    assert main(["live", "mica_in_air", "--film", str(out), "--dark"]) == 0
+    with image.open(out) as made:
+        assert made.n_frames >= 4
+        assert made.width == film.GIF_WIDTH
+
+
+def test_a_film_of_another_kind_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["live", "--film", str(tmp_path / "touch.avi")]) == 2
+    assert "valid endings are .gif, .mp4, .png" in capsys.readouterr().err
+
+
+def test_without_a_display_the_command_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    begun = time.monotonic()
+    assert main(["live"]) == 2
+    assert "no display: DISPLAY is not set" in capsys.readouterr().err
+    assert time.monotonic() - begun < 3.0
+
+
+def test_presets_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["live", "--list"]) == 0
+    told = capsys.readouterr().out
+    assert all(name in told for name in nt.presets.FELT)
+
+
+def recorded(path: Path) -> nt.Recording:
+    host = Host(of_preset("silicon_in_air"), lambda message: None, out=str(path), stepped=True)
+    host.answer({"do": "press", "on": True})
+    host.advance(0.6)
+    host.close()
+    return nt.record.read(path)
+
+
+def test_a_recording_is_played(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "touch.mcap")
+    played = reel.Reel(recording)
+    played.answer({"do": "pause"})
+    played.jump(0.3)
+    frames = played.read()
+    assert frames["time"][-1] - recording.time[0] == pytest.approx(0.3, abs=2e-4)
+    row = np.searchsorted(recording.time, frames["time"][-1])
+    assert frames["gap"][-1] == recording.gap[row]
+    assert frames["tip_force"][-1, 2] == recording.tip_force[row]
+    played.answer({"do": "step"})
+    assert len(played.read()) == 10
+    low, high = played.extremes(50)
+    assert high.max() == recording.tip_force.max()
+    assert low.min() == recording.tip_force[: len(recording) - 1].min()
+    world = reel.world_of(recording.metadata, "touch", "recording")
+    assert nt.Scene(**world["scene"]).plan().pull_off_force > 0.0
+    assert max(reel.surface_of(recording).size) > 0.0
+
+
+def test_a_scene_file_is_touched(tmp_path: Path) -> None:
+    file = tmp_path / "gold.toml"
+    file.write_text("[sample]\nyoungs_modulus_GPa = 79\n[tip]\nradius_nm = 30\n")
+    subject = files.of(str(file))
+    assert subject.scene["sample.youngs_modulus"] == 79e9
+    assert max(subject.topography.size) == pytest.approx(files.EXTENT * 30e-9)
+
+
+def test_an_image_is_touched_with_its_own_relief(tmp_path: Path) -> None:
+    pytest.importorskip("gwyfile")
+    file = tmp_path / "dots.gwy"
+    nt.images.write(file, nt.surface.dots(size=200e-9, pixels=64, count=6))
+    subject = files.of(str(file))
+    assert subject.topography.height_range > 2e-9
+    assert subject.scene["tip.radius"] == 20e-9
+
+
+def test_a_curve_becomes_the_scene() -> None:
+    pytest.importorskip("nanotouch._fit")
+    contact = nt.Contact(radius=2e-6, effective_modulus=20e6, work_of_adhesion=0.03, cohesive_stress=5e6)
+    curve = curves.synthesise(contact, spring_constant=1.0, noise=0.2e-9, depth=600e-9, clearance=1.5e-6)
+    subject = files.of_fit(curve, "curve", 2e-6)
+    plan = subject.scene.plan()
+    assert plan.pull_off_force == pytest.approx(nt.contact.pull_off_force("maugis", contact), rel=0.05)
+    assert plan.explain()["effective_modulus"] == pytest.approx(20e6, rel=0.05)
+    assert subject.rig["probe.spring_constant"] == 1.0
+
+
+def test_nonsense_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(nt.Error, match="neither a file nor a preset"):
+        files.of("nothing")
+    file = tmp_path / "no.txt"
+    file.write_text("hello")
+    with pytest.raises(Error, match="no image"):
+        files.of(str(file))
