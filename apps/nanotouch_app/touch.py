@@ -60,6 +60,10 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
     where.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
     where.add_argument(
+        "--level", metavar="METHOD", help="how IMAGE is levelled: auto, or plane, poly2 .. poly6, lines, rows, medians, "
+        "terraces, joined by +; none (default: auto)",
+    )  # fmt: skip
+    where.add_argument(
         "--untrusted", action="store_true", help="open IMAGE in a worker with limits on memory, time and open files"
     )
     how = parser.add_argument_group("how it is touched")
@@ -111,7 +115,7 @@ def describe(topography: nt.Topography) -> str:
 
 def _topography(args: argparse.Namespace) -> nt.Topography:
     if args.image is None:
-        for option in ("channel", "pixel_size", "z_unit", "untrusted"):
+        for option in ("channel", "pixel_size", "z_unit", "level", "untrusted"):
             if getattr(args, option) not in (None, False):
                 raise InvalidValue(f"--{option.replace('_', '-')} goes with an IMAGE")
         return SURFACES[args.surface or "grating"]()
@@ -121,9 +125,11 @@ def _topography(args: argparse.Namespace) -> nt.Topography:
     raw = nt.images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the reports hold them
-        topography, reports = nt.images.prepare(raw)
+        topography, reports = nt.images.prepare(raw, args.level or "auto")
     if raw.masked_pixels:
         print(f"{raw.masked_pixels} missing pixels filled from their neighbours")
+    for note in raw.notes:
+        print(f"note: {note}")
     for report in reports:
         print(report)
     return topography

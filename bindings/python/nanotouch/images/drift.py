@@ -172,7 +172,8 @@ def _drift(strips: Floats, stairs: Floats) -> Floats:
         agreed = min(_correlation(left[a:b], right[a:b]) for left, right in pairs)
         power = _power(own[a:b]) / ny
         if agreed > _AGREED and power > _NULL * surface:
-            gain[a:b] = 2.0 * agreed / (1.0 + agreed) * (1.0 - _NULL * surface / power)
+            sure = min(1.0, power / (_NULL * surface) - 1.0) if surface > 0.0 else 1.0
+            gain[a:b] = sure * 2.0 * agreed / (1.0 + agreed) * (1.0 - null[number] / power)
     return np.asarray(require("scipy.fft", "images").idct(own * gain, norm="ortho"))
 
 

@@ -28,8 +28,21 @@ from .topography import Topography
 _METHOD = re.compile(r"plane|poly[2-6]|lines|rows|medians|terraces")
 
 
-def prepare(topography: Topography, method: str = "auto") -> tuple[Topography, tuple[LevelReport, DespeckleReport]]:
-    """Level and despeckle: what ``nanotouch touch`` does to an image before it is touched."""
+def prepare(
+    topography: Topography, method: str = "auto"
+) -> tuple[Topography, tuple[LevelReport | DespeckleReport, ...]]:
+    """Level and despeckle: what ``nanotouch touch`` does to an image before it is touched.
+
+    Parameters
+    ----------
+    topography : Topography
+        The image.
+    method : str
+        As for :func:`level`, or ``"none"``, which only despeckles.
+    """
+    if method == "none":
+        clean, despeckle_report = despeckle(topography)
+        return clean, (despeckle_report,)
     levelled, level_report = level(topography, method)
     clean, despeckle_report = despeckle(levelled)
     return clean, (level_report, despeckle_report)
