@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from nanotouch import images
 from nanotouch.errors import InvalidValue
+from numpy.typing import NDArray
 
 from nanotouch_app import output
 from nanotouch_app.quantity import parse_quantity
@@ -44,6 +45,11 @@ def add_parser(subparsers: Any) -> None:
         "--level", default="auto", metavar="METHOD",
         help="auto, or plane, poly2 .. poly6, lines, rows, medians, terraces, joined by +; none (default: %(default)s)",
     )  # fmt: skip
+    steps.add_argument(
+        "--mask", metavar="WHAT",
+        help="leave out of levelling and roughness: what is higher than this, as 2nm, or lower, as -2nm; grains; or "
+        "what is white in a picture of as many pixels, as mask.png",
+    )  # fmt: skip
     steps.add_argument("--scars", action="store_true", help="repair streaks along the fast axis")
     steps.add_argument("--despeckle", action="store_true", help="repair isolated wrong pixels")
     steps.add_argument("--smooth", metavar="LENGTH", help="Gaussian of this standard deviation, as 5nm")
@@ -70,13 +76,14 @@ def run(args: argparse.Namespace) -> int:
     print(_described(raw))
     with output.folder(args, FILES) as out:
         facts: dict[str, Any] = {"file": str(args.image), "channel": raw.channel, "reader": raw.source}
-        clean = _repaired(raw, args, facts)
+        mask = _mask(raw, args, facts)
+        clean = _repaired(raw, args, facts, mask)
         if smooth is not None:
             clean = images.gaussian(clean, smooth)
             print(f"smoothed by a Gaussian of {smooth * 1e9:.4g} nm")
         if args.tip is not None:
             clean = _without_tip(clean, tip, out, facts)
-        rough = images.roughness(clean)
+        rough = images.roughness(clean, mask)
         facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
         print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
         table = None if threshold is None else _grains(clean, threshold, args.pits)
@@ -105,12 +112,34 @@ def _described(image: images.Topography) -> str:
     return "\n".join(lines + [f"note: {note}" for note in image.notes])
 
 
-def _repaired(image: images.Topography, args: argparse.Namespace, facts: dict[str, Any]) -> images.Topography:
+def _mask(image: images.Topography, args: argparse.Namespace, facts: dict[str, Any]) -> NDArray[np.bool_] | None:
+    """What ``--mask`` leaves out. Heights and grains are those of the image levelled once before."""
+    if args.mask is None:
+        return None
+    if Path(args.mask).suffix.lower() in (".png", ".tif", ".tiff"):
+        mask = images.mask_image(args.mask, image)
+    else:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            flat = image if args.level == "none" else images.level(image, args.level)[0]
+            if args.mask == "grains":
+                mask = images.mask_grains(images.grains(flat))
+            else:
+                height = parse_quantity(args.mask, "m")
+                mask = images.mask_above(flat, abs(height), below=height < 0.0)
+    facts["masked_share"] = float(mask.mean())
+    print(f"masked: {100 * mask.mean():.3g} % of the pixels")
+    return mask
+
+
+def _repaired(
+    image: images.Topography, args: argparse.Namespace, facts: dict[str, Any], mask: NDArray[np.bool_] | None
+) -> images.Topography:
     """Levelling, scars, speckles; each prints its report, which holds the warnings too."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         if args.level != "none":
-            image, levelled = images.level(image, args.level)
+            image, levelled = images.level(image, args.level, mask)
             print(levelled)
             facts["removed"] = {f"{n}_{step.method}_m": step.removed_range for n, step in enumerate(levelled.steps, 1)}
             facts["tilt"] = {"dz_dy": levelled.tilt[0], "dz_dx": levelled.tilt[1]}

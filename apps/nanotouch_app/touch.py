@@ -60,8 +60,8 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
     where.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
     where.add_argument(
-        "--level", metavar="METHOD", help="how IMAGE is levelled: auto, or plane, poly2 .. poly6, lines, rows, medians, "
-        "terraces, joined by +; none (default: auto)",
+        "--level", metavar="METHOD", help="how IMAGE is levelled: auto, or plane, poly2 .. poly6, lines, rows, medians "
+        "and terraces, joined by +; none (default: auto)",
     )  # fmt: skip
     where.add_argument(
         "--untrusted", action="store_true", help="open IMAGE in a worker with limits on memory, time and open files"

@@ -261,3 +261,21 @@ def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.Ca
     assert main([*command, "--force-range", str(tmp_path / "test.mcap")]) == 0
     assert main([*command, "--force-range", "plan"]) == 0
     assert main([*command, "--force-range", "5"]) == 2
+
+
+def test_an_image_is_levelled_as_it_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+    """A bow of 40 nm: found by itself, left to a plane, left alone; and a method that is none."""
+    y, x = np.indices((64, 64)) / 63.0 - 0.5
+    heights = 160e-9 * x**2 + 0.1e-9 * np.random.default_rng(1).standard_normal(x.shape) + 20e-9 * y
+    file = str(write_matrix(tmp_path / "bow.txt", heights, (6e-6, 6e-6)))
+    ranges = {}
+    for method in ("auto", "plane", "none"):
+        assert main(["touch", file, "--level", method, "--duration", "0.2s", "--out", str(tmp_path / method)]) == 0
+        said = capsys.readouterr().out
+        ranges[method] = float(said.partition("heights over ")[2].split()[0])
+        assert ("levelling: height range" in said) == (method != "none")
+    assert ranges["auto"] < 2.0
+    assert 35.0 < ranges["plane"] < 45.0
+    assert ranges["none"] > 50.0
+    assert main(["touch", file, "--level", "flatten"]) != 0
+    assert "method: 'flatten'" in capsys.readouterr().err

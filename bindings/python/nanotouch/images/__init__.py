@@ -12,6 +12,7 @@ from .filling import fill
 from .filters import gaussian, median
 from .level_report import Candidate, LevelReport, LevelStep
 from .levelling import level, prepare
+from .masking import mask_above, mask_grains, mask_image
 from .particles import GrainTable, grains
 from .pictures import draw
 from .pyramid import MipLevel, mip_levels
@@ -49,6 +50,9 @@ __all__ = [
     "gaussian",
     "grains",
     "level",
+    "mask_above",
+    "mask_grains",
+    "mask_image",
     "median",
     "mip_levels",
     "prepare",
