@@ -31,7 +31,7 @@ damage:  ## 2000 damaged files through the readers of images and curves; some mi
 
 corpus:  ## every file under a folder, ours against every other reader that is installed: make corpus DIR=folder
 	@tools/setup.sh test
-	@$(VENV)/python tests/python/corpus.py $(DIR)
+	@$(VENV)/python tests/python/corpus.py $(DIR) $(if $(PAGE),--write $(PAGE))
 
 heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings of an hour and under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test

@@ -37,6 +37,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 SIZE, RANGE = 0.006, 2e-3  # relative differences that are none: scan size (N against N - 1), heights and forces
+TABLE = "<!-- made by make corpus -->\n"  # in the documentation; the table follows it
 LIKE = 0.999  # correlation above which two pictures are the same
 
 
@@ -77,13 +78,15 @@ def judged(file: Path) -> Row | None:
         return Row(file, "read", "curves", "nanotouch/asylum-pair", reasons[1][1], ())
     if not others and "not an AFM image" in reasons[0][1] and _unknown(reasons[1][1]):
         return None
-    if kind == "image" and not others and not _unknown(reasons[1][1]):  # the reader of curves knows more of it
+    if (
+        "not an AFM image" in told and not others and not _unknown(reasons[1][1])
+    ):  # the reader of curves knows more of it
         told = reasons[1][1]
     return Row(file, "refused", kind if others else "", "", told, tuple(others))
 
 
 def _unknown(reason: str) -> bool:
-    return "not a force curve file" in reason or "its content is not" in reason
+    return "not a force curve file" in reason or ("its content is not" in reason and "unpacked first" not in reason)
 
 
 def _our_image(file: Path) -> tuple[Image, str, list[str]]:
@@ -223,11 +226,11 @@ def _curves_differ(ours: Curves, theirs: Curves) -> str:
     return ", ".join(told)
 
 
-def markdown(rows: list[Row], folder: Path) -> str:
+def markdown(rows: list[Row]) -> str:
     """The table, by ending and name."""
     lines = ["| file | verdict | as | by | also read by | note, or reason |", "|---|---|---|---|---|---|"]
     for row in rows:
-        name = row.file.relative_to(folder).as_posix()
+        name = row.file.name
         told = row.told.replace("|", "\\|")
         lines.append(
             f"| `{name}` | {row.verdict} | {row.kind} | {row.reader} | {', '.join(row.others) or 'nobody'} | {told} |"
@@ -239,6 +242,7 @@ def main() -> int:
     """Print the table and the counts; 1 if a file is read wrong."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
+    parser.add_argument("--write", type=Path, metavar="PAGE", help="put the table into this page of the documentation")
     args = parser.parse_args()
     if not args.folder.is_dir():
         parser.error(f"{args.folder} is no folder")
@@ -246,9 +250,13 @@ def main() -> int:
     rows = [row for file in files if (row := judged(file)) is not None]
     rows.sort(key=lambda row: (row.file.suffix, row.file.name))
     counts = Counter(row.verdict for row in rows)
-    print(markdown(rows, args.folder))
-    print(f"\n{len(rows)} files: " + ", ".join(f"{counts[v]} {v}" for v in ("read", "refused", "wrong")), end=". ")
-    print(f"Beside ours: {', '.join(corpus_peers.installed()) or 'no other reader is installed'}.")
+    text = f"{len(rows)} files: " + ", ".join(f"{counts[v]} {v}" for v in ("read", "refused", "wrong"))
+    text += f". Beside ours: {', '.join(corpus_peers.installed()) or 'no other reader is installed'}.\n"
+    text = f"{text}\n{markdown(rows)}\n"
+    print(text)
+    if args.write is not None:
+        page, mark, _ = args.write.read_text(encoding="utf-8").partition(TABLE)
+        args.write.write_text(f"{page}{mark}\n{text}", encoding="utf-8")
     sys.stdout.flush()
     os._exit(1 if counts["wrong"] else 0)  # some readers leave threads behind
 
