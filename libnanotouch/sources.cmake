@@ -93,6 +93,7 @@ set(nanotouch_sources_scene
     scene/terms/vdw.c
     scene/terms/yukawa.c
     scene/warnings.c
+    scene/yield_adhere.c
     scene/yield_follow.c
     scene/yield_mesh.c
     scene/yield_solve.c

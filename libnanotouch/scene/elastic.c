@@ -70,6 +70,15 @@ double nt_elastic_hold(const nt_plan *plan)
     return hold;
 }
 
+/* By how much the pressure around a contact moves the surface there, at most [m]; of the force just outside it. */
+static double under(const nt_plan *plan, nt_law_value value)
+{
+    if (value.F == 0.0 || value.k == 0.0)
+        return 0.0;
+    const double width = sqrt(2.0 * plan->contact.radius * fabs(value.F / value.k));
+    return UNDER * fabs(value.F) / (plan->contact.effective_modulus * width);
+}
+
 /* In contact without adhesion. */
 static double error_in_contact(const nt_plan *plan)
 {
@@ -78,9 +87,7 @@ static double error_in_contact(const nt_plan *plan)
     double u = 0.0, worst = 0.0;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), hold);
-        const double width = sqrt(2.0 * plan->contact.radius * fabs(value.F / value.k));
-        if (value.F != 0.0 && value.k != 0.0)
-            u += UNDER * fabs(value.F) / (plan->contact.effective_modulus * width);
+        u += under(plan, value);
     }
     for (double d = NEAREST; d < plan->largest_indentation && u > 0.0; d *= GAPS) {
         const nt_law_value contact = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), d);
@@ -103,15 +110,39 @@ static double where_force_is(const nt_plan *plan, double force, double nearer, d
     return nearer;
 }
 
+/* Of what is no tail, around an adhesive contact. */
+static double error_around(const nt_plan *plan)
+{
+    double u = 0.0, all = 0.0;
+    if (plan->demand.quantity != NT_QUANTITY_FORCE && plan->demand.quantity != NT_QUANTITY_STIFFNESS)
+        return 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        if (nt_term_rows[term]->words.tail || !nt_term_rows[term]->pressure)
+            continue;
+        const nt_form form = nt_plan_full_form(plan, term);
+        all += fabs(nt_plan_law_eval(plan, term, form, 0.0).F);
+        u += under(plan, nt_plan_law_eval(plan, term, form, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12)));
+    }
+    const double lost = fmin(plan->maximum_stiffness * u, HALF * all);
+    return plan->demand.quantity == NT_QUANTITY_STIFFNESS ? SLOPE * lost / plan->length / plan->scale
+                                                          : lost / plan->scale;
+}
+
+/* Of a radius or a fold nothing is known beside a jump: what is, is that of contact alone. */
+static double error_of(const nt_plan *plan, double worst)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    if (quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS)
+        return worst;
+    return plan->source != NT_ADHESION_NONE && isinf(worst) ? worst : 0.0;
+}
+
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
 {
     const double nearest = scene->range.minimum_gap;
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     const double outside = nt_elastic_hold(plan) * (1.0 + 1e-12);
     double worst = 0.0;
     plan->elastic_number = 0.0;
-    if (quantity != NT_QUANTITY_FORCE && quantity != NT_QUANTITY_STIFFNESS)
-        return 0.0;
     const double last = fmax(fmax(nearest, outside), NEAREST), load = DEEPER * scene->range.maximum_load;
     int touches = plan->source == NT_ADHESION_NONE && nearest <= 0.0;
     for (double gap = FARTHEST; gap > last && touches >= 0;) {
@@ -127,5 +158,6 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
     }
     if (touches > 0)
         worst = fmax(worst, error_in_contact(plan));
-    return worst;
+    plan->around_error = plan->source != NT_ADHESION_NONE && nearest <= 0.0 ? error_around(plan) : 0.0;
+    return error_of(plan, worst);
 }

@@ -13,12 +13,10 @@ static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
         const nt_form form = nt_plan_contact_form(plan);
         sum = nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, -gap);
     }
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
-        const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
-        sum.U += value.U;
-        sum.F += value.F;
-        sum.k += value.k;
-    }
+    const nt_law_value around = nt_plan_around(plan, attached, gap);
+    sum.U += around.U;
+    sum.F += around.F;
+    sum.k += around.k;
     return sum;
 }
 
@@ -116,15 +114,21 @@ static double steepest_pull(const nt_plan *plan)
     return steepest;
 }
 
+/* By which U in contact lies above that apart [J]. */
+static double energy_of_contact(const nt_plan *plan, double gap)
+{
+    const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;
+    return nt_plan_contact_eval(plan, form, -gap).U + nt_plan_rise(plan, gap);
+}
+
 nt_status nt_plan_facts(nt_plan *plan)
 {
     plan->contact_pull = strongest_hold(plan);
     plan->pull_off_force = plan->largest_pull_off_force = fmax(plan->contact_pull, strongest_apart(plan));
     plan->minimum_spring = steepest_pull(plan);
     if (plan->source != NT_ADHESION_NONE) {
-        const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;
-        plan->capture_energy = fmax(0.0, -nt_plan_contact_eval(plan, form, -plan->capture_gap).U);
-        plan->release_energy = fmax(0.0, nt_plan_contact_eval(plan, form, -nt_plan_last_hold(plan->release_gap)).U);
+        plan->capture_energy = fmax(0.0, -energy_of_contact(plan, plan->capture_gap));
+        plan->release_energy = fmax(0.0, energy_of_contact(plan, nt_plan_last_hold(plan->release_gap)));
     }
     return isfinite(plan->pull_off_force) ? NT_OK : NT_E_NOT_FINITE;
 }
@@ -135,6 +139,8 @@ static double largest_ratio(const nt_plan *plan)
     return nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form) ? nt_plan_largest_ratio(plan) : 1.0;
 }
 
+#define BULGED 2.5 /* times as much a surface pulls that bulges, at most, before it jumps (docs/yielding.md) */
+
 /* A bound of |F| at this gap and all larger ones, whatever the history. */
 static double force_limit(const nt_plan *plan, double gap)
 {
@@ -143,6 +149,8 @@ static double force_limit(const nt_plan *plan, double gap)
         if (plan->terms[term].form != NT_FORM_OFF)
             sum += fmax(nt_plan_law_limit(plan, term, gap, NT_QUANTITY_FORCE),
                         fabs(nt_plan_law_eval(plan, term, plan->terms[term].form, gap).F));
+    if (plan->yield.count > 0 && gap < plan->yield.first)
+        sum *= BULGED;
     return sum * largest_ratio(plan);
 }
 

@@ -80,7 +80,11 @@ static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, 
 {
     vertical sum = {{0.0, 0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
     if (plan->yield.count > 0 && !isnan(gap)) {
-        sum.law = nt_plan_yield_at(plan, gap);
+        const int holds = plan->source != NT_ADHESION_NONE && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF &&
+                          nt_plan_is_attached(plan, state->attached, place, gap);
+        sum.law = nt_plan_around(plan, holds, gap);
+        if (holds)
+            add(&sum.law, nt_plan_contact_at(plan, place, gap).law);
         return sum;
     }
     for (int i = 0; i < plan->on_count; ++i) {

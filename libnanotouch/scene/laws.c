@@ -66,6 +66,8 @@ static double share_of(const nt_plan *plan, int term)
 double nt_plan_tail_share(const nt_plan *plan)
 {
     double share = 0.0;
+    if (plan->yield.count > 0)
+        return nt_plan_yield_share(plan);
     for (int term = 0; term < NT_PLAN_TERMS && plan->source != NT_ADHESION_NONE; ++term)
         share += share_of(plan, term);
     return share;
@@ -97,11 +99,16 @@ nt_status nt_plan_tabulate(nt_plan *plan, const nt_scene *scene, nt_problem *pro
     return status;
 }
 
-nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+void nt_plan_prepare_laws(nt_plan *plan, const nt_scene *scene, double capture_gap)
 {
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->prepare)
-            nt_term_rows[term]->prepare(law_of(plan, term), scene, plan->capture_gap);
+            nt_term_rows[term]->prepare(law_of(plan, term), scene, capture_gap);
+}
+
+nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    nt_plan_prepare_laws(plan, scene, plan->capture_gap);
     const double share = plan->tail = nt_plan_tail_share(plan), w = plan->contact.work_of_adhesion;
     if (!(share > 0.0))
         return NT_OK;

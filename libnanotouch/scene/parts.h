@@ -67,7 +67,8 @@ void nt_plan_local_facts(nt_plan *plan, double maximum_load);
 
 /* laws.c: everything beside contact, by the rows of terms/: first what is tabulated once, ... */
 nt_status nt_plan_tabulate(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
-/* ... then what depends on the contact, and what it leaves of w. */
+/* ... then what depends on the gap where adhesion takes hold [m], and on the contact, and what it leaves of w. */
+void nt_plan_prepare_laws(nt_plan *plan, const nt_scene *scene, double capture_gap);
 nt_status nt_plan_laws_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* One of these terms in a form at a gap; the sum of all of them in full. */
 nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, double gap);
@@ -124,8 +125,17 @@ double nt_plan_share(const nt_plan *plan, double error);
 /* elastic.c: what the terms beside contact err by where they add on the undeformed gap, as a share of the demand;
  * also the elastic number. */
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
-/* yielding.c: the plan of a scene without adhesion whose sample yields to all terms together. */
+/* yielding.c: the plan of a scene whose sample yields to all terms together. */
 nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+/* yield_adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share of the
+ * demand. NT_E_RANGE: contact and table do not fit. */
+nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
+/* All beside contact, with everything on, where contact holds or does not. */
+nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap);
+/* What a yielded tail pulls of w in contact [J/m^2]. */
+double nt_plan_yield_share(const nt_plan *plan);
+/* U of that where contact holds less U where it does not [J]. */
+double nt_plan_rise(const nt_plan *plan, double gap);
 /* {U, F, k, a} of it at a gap; the sum of its terms on the undeformed gap. */
 nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap);
 nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);

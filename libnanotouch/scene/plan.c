@@ -51,6 +51,8 @@ static void finish(nt_plan *plan, double maximum_load)
         nt_plan_local_facts(plan, maximum_load);
     else
         plan->bound.fold_shift += nt_plan_curvature_shift(plan);
+    if (plan->yield.count > 0 && plan->yield.jumps)
+        plan->bound.fold_shift += plan->yield.jump_error;
     plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift;
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
@@ -96,7 +98,7 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
 /* With the error of terms that add on the undeformed gap, if the demand keeps that. */
 static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
 {
-    const double demanded = plan->demand.relative_accuracy, rigid = plan->rigid_error;
+    const double demanded = plan->demand.relative_accuracy, rigid = fmax(plan->rigid_error, plan->around_error);
     if (demanded > 0.0 && rigid >= demanded)
         return NT_E_RANGE;
     plan->demand.relative_accuracy = demanded > 0.0 ? demanded - rigid : 0.0;
@@ -123,32 +125,42 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
     return NT_E_RANGE;
 }
 
-/* With adhesion, and where something else pulls that no table was made for, the terms add on the undeformed gap,
- * whatever that errs by: the plan warns of it. */
+/* What no table was made for adds on the undeformed gap, and the plan warns of the error: with adhesion, if it errs
+ * before contact by no more than a hundredth or is not asked for its force; without, where something else pulls. */
 static int is_left(const nt_plan *plan)
 {
-    return plan->source != NT_ADHESION_NONE || plan->pull_off_force > UNASKED * plan->scale;
+    const int asked = plan->demand.quantity == NT_QUANTITY_FORCE || plan->demand.quantity == NT_QUANTITY_STIFFNESS;
+    if (plan->source == NT_ADHESION_NONE)
+        return plan->pull_off_force > UNASKED * plan->scale;
+    return !asked || plan->rigid_error <= fmax(UNASKED, plan->demand.relative_accuracy);
 }
 
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by; if it errs by too much, the sample
  * yields. A demand of 0 asks for every law in full. */
 static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
+    const int adheres = plan->source != NT_ADHESION_NONE;
     nt_plan_options options;
     nt_plan_options_of(plan, scene, &options);
     const double demanded = plan->demand.relative_accuracy;
     nt_status status = nt_plan_choose(plan, &options, problem);
     plan->rigid_error = nt_plan_rigid_error(plan, scene);
-    if (plan->source != NT_ADHESION_NONE || plan->rigid_error == 0.0 || (status == NT_OK && plan->on_count == 0))
+    const int alone = status == NT_OK && plan->on_count == 0 && !(adheres && isinf(plan->rigid_error));
+    if ((plan->rigid_error == 0.0 && plan->around_error == 0.0) || alone)
         return status;
     const nt_status rigid =
-        demanded > 0.0 || plan->rigid_error <= UNASKED ? choose_rigid(plan, &options, NULL) : NT_E_RANGE;
+        demanded > 0.0 || fmax(plan->rigid_error, plan->around_error) <= UNASKED ? choose_rigid(plan, &options, NULL)
+                                                                                 : NT_E_RANGE;
     if (rigid == NT_OK)
         return NT_OK;
     const nt_status yields = plan->properties ? NT_E_RANGE : nt_plan_yield(plan, scene, problem);
     if (yields == NT_OK)
         return NT_OK;
-    if (is_left(plan))
+    if (adheres) {
+        status = nt_plan_adhere(plan, scene, problem); /* as it was */
+        nt_plan_options_of(plan, scene, &options);
+    }
+    if (status == NT_OK && is_left(plan))
         return nt_plan_choose(plan, &options, problem);
     if (!(demanded > 0.0) && isfinite(plan->rigid_error))
         return choose_rigid(plan, &options, problem);

@@ -17,6 +17,8 @@
 nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_adhesion, nt_problem *problem)
 {
     nt_plan_contact_of(plan, scene, work_of_adhesion);
+    if (plan->yield.count > 0 && plan->yield.jumps)
+        plan->capture_gap = plan->yield.touch;
     nt_status status = nt_plan_laws_of(plan, scene, problem);
     if (status == NT_OK)
         status = nt_plan_contact_laws(plan, scene);

@@ -73,11 +73,12 @@ static void check_yielding(nt_plan *plan)
     if (plan->yield.count > 0 && plan->shape.kind == NT_SHAPE_SPHERE && flatter > demanded)
         nt_plan_add_warning(
             plan, (nt_plan_warning){"sphere taken for a paraboloid, whose force is larger by", "", flatter, demanded});
-    const int left = plan->yield.count == 0 && plan->on_count > 0 && plan->bound.force_error < plan->rigid_error;
-    if (left && plan->rigid_error > (demanded > 0.0 ? demanded : 0.01))
+    const double rigid = fmax(plan->rigid_error, plan->around_error);
+    const int left = plan->yield.count == 0 && plan->on_count > 0 && plan->bound.force_error < rigid;
+    if (left && rigid > (demanded > 0.0 ? demanded : 0.01))
         nt_plan_add_warning(plan,
                             (nt_plan_warning){"error of forces before contact, to which this sample yields, left out",
-                                              "", plan->rigid_error, demanded});
+                                              "", rigid, demanded});
 }
 
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)

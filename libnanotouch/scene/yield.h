@@ -103,10 +103,9 @@ nt_status nt_yield_go(nt_yield_solver *solver, nt_yield_hold hold, double value,
 typedef struct nt_yield_range {
     double farthest, nearest; /* [m] */
     double load;              /* [N] */
-    double least_centre;      /* of an attraction: where it ends if it does not jump before [m] */
     double tolerance;         /* of F, over max(|F|, scale) [-] */
     double scale;             /* [N] */
-    int attracts;             /* ends in a jump */
+    int attracts;             /* ends in a jump, or at `nearest` */
     int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale) */
     double stiffness_scale;   /* [N/m] */
 } nt_yield_range;

@@ -10,8 +10,8 @@
 #define FIRST_STEP 0.5 /* of the length over which the law falls */
 #define FIRST_RIM 0.05 /* of sqrt(2 R l): the first radius of contact */
 #define MESH 0.1       /* of the tolerance: what a panel must resolve, which is far more than the error of its force */
-#define SHORTER 0.8    /* steps of the centre gap on the way to a jump */
-#define BEFORE_JUMP 1e-4 /* of the centre gap: the table ends so much before it */
+#define SHORTER 0.8    /* steps of the centre gap, over the pole, on the way to a jump */
+#define BEFORE_JUMP 1e-4 /* of that gap: the table ends so much before it */
 #define SMALLEST 1e-7    /* of the first step */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
@@ -174,7 +174,7 @@ static nt_status march(maker *m, int part, double step)
                 return NT_E_NO_CONVERGENCE;
             continue;
         }
-        if (m->hold == NT_YIELD_GAP && (next.centre <= 0.0 || between.centre <= 0.0)) { /* the bodies touch */
+        if (m->hold == NT_YIELD_GAP && !m->range->attracts && (next.centre <= 0.0 || between.centre <= 0.0)) { /* the bodies touch */
             m->hold = NT_YIELD_CENTRE;
             m->end = 0.0;
             step = m->last.centre;
@@ -195,18 +195,18 @@ static nt_status march(maker *m, int part, double step)
     return status;
 }
 
-/* Where the surface jumps: the smallest h over the gap under the apex, which falls all the way. */
+/* Where the surface jumps: the smallest h over the gap under the apex, which falls all the way. Without a jump before
+ * the nearest h the table ends there. */
 static nt_status find_jump(maker *m)
 {
+    const double pole = m->solver.sample->pole;
     double high = m->last.centre, low = high;
     nt_yield_point point = m->last;
     while (point.slope > 0.0) {
-        if (low <= m->range->least_centre) {
-            m->end = m->range->least_centre;
+        if (point.h <= m->range->nearest)
             return NT_OK;
-        }
         high = low;
-        low = fmax(SHORTER * low, m->range->least_centre);
+        low = pole + SHORTER * (low - pole);
         const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, low, &point);
         if (status != NT_OK)
             return status;
@@ -218,9 +218,12 @@ static nt_status find_jump(maker *m)
             return status;
         *(point.slope > 0.0 ? &high : &low) = middle;
     }
+    if (point.h <= m->range->nearest)
+        return NT_OK;
     m->table->jumps = 1;
     m->table->touch = point.h;
-    m->end = high * (1.0 + BEFORE_JUMP);
+    m->hold = NT_YIELD_CENTRE;
+    m->end = high + BEFORE_JUMP * (high - pole);
     return NT_OK;
 }
 
@@ -238,10 +241,10 @@ static nt_status make_apart(maker *m, double length)
     double step = FIRST_STEP * length;
     if (m->range->attracts && status == NT_OK) {
         status = find_jump(m);
-        m->hold = NT_YIELD_CENTRE;
         if (status == NT_OK)
             status = begin(m);
-        step = FIRST_STEP * (1.0 - SHORTER) * m->last.centre;
+        if (m->table->jumps)
+            step = FIRST_STEP * (1.0 - SHORTER) * (m->last.centre - m->solver.sample->pole);
     }
     if (status == NT_OK)
         status = march(m, m->table->jumps ? -1 : 0, step);

@@ -12,6 +12,9 @@
 #define PARTS 2.5     /* a table's bound over its tolerance */
 #define ROUGHEST 1e-2 /* tolerances of a table */
 #define FINEST 2e-5
+#define STEP 1e-4   /* of a gap: differences */
+#define LEAVES 0.7  /* of the demand; the rest is for the form of contact */
+#define WEAKER 0.7  /* of the pull-off of rigid bodies: that of a sample that yields, at least */
 #define FADED 1e-6  /* of what a law is at half the gap: it ends without a kink */
 #define FINER 0.45  /* each attempt */
 #define CLOSER 1.02 /* ratio of gaps at which forces are sampled */
@@ -26,13 +29,38 @@ typedef struct pressures {
     double hold;
 } pressures;
 
+static int adheres(const nt_plan *plan)
+{
+    return plan->source != NT_ADHESION_NONE;
+}
+
+/* Whether a law is one of the tip and not of flats. */
+static int is_of_tip(const nt_plan *plan, int term, double gap)
+{
+    const nt_form form = nt_plan_full_form(plan, term);
+    return (form == NT_FORM_SPHERE || form == NT_FORM_TIP) && gap > nt_plan_hold_gap(plan, term);
+}
+
+/* That of the whole tip, as rigid bodies have it: p = k/(2 pi R). */
+static nt_pressure pressure_of_tip(const nt_plan *plan, int term, double gap)
+{
+    const double per_area = 2.0 * NT_PI * plan->contact.radius, step = STEP * gap;
+    const nt_form form = nt_plan_full_form(plan, term);
+    const nt_law_value here = nt_plan_law_eval(plan, term, form, gap);
+    const double far = nt_plan_law_eval(plan, term, form, gap + step).k;
+    const double near = nt_plan_law_eval(plan, term, form, gap - step).k;
+    return (nt_pressure){here.F / per_area, here.k / per_area, (far - near) / (2.0 * step * per_area)};
+}
+
 static nt_pressure pressure_at(const void *context, double gap)
 {
     const pressures *in = context;
     nt_pressure all = {0.0, 0.0, 0.0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->pressure && nt_plan_full_form(in->plan, term) != NT_FORM_OFF) {
-            const nt_pressure p = nt_term_rows[term]->pressure(nt_term_law(in->plan, term), gap + in->hold);
+            const nt_pressure p = adheres(in->plan) && is_of_tip(in->plan, term, gap)
+                                      ? pressure_of_tip(in->plan, term, gap)
+                                      : nt_term_rows[term]->pressure(nt_term_law(in->plan, term), gap + in->hold);
             all.energy += p.energy;
             all.pressure += p.pressure;
             all.slope += p.slope;
@@ -160,6 +188,10 @@ nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap)
         return nt_plan_rigid_at(plan, gap + table->shift);
     if (!(from_touch < table->touch))
         return nt_yield_table_eval(table, from_touch);
+    if (adheres(plan)) { /* in contact the laws keep their force */
+        const nt_law_value last = nt_yield_table_eval(table, table->touch);
+        return (nt_law_value){last.U + last.F * (table->touch - gap), last.F, 0.0, 0.0};
+    }
     /* the bodies touch at `hold`; the laws keep their force from there to gap 0, as they do without yielding */
     const nt_law_value touching = nt_yield_table_eval(table, table->touch);
     const double held = fmin(table->touch - from_touch, table->hold);
@@ -197,19 +229,26 @@ static void facts_of(nt_plan *plan, double load)
     plan->largest_indentation = -table->last;
 }
 
+/* Laws that have a pressure act in full. */
+static void turn_on(nt_plan *plan)
+{
+    plan->on_count = 0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        const nt_form form = nt_term_rows[term]->pressure ? nt_plan_full_form(plan, term) : NT_FORM_OFF;
+        plan->terms[term].form = form;
+        if (form != NT_FORM_OFF)
+            plan->on[plan->on_count++] = term;
+    }
+}
+
 /* What the plan says of its terms. */
 static void describe(nt_plan *plan, double error)
 {
-    plan->on_count = 0;
     plan->cost = 0.0;
+    plan->terms[NT_PLAN_CONTACT].form = NT_FORM_YIELDING;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         const nt_term_row *row = nt_term_rows[term];
         nt_plan_term *t = &plan->terms[term];
-        t->form = nt_plan_full_form(plan, term);
-        if (term == NT_PLAN_CONTACT)
-            t->form = NT_FORM_YIELDING;
-        else if (!row->pressure)
-            t->form = NT_FORM_OFF;
         const nt_term_form *form = nt_term_form_of(plan, term, t->form);
         t->name = row->words.name;
         t->title = row->words.title;
@@ -217,8 +256,6 @@ static void describe(nt_plan *plan, double error)
         t->error = term == NT_PLAN_CONTACT ? error : 0.0;
         t->cost = form->cost;
         plan->cost += t->cost;
-        if (term != NT_PLAN_CONTACT && t->form != NT_FORM_OFF)
-            plan->on[plan->on_count++] = term;
     }
     plan->bound.force_error = error;
 }
@@ -235,9 +272,10 @@ static nt_status check(const nt_plan *plan, const nt_scene *scene, nt_problem *p
 {
     const nt_shape_kind kind = plan->shape.kind;
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    if (kind != NT_SHAPE_PARABOLOID && kind != NT_SHAPE_SPHERE)
+    const int round = kind == NT_SHAPE_PARABOLOID || kind == NT_SHAPE_SPHERE;
+    if (!round && !(kind == NT_SHAPE_BLUNTED && adheres(plan)))
         return refuse(problem, (nt_problem){"tip.shape", "", scene->tip.shape, 0.0, 1.0});
-    if (quantity != NT_QUANTITY_FORCE && quantity != NT_QUANTITY_STIFFNESS)
+    if (quantity != NT_QUANTITY_FORCE && quantity != NT_QUANTITY_STIFFNESS && !adheres(plan))
         return refuse(problem, (nt_problem){"demand.quantity", "", plan->demand.quantity, 0.0, 1.0});
     return NT_OK;
 }
@@ -246,7 +284,7 @@ static nt_status check(const nt_plan *plan, const nt_scene *scene, nt_problem *p
 static double held_pull(const nt_plan *plan)
 {
     double lost = 0.0;
-    if (isinf(plan->yield.touch))
+    if (isinf(plan->yield.touch) || adheres(plan))
         return lost;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const nt_form form = nt_plan_full_form(plan, term);
@@ -258,52 +296,96 @@ static double held_pull(const nt_plan *plan)
 
 static nt_status table_of(nt_plan *plan, const nt_scene *scene, const pressures *in, double tolerance)
 {
-    const double farthest = where_rigid(plan, in->hold, SEAM * tolerance);
+    const int sticks = adheres(plan);
+    const double farthest = where_rigid(plan, sticks ? plan->capture_gap : in->hold, SEAM * tolerance);
     const nt_yield_sample sample = sample_of(plan, scene, in, farthest);
     const nt_yield_range range = {.farthest = farthest - in->hold,
-                                  .nearest = scene->range.minimum_gap - in->hold,
-                                  .load = DEEPER * scene->range.maximum_load,
+                                  .nearest = sticks ? fmax(plan->capture_gap, scene->range.minimum_gap)
+                                                    : scene->range.minimum_gap - in->hold,
+                                  .load = sticks ? (double)INFINITY : DEEPER * scene->range.maximum_load,
                                   .tolerance = tolerance,
-                                  .scale = plan->scale,
+                                  .scale = sticks ? WEAKER * plan->scale : plan->scale,
+                                  .attracts = sticks,
                                   .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
                                   .stiffness_scale = plan->scale};
     return nt_yield_table_make(&plan->yield, &sample, &range);
 }
 
-nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+/* With a tolerance, or finer, where Newton or the mesh do not come to an end. */
+static nt_status tabulate(nt_plan *plan, const nt_scene *scene, double tolerance)
+{
+    const pressures in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan)};
+    nt_status status = NT_E_NO_CONVERGENCE;
+    if (adheres(plan)) /* inside the range of adhesion, too */
+        nt_plan_prepare_laws(plan, scene, 0.0);
+    for (int i = 0; i < ATTEMPTS && status != NT_OK; ++i)
+        status = table_of(plan, scene, &in, tolerance * pow(FINER, i));
+    plan->yield.hold = in.hold;
+    plan->yield.jump_error = tolerance * plan->yield.touch;
+    if (status == NT_OK && held_pull(plan) > fmax(plan->demand.relative_accuracy, tolerance) * plan->scale)
+        status = NT_E_NO_CONVERGENCE;
+    return status;
+}
+
+/* The table is there: contact, facts and words. */
+static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
+{
+    const double budget = plan->demand.budget;
+    turn_on(plan);
+    join(plan);
+    if (adheres(plan))
+        return nt_plan_yield_adhere(plan, scene, error, problem);
+    describe(plan, error);
+    if (budget > 0.0 && plan->cost > budget)
+        return refuse(problem, (nt_problem){"demand.budget", "", budget, plan->cost, 1e9});
+    facts_of(plan, scene->range.maximum_load);
+    return NT_OK;
+}
+
+/* A jump, or a pressure that no mesh resolves: a stiffer sample would not yield. */
+static nt_status refuse_modulus(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    const double E = scene->sample.youngs_modulus;
+    const double stiffer = E * plan->elastic_number / fmax(plan->demand.relative_accuracy, FINEST);
+    return refuse(problem, (nt_problem){"sample.youngs_modulus", "Pa", E, fmin(fmax(stiffer, E), 1e13), 1e13});
+}
+
+/* Tables are of forces, whatever is demanded. */
+static nt_status yield(nt_plan *plan, const nt_scene *scene, double quantity, nt_problem *problem)
 {
     const double nearest = fmax(scene->range.minimum_gap, 0.0), demanded = plan->demand.relative_accuracy;
-    const double others = other_errors(plan, nearest);
+    const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
+    const double others = felt ? other_errors(plan, nearest) + plan->around_error : 0.0;
     const double finest = plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : FINEST;
     const double left = demanded > 0.0 ? (demanded - others) / PARTS : finest;
-    const double tolerance = fmin(left, ROUGHEST);
-    const pressures in = {plan, nt_elastic_hold(plan)};
-    nt_status status = check(plan, scene, problem);
-    if (status != NT_OK)
-        return status;
+    const double tolerance = fmin(adheres(plan) ? LEAVES * left : left, ROUGHEST);
     if (left < finest)
         return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,
                                             (others + PARTS * finest) * (1.0 + 1e-9), 0.5});
-    for (int i = 0; i < ATTEMPTS; ++i) { /* finer, where Newton or the mesh do not come to an end */
-        status = table_of(plan, scene, &in, tolerance * pow(FINER, i));
-        if (status == NT_OK)
-            break;
+    nt_status status = tabulate(plan, scene, tolerance);
+    if (status != NT_OK)
+        return refuse_modulus(plan, scene, problem);
+    plan->demand.quantity = quantity;
+    nt_problem reason = {0};
+    status = compose(plan, scene, others + PARTS * tolerance, &reason);
+    if (status == NT_OK)
+        return status;
+    return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
+}
+
+nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    const double quantity = plan->demand.quantity;
+    nt_status status = check(plan, scene, problem);
+    if (status != NT_OK)
+        return status;
+    if (quantity != NT_QUANTITY_STIFFNESS) {
+        plan->demand.quantity = NT_QUANTITY_FORCE;
+        plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
     }
-    plan->yield.hold = in.hold;
-    if (status == NT_OK && held_pull(plan) > fmax(demanded, tolerance) * plan->scale)
-        status = NT_E_NO_CONVERGENCE;
-    if (status != NT_OK) { /* a jump, or a pressure that no mesh resolves: a stiffer sample would not yield */
+    status = yield(plan, scene, quantity, problem);
+    plan->demand.quantity = quantity;
+    if (status != NT_OK)
         plan->yield.count = 0;
-        const double E = scene->sample.youngs_modulus, stiffer = E * plan->elastic_number / fmax(demanded, FINEST);
-        return refuse(problem, (nt_problem){"sample.youngs_modulus", "Pa", E, fmin(fmax(stiffer, E), 1e13), 1e13});
-    }
-    describe(plan, others + PARTS * tolerance);
-    const double budget = plan->demand.budget;
-    if (budget > 0.0 && plan->cost > budget) {
-        plan->yield.count = 0;
-        return refuse(problem, (nt_problem){"demand.budget", "", budget, plan->cost, 1e9});
-    }
-    join(plan);
-    facts_of(plan, scene->range.maximum_load);
-    return NT_OK;
+    return status;
 }

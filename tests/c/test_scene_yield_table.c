@@ -125,8 +125,7 @@ static void attraction_jumps_where_it_does(void **state)
                                   .load = 1.0,
                                   .tolerance = 1e-3,
                                   .scale = 1e-13,
-                                  .attracts = 1,
-                                  .least_centre = 1e-10};
+                                  .attracts = 1};
     assert_int_equal(nt_yield_table_make(&table, &sample, &range), NT_OK);
     assert_int_equal(table.jumps, 1);
     assert_true(within(table.touch, jump) < 2e-4);

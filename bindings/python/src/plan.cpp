@@ -49,6 +49,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["scale"] = plan.scale;
     out["elastic_number"] = plan.elastic_number;
     out["rigid_error"] = plan.rigid_error;
+    out["around_error"] = plan.around_error;
     out["yields"] = plan.yield.count > 0;
     out["force_floor"] = plan.demand.force_floor;
     out["probe_noise"] = plan.probe_noise;

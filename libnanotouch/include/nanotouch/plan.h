@@ -81,6 +81,8 @@ typedef struct nt_yield_table {
     double last;  /* the smallest h [m] */
     double shift; /* of the gap there, by which force and table meet [m] */
     double hold;  /* in contact the gap below which laws keep their force [m] */
+    double offset;     /* of U of an adhesive contact that the surface jumps into [J] */
+    double jump_error; /* of the gap of the jump [m] */
     nt_yield_node node[NT_YIELD_TABLE];
 } nt_yield_table;
 
@@ -139,6 +141,7 @@ typedef struct nt_plan {
     nt_yield_table yield;            /* of a sample that yields to forces beside contact */
     double elastic_number;           /* e of the terms beside contact, the largest in the range [-] */
     double rigid_error;              /* of adding them on the undeformed gap, in the norm of the demand [-] */
+    double around_error;             /* of the same around an adhesive contact, but for tails [-] */
     double curvature_error;          /* of leaving the curvature of the surface out, in the norm of the demand [-] */
 } nt_plan;
 

@@ -332,7 +332,7 @@ static nt_term_step advance(const void *law, void *state, const nt_place *place,
         return step;
     if (*attached != before) {
         const double where = *attached ? plan->capture_gap : nt_plan_last_hold(nt_plan_release_gap(plan, place));
-        const double U = nt_plan_contact_at(plan, place, where).law.U;
+        const double U = nt_plan_contact_at(plan, place, where).law.U + nt_plan_rise(plan, where);
         step.dissipated = fmax(0.0, *attached ? -U : U);
     }
     return step;

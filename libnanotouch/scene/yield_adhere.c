@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A sample that yields to the tail of its own adhesion (docs/yielding.md).
+ *
+ * Apart, the surface bulges towards the tip: a table that runs to the tail's own fold, where the surface jumps. In
+ * contact Maugis-Dugdale has all of w, and no tail acts beside it: what w holds is not counted again. Where the tail
+ * has no fold outside the range of adhesion the force goes on into contact, as with rigid bodies: there it keeps its
+ * value, which is taken out of w (laws.c).
+ *
+ * Both branches are potentials. That of contact begins at 0 far away, but without a tail; where it would lie above the
+ * fold it is counted from there, so that no jump gives out energy. */
+#include <math.h>
+
+#include "scene/terms/term.h"
+#include "scene/yield.h"
+
+#define INSIDE 0.01   /* of what a cycle can lose: at least so much is lost at either jump */
+#define STRONGEST 0.9 /* of w: what a tail may pull of it */
+
+/* What acts beside contact and has nothing to do with w, on the undeformed gap. */
+static nt_law_value others_at(const nt_plan *plan, double gap)
+{
+    nt_law_value sum = {plan->yield.offset, 0.0, 0.0, 0.0};
+    for (int i = 0; i < plan->on_count; ++i) {
+        const int term = plan->on[i];
+        if (nt_term_rows[term]->words.tail)
+            continue;
+        const nt_law_value value = nt_plan_law_eval(plan, term, plan->terms[term].form, gap);
+        sum.U += value.U;
+        sum.F += value.F;
+        sum.k += value.k;
+    }
+    return sum;
+}
+
+nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap)
+{
+    if (plan->yield.count == 0)
+        return nt_plan_beside_at(plan, gap);
+    return attached && plan->yield.jumps ? others_at(plan, gap) : nt_plan_yield_at(plan, gap);
+}
+
+double nt_plan_yield_share(const nt_plan *plan)
+{
+    const nt_yield_table *table = &plan->yield;
+    if (table->jumps)
+        return 0.0;
+    const double kept = nt_yield_table_eval(table, table->touch).F - others_at(plan, table->touch).F;
+    return -kept / (2.0 * NT_PI * plan->contact.radius);
+}
+
+double nt_plan_rise(const nt_plan *plan, double gap)
+{
+    if (plan->yield.count == 0 || !plan->yield.jumps)
+        return 0.0;
+    return nt_plan_around(plan, 1, gap).U - nt_plan_around(plan, 0, gap).U;
+}
+
+static double energy_of_contact(const nt_plan *plan, double gap)
+{
+    return nt_plan_contact_at(plan, NULL, gap).law.U + nt_plan_rise(plan, gap);
+}
+
+/* Contact after the jump lies below it, and above what it falls to when it lets go; NT_E_RANGE where it cannot. */
+static nt_status count_from_fold(nt_plan *plan)
+{
+    nt_yield_table *table = &plan->yield;
+    table->offset = 0.0;
+    if (!table->jumps)
+        return NT_OK;
+    if (!(plan->release_gap > table->touch))
+        return NT_E_RANGE;
+    const double most = -energy_of_contact(plan, table->touch);
+    const double least = -energy_of_contact(plan, nt_plan_last_hold(plan->release_gap));
+    if (!(least < most))
+        return NT_E_RANGE;
+    const double margin = INSIDE * (most - least);
+    table->offset = fmin(fmax(0.0, least + margin), most - margin);
+    return NT_OK;
+}
+
+/* Only forms of contact with the tip's own radius: all else is in the table. */
+static void drop_others(const nt_plan *plan, nt_plan_options *options, double error)
+{
+    const double cost = nt_term_form_of(plan, NT_PLAN_CONTACT, NT_FORM_YIELDING)->cost;
+    int count = 0;
+    for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
+        const nt_form form = options->option[NT_PLAN_CONTACT][i].form;
+        if (form != NT_FORM_TABLE && form != NT_FORM_POLISHED && form != NT_FORM_EXACT && form != NT_FORM_OFF)
+            continue;
+        options->option[NT_PLAN_CONTACT][count] = options->option[NT_PLAN_CONTACT][i];
+        options->option[NT_PLAN_CONTACT][count].error += error;
+        options->option[NT_PLAN_CONTACT][count++].cost += cost;
+    }
+    options->count[NT_PLAN_CONTACT] = count;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        options->count[term] = 1;
+        options->option[term][0].form = nt_term_rows[term]->pressure ? nt_plan_full_form(plan, term) : NT_FORM_OFF;
+        options->option[term][0].error = options->option[term][0].cost = 0.0;
+    }
+}
+
+nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
+{
+    nt_plan_options options;
+    if (nt_plan_yield_share(plan) > STRONGEST * plan->contact.work_of_adhesion)
+        return NT_E_RANGE;
+    nt_status status = nt_plan_adhere(plan, scene, problem);
+    if (status != NT_OK || plan->source == NT_ADHESION_NONE)
+        return NT_E_RANGE;
+    nt_plan_options_of(plan, scene, &options);
+    drop_others(plan, &options, error);
+    status = nt_plan_choose(plan, &options, problem);
+    if (status == NT_OK)
+        status = count_from_fold(plan);
+    return status == NT_OK ? nt_plan_facts(plan) : status;
+}
