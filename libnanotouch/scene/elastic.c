@@ -24,6 +24,8 @@ nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap)
 {
     nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        if (!nt_term_rows[term]->pressure) /* does not press on the sample, as a charge in it */
+            continue;
         const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
         s.F += value.F;
         s.k += value.k;

@@ -132,6 +132,8 @@ nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *proble
 nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
 /* All beside contact, with everything on, where contact holds or does not. */
 nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap);
+/* In contact that the surface does not jump into: there the tail keeps its force. */
+nt_law_value nt_plan_kept_at(const nt_plan *plan, double gap);
 /* What a yielded tail pulls of w in contact [J/m^2]. */
 double nt_plan_yield_share(const nt_plan *plan);
 /* U of that where contact holds less U where it does not [J]. */

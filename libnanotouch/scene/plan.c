@@ -6,6 +6,7 @@
 
 #include "scene/terms/term.h"
 
+#define STIFF 0.1    /* elastic number of samples that may count as rigid */
 #define UNASKED 0.01 /* without a demand the sample is rigid up to this error */
 
 const char *nt_form_name(nt_form form)
@@ -125,14 +126,15 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
     return NT_E_RANGE;
 }
 
-/* What no table was made for adds on the undeformed gap, and the plan warns of the error: with adhesion, if it errs
- * before contact by no more than a hundredth or is not asked for its force; without, where something else pulls. */
+/* What no table was made for adds on the undeformed gap, and the plan warns of the error: with adhesion, if the sample
+ * is stiff or nobody asked how true the force is; without, where something pulls. */
 static int is_left(const nt_plan *plan)
 {
+    const double demanded = plan->demand.relative_accuracy;
     const int asked = plan->demand.quantity == NT_QUANTITY_FORCE || plan->demand.quantity == NT_QUANTITY_STIFFNESS;
     if (plan->source == NT_ADHESION_NONE)
         return plan->pull_off_force > UNASKED * plan->scale;
-    return !asked || plan->rigid_error <= fmax(UNASKED, plan->demand.relative_accuracy);
+    return !asked || demanded == 0.0 || plan->elastic_number <= STIFF || plan->rigid_error <= demanded;
 }
 
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by; if it errs by too much, the sample

@@ -39,13 +39,23 @@ nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap)
     return attached && plan->yield.jumps ? others_at(plan, gap) : nt_plan_yield_at(plan, gap);
 }
 
+/* Of the tail alone, where adhesion takes hold. */
+static nt_law_value tail_at_touch(const nt_plan *plan)
+{
+    const nt_law_value all = nt_yield_table_eval(&plan->yield, plan->yield.touch);
+    const nt_law_value others = others_at(plan, plan->yield.touch);
+    return (nt_law_value){all.U - others.U, all.F - others.F, all.k - others.k, 0.0};
+}
+
+nt_law_value nt_plan_kept_at(const nt_plan *plan, double gap)
+{
+    const nt_law_value tail = tail_at_touch(plan), others = others_at(plan, gap);
+    return (nt_law_value){tail.U + tail.F * (plan->yield.touch - gap) + others.U, tail.F + others.F, others.k, 0.0};
+}
+
 double nt_plan_yield_share(const nt_plan *plan)
 {
-    const nt_yield_table *table = &plan->yield;
-    if (table->jumps)
-        return 0.0;
-    const double kept = nt_yield_table_eval(table, table->touch).F - others_at(plan, table->touch).F;
-    return -kept / (2.0 * NT_PI * plan->contact.radius);
+    return plan->yield.jumps ? 0.0 : -tail_at_touch(plan).F / (2.0 * NT_PI * plan->contact.radius);
 }
 
 double nt_plan_rise(const nt_plan *plan, double gap)

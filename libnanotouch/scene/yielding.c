@@ -12,6 +12,7 @@
 #define PARTS 2.5     /* a table's bound over its tolerance */
 #define ROUGHEST 1e-2 /* tolerances of a table */
 #define FINEST 2e-5
+#define UNASKED 0.01 /* without a demand all that a table does not know comes to less */
 #define STEP 1e-4   /* of a gap: differences */
 #define LEAVES 0.7  /* of the demand; the rest is for the form of contact */
 #define WEAKER 0.7  /* of the pull-off of rigid bodies: that of a sample that yields, at least */
@@ -188,10 +189,8 @@ nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap)
         return nt_plan_rigid_at(plan, gap + table->shift);
     if (!(from_touch < table->touch))
         return nt_yield_table_eval(table, from_touch);
-    if (adheres(plan)) { /* in contact the laws keep their force */
-        const nt_law_value last = nt_yield_table_eval(table, table->touch);
-        return (nt_law_value){last.U + last.F * (table->touch - gap), last.F, 0.0, 0.0};
-    }
+    if (adheres(plan))
+        return nt_plan_kept_at(plan, gap);
     /* the bodies touch at `hold`; the laws keep their force from there to gap 0, as they do without yielding */
     const nt_law_value touching = nt_yield_table_eval(table, table->touch);
     const double held = fmin(table->touch - from_touch, table->hold);
@@ -357,7 +356,7 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, double quantity, nt
     const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
     const double others = felt ? other_errors(plan, nearest) + plan->around_error : 0.0;
     const double finest = plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : FINEST;
-    const double left = demanded > 0.0 ? (demanded - others) / PARTS : finest;
+    const double left = (demanded > 0.0 ? demanded - others : fmin(UNASKED - others, PARTS * finest)) / PARTS;
     const double tolerance = fmin(adheres(plan) ? LEAVES * left : left, ROUGHEST);
     if (left < finest)
         return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,

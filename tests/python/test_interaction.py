@@ -241,7 +241,7 @@ def test_dissipation_only_grows(gaps: list[float]) -> None:
 CHANGES: dict[str, dict[str, Any]] = {
     "wear": {"tip": {"radius": 26e-9}},
     "ageing": {"adhesion": {"work_of_adhesion": 0.09}},
-    "charging": {"adhesion": {"contact_potential": 2.0}},
+    "charging": {"adhesion": {"contact_potential": 0.5}},
 }
 
 

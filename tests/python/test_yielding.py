@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nanotouch import Plan, Scene, presets, reference
+from nanotouch import Interaction, Plan, Scene, presets, reference
 from nanotouch.errors import InvalidValue
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "heavy"))
@@ -85,3 +85,62 @@ def test_what_neither_form_keeps_is_refused() -> None:
     pointed.tip.shape, pointed.tip.half_angle = "cone", 0.3
     with pytest.raises(InvalidValue):
         pointed.plan(1e-3)
+
+
+def sticky(modulus: float, hamaker: float = 6e-20) -> Scene:
+    """A tip of 20 nm over what van der Waals draws up."""
+    return Scene(
+        sample={"youngs_modulus": modulus, "poisson_ratio": 0.5},
+        medium={"relative_humidity": 0.0, "film_thickness": 0.0},
+        adhesion={"work_of_adhesion": 0.044, "hamaker_constant": hamaker},
+        range={"maximum_load": 5e-9},
+    )
+
+
+def errors_of(scene: Scene, plan: Plan, truth: reference.YieldedScene, history: str) -> np.ndarray:
+    """At gaps beside the folds and far from them, over the larger of force and scale."""
+    capture, release = plan.explain()["capture_gap"], plan.explain()["release_gap"]
+    gaps = np.array([8.0 * capture, 2.0 * capture, 1.05 * capture, 0.95 * capture, -capture, 0.9 * release])
+    gaps = np.sort(gaps)[::-1]
+    force = truth.force(gaps, history)  # type: ignore[arg-type]
+    planned = Interaction(plan, history).eval(np.column_stack([0.0 * gaps, 0.0 * gaps, gaps])).Fz  # type: ignore[arg-type]
+    return np.asarray(np.abs(planned - force) / np.maximum(np.abs(force), plan.scale))
+
+
+@pytest.mark.parametrize(("modulus", "jumps"), [(1e6, True), (3e8, True), (1.2e10, False)])
+def test_a_surface_bulges_and_jumps_towards_the_tip(modulus: float, jumps: bool) -> None:
+    """From soft to where the tail goes on into contact: forces within the bound, the jump within its distance."""
+    scene = sticky(modulus)
+    plan, truth = scene.plan(5e-3), reference.yielded_scene(scene, tolerance=1e-5)
+    facts = plan.explain()
+    assert facts["yields"]
+    assert truth.jumps == jumps
+    assert facts["capture_gap"] == pytest.approx(truth.capture_gap, abs=max(plan.fold_shift_m, 1e-18))
+    for history in ("approach", "retract"):
+        assert np.all(errors_of(scene, plan, reference.yielded_scene(scene, 1e-5), history) <= plan.bound)
+
+
+def test_in_contact_all_of_w_is_maugis_dugdale() -> None:
+    """What van der Waals pulls is part of w: pull-off, release and force in contact do not know of it."""
+    plan, bare = sticky(1e6).plan(1e-3), sticky(1e6, 0.0).plan(1e-3)
+    assert plan.pull_off_force == pytest.approx(bare.pull_off_force, rel=1e-6)
+    assert plan.explain()["release_gap"] == pytest.approx(bare.explain()["release_gap"], rel=1e-9)
+    assert plan.force(-5e-9) == pytest.approx(bare.force(-5e-9), rel=1e-3)
+
+
+@pytest.mark.parametrize("modulus", [1e6, 3e8, 1.2e10])
+def test_a_cycle_loses_what_its_jumps_lose(modulus: float) -> None:
+    """Work of the tip over a cycle is the energy of both jumps, none of which gives any out."""
+    plan = sticky(modulus).plan(5e-3)
+    facts = plan.explain()
+    capture, release = facts["capture_gap"], facts["release_gap"]
+    inwards = np.concatenate([np.geomspace(50.0 * release, capture * (1.0 + 1e-9), 20000)])
+    approach = Interaction(plan, "approach").eval(np.column_stack([0.0 * inwards, 0.0 * inwards, inwards]))
+    outwards = np.linspace(capture, release * (1.0 - 1e-9), 20000)
+    contact = Interaction(plan, "retract").eval(np.column_stack([0.0 * outwards, 0.0 * outwards, outwards]))
+    away = inwards[inwards > release][::-1]
+    back = Interaction(plan, "approach").eval(np.column_stack([0.0 * away, 0.0 * away, away]))
+    lost = -sum(float(np.trapezoid(value.Fz, value.gap)) for value in (approach, contact, back))
+    assert facts["capture_energy"] > 0.0 or modulus > 1e10
+    assert facts["release_energy"] >= 0.0
+    assert lost == pytest.approx(facts["capture_energy"] + facts["release_energy"], rel=2e-3)

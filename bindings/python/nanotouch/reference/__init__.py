@@ -9,6 +9,7 @@
   self-consistent; what plans say of soft samples is measured against it.
 """
 
+from nanotouch.reference._adhesive_scene import YieldedScene, yielded_scene
 from nanotouch.reference._half_space import Layer
 from nanotouch.reference._lennard_jones import (
     LAMBDA_PER_MU,
@@ -36,6 +37,7 @@ __all__ = [
     "SceneForces",
     "TableError",
     "Yielded",
+    "YieldedScene",
     "Yielding",
     "brush",
     "exponential",
@@ -50,4 +52,5 @@ __all__ = [
     "table_error",
     "tabor_mu",
     "yielded_force",
+    "yielded_scene",
 ]

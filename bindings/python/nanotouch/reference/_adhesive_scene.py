@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The force of a scene with adhesion whose sample yields to the tail of that adhesion: apart by
+:class:`nanotouch.reference.Yielding`, from far away to the fold of the tail; in contact Maugis-Dugdale. It shares no
+code with plans.
+
+Where the tail jumps before adhesion takes hold, contact has all of w and no tail. Where it does not, the force goes on
+into contact, as with rigid bodies: it stays there, and what the tail pulls is taken out of w (erratum E5b).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nanotouch import contact as contacts
+from nanotouch import forces as laws
+from nanotouch._arrays import Floats, as_floats
+from nanotouch.reference._pressures import Pressure
+from nanotouch.reference._scene import History, _capture_gap, _contact, _less, _touch, _work
+from nanotouch.reference._soft_scene import _laws, _modulus
+from nanotouch.reference._yielding import Yielded, Yielding
+from nanotouch.scene import Scene
+
+_CLOSE = 1e-12
+"""a minimum gap that is none [m]"""
+_CLOSER = 0.8
+"""steps of the gap under the apex on the way to a jump"""
+_FAR = 60.0
+"""times the range of adhesion: no sample bulges there"""
+
+
+@dataclass
+class YieldedScene:
+    """A scene with adhesion, its branches and its folds."""
+
+    scene: Scene
+    capture_gap: float
+    """where the surface jumps or adhesion takes hold [m]"""
+    jumps: bool
+    """by a fold of the tail"""
+    contact: contacts.Contact
+    """that acts then"""
+    apart: Yielding
+    shift: float
+    """of the gap to the poles of the tail [m]"""
+    kept: float
+    """force of the tail that stays in contact [N]"""
+
+    def force(self, gap: ArrayLike, history: History = "approach") -> Floats:
+        """On the tip [N], at gaps [m] in falling order, each reached from far away or from contact."""
+        gaps = as_floats(gap, "gap")
+        held = _touch(self.scene, gaps, self.contact, self.capture_gap, history)
+        attached = (gaps <= self.capture_gap) | (held != 0.0)
+        return np.array([self._around(g, bool(on)) for g, on in zip(gaps, attached, strict=True)]) + held
+
+    def _around(self, gap: float, attached: bool) -> float:
+        if attached and self.jumps:
+            return float(_others(self.scene, np.array([gap]))[0])
+        if gap <= self.capture_gap:
+            return self.kept + float(_others(self.scene, np.array([gap]))[0])
+        return self.apart.at(gap + self.shift).force
+
+
+def yielded_scene(scene: Scene, tolerance: float = 1e-6) -> YieldedScene:
+    """Finds where the surface jumps, from far away inwards."""
+    whole = _contact(scene, _work(scene))
+    range_of_adhesion = _capture_gap(scene, whole)
+    shift = scene.adhesion.equilibrium_distance + 0.5 * scene.sample.roughness
+    modulus, _ = _modulus(scene)
+    law = _pressure(scene, shift)
+
+    def apart() -> Yielding:
+        return Yielding(law, scene.tip.radius, modulus, tolerance=tolerance)
+
+    jump = _jump(apart(), shift, range_of_adhesion, scene)
+    if jump is not None:
+        return YieldedScene(scene, jump.gap - shift, True, whole, apart(), shift, 0.0)
+    kept = apart().at(range_of_adhesion + shift).force
+    tail = kept - float(_others(scene, np.array([range_of_adhesion]))[0])
+    left = _less(whole, -tail / (2.0 * np.pi * whole.radius))
+    return YieldedScene(scene, range_of_adhesion, False, left, apart(), shift, tail)
+
+
+def _jump(sample: Yielding, shift: float, nearest: float, scene: Scene) -> Yielded | None:
+    """The fold, where it lies farther out than `nearest` [m]."""
+    last = _FAR * max(nearest + shift, 1e-9)
+    before = here = sample.at_centre(last)
+    while here.gap - shift > nearest:
+        before, last = here, last * _CLOSER
+        here = sample.at_centre(last)
+        if here.gap > before.gap:
+            found = sample.jump_in(last, last / _CLOSER**2)
+            return found if found.gap - shift > nearest else None
+    return None
+
+
+def _pressure(scene: Scene, shift: float) -> Pressure:
+    """Of all laws, as rigid bodies have them, p = k/(2 pi R), over the gap and a shift."""
+    per_area = 2.0 * np.pi * scene.tip.radius
+    beside = _beside(scene)
+
+    def sums(g: Floats) -> tuple[Floats, Floats]:
+        tail = _tail(scene, g)
+        found = [law(np.maximum(g - shift, _CLOSE)) for law in beside]
+        return sum((law.k for law in found), tail.k), sum((law.F for law in found), tail.F)
+
+    return Pressure(lambda g: sums(g)[0] / per_area, lambda g: sums(g)[1] / per_area, diverges=True)
+
+
+def _tail(scene: Scene, distance: Floats) -> Any:
+    """Of van der Waals, over the distance of the planes that attract."""
+    tip, common = scene.tip, {"roughness": 0.0, "minimum_gap": _CLOSE}
+    strength: dict[str, Any] = {"radius": tip.radius, "hamaker_constant": scene.adhesion.hamaker_constant}
+    if tip.height > 0.0:
+        return laws.vdw_tip(distance, half_angle=tip.half_angle, height=tip.height, **strength, **common)
+    return laws.vdw(distance, **strength, **common)
+
+
+def _beside(scene: Scene) -> list[Any]:
+    """Laws that are no tail, without their hold; in a liquid those of soft scenes."""
+    bare = scene.copy()
+    bare.adhesion.hamaker_constant = 0.0
+    return _laws(bare) if scene.medium.kind == "liquid" else []
+
+
+def _others(scene: Scene, gaps: Floats) -> Floats:
+    """What acts in contact beside adhesion, on the undeformed gap."""
+    held = np.maximum(gaps, scene.adhesion.equilibrium_distance)
+    return np.asarray(sum((law(held).F for law in _beside(scene)), np.zeros(gaps.shape)))
