@@ -150,9 +150,9 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     const int alone = status == NT_OK && plan->on_count == 0 && !(adheres && isinf(plan->rigid_error));
     if ((plan->rigid_error == 0.0 && plan->around_error == 0.0) || alone)
         return status;
-    const nt_status rigid =
-        demanded > 0.0 || fmax(plan->rigid_error, plan->around_error) <= UNASKED ? choose_rigid(plan, &options, NULL)
-                                                                                 : NT_E_RANGE;
+    const nt_status rigid = demanded > 0.0 || fmax(plan->rigid_error, plan->around_error) <= UNASKED
+                                ? choose_rigid(plan, &options, NULL)
+                                : NT_E_RANGE;
     if (rigid == NT_OK)
         return NT_OK;
     const nt_status yields = plan->properties ? NT_E_RANGE : nt_plan_yield(plan, scene, problem);

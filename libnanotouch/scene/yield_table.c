@@ -174,7 +174,8 @@ static nt_status march(maker *m, int part, double step)
                 return NT_E_NO_CONVERGENCE;
             continue;
         }
-        if (m->hold == NT_YIELD_GAP && !m->range->attracts && (next.centre <= 0.0 || between.centre <= 0.0)) { /* the bodies touch */
+        if (m->hold == NT_YIELD_GAP && !m->range->attracts &&
+            (next.centre <= 0.0 || between.centre <= 0.0)) { /* the bodies touch */
             m->hold = NT_YIELD_CENTRE;
             m->end = 0.0;
             step = m->last.centre;

@@ -13,14 +13,14 @@
 #define ROUGHEST 1e-2 /* tolerances of a table */
 #define FINEST 2e-5
 #define UNASKED 0.01 /* without a demand all that a table does not know comes to less */
-#define STEP 1e-4   /* of a gap: differences */
-#define LEAVES 0.7  /* of the demand; the rest is for the form of contact */
-#define WEAKER 0.7  /* of the pull-off of rigid bodies: that of a sample that yields, at least */
-#define FADED 1e-6  /* of what a law is at half the gap: it ends without a kink */
-#define FINER 0.45  /* each attempt */
-#define CLOSER 1.02 /* ratio of gaps at which forces are sampled */
-#define FLAT 50.0   /* tables of a stiffness are coarser by */
-#define DEEPER 1.05 /* than the largest load */
+#define STEP 1e-4    /* of a gap: differences */
+#define LEAVES 0.7   /* of the demand; the rest is for the form of contact */
+#define WEAKER 0.7   /* of the pull-off of rigid bodies: that of a sample that yields, at least */
+#define FADED 1e-6   /* of what a law is at half the gap: it ends without a kink */
+#define FINER 0.45   /* each attempt */
+#define CLOSER 1.02  /* ratio of gaps at which forces are sampled */
+#define FLAT 50.0    /* tables of a stiffness are coarser by */
+#define DEEPER 1.05  /* than the largest load */
 
 enum { ATTEMPTS = 4, SAMPLES = 1000 };
 

@@ -120,12 +120,8 @@ static void attraction_jumps_where_it_does(void **state)
     const double R = 1e-6, E = 1e6, jump = pow(0.5955 * l.pressure * sqrt(R) / E, 2.0 / 7.0);
     const nt_yield_sample sample = {
         .radius = R, .modulus = E, .law = van_der_waals, .context = &l, .length = 1e-7, .pole = 0.0};
-    const nt_yield_range range = {.farthest = 400e-9,
-                                  .nearest = -1e-3,
-                                  .load = 1.0,
-                                  .tolerance = 1e-3,
-                                  .scale = 1e-13,
-                                  .attracts = 1};
+    const nt_yield_range range = {
+        .farthest = 400e-9, .nearest = -1e-3, .load = 1.0, .tolerance = 1e-3, .scale = 1e-13, .attracts = 1};
     assert_int_equal(nt_yield_table_make(&table, &sample, &range), NT_OK);
     assert_int_equal(table.jumps, 1);
     assert_true(within(table.touch, jump) < 2e-4);

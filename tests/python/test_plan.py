@@ -119,7 +119,9 @@ def test_pull_off_is_the_strongest_pull_wherever_it_is(name: str) -> None:
     assert plan.pull_off_force <= strongest * (1.0 + 1e-3)  # between the gaps of this search
 
 
-@pytest.mark.parametrize("name", [*sorted(BARRIERS.keys() - {"short range under a wide contact"}), "charge under a film"])
+@pytest.mark.parametrize(
+    "name", [*sorted(BARRIERS.keys() - {"short range under a wide contact"}), "charge under a film"]
+)
 def test_no_attraction_is_steeper_than_the_minimum_spring(name: str) -> None:
     """On the way in, 60 000 gaps: also where a term is held inside the range of adhesion."""
     charged = Scene(tip={"radius": 100e-9}, sample={"charge": 1e-17})

@@ -73,14 +73,14 @@ typedef struct nt_yield_node {
     double a;     /* radius of contact [m] */
 } nt_yield_node;
 typedef struct nt_yield_table {
-    int count;    /* of nodes; 0: the sample does not yield */
-    int apart;    /* of them before contact */
-    int jumps;    /* 1: apart ends in a jump */
-    double touch; /* h where the bodies touch or jump; -inf: never [m] */
-    double first; /* the largest h; farther out the laws add on the undeformed gap [m] */
-    double last;  /* the smallest h [m] */
-    double shift; /* of the gap there, by which force and table meet [m] */
-    double hold;  /* in contact the gap below which laws keep their force [m] */
+    int count;         /* of nodes; 0: the sample does not yield */
+    int apart;         /* of them before contact */
+    int jumps;         /* 1: apart ends in a jump */
+    double touch;      /* h where the bodies touch or jump; -inf: never [m] */
+    double first;      /* the largest h; farther out the laws add on the undeformed gap [m] */
+    double last;       /* the smallest h [m] */
+    double shift;      /* of the gap there, by which force and table meet [m] */
+    double hold;       /* in contact the gap below which laws keep their force [m] */
     double offset;     /* of U of an adhesive contact that the surface jumps into [J] */
     double jump_error; /* of the gap of the jump [m] */
     nt_yield_node node[NT_YIELD_TABLE];
