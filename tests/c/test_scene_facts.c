@@ -99,10 +99,14 @@ static void expect(double fact, double found)
         fail_msg("%.9g, but the search finds %.9g", fact, found);
 }
 
-static void make_both(const nt_scene *scene, double accuracy)
+/* Of laws that add on the undeformed gap; of a sample that yields to them the facts are those of its table. */
+static int make_both(const nt_scene *scene, double accuracy)
 {
-    make(&plan, scene, accuracy);
+    const nt_demand demand = {.relative_accuracy = accuracy};
+    const nt_plan_inputs inputs = {.scene = scene, .demand = &demand};
+    const int made = nt_plan_make(&plan, &inputs, NULL) == NT_OK;
     make(&whole, scene, 0.0);
+    return made && plan.yield.count == 0 && whole.yield.count == 0;
 }
 
 static void compare_pull(const nt_scene *scene)
@@ -120,13 +124,17 @@ static void compare_growth(const nt_scene *scene, double accuracy)
                largest_of_all(1, scene->adhesion.equilibrium_distance, scene->custom[NT_CUSTOM_TERMS - 1].context));
 }
 
+static int compared;
+
 static void compare(const nt_scene *scene)
 {
     for (double accuracy = 0.5; accuracy > 1e-4; accuracy *= 0.2) {
-        make_both(scene, accuracy);
+        if (!make_both(scene, accuracy))
+            continue;
         compare_growth(scene, accuracy);
+        compare_pull(scene);
+        compared++;
     }
-    compare_pull(scene);
 }
 
 static nt_scene dry(double radius, double modulus, double w)
@@ -158,6 +166,7 @@ static void scenes_of_every_kind(void **state)
         scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
         compare(&scene);
     }
+    assert_true(compared > 60);
 }
 
 /* Within a nanometre under a contact that holds over micrometres; near the release gap; just beyond it; far out. */
@@ -165,7 +174,7 @@ static void the_strongest_pull_is_found_wherever_it_is(void **state)
 {
     (void)state;
     const nt_scene soft = dry(1e-4, 1e4, 1e-3);
-    make(&plan, &soft, 0.1);
+    make(&plan, &soft, 0.0);
     const double release = plan.release_gap, pull = plan.contact_pull;
     assert_true(release > 1e-6);
     const double place[][2] = {
@@ -174,7 +183,7 @@ static void the_strongest_pull_is_found_wherever_it_is(void **state)
     for (int i = 0; i < (int)(sizeof place / sizeof *place); i++) {
         const well w = {10.0 * pull, place[i][0], place[i][0] * place[i][1]};
         const nt_scene scene = with_well(soft, &w);
-        make_both(&scene, 0.1);
+        assert_true(make_both(&scene, 0.0));
         compare_pull(&scene);
         assert_true(plan.pull_off_force > (w.centre > release ? 0.999 : 1.0) * w.force);
         assert_true((plan.contact_pull >= w.force) == (w.centre < release));
@@ -197,8 +206,10 @@ static void compare_with_well(const nt_scene *bare, double centre, double width)
     make(&plan, bare, 0.5);
     const well w = {20.0 * plan.minimum_spring * width, centre, width};
     const nt_scene scene = with_well(*bare, &w);
-    make_both(&scene, 0.5);
+    if (!make_both(&scene, 0.5))
+        return;
     compare_growth(&scene, 0.5);
+    compared++;
     if (centre > scene.adhesion.equilibrium_distance) /* its peak is not held */
         assert_true(plan.minimum_spring > 0.98 * 4.0 / (3.0 * sqrt(3.0)) * w.force / width);
 }
@@ -208,6 +219,7 @@ static void the_steepest_growth_is_found_wherever_it_is(void **state)
 {
     (void)state;
     nt_scene wet = bridged(0.7);
+    compared = 0;
     const double capture = plan.capture_gap;
     assert_true(capture > 4.0 * wet.adhesion.equilibrium_distance);
     const double place[][2] = {{0.3, 0.2}, {1.5, 0.1}, {30.0, 0.2}, {500.0, 0.3}};
@@ -223,6 +235,7 @@ static void the_steepest_growth_is_found_wherever_it_is(void **state)
     compare_with_well(&wetter, 1e-9, 0.2e-9);
     for (double centre = 0.4 * wide; centre < 0.8 * wide; centre *= 1.1)
         compare_with_well(&wetter, centre, 0.03 * centre);
+    assert_true(compared > 8);
 }
 
 int main(void)
