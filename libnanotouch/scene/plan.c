@@ -127,14 +127,15 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
 }
 
 /* What no table was made for adds on the undeformed gap, and the plan warns of the error: with adhesion, if the sample
- * is stiff or nobody asked how true the force is; without, where something pulls. */
+ * is stiff, has properties of each place or nobody asked how true the force is; without, where something pulls. */
 static int is_left(const nt_plan *plan)
 {
     const double demanded = plan->demand.relative_accuracy;
     const int asked = plan->demand.quantity == NT_QUANTITY_FORCE || plan->demand.quantity == NT_QUANTITY_STIFFNESS;
     if (plan->source == NT_ADHESION_NONE)
         return plan->pull_off_force > UNASKED * plan->scale;
-    return !asked || demanded == 0.0 || plan->elastic_number <= STIFF || plan->rigid_error <= demanded;
+    return !asked || demanded == 0.0 || plan->properties || plan->elastic_number <= STIFF ||
+           plan->rigid_error <= demanded;
 }
 
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by; if it errs by too much, the sample
