@@ -12,6 +12,7 @@ help:  ## what there is to make
 demo:  ## touch the built-in grating, or a file: make demo IMAGE=path OUT=folder
 	@tools/setup.sh demo
 	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") $(if $(OUT),--out "$(OUT)")
+	@echo 'touch it with your own hand: $(VENV)/nanotouch live $(if $(IMAGE),"$(IMAGE)")'
 
 test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@tools/setup.sh test

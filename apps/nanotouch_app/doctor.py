@@ -17,6 +17,7 @@ from nanotouch import hal
 from nanotouch.errors import Error
 
 from nanotouch_app import view
+from nanotouch_app.live import display
 
 # extra -> {distribution: module}; a test compares it with pyproject.toml
 EXTRAS = {
@@ -69,7 +70,7 @@ def findings() -> list[str]:
         "extras": [_extra(name, packages) for name, packages in EXTRAS.items()],
         "compiled parts": [("core", OK, f"nanotouch._core {nanotouch.__version__}"), _fit()],
         "backends": [("simulated", OK, "always there"), _gpio()],
-        "view": [_display(), _vtk()],
+        "view": [_display(), _vtk(), _live()],
     }
     for title, rows in sections.items():
         lines += ["", title]
@@ -126,6 +127,15 @@ def _display() -> tuple[str, str, str]:
         return "display", MISSING, "no DISPLAY or WAYLAND_DISPLAY: the view is rendered to a picture, no window opens"
     shown = [f"{name}={os.environ[name]}" for name in ("DISPLAY", "WAYLAND_DISPLAY") if os.environ.get(name)]
     return "display", OK, ", ".join(shown) or platform.system()
+
+
+def _live() -> tuple[str, str, str]:
+    """Whether a window can be opened for a hand, tried out."""
+    try:
+        display.check()
+    except Error as error:
+        return "live", MISSING, str(error)
+    return "live", OK, "a window can be opened: nanotouch live"
 
 
 def _vtk() -> tuple[str, str, str]:

@@ -159,6 +159,14 @@ def test_sliders_are_those_that_mean_something(host: Host) -> None:
         assert slider.about.minimum <= slider.low < slider.high <= slider.about.maximum
 
 
+def test_only_the_adhesion_that_is_read_has_a_slider() -> None:
+    subject = of_preset("polyester")
+    world = {"scene": subject.scene.to_dict(), "rig": subject.rig.to_dict(), "settings": nt.Settings().to_dict()}
+    fields = [slider.field for slider in offered(world)]
+    assert "adhesion.sample_surface_energy" in fields
+    assert "adhesion.work_of_adhesion" not in fields
+
+
 def test_a_surface_is_drawn_with_few_triangles() -> None:
     heights = np.random.default_rng(1).standard_normal((4096, 1500))
     means, size = stage.coarse(heights)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 import nanotouch as nt
 import numpy as np
@@ -85,7 +86,12 @@ def test_presets_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def recorded(path: Path) -> nt.Recording:
-    host = Host(of_preset("silicon_in_air"), lambda message: None, out=str(path), stepped=True)
+    told: list[dict[str, Any]] = []
+    host = Host(of_preset("silicon_in_air"), told.append, out=str(path), stepped=True)
+    host.answer({"do": "change", "what": "rig", "field": "probe.spring_constant", "value": 2.0})
+    host.answer({"do": "preset", "name": "mica_in_air"})
+    assert all("this one is being recorded" in message["why"] for message in told)
+    assert len(told) == 2
     host.answer({"do": "press", "on": True})
     host.advance(0.6)
     host.close()
@@ -147,3 +153,26 @@ def test_nonsense_is_refused(tmp_path: Path) -> None:
     file.write_text("hello")
     with pytest.raises(Error, match="no image"):
         files.of(str(file))
+
+
+def test_a_map_is_touched_with_the_modulus_of_each_place(tmp_path: Path) -> None:
+    for module in ("xarray", "h5netcdf", "nanotouch._fit"):
+        pytest.importorskip(module)
+    x = np.mgrid[:8, :8][1] / 8
+    modulus = np.where(x < 0.5, 2e8, 1e9)
+    sample = nt.maps.synthesise(
+        modulus, np.full_like(x, 0.02), np.zeros_like(x), radius=20e-9, spring_constant=1.0, points=300, depth=20e-9
+    )
+    file = tmp_path / "map.nc"
+    nt.maps.write(nt.maps.fit(sample, "maugis", radius=20e-9, cohesive_range=0.2e-9), file)
+    subject = files.of(str(file))
+    surface = subject.touched(subject.scene)
+    assert surface.youngs_modulus is not None
+    assert surface.youngs_modulus.max() > 3.0 * surface.youngs_modulus.min()
+    host = Host(subject, lambda message: None, stepped=True)
+    host.answer({"do": "press", "on": True})
+    host.advance(1.0)
+    frame = host.observer.newest()
+    host.close()
+    assert frame is not None
+    assert frame["tip_force"][2] > 0.0

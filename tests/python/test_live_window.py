@@ -129,6 +129,10 @@ def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatc
         live.x("mouseup", 1)
         moved = live.serve(lambda frame: frame["tip_position"][0] > before["tip_position"][0] + 5e-9)
         assert abs(moved["tip_position"][1] - before["tip_position"][1]) < 5e-9
+        live.x("keydown", "space")
+        live.serve(lambda frame: frame["tip_force"][2] > 0.8 * live.host.hand.press_force)
+        live.x("keyup", "space")
+        live.serve(lambda frame: frame["gap"] > 0.0)
         live.x("key", "p")
         live.serve(lambda frame: live.host.paused)
         picture = tmp_path / "picture.png"

@@ -210,6 +210,7 @@ class Host:
 
     def _do_preset(self, message: Message) -> None:
         """Another sample is laid under another tip: a session of its own."""
+        self._check_unrecorded("another sample")
         before, self.subject = self.session, of_preset(message["name"])
         self.scene, self.rig = self.subject.scene.copy(), self.subject.rig.copy()
         self.overrides, self.done, self.undone = {}, [], []
@@ -255,8 +256,13 @@ class Host:
             else:
                 self.overrides[field] = value
 
+    def _check_unrecorded(self, what: str) -> None:
+        if self.writer is not None:
+            raise Error(f"{what} would begin another session: this one is being recorded, and a file holds one")
+
     def _reopen(self, what: str, field: str, value: float) -> None:
         """Lever and tip are the instrument itself: another one is mounted, and the touch begins above the surface."""
+        self._check_unrecorded("another tip or lever")
         described = self.scene if what == "scene" else self.rig
         old = described[field]
         described[field] = value

@@ -22,6 +22,7 @@ OFFERED = (
     ("scene", "medium.relative_humidity", "humidity", 0.0, 0.95),
     ("scene", "sample.youngs_modulus", "sample modulus", 0.02, 20.0),
     ("scene", "adhesion.work_of_adhesion", "work of adhesion", 0.1, 4.0),
+    ("scene", "adhesion.sample_surface_energy", "surface energy", 0.1, 4.0),
     ("scene", "tip.radius", "tip radius", 0.5, 4.0),
     ("rig", "probe.spring_constant", "spring constant", 0.1, 10.0),
     ("settings", "gains.coupling_stiffness", "spring to the hand", 0.1, 4.0),
@@ -29,6 +30,12 @@ OFFERED = (
     ("scene", "medium.ionic_strength", "salt", 0.05, 20.0),
     ("scene", "medium.brush_thickness", "fur", 0.3, 2.0),
 )  # fmt: skip
+# what is read of the adhesion, by adhesion.given
+GIVEN = {
+    "adhesion.work_of_adhesion": "work_of_adhesion",
+    "adhesion.sample_surface_energy": "surface_energies",
+    "adhesion.tip_surface_energy": "surface_energies",
+}
 COLUMNS, MOST, ROW, HEAD = 4, 8, 52.0, 8.0
 
 
@@ -84,6 +91,7 @@ class Slider:
 def offered(world: dict[str, Any]) -> list[Slider]:
     """The sliders that mean something in this world: what is 0 and no humidity stays away."""
     made = []
+    given = world["scene"]["adhesion"]["given"]
     for what, name, words, least, largest in OFFERED:
         section, key = name.split(".")
         value = float(world[what][section][key])
@@ -92,7 +100,7 @@ def offered(world: dict[str, Any]) -> list[Slider]:
             if world["scene"]["medium"]["kind"] != "air" or world["scene"]["medium"]["surface_tension"] == 0.0:
                 continue
             made.append(Slider(what, name, words, 0.0, largest, value))
-        elif value > 0.0:
+        elif value > 0.0 and GIVEN.get(name, given) == given:
             low, high = max(least * value, field.minimum), min(largest * value, field.maximum)
             made.append(Slider(what, name, words, low, high, value))
     return made[:MOST]

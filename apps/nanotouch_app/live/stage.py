@@ -21,6 +21,7 @@ RELIEF = 0.12  # height of the drawn relief where it has to be exaggerated [scen
 TIP_HEIGHT = 0.34  # of the drawn tip [scene units]
 LEVER = (0.55, 0.13)  # length and width of the drawn lever [scene units]
 LEVER_POINTS = 24
+BALL = 300e-9  # a blunter tip is a ball that is glued to a stem [m]
 FAR = 0.2  # no tip is drawn higher above the surface than this [scene units]
 BEND = 0.05  # of the lever under the largest load [scene units]
 SHADOW = 0.05  # radius of the soft shadow [scene units]
@@ -155,7 +156,8 @@ class Stage:
 
     def _turned(self, radius: float, half_angle: float, kind: str) -> Any:
         """Sphere that goes over into a cone, or a ball on a stem."""
-        last = math.pi / 2 - half_angle if kind != "sphere" and radius < 0.05 else 0.9 * math.pi
+        ball = kind == "sphere" or radius * self.unit > BALL
+        last = 0.9 * math.pi if ball else math.pi / 2 - half_angle
         angle = np.linspace(0.0, last, 28)
         r, h = radius * np.sin(angle), radius * (1.0 - np.cos(angle))
         widening = math.tan(half_angle) if last < math.pi / 2 else 0.0

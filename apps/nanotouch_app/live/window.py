@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import queue
 import sys
 import threading
@@ -33,6 +34,7 @@ PLAIN_KEYS = {
 }  # fmt: skip
 ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
 ARROW_PIXELS = 4.0
+REPEAT = 0.08  # a key that is let go for less than this [s] is held: X11 repeats it so
 
 
 class Window:
@@ -74,6 +76,7 @@ class Window:
         if watched is not None:
             self.watch(watched)
         self.dragging, self.at = "", np.zeros(2)
+        self.pressing, self.lift_at = False, math.inf
         self.open = True
 
     # --- the loop ---
@@ -89,6 +92,9 @@ class Window:
             self.interactor.ProcessEvents()
             self._take()
             begun = time.monotonic()
+            if begun > self.lift_at:
+                self.lift_at, self.pressing = math.inf, False
+                self.ask("press", on=False)
             if begun < due:
                 time.sleep(min(due - begun, 0.004))
                 continue
@@ -244,7 +250,10 @@ class Window:
         elif name in ("next", "prior"):
             self.wheel(1.0 if name == "next" else -1.0)
         elif name == "space":
-            self.ask("press", on=True)
+            self.lift_at = math.inf
+            if not self.pressing:
+                self.pressing = True
+                self.ask("press", on=True)
         elif name == "z":
             self.ask("redo" if self.interactor.GetShiftKey() else "undo")
         elif name in "012345" and len(name) == 1:
@@ -269,9 +278,9 @@ class Window:
             self.leave()
 
     def key_up(self, *_: Any) -> None:
-        """The space bar is let go: the hand lifts."""
+        """The space bar is let go: the hand lifts, unless the key only repeats."""
         if str(self.interactor.GetKeySym()).lower() == "space":
-            self.ask("press", on=False)
+            self.lift_at = time.monotonic() + REPEAT
 
 
 def main(arguments: list[str]) -> int:
