@@ -182,4 +182,4 @@ def _like(seen: Seen) -> str:
     if not math.isfinite(number) or seen.plan.pull_off_force < 1e-3 * seen.load:
         return "no adhesion: like Hertz"
     kind = "DMT" if number < 0.1 else "JKR" if number > 5.0 else "between DMT and JKR"
-    return f"{'like ' if number < 0.1 or number > 5.0 else ''}{kind}, lambda {digits(number, "", 2)}"
+    return f"{'like ' if number < 0.1 or number > 5.0 else ''}{kind}, lambda {digits(number, '', 2)}"
