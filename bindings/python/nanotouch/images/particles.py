@@ -26,6 +26,9 @@ _TILES = 4  # of the image along each side
 _FILLED = 0.9  # share of a tile from which no flat is left in it; of dense grains 0.8 is found
 _MOST = 0.5  # share of the image
 _NOISY = 2.0  # standard deviations of a pixel
+_BAND = 3.0  # standard deviations of the flat, within which its bands are
+_ENOUGH = 0.2  # share of a row that is flat
+_BANDED = 0.5  # rms of the bands over the standard deviation about them, below which there are none
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +167,10 @@ def grains(
         raise InvalidValue(f"smallest: {smallest} pixels, expected 1 or more")
     z = -topography.heights if pits else topography.heights
     base, noise, least = _base(z[~topography.mask], threshold)
+    bands = _bands(z, topography.mask, base, noise) if threshold in ("auto", "flat") else np.zeros((1, 1))
+    if bands.any():
+        z = z - bands
+        base, noise, least = _base(z[~topography.mask], threshold)
     cv2 = require("cv2", "images")
     over = z - base
     count, labels = cv2.connectedComponents((over > least).astype(np.uint8), connectivity=8)
@@ -172,6 +179,11 @@ def grains(
     labels = _numbered(over, labels, smallest)
     jitter = pixel_noise(z)
     doubts = _doubts(labels, least / jitter if jitter > 0.0 else np.inf, pits)
+    if np.ptp(bands) > least:
+        doubts += (
+            f"the flat stood {np.ptp(bands) * 1e9:.3g} nm higher in some rows than in others, which was taken off: drift "
+            "or the bow of a scanner that levelling left",
+        )
     for text in doubts:
         warnings.warn(text, stacklevel=2)
     return replace(
@@ -233,6 +245,22 @@ def _base(z: Floats, threshold: float | str) -> tuple[float, float, float]:
     if isinstance(threshold, str) or not 0.0 < threshold < np.inf:
         raise InvalidValue(f"threshold: {threshold!r}, expected a positive height [m], 'auto', 'flat' or 'otsu'")
     return base, noise, float(threshold)
+
+
+def _bands(z: Floats, missing: NDArray[np.bool_], base: float, noise: float) -> Floats:
+    """What levelling left of bands along the rows, (ny, 1) [m]: medians of the flat of each row about the base.
+
+    The flat is what lies within three standard deviations of the base; rows with too little of it get what lies between
+    those of their neighbours. Bands of less than half a standard deviation are none.
+    """
+    flat = (np.abs(z - base) <= _BAND * noise) & ~missing
+    enough = np.flatnonzero(flat.mean(axis=1) > _ENOUGH)
+    if not enough.size:
+        return np.zeros((len(z), 1))
+    middle = np.array([np.median(z[j][flat[j]]) for j in enough]) - base
+    bands = np.interp(np.arange(len(z)), enough, middle)
+    within = MAD * float(np.median(np.abs((z - bands[:, None] - base)[flat])))
+    return np.asarray(bands[:, None] if float(np.std(middle)) > _BANDED * within else np.zeros((len(z), 1)))
 
 
 def _otsu(z: Floats) -> float:

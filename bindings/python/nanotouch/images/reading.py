@@ -111,7 +111,9 @@ def _reader(file: Path) -> tuple[str, Any]:
     if refused is not None:
         raise ReadError(f"{file}: {refused}")
     for own in (hdf5, jpk_movie, topostats, nanonis, gsf, ntmdt):
-        if own.recognises(file, head):
+        with guarded(file, own.NAME):
+            recognised = own.recognises(file, head)
+        if recognised:
             return own.NAME, own
     return surfacetopography.NAME, surfacetopography
 
