@@ -44,6 +44,8 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every
+	@cmake --build --preset dev --target test_session_adversary
+	@$(VENV)/python tests/heavy/guarantee.py --jobs $(JOBS)
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test

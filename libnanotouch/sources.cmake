@@ -113,6 +113,7 @@ set(nanotouch_sources_dynamics
 set(nanotouch_sources_control
     control/guarantee.c
     control/impedance.c
+    control/lift.c
     control/margins.c
     control/modes.c
     control/motor.c
@@ -128,6 +129,7 @@ set(nanotouch_sources_control
     control/settings.c
     control/stability.c
     control/stage_loop.c
+    control/stuck.c
     control/supervisor.c
     control/touch.c
     control/verdict.c)
@@ -145,6 +147,7 @@ set(nanotouch_sources_session
     session/frame.c
     session/frames.c
     session/halves.c
+    session/hazard.c
     session/history.c
     session/inputs.c
     session/observer.c

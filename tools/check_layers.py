@@ -41,7 +41,7 @@ HEADERS = {
     "terrain": "session",
     "sim": "hal/sim",
     "faults": "hal/sim",
-    **dict.fromkeys(["commands", "frames", "observer"], "session"),
+    **dict.fromkeys(["commands", "frames", "hazard", "observer"], "session"),
     "hal_linux": "hal/linux",
 }
 

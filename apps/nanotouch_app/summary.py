@@ -62,7 +62,7 @@ def before(session: nt.Session) -> str:
     lines = [
         f"loop:    {session.control} control at {session.rate / 1e3:g} kHz, {session.probe_model} probe; "
         f"stability margin {found.verdict}{verdict}",
-        f"limits:  {session.guarantee()}",
+        *(f"limits:  {line}" for line in str(session.guarantee()).splitlines()),
         *(f"steps:   {line}" for line in str(budget).splitlines()),
     ]
     return "\n".join(lines)

@@ -9,6 +9,7 @@
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
+#include "nanotouch/supervisor.h"
 
 #define SIGMAS 6.0
 
@@ -24,34 +25,110 @@ static double ringing_amplitude(const nt_stage *stage, double zeta, double speed
     return fmax(4.0 / NT_PI * gain, all) * speed / (2.0 * NT_PI * stage->resonance);
 }
 
+const char *nt_failure_name(nt_failure failure)
+{
+    static const char *const names[NT_FAILURES] = {"deflection read wrong", "deflection sensor dead",
+                                                   "slip of stage or surface", "stage runs or turns"};
+    return (unsigned)failure < NT_FAILURES ? names[failure] : "";
+}
+
+/* All that the terms have in common. */
+typedef struct basis {
+    nt_servo_shape shape;
+    nt_supervisor supervisor;
+    double share;    /* 3 sigma of k_c, 1 + that */
+    double spring;   /* k_c as stiff as it may be [N/m] */
+    double k_eff;    /* on the stiffest contact [N/m] */
+    double reaction; /* D [s] */
+    double vertical; /* the stage's speed, with hysteresis and what its loop may add [m/s] */
+} basis;
+
+static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
+{
+    basis b = {.shape = nt_servo_shape_of(rig, settings, hazard->stiffness),
+               .supervisor = nt_supervisor_make(rig, settings)};
+    const nt_limits *limits = &settings->limits;
+    b.share = 1.0 + NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
+    b.spring = b.share * rig->probe.spring_constant;
+    b.k_eff = b.spring / (1.0 + b.spring / hazard->stiffness);
+    nt_rig slave = b.shape.rig;
+    slave.master.rate = 0.0; /* a slow master takes no part in a stop */
+    b.reaction = nt_margins_compute(&slave, &b.shape.gains, hazard->stiffness).loop_delay;
+    b.vertical =
+        (1.0 + rig->stage.hysteresis) * limits->stage_speed + b.shape.gains.stage_integral * limits->follow_error;
+    return b;
+}
+
+/* Deflection and travel watch each other. Read as g times what it is, the deflection x is stopped by the force limit
+ * L = g k_c x and by the indentation I = (1 - g) x past a first touch that was noticed at f/g: most at k_c x = L + k_c
+ * I L/(L - f). A zero that drifts away is the same. */
+static double misread(const basis *b, const nt_limits *limits)
+{
+    const double seen = limits->force - 2.0 * b->supervisor.free_force;
+    return seen > 0.0 ? b->spring * limits->indentation * limits->force / seen : HUGE_VAL;
+}
+
+/* How far the stage goes before a sensor without noise is called dead [m]. */
+static double unnoticed(const basis *b)
+{
+    const nt_supervisor *s = &b->supervisor;
+    return s->stuck_distance > 0.0 ? fmax(b->vertical * NT_STUCK_SAMPLES * s->period, s->stuck_distance) : HUGE_VAL;
+}
+
+/* A bare resonance overshoots a step by exp(-pi zeta/sqrt(1 - zeta^2)) of it. */
+static double overshoot(const nt_stage *stage)
+{
+    const double zeta = 0.5 / stage->quality;
+    return zeta < 1.0 ? exp(-NT_PI * zeta / sqrt(1.0 - zeta * zeta)) : 0.0;
+}
+
+static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig, const nt_limits *limits)
+{
+    const nt_stage *stage = &rig->stage;
+    const nt_supervisor *s = &b->supervisor;
+    const double three = 3.0 * s->period; /* ticks in a row */
+    const double stuck = (1.0 + overshoot(stage)) * (s->stage_most + s->correction_most + b->vertical * three);
+    const double runs = stage->max_speed * (b->reaction + three) + 2.0 * s->turn_slack +
+                        ringing_amplitude(stage, b->shape.gains.stage_damping, stage->max_speed);
+    const double tolerance = s->free_force + b->spring * 1e-9;
+    found->failure[NT_FAILURE_READ_OUT] = misread(b, limits);
+    found->failure[NT_FAILURE_SENSOR] = b->k_eff * unnoticed(b);
+    found->failure[NT_FAILURE_SLIP] = b->k_eff * fmax(stuck, stage->slip);
+    found->failure[NT_FAILURE_STAGE] = b->k_eff * runs + tolerance;
+    double worst = 0.0;
+    for (int i = 0; i < NT_FAILURES; ++i)
+        worst = fmax(worst, found->failure[i]);
+    found->with_failure = found->force + worst;
+}
+
 nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
 {
     const nt_limits *limits = &settings->limits;
-    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, hazard->stiffness);
-    const nt_probe *probe = &shape.rig.probe;
-    const double k_eff = probe->spring_constant / (1.0 + probe->spring_constant / hazard->stiffness);
-    const double integral = shape.gains.stage_integral * limits->follow_error; /* what the stage loop may add [m/s] */
-    const double vertical = limits->stage_speed + integral;
-    const double ringing = ringing_amplitude(&rig->stage, shape.gains.stage_damping, vertical);
-    const double step = probe->sensitivity * probe->resolution;
+    const basis b = basis_of(rig, settings, hazard);
+    const nt_probe *probe = &b.shape.rig.probe;
+    const double swing = ringing_amplitude(&rig->stage, b.shape.gains.stage_damping, b.vertical);
+    const double read_error = NT_GUARANTEE_SIGMAS * probe->sensitivity_sigma;
+    nt_guarantee found = {.reaction_time = b.reaction,
+                          .moves_sideways = rig->stage.axes > 1.0,
+                          .snap_in = hazard->snap_in,
+                          .zero_drift = b.spring * probe->drift,
+                          .frame_drift = b.k_eff * rig->stage.drift,
+                          .help_time = 0.5 * rig->stage.travel / rig->stage.drift};
+    /* (1 + a)/(1 - b) of the limit, a^2/sigma_k^2 + b^2/sigma_S^2 = 9: a + b is at most 3 hypot */
+    const double off = NT_GUARANTEE_SIGMAS * hypot(probe->spring_constant_sigma, probe->sensitivity_sigma);
+    found.calibration = limits->force * off / (1.0 - off);
+    found.speed = b.vertical + (found.moves_sideways ? hazard->slope * limits->lateral_speed : 0.0);
+    const double closer = found.speed * b.reaction;
+    found.motion = b.k_eff * closer;
+    found.ringing = b.k_eff * swing;
     const double sigma = nt_probe_force_noise(probe) / probe->spring_constant;
-    nt_rig slave = shape.rig;
-    slave.master.rate = 0.0; /* a slow master takes no part in a stop */
-    nt_guarantee found = {.reaction_time = nt_margins_compute(&slave, &shape.gains, hazard->stiffness).loop_delay};
-    found.moves_sideways = rig->stage.axes > 1.0;
-    const double lateral = found.moves_sideways ? hazard->slope * limits->lateral_speed : 0.0;
-    const double closer = (vertical + lateral) * found.reaction_time;
-    found.motion = k_eff * closer;
-    found.ringing = k_eff * ringing;
-    found.snap_in = hazard->snap_in_force;
-    found.noise = probe->spring_constant * (SIGMAS * sigma + step);
-    found.force = limits->force + found.motion + found.ringing + found.snap_in + found.noise;
-    const double lift =
-        limits->retract_distance + ringing_amplitude(&rig->stage, shape.gains.stage_damping, limits->retract_speed);
-    found.with_faults = found.force + k_eff * lift;
+    found.noise = b.spring * (SIGMAS * sigma + probe->sensitivity * probe->resolution);
+    found.force = limits->force + found.calibration + found.motion + found.ringing + found.snap_in + found.noise;
+    add_failures(&found, &b, rig, limits);
     /* first touch is noticed where the force leaves the noise, and read with it; a tip that snaps in goes over what
      * that stretches the lever by */
-    const double read = (2.0 * found.noise + hazard->snap_in_force) / probe->spring_constant;
-    found.indentation = limits->indentation + closer + ringing + read + hazard->unseen;
+    const double read =
+        (2.0 * found.noise + hazard->pull_off_force + read_error * limits->force) / probe->spring_constant;
+    found.indentation = limits->indentation + closer + swing + read + hazard->unseen + hazard->snap_in_depth;
     return found;
 }

@@ -5,7 +5,9 @@
 
 #include <math.h>
 
+#include "control/lift.h"
 #include "control/sampled.h"
+#include "control/stuck.h"
 #include "core/clamp.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
@@ -13,17 +15,15 @@
 #define STALE_HOLD_PERIODS 2.0
 #define STALE_RETRACT_PERIODS 5.0
 #define LATE_PERIODS 0.2
-#define LATE_TICKS 5u /* in a row: HOLD, until as many punctual ones have made up for them */
-#define STUCK_SAMPLES 200u
+#define LATE_TICKS 5u           /* in a row: HOLD, until as many punctual ones have made up for them */
 #define STUCK_STEPS 5.0         /* of the stage's read-out */
 #define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */
 #define FREE_SIGMA 6.0          /* of the force noise: below it is free air */
-#define FOLLOW_TICKS 3u         /* in a row: HOLD; while lifting: LATCHED, and no farther */
+#define FOLLOW_TICKS 3u         /* in a row: HOLD; while lifting: LATCHED */
 #define FOLLOW_SHARE 0.75       /* of the way it was to go lately: room for hysteresis */
 #define FOLLOW_STEPS 20.0       /* of read-out or converter, which it may be off besides */
 #define LEAST_SLACK 20e-9       /* [m] */
 #define CREEP_DECADES 4.0       /* of time, 0.1 s to 1000 s, that creep goes on for */
-#define DRIFT 1e-9              /* that deflections may show during a lift, beside their noise [m] */
 
 const char *nt_reason_name(uint32_t reason)
 {
@@ -56,20 +56,15 @@ static double stage_lag(const nt_rig *rig, const nt_gains *gains)
     return 2.0 * gains->stage_damping / (2.0 * NT_PI * rig->stage.resonance) + nt_sampled_dead_time(rig, gains);
 }
 
-/* How far off any stage may be: a law without an integral leaves the hysteresis, half its opening, and the creep that
- * the rig declares [m]. */
-static double stage_most(const nt_rig *rig, const nt_limits *limits, const nt_gains *gains)
+/* Hysteresis, half its opening, and creep that the rig declares, over all of the travel [m]. */
+static double declared(const nt_stage *stage)
 {
-    const nt_stage *stage = &rig->stage;
-    const double left = 0.5 * stage->travel * (stage->hysteresis + CREEP_DECADES * stage->creep);
-    return limits->follow_error + (gains->stage_integral == 0.0 ? left : 0.0);
+    return 0.5 * stage->travel * (stage->hysteresis + CREEP_DECADES * stage->creep);
 }
 
 /* How far off a stage at rest may be: steps, and what full speed makes of its lag and a period [m]. */
-static double stage_slack(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
+static double slack_of(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
 {
-    if (gains->stage_integral == 0.0)
-        return stage_most(rig, &settings->limits, gains);
     const double step = greater(rig->stage.resolution, rig->stage.command_resolution);
     const double way = settings->limits.stage_speed * (stage_lag(rig, gains) + 1.0 / gains->rate);
     return greater(greater(LEAST_SLACK, way), FOLLOW_STEPS * step);
@@ -85,6 +80,10 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
     const double step = probe->sensitivity * probe->resolution;
     const int shows_noise = sigma > step; /* identical codes are normal where the noise is below one step */
     const double travelled = STUCK_STEPS * greater(stage->resolution, LEAST_STAGE_STEP);
+    const double slack = slack_of(&shape.rig, settings, &shape.gains);
+    const double all = settings->limits.follow_error + declared(&rig->stage);
+    const int follows = shape.gains.stage_integral > 0.0; /* without, hysteresis and creep are left */
+    const double most = follows ? settings->limits.follow_error : all;
     return (nt_supervisor){.period = period,
                            .master_period = rig->master.rate > 0.0 ? greater(period, 1.0 / rig->master.rate) : period,
                            .spring_constant = probe->spring_constant,
@@ -95,8 +94,11 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .stage_range = rig->stage.travel,
                            .stuck_distance = shows_noise ? travelled : 0.0,
                            .stage_share = period / (period + stage_lag(rig, &shape.gains)),
-                           .stage_slack = stage_slack(&shape.rig, settings, &shape.gains),
-                           .stage_most = stage_most(rig, &settings->limits, &shape.gains),
+                           .noise = sigma,
+                           .stage_slack = follows ? slack : most,
+                           .stage_most = most,
+                           .correction_most = follows ? all : 0.0,
+                           .turn_slack = slack,
                            .path_kept = exp(-period / settings->limits.follow_time),
                            .limits = settings->limits};
 }
@@ -147,11 +149,23 @@ static nt_state judge_validity(const nt_supervisor *supervisor, nt_supervisor_st
     return blame(state, NT_REASON_INVALID, ++state->invalid_run > 1 ? NT_RETRACT : NT_HOLD);
 }
 
+static int is_saturated(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    return sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection[NT_Z]) >= supervisor->deflection_range;
+}
+
+/* Does the sample tell how the force changes? */
+static int tells_force(const nt_supervisor *supervisor, const nt_supervisor_state *state, const nt_sample *sample)
+{
+    return isfinite(sample->deflection[NT_Z]) && !is_saturated(supervisor, sample) &&
+           !(state->reasons & NT_REASON_STUCK);
+}
+
 static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const double force = supervisor->spring_constant * sample->deflection[NT_Z];
     nt_state verdict = NT_RUN;
-    if (sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection[NT_Z]) >= supervisor->deflection_range)
+    if (is_saturated(supervisor, sample))
         verdict = blame(state, NT_REASON_SATURATED, NT_RETRACT);
     if (fabs(force) > supervisor->limits.force)
         verdict = blame(state, NT_REASON_FORCE_LIMIT, NT_RETRACT);
@@ -208,26 +222,11 @@ static nt_state judge_lateness(const nt_supervisor *supervisor, nt_supervisor_st
     return state->late_run > LATE_TICKS ? blame(state, NT_REASON_LATE, NT_HOLD) : NT_RUN;
 }
 
-/* A live sensor shows its noise: identical codes while z moves mean that it is dead. HOLD steps the probe away
- * (touch.c); if that changes nothing for as many samples again: LATCHED. The count stands at STUCK_SAMPLES until z has
- * moved, so that HOLD comes first. */
+/* HOLD steps the probe away (touch.c); if that changes nothing for as many samples again: LATCHED. */
 static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    if (supervisor->stuck_distance == 0.0)
-        return NT_RUN;
-    const int saturated = fabs(sample->deflection[NT_Z]) >= supervisor->deflection_range; /* shows no noise */
-    if (saturated || sample->deflection[NT_Z] != state->stuck_deflection) {
-        state->stuck_deflection = sample->deflection[NT_Z];
-        state->stuck_position = sample->stage_position[NT_Z];
-        state->stuck_run = 0;
-        return NT_RUN;
-    }
-    const int moved = fabs(sample->stage_position[NT_Z] - state->stuck_position) > supervisor->stuck_distance;
-    if (state->stuck_run < STUCK_SAMPLES || (moved && state->stuck_run < 2u * STUCK_SAMPLES))
-        ++state->stuck_run;
-    if (state->stuck_run < STUCK_SAMPLES || !moved)
-        return NT_RUN;
-    return blame(state, NT_REASON_STUCK, state->stuck_run < 2u * STUCK_SAMPLES ? NT_HOLD : NT_LATCHED);
+    const nt_state verdict = nt_stuck_judge(supervisor, state, sample, is_saturated(supervisor, sample));
+    return verdict == NT_RUN ? NT_RUN : blame(state, NT_REASON_STUCK, verdict);
 }
 
 /* Where the stage should be by now, whatever it shows. */
@@ -235,14 +234,16 @@ static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, 
 {
     if (isnan(state->expected))
         state->expected = reference;
+    state->lifts = reference < state->reference;
+    state->reference = reference;
     const double step = supervisor->stage_share * (reference - state->expected);
     state->expected += step;
     state->path = supervisor->path_kept * state->path + fabs(step);
 }
 
-/* Not where it should be: hold; for follow_time: latched. A lift that does not show is given up at once: it may go the
- * other way. */
-static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+/* Not where it should be: hold; for follow_time: latched, and it stays there. A lift whose force cannot be read is
+ * given up. */
+static nt_state judge_place(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const nt_limits *limits = &supervisor->limits;
     const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
@@ -252,26 +253,26 @@ static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_stat
     }
     if (++state->off_run < FOLLOW_TICKS)
         return NT_RUN;
-    const int persists = state->state >= NT_RETRACT || state->off_run * supervisor->period > limits->follow_time;
-    return blame(state, NT_REASON_FOLLOW, persists ? NT_LATCHED : NT_HOLD);
+    const int lasts = state->off_run * supervisor->period > limits->follow_time;
+    if (state->state < NT_RETRACT && lasts)
+        state->lift = NT_LIFT_WAITS;
+    else if (state->state >= NT_RETRACT && !tells_force(supervisor, state, sample))
+        state->lift = NT_LIFT_GIVEN_UP;
+    return blame(state, NT_REASON_FOLLOW, state->state >= NT_RETRACT || lasts ? NT_LATCHED : NT_HOLD);
 }
 
-/* Once the stage should have turned, a lift makes no force grow; where one does, it is no lift. */
-static nt_state judge_growth(const nt_supervisor *supervisor, nt_supervisor_state *state, double force)
+static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    if (state->state < NT_RETRACT) {
-        state->turn = state->expected;
-        state->lift_force = greater(0.0, force); /* a tip that is let go springs back to 0 */
-        state->growth_run = 0;
-        return NT_RUN;
-    }
-    const int has_turned = state->expected < state->turn - supervisor->stage_slack;
-    if (!has_turned)
-        state->lift_force = greater(state->lift_force, force);
-    const double more = supervisor->free_force + DRIFT * supervisor->spring_constant;
-    const int grows = has_turned && force > state->lift_force + more;
-    state->growth_run = grows ? state->growth_run + 1u : 0u;
-    return state->growth_run < FOLLOW_TICKS ? NT_RUN : blame(state, NT_REASON_FOLLOW, NT_LATCHED);
+    const nt_state place = judge_place(supervisor, state, sample);
+    return nt_lift_rises(supervisor, state, sample->stage_position[NT_Z])
+               ? place
+               : worse(place, blame(state, NT_REASON_FOLLOW, NT_LATCHED));
+}
+
+static nt_state judge_growth(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    const int helps = nt_lift_helps(supervisor, state, supervisor->spring_constant * sample->deflection[NT_Z]);
+    return helps ? NT_RUN : blame(state, NT_REASON_FOLLOW, NT_LATCHED);
 }
 
 /* Does it move as it is told, and does lifting help? */
@@ -279,7 +280,7 @@ static nt_state judge_motion(const nt_supervisor *supervisor, nt_supervisor_stat
 {
     if (sample->age > STALE_HOLD_PERIODS * supervisor->period)
         return NT_RUN;
-    const nt_state growth = judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection[NT_Z]);
+    const nt_state growth = judge_growth(supervisor, state, sample);
     return worse(growth, judge_follow(supervisor, state, sample));
 }
 
@@ -290,13 +291,19 @@ static nt_state judge_remains(const nt_supervisor *supervisor, nt_supervisor_sta
     const int is_fresh = sample->age >= 0.0 && sample->age <= STALE_HOLD_PERIODS * supervisor->period;
     if (!is_fresh || sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST))
         return NT_RUN;
-    nt_state verdict = NT_RUN;
-    if (is_within(sample->stage_position[NT_Z], supervisor->stage_range))
-        verdict = judge_follow(supervisor, state, sample);
-    if (isfinite(sample->deflection[NT_Z]))
-        verdict =
-            worse(verdict, judge_growth(supervisor, state, supervisor->spring_constant * sample->deflection[NT_Z]));
-    return verdict;
+    const int has_force = isfinite(sample->deflection[NT_Z]);
+    const nt_state growth = has_force ? judge_growth(supervisor, state, sample) : NT_RUN;
+    return is_within(sample->stage_position[NT_Z], supervisor->stage_range)
+               ? worse(growth, judge_follow(supervisor, state, sample))
+               : growth;
+}
+
+/* In a stop: is there force at the tip, or may there be? */
+static int may_press(const nt_supervisor *supervisor, const nt_supervisor_state *state, const nt_sample *sample)
+{
+    const int reads = state->invalid_run == 0 && sample->age <= STALE_HOLD_PERIODS * supervisor->period &&
+                      !(state->reasons & NT_REASON_STUCK);
+    return !reads || fabs(supervisor->spring_constant * sample->deflection[NT_Z]) > supervisor->free_force;
 }
 
 static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample)
@@ -343,6 +350,7 @@ nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state
     verdict = worse(verdict, judge_lateness(supervisor, state, sample));
     if (situation->unstable)
         verdict = worse(verdict, blame(state, NT_REASON_UNSTABLE, NT_HOLD));
+    state->presses = may_press(supervisor, state, sample);
     return take(state, verdict);
 }
 
@@ -361,6 +369,11 @@ nt_status nt_supervisor_arm(nt_supervisor_state *state, int confirmed)
     fresh.indentation = state->indentation;
     fresh.late_ticks = state->late_ticks;
     fresh.expected = state->expected;
+    fresh.stuck_band = state->stuck_band;
+    fresh.noise_samples = state->noise_samples;
+    fresh.noise_sum = state->noise_sum;
+    fresh.noise = state->noise;
+    fresh.last_deflection = state->last_deflection;
     *state = fresh;
     return NT_OK;
 }

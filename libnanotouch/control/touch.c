@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "control/lift.h"
 #include "control/modes.h"
 #include "control/motor.h"
 #include "core/clamp.h"
@@ -222,13 +223,11 @@ static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt
     return nt_supervisor_step(&touch->supervisor, &state->supervisor, sample, &situation);
 }
 
-/* How far a stop lifts in all [m]: no farther where that does not show, or shows the wrong way. */
-static double lift_of(const nt_touch *touch, const nt_touch_state *state)
+/* How far a stop lifts in all [m]. */
+static double lift_of(const nt_touch *touch, nt_touch_state *state)
 {
-    if (state->supervisor.state == NT_LATCHED && state->supervisor.reasons & NT_REASON_FOLLOW)
-        return 0.0;
     if (state->supervisor.state >= NT_RETRACT)
-        return touch->settings.limits.retract_distance;
+        return nt_lift_distance(touch, state);
     return state->supervisor.reasons & NT_REASON_STUCK ? PROBE_STEPS * touch->rig.stage.resolution : 0.0;
 }
 
@@ -298,6 +297,8 @@ static double drive_stage(const nt_touch *touch, nt_touch_state *state, const nt
     const int trusted = state->supervisor.state == NT_RUN && fabs(error) <= touch->settings.limits.follow_error;
     const double measured = trusted ? sample->stage_position[NT_Z] : state->reference;
     const double wanted = nt_stage_loop_step(&touch->stage_loop, &state->stage_loop, state->reference, measured);
+    const double most = touch->supervisor.correction_most; /* it shall hide no stage that does not follow */
+    state->stage_loop.correction = clamp(state->stage_loop.correction, -most, most);
     const double command = clamp(wanted, -touch->stage_end, touch->stage_end);
     if (command != wanted)
         state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;

@@ -20,6 +20,9 @@ static const nt_field rig_fields[] = {
     FIELD(probe.quality, "", 0.05, 1e7, "free quality factor Q of the cantilever"),
     FIELD(probe.temperature, "K", 0.0, 5e3, "temperature of the dynamic cantilever's thermal motion, 0 for none"),
     FIELD(probe.contact_viscosity, "Pa s", 0.0, 1e9, "viscosity eta of the contact: 2 m b_i = 2 eta a"),
+    FIELD(probe.spring_constant_sigma, "", 0.0, 0.2, "standard deviation of the calibration of k_c, over k_c"),
+    FIELD(probe.sensitivity_sigma, "", 0.0, 0.2, "standard deviation of the calibration of S, over S"),
+    FIELD(probe.drift, "m/s", 0.0, 1e-3, "drift of the deflection's zero, at most"),
     FIELD(stage.resonance, "Hz", 1.0, 1e6, "resonance f_n of the stage"),
     FIELD(stage.quality, "", 0.05, 1e6, "quality factor Q of the stage"),
     FIELD(stage.stiffness, "N/m", 1.0, 1e12, "stiffness k_stage of the stage against the tip force"),
@@ -31,6 +34,8 @@ static const nt_field rig_fields[] = {
     FIELD(stage.hysteresis, "", 0.0, 0.4, "hysteresis of the stage at full stroke, over the stroke"),
     FIELD(stage.creep, "", 0.0, 0.2, "creep of the stage per decade of time, over the step"),
     FIELD(stage.axes, "", 1.0, 3.0, "axes that it has: 1 is z, x and y stay where a session starts; 3 are all"),
+    FIELD(stage.drift, "m/s", 0.0, 1e-3, "drift of the frame, tip against sample, at most"),
+    FIELD(stage.slip, "m", 0.0, 1e-3, "largest jump of the surface that is reckoned with"),
     FIELD(master.mass, "kg", 1e-4, 1e2, "moving mass m_m of the master"),
     FIELD(master.damping, "N s/m", 0.0, 1e5, "damping b_m of the master"),
     FIELD(master.friction, "N", 0.0, 1e2, "Coulomb friction of the master"),
@@ -74,6 +79,10 @@ nt_rig nt_rig_defaults(void)
                 .resonance = 100e3,           /* not in the paper, nor are Q and T: a lever of 8 N/m in air */
                 .quality = 100.0,
                 .temperature = 295.0,
+                /* not in the paper: a thermal calibration, a resistive bridge that has warmed up */
+                .spring_constant_sigma = 0.05,
+                .sensitivity_sigma = 0.02,
+                .drift = 0.1e-9,
             },
         .stage =
             {
@@ -86,6 +95,8 @@ nt_rig nt_rig_defaults(void)
                     1e-10,           /* a 20-bit converter over the travel: 1 nm steps make the resonance ring */
                 .max_speed = 100e-6, /* not in the paper; 10 nm per tick at 10 kHz */
                 .axes = 3.0,
+                .drift = 1e-9,       /* not in the paper: of an instrument at rest in a room */
+                .slip = 10e-9,       /* not in the paper */
             },
         .master =
             {

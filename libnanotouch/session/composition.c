@@ -7,8 +7,6 @@
 #include "core/problem.h"
 #include "session/state.h"
 
-#define DEEPEST 10e-6 /* an indentation that nobody reaches [m] */
-
 /* A law of one's own is not tried where the margin is overridden: it may have a memory. */
 nt_verdict nt_composition_judge(const nt_composition *composition, const nt_settings *settings, nt_mode mode,
                                 nt_margins *margins)
@@ -26,35 +24,6 @@ int nt_composition_allows(const nt_composition *composition, double margin)
     return minimum <= 0.0 || margin >= minimum;
 }
 
-/* Where of a surface with properties a force is seen last: softest and most adhesive. */
-static nt_place last_seen(const nt_plan *plan)
-{
-    nt_place place = {.radius = {.radius = plan->contact.radius}};
-    if (plan->properties) {
-        place.youngs_modulus.value = plan->properties->youngs_modulus.height_minimum;
-        place.work_of_adhesion.value = plan->properties->work_of_adhesion.height_maximum;
-    }
-    return place;
-}
-
-/* As deep as the tip may be before the force leaves the noise for good: twice the threshold, because a reading may be
- * off by all of it [m]. */
-static double unseen_indentation(const nt_plan *plan, double free_force)
-{
-    const nt_place place = last_seen(plan);
-    const nt_interaction_state attached = {.attached = 1};
-    double shallow = 0.0, deep = DEEPEST;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (shallow + deep);
-        const double force = nt_interaction_eval_gap(plan, &attached, &place, -middle).F;
-        if (force > 2.0 * free_force)
-            deep = middle;
-        else
-            shallow = middle;
-    }
-    return deep;
-}
-
 static nt_status promise(nt_composition *made, nt_problem *problem)
 {
     const nt_session_setup *setup = &made->setup;
@@ -62,10 +31,7 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
     if (!nt_composition_allows(made, verdict.margin))
         return nt_problem_set(problem, verdict.field, "", verdict.margin, setup->minimum_margin, INFINITY);
     const nt_plan *plan = nt_terrain_plan(made->terrain);
-    const nt_hazard hazard = {.slope = made->reach.slope,
-                              .snap_in_force = plan->largest_pull_off_force,
-                              .stiffness = plan->maximum_stiffness,
-                              .unseen = unseen_indentation(plan, made->touch.supervisor.free_force)};
+    const nt_hazard hazard = nt_hazard_of(plan, &setup->rig, &setup->settings, made->reach.slope);
     made->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
     return NT_OK;
 }

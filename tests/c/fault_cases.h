@@ -77,7 +77,7 @@ static inline int blinds(const nt_fault *fault)
            (fault->kind == NT_FAULT_DROPOUT && fault->duration > ONE_TICK);
 }
 
-/* A lift into the sample that nobody can see: by retract_distance, no farther. */
+/* A lift into the sample that nobody can see: there is no bound. */
 static inline int is_blind_lift(const fault_case *one, const fault_case *other)
 {
     return other != NULL && ((turns_the_stage(&one->fault) && blinds(&other->fault)) ||
@@ -93,6 +93,7 @@ typedef struct outcome {
     double worst_force, worst_indentation; /* [N], [m] */
     double fastest_motor, late_motor;      /* [N per tick]; [N] after 53 ms out of RUN */
     double lifted;                         /* of the stage's reference [m] */
+    double time;                           /* of the observation [s] */
     int finite;                            /* every truth was a number */
 } outcome;
 
@@ -141,6 +142,7 @@ static inline nt_status observe(loop *l, int time, outcome *o)
     }
     o->last = (nt_state)l->command.state;
     o->lifted = reference - l->state.reference;
+    o->time = time * l->touch.period;
     return NT_OK;
 }
 

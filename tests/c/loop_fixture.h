@@ -64,8 +64,7 @@ static inline void loop_push(loop *l, double force, double duration)
 /* What nt_guarantee has in store for a surface of this slope. */
 static inline nt_guarantee promise(const loop *l, double slope)
 {
-    const nt_hazard hazard = {
-        .slope = slope, .snap_in_force = l->plan.largest_pull_off_force, .stiffness = l->plan.maximum_stiffness};
+    const nt_hazard hazard = nt_hazard_of(&l->plan, &l->touch.rig, &l->touch.settings, slope);
     return nt_guarantee_compute(&l->touch.rig, &l->touch.settings, &hazard);
 }
 

@@ -14,7 +14,8 @@
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 
-static const nt_hazard flat = {.snap_in_force = 18e-9, .stiffness = 1000.0, .unseen = 0.3e-9};
+static const nt_hazard flat = {
+    .pull_off_force = 18e-9, .snap_in = 50e-9, .snap_in_depth = 0.2e-9, .stiffness = 1000.0, .unseen = 0.3e-9};
 
 static void it_is_the_limit_and_its_terms(void **state)
 {
@@ -22,15 +23,54 @@ static void it_is_the_limit_and_its_terms(void **state)
     const nt_rig rig = nt_rig_defaults();
     const nt_settings settings = nt_settings_defaults(&rig);
     const nt_guarantee g = nt_guarantee_compute(&rig, &settings, &flat);
-    const double terms = g.motion + g.ringing + g.snap_in + g.noise;
+    const double terms = g.calibration + g.motion + g.ringing + g.snap_in + g.noise;
     assert_true(fabs(g.force - settings.limits.force - terms) < 1e-18);
-    assert_true(g.snap_in == flat.snap_in_force);
+    assert_true(g.snap_in == flat.snap_in);
+    const double off = 3.0 * sqrt(0.05 * 0.05 + 0.02 * 0.02);
+    assert_true(fabs(g.calibration / settings.limits.force - off / (1.0 - off)) < 1e-12);
+    assert_true(1.0 + off / (1.0 - off) > (1.0 + 0.05 * 2.9) / (1.0 - 0.02 * 0.76)); /* 2.9^2 + 0.76^2 = 9 */
     assert_true(g.reaction_time == nt_margins_compute(&rig, &settings.gains, flat.stiffness).loop_delay);
-    /* 26 um/s (20, and 60 1/s of 0.1 um) for D, on 8 and 1000 N/m in series */
-    assert_true(fabs(g.motion - 26e-6 * g.reaction_time * 8.0 / 1.008) < 1e-15);
-    const double k_eff = 8.0 / 1.008, share = settings.limits.retract_speed / 26e-6; /* the wrong way, ringing */
-    assert_true(fabs(g.with_faults - g.force - k_eff * settings.limits.retract_distance - share * g.ringing) < 1e-18);
-    assert_true(g.indentation > settings.limits.indentation + 26e-6 * g.reaction_time);
+    /* 26 um/s (20, and 60 1/s of 0.1 um) for D, on a lever of up to 8 and 15 % and 1000 N/m in series */
+    const double k_eff = 9.2 / 1.0092;
+    assert_true(fabs(g.speed - 26e-6) < 1e-18);
+    assert_true(fabs(g.motion - 26e-6 * g.reaction_time * k_eff) < 1e-15);
+    assert_true(g.indentation > settings.limits.indentation + 26e-6 * g.reaction_time + flat.snap_in_depth);
+    assert_true(fabs(g.zero_drift - 9.2 * 0.1e-9) < 1e-20 && fabs(g.frame_drift - k_eff * 1e-9) < 1e-20);
+    assert_true(fabs(g.help_time - 50e3) < 1e-6); /* half of 100 um at 1 nm/s */
+}
+
+/* One thing that fails adds the most of what each kind adds. */
+static void one_failure_is_the_worst_of_them(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    const nt_guarantee g = nt_guarantee_compute(&rig, &settings, &flat);
+    double worst = 0.0;
+    for (int i = 0; i < NT_FAILURES; i++) {
+        assert_true(isfinite(g.failure[i]) && g.failure[i] > 0.0);
+        assert_true(nt_failure_name((nt_failure)i)[0] != 0);
+        worst = larger(worst, g.failure[i]);
+    }
+    assert_string_equal(nt_failure_name(NT_FAILURES), "");
+    assert_true(g.with_failure == g.force + worst);
+    /* a deflection read with any gain between 0 and 1 is stopped by the force limit or by the indentation */
+    const double limit = settings.limits.force, noise = 2.0 * 13e-9; /* first touch is noticed above it */
+    for (double gain = 0.05; gain < 1.0; gain += 0.01) {
+        const double by_travel = 9.2 * settings.limits.indentation / (1.0 - gain) + noise / gain;
+        assert_true(smaller(limit / gain, by_travel) < limit + 1.02 * g.failure[NT_FAILURE_READ_OUT]);
+    }
+    settings.limits.indentation = 30e-9;
+    assert_true(nt_guarantee_compute(&rig, &settings, &flat).failure[NT_FAILURE_READ_OUT] <
+                0.11 * g.failure[NT_FAILURE_READ_OUT]);
+    /* a sensor whose noise is below one step is not told from a dead one */
+    rig.probe.noise = 0.0;
+    const nt_guarantee silent = nt_guarantee_compute(&rig, &settings, &flat);
+    assert_true(isinf(silent.failure[NT_FAILURE_SENSOR]) && isinf(silent.with_failure) && isfinite(silent.force));
+    /* a jump of the surface, where it is more than a stage may stick by */
+    rig.stage.slip = 1e-6;
+    assert_true(fabs(nt_guarantee_compute(&rig, &settings, &flat).failure[NT_FAILURE_SLIP] - 1e-6 * 9.2 / 1.0092) <
+                1e-15);
 }
 
 /* What makes it worse makes it larger. */
@@ -44,7 +84,7 @@ static void every_hazard_counts(void **state)
     worse.slope = 1.0;
     assert_true(nt_guarantee_compute(&rig, &settings, &worse).force > before.force);
     worse = flat;
-    worse.snap_in_force *= 2.0;
+    worse.snap_in *= 2.0;
     assert_true(nt_guarantee_compute(&rig, &settings, &worse).force > before.force);
     worse = flat;
     worse.unseen *= 10.0;
@@ -72,7 +112,7 @@ static void the_stage_rings_no_farther(void **state)
     nt_settings settings = nt_settings_defaults(&rig);
     settings.control.choice = NT_CONTROL_PAPER;
     const nt_guarantee g = nt_guarantee_compute(&rig, &settings, &flat);
-    const double bound = g.ringing / (8.0 / 1.008), wn = 2.0 * NT_PI * rig.stage.resonance, T = 1e-5;
+    const double bound = g.ringing / (9.2 / 1.0092), wn = 2.0 * NT_PI * rig.stage.resonance, T = 1e-5;
     const nt_lti stage = {.order = 2, .a = {{0.0, wn}, {-wn, -wn / rig.stage.quality}}, .b = {0.0, wn}};
     nt_lti step;
     assert_int_equal(nt_lti_discretise(&stage, T, &step), NT_OK);
@@ -99,6 +139,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_the_limit_and_its_terms),
+        cmocka_unit_test(one_failure_is_the_worst_of_them),
         cmocka_unit_test(every_hazard_counts),
         cmocka_unit_test(the_stage_rings_no_farther),
     };

@@ -59,10 +59,11 @@ static void indentation_counts_from_first_touch(void **unused)
     for (double surface = 0.5e-6; surface < 3e-6; surface += 0.7e-6) {
         nt_supervisor_state state = nt_supervisor_start();
         double indentation = 0.0;
-        for (double z = 0.0; state.state == NT_RUN && z < 5e-6; z += 1e-9) {
+        for (int i = 0; state.state == NT_RUN && i < 5000; i++) {
+            const double z = 1e-9 * i;
             indentation = larger(0.0, z - surface) / (1.0 + softness);
             const nt_sample sample = {.stage_position[NT_Z] = z,
-                                      .deflection[NT_Z] = softness * indentation + 1e-12 * fmod(z, 2e-9)};
+                                      .deflection[NT_Z] = softness * indentation + 1e-10 * (i % 2)};
             const nt_situation situation = {.reference = z};
             nt_supervisor_step(&touch.supervisor, &state, &sample, &situation);
         }
@@ -74,7 +75,7 @@ static void indentation_counts_from_first_touch(void **unused)
     nt_supervisor_state state = nt_supervisor_start();
     for (int i = 0; i < 3000; i++) { /* the stage draws back by 0.3 um to let the surface rise by 0.3 um, and returns */
         const double hill = 0.3e-6 * sin(i * 1e-3 * 3.14159);
-        const nt_sample sample = {.stage_position[NT_Z] = 1e-6 - hill, .deflection[NT_Z] = 50e-9 + 1e-12 * (i % 2)};
+        const nt_sample sample = {.stage_position[NT_Z] = 1e-6 - hill, .deflection[NT_Z] = 50e-9 + 1e-10 * (i % 2)};
         const nt_situation situation = {.reference = 1e-6 - hill, .moves_sideways = 1};
         assert_int_equal(nt_supervisor_step(&touch.supervisor, &state, &sample, &situation), NT_RUN);
     }
@@ -125,7 +126,7 @@ static void a_stage_that_does_not_follow(void **unused)
         follower in = at_rest();
         int held = 0, latched = 0;
         for (int tick = 1; tick < 10000 && latched == 0; tick++) {
-            in.sample.deflection[NT_Z] += 1e-12; /* alive */
+            in.sample.deflection[NT_Z] = 1e-10 * (tick % 2); /* alive */
             in.sample.stage_position[NT_Z] += held ? 0.0 : gains[i] * 10e-6 * touch.period;
             in.reference += held ? 0.0 : 10e-6 * touch.period;
             const nt_state found = follow(&in);
@@ -147,14 +148,14 @@ static void a_stage_that_follows_well_enough(void **unused)
     follower in = at_rest();
     for (int i = 0; i < 10000; i++) {
         in.sample.stage_position[NT_Z] = in.reference + (i % 50 < 2 ? 2.0 : 0.0) * touch.settings.limits.follow_error;
-        in.sample.deflection[NT_Z] += 1e-12;
+        in.sample.deflection[NT_Z] = 1e-10 * (i % 2); /* alive */
         assert_int_equal(follow(&in), NT_RUN);
     }
     in = at_rest();
     for (int i = 0; i < 500; i++) { /* 20 um/s for 50 ms; hysteresis takes 60 nm away, and comes back */
         in.reference += 20e-6 * touch.period;
         in.sample.stage_position[NT_Z] = in.reference - 12e-9 - 60e-9 * sin(3.14159 * i / 500.0);
-        in.sample.deflection[NT_Z] += 1e-12;
+        in.sample.deflection[NT_Z] = 1e-10 * (i % 2);
         assert_int_equal(follow(&in), NT_RUN);
     }
 }

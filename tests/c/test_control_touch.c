@@ -22,6 +22,7 @@ typedef struct rig {
     nt_sample sample;
     nt_command command;
     double last_force, last_stage, fastest_force, fastest_stage; /* largest steps of a tick [N], [m] */
+    double noise;                                                /* of the deflection [m] */
     nt_random random;
 } rig;
 
@@ -29,7 +30,7 @@ static void set_up(rig *r, nt_mode mode)
 {
     const nt_rig paper = nt_rig_defaults();
     const nt_settings settings = nt_settings_defaults(&paper);
-    *r = (rig){.random = nt_random_seed(2)};
+    *r = (rig){.random = nt_random_seed(2), .noise = 1e-9};
     assert_int_equal(nt_touch_make(&r->touch, &paper, &settings, mode, NULL), NT_OK);
     r->state = nt_touch_start(&r->touch, 0.0, 0.0, 0.0);
 }
@@ -39,7 +40,7 @@ static void tick(rig *r)
 {
     const double deflection = r->sample.deflection[NT_Z];
     r->sample.stage_position[NT_Z] = r->command.stage_position[NT_Z];
-    r->sample.deflection[NT_Z] += 1e-9 * nt_random_normal(&r->random);
+    r->sample.deflection[NT_Z] += r->noise * nt_random_normal(&r->random);
     nt_touch_step(&r->touch, &r->state, &r->sample, &r->command);
     r->sample.deflection[NT_Z] = deflection;
     r->fastest_force = larger(r->fastest_force, fabs(r->command.motor_force[NT_Z] - r->last_force));
@@ -135,6 +136,8 @@ static void retract_is_bounded_in_distance_and_speed(void **state)
     tick(&r);
     assert_int_equal(r.command.state, NT_RETRACT); /* the same tick */
     assert_true(r.state.reference < from);
+    r.sample.deflection[NT_Z] = 0.0; /* free: no noise hides that */
+    r.noise = 0.1e-9;
     for (int i = 0; i < 20000; i++)
         tick(&r);
     const nt_limits *limits = &r.touch.settings.limits;
@@ -143,24 +146,6 @@ static void retract_is_bounded_in_distance_and_speed(void **state)
     /* the damped stage loop overshoots a change of speed by 4.6 % of it */
     assert_true(r.fastest_stage < 1.05 * limits->retract_speed * ONE_TICK);
     assert_int_equal(r.command.state, NT_RETRACT); /* and stays until armed */
-}
-
-/* Near the end of its travel the stage does not leave it. */
-static void retract_ends_at_the_end_of_travel(void **state)
-{
-    (void)state;
-    rig r;
-    nt_rig paper = nt_rig_defaults();
-    paper.stage.travel = 0.4e-6;
-    set_up(&r, NT_MODE_TOUCH);
-    const nt_settings settings = nt_settings_defaults(&paper);
-    assert_int_equal(nt_touch_make(&r.touch, &paper, &settings, NT_MODE_TOUCH, NULL), NT_OK);
-    r.sample.flags = NT_SAMPLE_EMERGENCY_STOP;
-    for (int i = 0; i < 5000; i++) {
-        tick(&r);
-        assert_true(r.state.reference >= -0.2e-6);
-    }
-    assert_true(fabs(r.command.stage_position[NT_Z] + 0.2e-6) < 1e-12);
 }
 
 static void hold_keeps_z(void **state)
@@ -189,6 +174,8 @@ static void arming_needs_confirmation_and_is_bumpless(void **state)
     set_up(&r, NT_MODE_TOUCH);
     press(&r);
     r.sample.flags = NT_SAMPLE_EMERGENCY_STOP;
+    r.sample.deflection[NT_Z] = 0.0; /* free: no noise hides that */
+    r.noise = 0.1e-9;
     for (int i = 0; i < 3000; i++) {
         r.sample.master_position[NT_Z] -= 2e-3 * ONE_TICK;
         tick(&r);
@@ -386,7 +373,6 @@ int main(void)
         cmocka_unit_test(the_force_fades_in),
         cmocka_unit_test(a_stop_fades_the_force_without_a_step),
         cmocka_unit_test(retract_is_bounded_in_distance_and_speed),
-        cmocka_unit_test(retract_ends_at_the_end_of_travel),
         cmocka_unit_test(hold_keeps_z),
         cmocka_unit_test(arming_needs_confirmation_and_is_bumpless),
         cmocka_unit_test(nonsense_never_gets_through),

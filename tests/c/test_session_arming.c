@@ -152,8 +152,8 @@ static void setups_are_refused_by_name(void **state)
 static double unseen(const nt_session *session, const nt_session_setup *setup)
 {
     const nt_plan *found = nt_session_plan(session);
-    const nt_hazard seen = {
-        .slope = 0.0, .snap_in_force = found->largest_pull_off_force, .stiffness = found->maximum_stiffness};
+    nt_hazard seen = nt_hazard_of(found, &setup->rig, &setup->settings, 0.0);
+    seen.unseen = 0.0;
     const nt_guarantee without = nt_guarantee_compute(&setup->rig, &setup->settings, &seen);
     return nt_session_guarantee(session).indentation - without.indentation;
 }
@@ -168,6 +168,7 @@ static void the_promise_adds_what_cannot_be_seen(void **state)
             nt_session_setup setup = nt_session_defaults();
             setup.scene.sample.youngs_modulus = E;
             setup.minimum_margin = 0.0;
+            setup.rig.probe.spring_constant_sigma = setup.rig.probe.sensitivity_sigma = 0.0;
             if (!sticky) {
                 setup.scene.medium.relative_humidity = 0.0;
                 setup.scene.adhesion.work_of_adhesion = setup.scene.adhesion.hamaker_constant = 0.0;

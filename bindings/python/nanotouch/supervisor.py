@@ -29,34 +29,78 @@ class Guarantee(NamedTuple):
 
     reaction_time: float
     """from the sample that shows it until the stage turns [s]"""
+    speed: float
+    """at which tip and surface come closer, at most [m/s]"""
+    calibration: float
+    """of the limit, if spring constant and sensitivity are off by 3 sigma [N]"""
     motion: float
     """stage and surface come closer meanwhile, times stiffness [N]"""
     ringing: float
     """the stage's resonance, excited by its own commands [N]"""
     snap_in: float
-    """the tip arrives with the energy of the attraction [N]"""
+    """the tip arrives with the energy of its jump [N]"""
     noise: float
     """of the reading [N]"""
     force: float
     """limit and all of these: never more than this on the sample, either sign [N]"""
-    with_faults: float
-    """the same whatever fails at once, a stage that turns its sign while nothing is read of it among it [N]"""
+    zero_drift: float
+    """and this more for each second since the tare [N/s]"""
+    failures: dict[str, float]
+    """what each adds if it is the one thing that fails; infinite where nothing would show it [N]"""
+    with_failure: float
+    """force and the largest of them, where the tip stands sideways [N]"""
     indentation: float
     """never more than this past first touch, where the tip stands sideways [m]"""
     moves_sideways: bool
     """no: the stage has one axis, and all this holds at the place where the session starts"""
+    help_time: float
+    """a stop lifts from the drift of the frame for this long [s]"""
+    frame_drift: float
+    """a stop that cannot lift is pressed by this much more in a second [N/s]"""
+
+    @property
+    def limit(self) -> float:
+        """The force limit in it [N]."""
+        return self.force - (self.calibration + self.motion + self.ringing + self.snap_in + self.noise)
+
+    @property
+    def warning(self) -> str | None:
+        """What of it makes little sense for the sample, or None."""
+        if self.snap_in <= self.limit:
+            return None
+        return (
+            f"the tip may snap in with {self.snap_in * 1e9:.3g} nN where the limit is {self.limit * 1e9:.3g} nN: that "
+            "limit does not protect the sample; take a stiffer or better damped lever, less attraction, or approach "
+            "more slowly"
+        )
 
     def __str__(self) -> str:
-        terms = self.motion + self.ringing + self.snap_in + self.noise
-        return (
-            f"force on the sample at most {self.force * 1e9:.0f} nN, which is the limit of "
-            f"{(self.force - terms) * 1e9:.0f} nN and {terms * 1e9:.0f} nN before a stop shows (motion "
-            f"{self.motion * 1e9:.0f}, ringing {self.ringing * 1e9:.0f}, snap-in {self.snap_in * 1e9:.0f}, noise "
-            f"{self.noise * 1e9:.0f}); indentation at most {self.indentation * 1e9:.0f} nm; reaction within "
-            f"{self.reaction_time * 1e3:.2f} ms; at most {self.with_faults * 1e9:.0f} nN whatever "
-            "fails at once, a stage that turns its sign unseen among it"
-            + ("" if self.moves_sideways else "; the tip stays at its place, for the stage has one axis")
+        terms = self.force - self.limit
+        worst = max(self.failures, key=lambda name: self.failures[name])
+        failing = (
+            f"at most {self.with_failure * 1e9:.4g} nN if one thing fails while the tip stands sideways ({worst})"
+            if math.isfinite(self.with_failure)
+            else f"no bound if one thing fails: nothing would show it ({worst})"
         )
+        lines = [
+            f"force on the sample at most {self.force * 1e9:.4g} nN, which is the limit of {self.limit * 1e9:.4g} nN "
+            f"and {terms * 1e9:.4g} nN before a stop shows (calibration {self.calibration * 1e9:.3g}, motion "
+            f"{self.motion * 1e9:.3g}, ringing {self.ringing * 1e9:.3g}, snap-in {self.snap_in * 1e9:.3g}, noise "
+            f"{self.noise * 1e9:.3g}), and {self.zero_drift * 1e9:.3g} nN more for each second since the tare; "
+            f"indentation at most {self.indentation * 1e9:.4g} nm; reaction within {self.reaction_time * 1e3:.2f} ms; "
+            f"{failing}; after a stop help is needed within {_long(self.help_time)}, at once if the stage does not "
+            f"lift ({self.frame_drift * 1e9:.3g} nN more each second)"
+            + ("" if self.moves_sideways else "; the tip stays at its place, for the stage has one axis")
+        ]
+        if self.warning is not None:
+            lines.append(f"WARNING: {self.warning}")
+        return "\n".join(lines)
+
+
+def _long(seconds: float) -> str:
+    if not math.isfinite(seconds):
+        return "any time"
+    return f"{seconds / 3600.0:.3g} h" if seconds > 3600.0 else f"{seconds:.3g} s"
 
 
 class Supervisor:

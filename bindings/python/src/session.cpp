@@ -90,14 +90,23 @@ static py::dict guarantee_of(const Session &self)
     const nt_guarantee guarantee = nt_session_guarantee(self.handle);
     py::dict out;
     out["reaction_time"] = guarantee.reaction_time;
+    out["speed"] = guarantee.speed;
+    out["calibration"] = guarantee.calibration;
     out["motion"] = guarantee.motion;
     out["ringing"] = guarantee.ringing;
     out["snap_in"] = guarantee.snap_in;
     out["noise"] = guarantee.noise;
     out["force"] = guarantee.force;
-    out["with_faults"] = guarantee.with_faults;
+    out["zero_drift"] = guarantee.zero_drift;
+    py::dict failures;
+    for (int i = 0; i < NT_FAILURES; ++i)
+        failures[nt_failure_name((nt_failure)i)] = guarantee.failure[i];
+    out["failures"] = failures;
+    out["with_failure"] = guarantee.with_failure;
     out["indentation"] = guarantee.indentation;
     out["moves_sideways"] = guarantee.moves_sideways != 0;
+    out["help_time"] = guarantee.help_time;
+    out["frame_drift"] = guarantee.frame_drift;
     return out;
 }
 

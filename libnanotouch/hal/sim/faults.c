@@ -237,7 +237,15 @@ int nt_sim_lost_periods(const nt_sim_link *link)
     return (int)fmin(sum_of(link, NT_FAULT_LATE), NT_SIM_LOST_MAX); /* of several faults */
 }
 
-double nt_sim_spoil_stage(nt_sim_slave *slave, double drive)
+/* Whatever its gain, a driver keeps to the stage's travel and speed. */
+static double driven_by(const nt_sim_slave *slave, double drive, double time)
+{
+    const nt_stage *stage = &slave->link.rig.stage;
+    const double way = stage->max_speed * time, half = 0.5 * stage->travel;
+    return fmax(-half, fmin(half, fmax(slave->driven - way, fmin(slave->driven + way, drive))));
+}
+
+double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time)
 {
     const nt_sim_link *link = &slave->link;
     double driven = drive;
@@ -249,12 +257,13 @@ double nt_sim_spoil_stage(nt_sim_slave *slave, double drive)
         spoilt |= fault->kind == NT_FAULT_GAIN || fault->kind == NT_FAULT_LIMIT;
         const double stood = slave->stood;
         if (fault->kind == NT_FAULT_GAIN)
-            driven = stood + fault->value * (driven - stood);
+            driven = driven_by(slave, stood + fault->value * (driven - stood), time);
         if (fault->kind == NT_FAULT_LIMIT)
             driven = fmin(driven, stood + fault->value);
     }
     if (!spoilt)
         slave->stood = drive;
+    slave->driven = driven;
     return driven;
 }
 

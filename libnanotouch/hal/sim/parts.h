@@ -85,8 +85,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave);
 int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double *age);
 /* Periods that are lost before this command arrives. */
 int nt_sim_lost_periods(const nt_sim_link *link);
-/* What stage and motor make of what they are told [m], [N]. */
-double nt_sim_spoil_stage(nt_sim_slave *slave, double drive);
+/* What stage, in this time [s], and motor make of what they are told [m], [N]. */
+double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time);
 double nt_sim_spoil_motor(const nt_sim_link *link, double force);
 double nt_sim_stage_hysteresis(const nt_sim_link *link);
 /* Of the whole frame, unseen by the read-out [m]. */

@@ -7,6 +7,7 @@
 #include "parts.h"
 
 #define PERCEIVED 1e-3 /* touch feels nothing quicker [s] */
+#define NEAR 1e-3      /* and good enough for a peak this close */
 #define SAME_LAW 1e-6  /* a law is known by its derivatives this close to where it was asked, over plan->length */
 
 /* What the cantilever asks: the force at a gap, here. The last answer is kept: contact laws are by far the dearest part
@@ -17,6 +18,7 @@ typedef struct probe_context {
     nt_place place;
     double gap; /* of the last answer [m] */
     nt_law_value law;
+    double peak, deepest; /* |F| and h on the way [N], [m] */
 } probe_context;
 
 static nt_law_value force_at(void *context, double gap)
@@ -33,6 +35,18 @@ static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
     nt_interaction_advance_gap(probe->plan, probe->interaction, &probe->place, gap);
+}
+
+/* A dynamic probe has really been where it passes. */
+static void passed(void *context, double gap)
+{
+    probe_context *probe = context;
+    const double step = gap - probe->gap, force = fabs(probe->law.F - probe->law.k * step);
+    if (fabs(step) <= NEAR * probe->plan->length && force > probe->peak)
+        probe->peak = force;
+    if (gap < probe->deepest)
+        probe->deepest = gap;
+    moved_to(context, gap);
 }
 
 /* The law where the probe has come to: that of its last question, mostly one Newton step away. */
@@ -54,13 +68,17 @@ double nt_sim_surface_height(const nt_sim_slave *slave)
 
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
-    probe_context context = {slave->plan, &slave->interaction, nt_interaction_place(slave->plan, slave->x, slave->y),
-                             slave->truth.gap, slave->law};
+    probe_context context = {.plan = slave->plan,
+                             .interaction = &slave->interaction,
+                             .place = nt_interaction_place(slave->plan, slave->x, slave->y),
+                             .gap = slave->truth.gap,
+                             .law = slave->law,
+                             .deepest = HUGE_VAL};
     const double surface = context.place.surface.z + nt_sim_surface_jump(&slave->link);
     const int is_elsewhere = slave->x != slave->law_x || slave->y != slave->law_y;
     if (surface != slave->truth.surface_height || (is_elsewhere && slave->plan->properties))
         context.gap = NAN; /* another place: nothing is known there */
-    const nt_force_field field = {force_at, moved_to, &context, slave->plan->length};
+    const nt_force_field field = {force_at, slave->dynamic ? passed : moved_to, &context, slave->plan->length};
     const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
     const nt_status status = slave->dynamic
                                  ? nt_cantilever_step(&slave->cantilever_model, &slave->cantilever, &field, base,
@@ -73,6 +91,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     slave->law_y = slave->y;
     slave->truth = (nt_truth){.gap = gap,
                               .tip_force = {[NT_Z] = law.F},
+                              .peak_force = fmax(context.peak, fabs(law.F)),
+                              .deepest_gap = fmin(context.deepest, gap),
                               .contact_radius = law.a,
                               .surface_height = surface,
                               .tip_height = gap + surface,

@@ -138,7 +138,7 @@ static void move_stage(nt_sim_slave *slave, nt_stage_model *model, const double 
     model->stage.hysteresis = hysteresis;
     const double drive = drive_stage(slave, command[NT_Z], model->period);
     const nt_stage_load load = {slave->truth.tip_force[NT_Z], tip_stiffness(slave)};
-    nt_stage_step(model, &slave->stage, nt_sim_spoil_stage(slave, drive), &load);
+    nt_stage_step(model, &slave->stage, nt_sim_spoil_stage(slave, drive, model->period), &load);
     if (slave->link.rig.stage.axes > 1.0) {
         slave->x = command[NT_X];
         slave->y = command[NT_Y];

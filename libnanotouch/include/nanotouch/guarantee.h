@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The hard guarantee, to be read before arming: whatever the operator does, force and indentation stay below a limit
- * and a bound on how far it can be overshot before the reaction shows. */
+ * and a bound on how far it can be overshot before the reaction shows; and another bound for when one thing fails. */
 #ifndef NANOTOUCH_GUARANTEE_H
 #define NANOTOUCH_GUARANTEE_H
 
@@ -10,25 +10,45 @@
 extern "C" {
 #endif
 
-/* What the surface may do meanwhile. */
+#define NT_GUARANTEE_SIGMAS 3.0 /* of the calibration */
+
+/* What sample and surface may do meanwhile (hazard.h). */
 typedef struct nt_hazard {
-    double slope;         /* of the surface where it is steepest, dilated by the tip [-] */
-    double snap_in_force; /* largest attraction that can pull the tip in, positive [N] */
-    double stiffness;     /* of the stiffest contact [N/m] */
-    double unseen;        /* indentation at which the force leaves the noise of the reading [m] */
+    double slope;          /* of the surface where it is steepest, dilated by the tip [-] */
+    double pull_off_force; /* the strongest pull, positive [N] */
+    double snap_in;        /* what the energy of a jump adds at the peak [N] ... */
+    double snap_in_depth;  /* ... and to the indentation [m] */
+    double stiffness;      /* of the stiffest contact [N/m] */
+    double unseen;         /* indentation at which the force leaves the noise of the reading [m] */
 } nt_hazard;
 
+/* What may fail, one at a time. */
+typedef enum nt_failure {
+    NT_FAILURE_READ_OUT, /* the deflection is read with a wrong gain, or its zero drifts away */
+    NT_FAILURE_SENSOR,   /* the deflection does not change any more */
+    NT_FAILURE_SLIP,     /* the stage sticks and then slips, or the surface jumps */
+    NT_FAILURE_STAGE,    /* the stage goes too far, too fast or the wrong way */
+    NT_FAILURES
+} nt_failure;
+/* "deflection read wrong", ...; "" for none. */
+NT_API const char *nt_failure_name(nt_failure failure);
+
 typedef struct nt_guarantee {
-    double reaction_time; /* from the sample that shows it until the stage turns [s] */
-    double motion;        /* stage and surface come closer meanwhile, times stiffness [N] */
-    double ringing;       /* the stage's resonance, excited by its own commands [N] */
-    double snap_in;       /* the tip arrives with the energy of the attraction [N] */
-    double noise;         /* 6 sigma and a step of the reading [N] */
-    double force;         /* limit and all four: never more than this on the sample, either sign [N] */
-    double with_faults;   /* the same whatever fails at once: a stage that turns its sign while nothing is read of it is
-                             lifted into the sample, by all of retract_distance [N] */
-    double indentation;   /* never more than this past first touch, at rest sideways [m] */
-    int moves_sideways;   /* 0: the stage has one axis, and all this holds at the place where the session starts */
+    double reaction_time;        /* from the sample that shows it until the stage turns [s] */
+    double speed;                /* at which tip and surface come closer, at most [m/s] */
+    double calibration;          /* of the limit, if k_c and sensitivity are off by 3 sigma [N] */
+    double motion;               /* stage and surface come closer meanwhile, times stiffness [N] */
+    double ringing;              /* the stage's resonance, excited by its own commands [N] */
+    double snap_in;              /* the tip arrives with the energy of its jump [N] */
+    double noise;                /* 6 sigma and a step of the reading [N] */
+    double force;                /* limit and all five: never more than this on the sample, either sign [N] */
+    double zero_drift;           /* and this more for each second since the tare [N/s] */
+    double failure[NT_FAILURES]; /* what each adds; infinite where nothing would show it [N] */
+    double with_failure;         /* force and the largest of them [N] */
+    double indentation;          /* never more than this past first touch, at rest sideways [m] */
+    double help_time;            /* the stage can lift from the drift of the frame for this long [s] ... */
+    double frame_drift;          /* ... a stop that cannot lift is pressed by this much more in a second [N/s] */
+    int moves_sideways;          /* 0: the stage has one axis, and all this holds at the place where the session starts */
 } nt_guarantee;
 NT_API nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard);
 

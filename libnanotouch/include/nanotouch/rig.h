@@ -12,16 +12,19 @@ extern "C" {
 
 /* AFM cantilever, piezoresistive (paper, Eq. 2, Sec. II and IV-C). */
 typedef struct nt_probe {
-    double spring_constant;   /* k_c [N/m] */
-    double tilt;              /* alpha, cantilever against the sample plane [rad] */
-    double sensitivity;       /* S, deflection per volt of the bridge [m/V] */
-    double range;             /* the electronics saturate at +- this [V] */
-    double noise;             /* deflection noise, peak to peak (6 sigma) [V] */
-    double resolution;        /* ADC step [V] */
-    double resonance;         /* f_0, free; the effective mass is 0.24 m_c = k_c/(2 pi f_0)^2 [Hz] */
-    double quality;           /* Q, free [-] */
-    double temperature;       /* of the thermal motion of the dynamic model, 0 for none [K] */
-    double contact_viscosity; /* eta: the contact of radius a damps with 2 m b_i = 2 eta a (Eq. 2) [Pa s] */
+    double spring_constant;       /* k_c [N/m] */
+    double tilt;                  /* alpha, cantilever against the sample plane [rad] */
+    double sensitivity;           /* S, deflection per volt of the bridge [m/V] */
+    double range;                 /* the electronics saturate at +- this [V] */
+    double noise;                 /* deflection noise, peak to peak (6 sigma) [V] */
+    double resolution;            /* ADC step [V] */
+    double resonance;             /* f_0, free; the effective mass is 0.24 m_c = k_c/(2 pi f_0)^2 [Hz] */
+    double quality;               /* Q, free [-] */
+    double temperature;           /* of the thermal motion of the dynamic model, 0 for none [K] */
+    double contact_viscosity;     /* eta: the contact of radius a damps with 2 m b_i = 2 eta a (Eq. 2) [Pa s] */
+    double spring_constant_sigma; /* standard deviation of k_c's calibration over k_c [-] */
+    double sensitivity_sigma;     /* the same of S [-] */
+    double drift;                 /* of the deflection's zero, at most [m/s] */
 } nt_probe;
 
 /* Piezoelectric z stage (paper, Eq. 13 with f_s/k_stage: erratum E15). */
@@ -37,6 +40,8 @@ typedef struct nt_stage {
     double hysteresis;         /* opening of the loop at full stroke over that stroke, open loop [-] */
     double creep;              /* drift after a step over the step, per decade of time, open loop [-] */
     double axes;               /* that it has: 1 (z: x and y stay where a session starts), or 3 [-] */
+    double drift;              /* of the frame, tip against sample, at most [m/s] */
+    double slip;               /* largest jump of the surface that is reckoned with [m] */
 } nt_stage;
 
 /* 1-degree-of-freedom haptic master (paper, Eq. 12). */

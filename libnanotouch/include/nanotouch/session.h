@@ -7,6 +7,7 @@
 
 #include "nanotouch/commands.h"
 #include "nanotouch/control.h"
+#include "nanotouch/hazard.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/sim.h"
 #include "nanotouch/terrain.h"

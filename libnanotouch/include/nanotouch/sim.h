@@ -43,6 +43,8 @@ enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_
 typedef struct nt_truth {
     double gap;                /* h between tip and (dilated) surface [m] */
     double tip_force[NT_AXES]; /* F in the world frame [N] */
+    double peak_force;         /* the largest |F| of the period; of a quasi-static probe |F| at its end [N] */
+    double deepest_gap;        /* the smallest h of the period, likewise [m] */
     double contact_radius;     /* a [m] */
     double surface_height;     /* z_s under the tip [m] */
     double tip_height;         /* z_t [m] */
@@ -111,7 +113,8 @@ typedef struct nt_sim_slave {
     int dynamic; /* the cantilever is */
     nt_stage_state stage;
     double stage_drive;             /* the command as far as the driver has slewed [m] */
-    double stood;                   /* the same, when a fault of the stage began [m] */
+    double driven;                  /* the same, as a fault of the stage leaves it [m] */
+    double stood;                   /* the command, when a fault of the stage began [m] */
     nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
     double x, y;

@@ -32,6 +32,16 @@ enum {
 /* "force limit", ... of one reason bit; "" for none. */
 NT_API const char *nt_reason_name(uint32_t reason);
 
+enum { NT_STUCK_SAMPLES = 50 }; /* without noise, in a row, while z moves: the sensor is dead */
+
+/* What a stop does with the stage. */
+typedef enum nt_lift {
+    NT_LIFT_GOES,    /* it lifts, by retract_distance, and on while force shows or cannot be read */
+    NT_LIFT_WAITS,   /* the stage did not follow, or went the wrong way: it stays, until the force grows */
+    NT_LIFT_TRIES,   /* it did grow: it lifts, and the force alone tells whether that helps */
+    NT_LIFT_GIVEN_UP /* it went the wrong way */
+} nt_lift;
+
 /* All that does not change while it runs. */
 typedef struct nt_supervisor {
     double master_period;    /* between two readings of the master [s] */
@@ -42,10 +52,13 @@ typedef struct nt_supervisor {
     double master_range;     /* readings beyond these cannot be [m] */
     double gauge_range;      /* [N], 0 without a gauge */
     double stage_range;      /* [m] */
-    double stuck_distance;   /* identical deflections over this travel are a dead sensor, 0: cannot be told [m] */
+    double stuck_distance;   /* deflections without noise over this travel are a dead sensor, 0: cannot be told [m] */
+    double noise;            /* of the deflection, as declared: standard deviation [m] */
     double stage_share;      /* of the way to its reference that the stage should go in a period [-] */
     double stage_slack;      /* by which it may be off at rest, or three quarters of the way that it was to go [m] */
     double stage_most;       /* never by more than this: follow_error, and hysteresis that no integral takes away [m] */
+    double correction_most;  /* that the integral may add to where the stage is told to be [m] */
+    double turn_slack;       /* when it should be farther back than this, a lift has begun to show [m] */
     double path_kept;        /* of that way, per period: it fades over follow_time [-] */
     nt_limits limits;
 } nt_supervisor;
@@ -56,15 +69,26 @@ typedef struct nt_supervisor_state {
     uint32_t law_run;        /* laws without a number in a row */
     uint32_t late_run;       /* late ticks less punctual ones, at least 0 */
     uint32_t late_ticks;     /* all of them */
-    uint32_t stuck_run;      /* identical deflections in a row */
+    uint32_t stuck_run;      /* deflections without noise in a row */
     double stuck_deflection; /* [m] */
+    double stuck_band;       /* within which a deflection shows no noise [m]; from these: */
+    uint32_t noise_samples;  /* that have been looked at */
+    double noise_sum;        /* of their differences, in this block [m] */
+    double noise;            /* of the quietest block: standard deviation [m] */
+    double last_deflection;  /* [m] */
     double stuck_position;   /* x_s where they began [m] */
     double expected;         /* where the stage should be by now [m] */
     double path;             /* that this has gone lately, to and fro [m] */
     uint32_t off_run;        /* ticks in a row in which the stage was not there */
+    nt_lift lift;            /* of a stop */
+    int presses;             /* in a stop: force shows, or cannot be read */
+    int lifts;               /* the stage is told to go up */
+    double reference;        /* where it was told to be [m] */
     double turn;             /* where it should have been when the lift began [m] */
     double lift_force;       /* largest force until it should have turned [N] */
     uint32_t growth_run;     /* ticks in a row in which the force has grown since */
+    double turn_position;    /* where it was read to be when the lift began [m] */
+    uint32_t fall_run;       /* ticks in a row in which it has gone the wrong way since */
     double surface;          /* travel of the tip at first touch [m] */
     double indentation;      /* [m] */
 } nt_supervisor_state;

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A stop lifts, keeps watching and lifts again: by retract_distance, once more whenever force shows, and as far as
+ * travel allows while no force can be read. A stage that did not follow, or that goes the wrong way, stays where it is
+ * until the force grows; then the force alone tells. Once the stage should have turned, a lift makes no force grow;
+ * where one does, it is no lift and is given up. */
+#include "control/lift.h"
+
+#include <math.h>
+
+#include "core/clamp.h"
+
+#define GROWTH_TICKS 3u /* in a row */
+#define DRIFT 1e-9      /* [m] */
+#define FALL_SLACKS 2.0 /* what the stage may yet go when it is told to turn: its lag, and its ringing */
+
+double nt_lift_tolerance(const nt_supervisor *supervisor)
+{
+    return supervisor->free_force + DRIFT * supervisor->spring_constant;
+}
+
+/* A tip that is let go springs back to 0: that is no growth. */
+static void begin(nt_supervisor_state *state, double force)
+{
+    state->turn = state->expected;
+    state->lift_force = greater(0.0, force);
+    state->growth_run = 0;
+}
+
+int nt_lift_helps(const nt_supervisor *supervisor, nt_supervisor_state *state, double force)
+{
+    const int runs = state->state < NT_RETRACT, goes = state->lift == NT_LIFT_GOES;
+    if (runs)
+        state->lift = NT_LIFT_GOES;
+    if (runs || (goes && !state->lifts)) {
+        begin(state, force);
+        return 1;
+    }
+    const int has_turned = !goes || state->expected < state->turn - supervisor->turn_slack; /* else it began at rest */
+    if (!has_turned)
+        state->lift_force = greater(state->lift_force, force);
+    const int grows = has_turned && force > state->lift_force + nt_lift_tolerance(supervisor);
+    state->growth_run = grows ? state->growth_run + 1u : 0u;
+    if (state->growth_run < GROWTH_TICKS)
+        return 1;
+    if (state->lift == NT_LIFT_WAITS) {
+        state->lift = NT_LIFT_TRIES;
+        begin(state, force);
+        return 1;
+    }
+    state->lift = NT_LIFT_GIVEN_UP;
+    return 0;
+}
+
+int nt_lift_rises(const nt_supervisor *supervisor, nt_supervisor_state *state, double position)
+{
+    const int goes = state->state >= NT_RETRACT && state->lift == NT_LIFT_GOES && state->lifts;
+    if (!goes)
+        state->turn_position = position;
+    const int falls = position > state->turn_position + FALL_SLACKS * supervisor->turn_slack;
+    state->fall_run = falls ? state->fall_run + 1u : 0u;
+    if (state->fall_run < GROWTH_TICKS)
+        return 1;
+    state->lift = NT_LIFT_WAITS;
+    return 0;
+}
+
+double nt_lift_distance(const nt_touch *touch, nt_touch_state *state)
+{
+    const double distance = touch->settings.limits.retract_distance;
+    if (state->supervisor.lift != NT_LIFT_GOES && state->supervisor.lift != NT_LIFT_TRIES)
+        return 0.0;
+    if (state->supervisor.presses && state->retracted >= distance)
+        state->retracted = 0.0;
+    return distance;
+}

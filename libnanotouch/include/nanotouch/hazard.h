@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a scene may do before a stop shows, from its plan: what the guarantee needs to know of it. */
+#ifndef NANOTOUCH_HAZARD_H
+#define NANOTOUCH_HAZARD_H
+
+#include "nanotouch/guarantee.h"
+#include "nanotouch/plan.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* slope: of the surface where it is steepest, dilated by the tip [-]. Rig and settings have been checked, the plan is
+ * for loads up to limits.force. Some milliseconds. */
+NT_API nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a scene may do to a tip before a stop shows, as numbers for the guarantee.
+ *
+ * Snap-in. In the potential of sample and lever, V(z) = U(z) + K (z - z_b)^2/2 with K = k_c/cos(alpha), the tip stands
+ * on approach at a minimum, until that is lost: at the first gap where K + k = 0, or where adhesion takes hold. From
+ * there it falls into the well of contact, and swings about its bottom with the energy e between the two. Nothing but
+ * the lever's own damping takes that away; what adhesion dissipates when it takes hold is not the tip's. Beside it: m
+ * v^2/2 of the closing speed, what the base adds in half a period of the lever, thermal motion, and what is left of the
+ * lever's ringing after a pull-off when the base comes down again as fast as it can.
+ *
+ * The hand presses on meanwhile, slowly beside the lever: then e/w is constant (adiabatic invariant), w^2 ~ K + k. The
+ * peak is the force where V regains its value with that e, at the base that presses with all that can be pressed. So
+ * peaks between two samples are counted. */
+#include "nanotouch/hazard.h"
+
+#include <math.h>
+
+#include "nanotouch/interaction.h"
+#include "nanotouch/material.h"
+#include "nanotouch/supervisor.h"
+
+#define DEEPEST 10e-6 /* an indentation that nobody reaches [m] */
+#define NEAREST 1e-13 /* gaps are searched in ratios from here [m] */
+#define FARTHEST 1e-4 /* to here [m] */
+#define SEARCHES 400  /* places */
+#define BISECTIONS 60
+#define BOLTZMANN 1.380649e-23
+#define THERMAL 18.0 /* times k_B T: 6 sigma of an amplitude */
+
+/* Sample and lever. */
+typedef struct well {
+    nt_place place; /* stiffest and most adhesive, where a surface has properties */
+    const nt_plan *plan;
+    double spring;     /* K [N/m] */
+    double rate;       /* w0 of the lever, free [rad/s] */
+    double stage_rate; /* w_n of the stage [rad/s] */
+    double base;       /* z_b [m] */
+    double outside;    /* gap from which the tip falls [m] */
+} well;
+
+/* On the way in. */
+static nt_law_value law_at(const well *w, double gap)
+{
+    const nt_interaction_state never = {0};
+    nt_law_value law = nt_interaction_eval_gap(w->plan, &never, &w->place, gap);
+    if (gap <= w->plan->capture_gap && w->outside > w->plan->capture_gap)
+        law.U += w->plan->capture_energy;
+    return law;
+}
+
+static double potential(const well *w, double gap)
+{
+    const double stretch = gap - w->base;
+    return law_at(w, gap).U + 0.5 * w->spring * stretch * stretch;
+}
+
+/* A place of a modulus and the largest work of adhesion, of a surface with properties. */
+static nt_place place_of(const nt_plan *plan, int stiffest)
+{
+    nt_place place = {.radius = {.radius = plan->contact.radius}};
+    if (!plan->properties)
+        return place;
+    const nt_surface *moduli = &plan->properties->youngs_modulus;
+    place.youngs_modulus.value = stiffest ? moduli->height_maximum : moduli->height_minimum;
+    place.work_of_adhesion.value = plan->properties->work_of_adhesion.height_maximum;
+    return place;
+}
+
+/* As deep as the tip may be, where the sample is softest, before the force leaves the noise for good: twice the
+ * threshold, because a reading may be off by all of it [m]. */
+static double unseen_indentation(const nt_plan *plan, double free_force)
+{
+    const nt_place place = place_of(plan, 0);
+    const nt_interaction_state attached = {.attached = 1};
+    double shallow = 0.0, deep = DEEPEST;
+    for (int i = 0; i < BISECTIONS; ++i) {
+        const double middle = 0.5 * (shallow + deep);
+        if (nt_interaction_eval_gap(plan, &attached, &place, -middle).F > 2.0 * free_force)
+            deep = middle;
+        else
+            shallow = middle;
+    }
+    return deep;
+}
+
+/* As deep as contact carries `force` [N]: a gap, and one that is less deep to begin with. */
+static double gap_of_force(const well *w, double force, double shallow)
+{
+    double deep = fmin(shallow, 0.0) - DEEPEST;
+    for (int i = 0; i < BISECTIONS; ++i) {
+        const double middle = 0.5 * (shallow + deep);
+        if (law_at(w, middle).F < force)
+            shallow = middle;
+        else
+            deep = middle;
+    }
+    return deep;
+}
+
+/* The gap on approach where the tip is no longer held; 0 where it always is. Sets base and outside. */
+static int find_jump(well *w)
+{
+    const double capture = w->plan->capture_gap, ratio = pow(NEAREST / FARTHEST, 1.0 / SEARCHES);
+    const double origin = fmax(capture, 0.0);
+    double held = FARTHEST;
+    for (double above = FARTHEST; above > NEAREST; held = above, above *= ratio)
+        if (w->spring + law_at(w, origin + above).k <= 0.0)
+            break;
+    double lost = held * ratio;
+    for (int i = 0; i < BISECTIONS && held > 2.0 * NEAREST; ++i) {
+        const double middle = 0.5 * (held + lost);
+        if (w->spring + law_at(w, origin + middle).k <= 0.0)
+            lost = middle;
+        else
+            held = middle;
+    }
+    w->outside = origin + held;
+    const nt_law_value before = law_at(w, w->outside), after = law_at(w, w->outside - 4.0 * NEAREST);
+    w->base = w->outside - before.F / w->spring;
+    return held > 2.0 * NEAREST || after.F < before.F;
+}
+
+/* The bottom of the well inside: where the tip would come to rest. */
+static double bottom_of(const well *w)
+{
+    double up = w->outside - 4.0 * NEAREST, down = up - DEEPEST;
+    for (int i = 0; i < 2 * BISECTIONS; ++i) { /* in even ratios: the well is far narrower than DEEPEST */
+        const double middle = w->outside - sqrt((w->outside - up) * (w->outside - down));
+        if (law_at(w, middle).F < w->spring * (middle - w->base))
+            up = middle;
+        else
+            down = middle;
+    }
+    return down;
+}
+
+/* What is left of the ringing after a pull-off, when the base has come down to where it matters: the most of
+ * K (s^2 - h^2)/2 with s = s0 exp(-t/tau), and h = s0 less what a stage of resonance w_n that turns there goes at the
+ * speed v: v (t - (1 - exp(-w_n t))/w_n) [J]. */
+static double ringing_left(const well *w, double quality, double speed)
+{
+    const double first = w->plan->largest_pull_off_force / w->spring, tau = 2.0 * quality / w->rate;
+    const double lag = 1.0 / w->stage_rate, end = first / speed + lag;
+    double most = 0.0;
+    for (int i = 1; i <= SEARCHES; ++i) {
+        const double time = end * i / SEARCHES, gone = speed * (time + lag * expm1(-time / lag));
+        const double height = fmax(0.0, first - gone), swing = first * exp(-time / tau);
+        most = fmax(most, 0.5 * w->spring * (swing * swing - height * height));
+    }
+    return most;
+}
+
+/* Energy about the bottom of contact [J], and how stiff it is there. */
+static double energy_of_jump(well *w, const nt_probe *probe, double speed, double *stiffness)
+{
+    const double mass = w->spring / (w->rate * w->rate);
+    const double arrival = 0.5 * mass * speed * speed;
+    *stiffness = 0.0;
+    if (!find_jump(w))
+        return arrival;
+    w->base -= speed * NT_PI / w->rate;
+    const double bottom = bottom_of(w);
+    *stiffness = fmax(0.0, law_at(w, bottom).k);
+    return potential(w, w->outside) - potential(w, bottom) + arrival + ringing_left(w, probe->quality, speed);
+}
+
+/* Where the tip turns, pressed with `force` at rest and swinging with `energy` besides [m]. */
+static double turning_gap(well *w, double rest, double force, double energy)
+{
+    w->base = rest - force / w->spring;
+    const double end = potential(w, rest) + energy;
+    double up = rest, down = rest - DEEPEST;
+    for (int i = 0; i < BISECTIONS; ++i) {
+        const double middle = 0.5 * (up + down);
+        if (potential(w, middle) < end)
+            up = middle;
+        else
+            down = middle;
+    }
+    return down;
+}
+
+static void add_snap_in(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_guarantee *still)
+{
+    const nt_probe *probe = &rig->probe;
+    well w = {.plan = plan,
+              .place = place_of(plan, 1),
+              .spring = probe->spring_constant / cos(probe->tilt),
+              .rate = 2.0 * NT_PI * probe->resonance,
+              .stage_rate = 2.0 * NT_PI * rig->stage.resonance,
+              .outside = HUGE_VAL};
+    double stiffness;
+    double energy = energy_of_jump(&w, probe, still->speed, &stiffness);
+    const double rest = gap_of_force(&w, still->force, fmin(w.outside, fmax(plan->capture_gap, 0.0)));
+    energy *= sqrt(fmax(1.0, (w.spring + law_at(&w, rest).k) / (w.spring + stiffness)));
+    energy += THERMAL * BOLTZMANN * probe->temperature;
+    const double turn = turning_gap(&w, rest, still->force, energy);
+    const double blunter = plan->pull_off_force > 0.0 ? plan->largest_pull_off_force / plan->pull_off_force : 1.0;
+    hazard->snap_in = fmax(hazard->snap_in, blunter * (law_at(&w, turn).F - law_at(&w, rest).F));
+    hazard->snap_in_depth = fmax(hazard->snap_in_depth, blunter * (rest - turn));
+}
+
+nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope)
+{
+    const nt_probe *lever = &rig->probe;
+    const double off = NT_GUARANTEE_SIGMAS * hypot(lever->spring_constant_sigma, lever->sensitivity_sigma);
+    const double free_force = nt_supervisor_make(rig, settings).free_force / (1.0 - off); /* as it may be */
+    nt_hazard hazard = {.slope = slope,
+                        .pull_off_force = plan->largest_pull_off_force,
+                        .stiffness = plan->maximum_stiffness,
+                        .unseen = unseen_indentation(plan, free_force)};
+    const nt_guarantee still = nt_guarantee_compute(rig, settings, &hazard);
+    for (int side = -1; side <= 1; side += 2) { /* k_c as it may be */
+        nt_rig real = *rig;
+        real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
+        add_snap_in(&hazard, plan, &real, &still);
+    }
+    return hazard;
+}

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a stop does with the stage after its first lift: it watches, lifts again, waits, or gives up. The stage follows
+ * at once and the sample is a spring under it, so that the force is what the test says. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "larger.h"
+#include "nanotouch/touch.h"
+
+#define T 1e-4
+
+typedef struct rig {
+    nt_touch touch;
+    nt_touch_state state;
+    nt_sample sample;
+    nt_command command;
+    double surface; /* x_s of first touch [m] */
+    double sign;    /* of the stage */
+    double drift;   /* of surface towards the tip [m/s] */
+    double most;    /* deflection so far [m] */
+    int blind;      /* the deflection is not a number */
+    int64_t ticks;
+} rig;
+
+static void set_up(rig *r)
+{
+    const nt_rig paper = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&paper);
+    *r = (rig){.surface = -100e-9, .sign = 1.0};
+    assert_int_equal(nt_touch_make(&r->touch, &paper, &settings, NT_MODE_TOUCH, NULL), NT_OK);
+    r->state = nt_touch_start(&r->touch, 0.0, 0.0, 0.0);
+}
+
+/* A stiff sample: what the stage goes beyond first touch bends the lever. */
+static void run(rig *r, long ticks)
+{
+    for (long i = 0; i < ticks; i++) {
+        r->surface -= r->drift * T;
+        const double stage = r->sign * r->command.stage_position[NT_Z];
+        const double bent = larger(0.0, stage - r->surface);
+        r->most = larger(r->most, bent);
+        r->sample.stage_position[NT_Z] = stage;
+        r->sample.deflection[NT_Z] = r->blind ? (double)NAN : bent + 1e-10 * (double)(r->ticks++ % 2);
+        nt_touch_step(&r->touch, &r->state, &r->sample, &r->command);
+    }
+}
+
+static void stop(rig *r)
+{
+    run(r, 100);
+    r->sample.flags = NT_SAMPLE_EMERGENCY_STOP;
+    run(r, 1);
+    r->sample.flags = 0;
+    assert_int_equal(r->command.state, NT_LATCHED);
+}
+
+/* Drift of the frame brings the sample to the tip again and again: it is lifted each time the force leaves the noise,
+ * before that has grown by more than what drift makes of the reaction. */
+static void drift_is_lifted_from(void **state)
+{
+    (void)state;
+    static const double rates[] = {1e-9, 1e-7, 1e-6};
+    for (int i = 0; i < 3; i++) {
+        rig r;
+        set_up(&r);
+        stop(&r);
+        run(&r, 2000);
+        const double free = r.touch.supervisor.free_force / r.touch.rig.probe.spring_constant;
+        const double lifted = r.command.stage_position[NT_Z];
+        assert_true(fabs(lifted + r.touch.settings.limits.retract_distance) < 2e-9);
+        r.most = 0.0;
+        r.drift = rates[i];
+        r.surface = lifted + 5e-9;
+        run(&r, 200000);
+        assert_true(r.most < free + 2e-10 + 2e-3 * rates[i]);
+        const double way = larger(0.0, 20.0 * rates[i] - 5e-9 - free);
+        assert_true(r.command.stage_position[NT_Z] < lifted - way);
+        assert_true(r.command.stage_position[NT_Z] > lifted - way - 1.01 * r.touch.settings.limits.retract_distance);
+        assert_int_equal(r.command.state, NT_LATCHED);
+    }
+}
+
+/* Nothing is read of the force: up to the end of travel. */
+static void what_cannot_be_read_is_lifted_as_far_as_it_goes(void **state)
+{
+    (void)state;
+    rig r;
+    set_up(&r);
+    run(&r, 100);
+    r.blind = 1;
+    run(&r, 60000);
+    assert_int_equal(r.command.state, NT_RETRACT);
+    assert_true(fabs(r.command.stage_position[NT_Z] + r.touch.stage_end) < 1e-12);
+}
+
+/* Latched because the stage is not where it should be: it stays, until drift makes the force grow. A stage that lifts
+ * after all, lifts then; one that goes the wrong way is given up, for good. */
+static void a_stage_that_did_not_follow_waits(void **state)
+{
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        rig r;
+        set_up(&r);
+        run(&r, 100);
+        for (int i = 0; i < 510; i++) { /* the read-out is off */
+            r.sample.stage_position[NT_Z] = 0.15e-6;
+            r.sample.deflection[NT_Z] = 100e-9 + 1e-10 * (i % 2);
+            nt_touch_step(&r.touch, &r.state, &r.sample, &r.command);
+        }
+        assert_int_equal(r.command.state, NT_LATCHED);
+        assert_int_equal(r.state.supervisor.lift, NT_LIFT_WAITS);
+        r.sign = turned ? -1.0 : 1.0;
+        run(&r, 1000);
+        assert_int_equal(r.state.supervisor.lift, NT_LIFT_WAITS);
+        const double before = r.most;
+        r.drift = 1e-8;
+        run(&r, 100000);
+        assert_int_equal(r.state.supervisor.lift, turned ? NT_LIFT_GIVEN_UP : NT_LIFT_TRIES);
+        if (!turned)
+            assert_true(r.most < before + 5e-9 && r.sample.deflection[NT_Z] < 2e-9);
+        const double stays = r.command.stage_position[NT_Z];
+        run(&r, 10000);
+        if (turned)
+            assert_true(r.command.stage_position[NT_Z] == stays && fabs(stays) < 60e-9);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(drift_is_lifted_from),
+        cmocka_unit_test(what_cannot_be_read_is_lifted_as_far_as_it_goes),
+        cmocka_unit_test(a_stage_that_did_not_follow_waits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A sensor that shows no noise while z moves is dead; how much it shows is learnt from its first samples. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "larger.h"
+#include "nanotouch/control.h"
+
+static nt_touch touch;
+
+static int make_touch(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    return nt_touch_make(&touch, &rig, &settings, NT_MODE_TOUCH, NULL) != NT_OK;
+}
+
+/* What the supervisor is given in one tick. */
+typedef struct input {
+    nt_sample sample;
+    double reference;
+    int unstable;
+    nt_supervisor_state history; /* runs that have lasted */
+} input;
+
+static input healthy(nt_state state)
+{
+    return (input){.sample = {.deflection[NT_Z] = 1e-9, .stage_position[NT_Z] = 1e-6},
+                   .reference = 1e-6,
+                   .history = {.state = state, .stuck_deflection = NAN, .surface = 1e-6, .expected = 1e-6}};
+}
+
+static nt_state step(input *in)
+{
+    const nt_situation situation = {.reference = in->reference, .unstable = in->unstable};
+    return nt_supervisor_step(&touch.supervisor, &in->history, &in->sample, &situation);
+}
+
+/* Ticks to each reaction, as printed in docs/safety.md. */
+static int ticks_until(input *in, nt_state wanted, double stage_speed)
+{
+    for (int tick = 1; tick < 100000; tick++) {
+        in->sample.stage_position[NT_Z] += stage_speed * touch.period;
+        in->reference += stage_speed * touch.period;
+        if (step(in) >= wanted)
+            return tick;
+    }
+    return 0;
+}
+
+static void a_stuck_sensor_is_found_while_z_moves(void **unused)
+{
+    (void)unused;
+    input in = healthy(NT_RUN);
+    assert_int_equal(ticks_until(&in, NT_HOLD, 1e-6), 51); /* the first one is new, then 50 alike */
+    assert_int_equal(ticks_until(&in, NT_LATCHED, 0.0), 50);
+    /* long still before it moves: HOLD comes first all the same */
+    in = healthy(NT_RUN);
+    assert_int_equal(ticks_until(&in, NT_HOLD, 0.0), 0);      /* at rest nobody can tell */
+    assert_in_range(ticks_until(&in, NT_HOLD, 1e-6), 50, 52); /* 5 nm */
+    assert_int_equal(in.history.state, NT_HOLD);
+    /* a sensor whose noise is known: a quarter of that is no sign of life, more is */
+    in.history.noise_samples = 200;
+    in.history.stuck_band = 70e-12;
+    in.sample.deflection[NT_Z] += 60e-12;
+    assert_int_equal(step(&in), NT_HOLD);
+    in.sample.deflection[NT_Z] += 20e-12;
+    assert_int_equal(step(&in), NT_RUN);
+}
+
+/* The noise is that of the quietest of the first blocks, and no more than is declared. */
+static void the_supervisor_learns_the_noise(void **unused)
+{
+    (void)unused;
+    static const double steps[][2] = {{1e-12, 1e-12}, {100e-12, 100e-12}, {50e-9, 100e-12}, {30e-9, 30e-9}};
+    for (int i = 0; i < 4; i++) {
+        input in = healthy(NT_RUN);
+        for (int tick = 0; tick < 200; tick++) {
+            assert_true(in.history.stuck_band == 0.0);
+            in.sample.deflection[NT_Z] = 1e-9 + steps[i][tick >= 149] * (tick % 2);
+            assert_int_equal(step(&in), NT_RUN);
+        }
+        const double declared = touch.rig.probe.sensitivity * touch.rig.probe.noise / 6.0;
+        const double wanted = 0.25 * smaller(declared, steps[i][1] / 1.128379);
+        assert_true(fabs(in.history.stuck_band / wanted - 1.0) < 0.03);
+        assert_int_equal(nt_supervisor_arm(&in.history, 1), NT_OK);
+        assert_true(fabs(in.history.stuck_band / wanted - 1.0) < 0.03);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_stuck_sensor_is_found_while_z_moves),
+        cmocka_unit_test(the_supervisor_learns_the_noise),
+    };
+    return cmocka_run_group_tests(tests, make_touch, NULL);
+}

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a jump makes of a lever: the peak that is promised, against the dynamic probe of the simulation, whose scheme
+ * shares nothing with the potential that is asked here. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "larger.h"
+#include "loop_fixture.h"
+
+static loop l;
+
+static nt_session_setup lever(double spring_constant, double resonance, double limit)
+{
+    nt_session_setup setup = nt_session_defaults();
+    setup.rig.probe.spring_constant = spring_constant;
+    setup.rig.probe.resonance = resonance;
+    setup.rig.probe.spring_constant_sigma = setup.rig.probe.sensitivity_sigma = 0.0;
+    setup.settings = nt_settings_defaults(&setup.rig);
+    setup.settings.limits.force = limit;
+    setup.settings.limits.stage_speed = 1e-6;
+    setup.settings.limits.lateral_speed = 1e-8;
+    setup.settings.gains.set_point = 0.5 * limit;
+    setup.settings.gains.alpha_p = 4e-6;
+    setup.clearance = 4e-9;
+    setup.probe_model = NT_PROBE_DYNAMIC;
+    return setup;
+}
+
+static void a_lever_arrives_with_the_energy_of_its_jump(void **state)
+{
+    (void)state;
+    static const double levers[][3] = {{0.1, 30e3, 2e-9}, {0.3, 40e3, 5e-9}};
+    for (int i = 0; i < 2; i++) {
+        const nt_session_setup setup = lever(levers[i][0], levers[i][1], levers[i][2]);
+        assert_int_equal(loop_open(&l, &setup), NT_OK);
+        const nt_guarantee g = promise(&l, 0.0);
+        loop_push(&l, 1.0, 0.02);
+        double peak = 0.0;
+        for (int tick = 0; tick < 800; tick++) {
+            assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+            peak = larger(peak, l.sim.slave.truth.peak_force);
+        }
+        print_message(
+            "k_c %g N/m: %.1f nN at the peak, %.1f nN promised, snap-in %.1f nN beside a pull-off of %.1f nN\n",
+            levers[i][0], 1e9 * peak, 1e9 * g.force, 1e9 * g.snap_in, 1e9 * l.plan.pull_off_force);
+        assert_true(peak < g.force && peak > 0.75 * g.force);
+    }
+}
+
+/* Nothing that pulls: no jump, but thermal motion and the closing speed. */
+static void without_attraction_there_is_none(void **state)
+{
+    (void)state;
+    nt_session_setup setup = lever(1.0, 70e3, 50e-9);
+    setup.scene.medium.relative_humidity = 0.0;
+    setup.scene.adhesion.work_of_adhesion = setup.scene.adhesion.hamaker_constant = 0.0;
+    assert_int_equal(loop_open(&l, &setup), NT_OK);
+    const nt_hazard dry = nt_hazard_of(&l.plan, &l.touch.rig, &l.touch.settings, 0.0);
+    /* 18 k_B T of a spring: sqrt(36 k_B T k), and the speed of 7 um/s on the mass k_c/w0^2 */
+    const double stiffness = l.plan.maximum_stiffness, mass = 1.0 / pow(2.0 * 3.14159265 * 70e3, 2.0);
+    const double most = sqrt(stiffness * (36.0 * 1.38e-23 * 295.0 + mass * 7e-6 * 7e-6));
+    print_message("nothing pulls: %.2f nN of at most %.2f nN\n", 1e9 * dry.snap_in, 1.5e9 * most);
+    assert_true(dry.snap_in > 0.0 && dry.snap_in < 1.5 * most);
+}
+
+/* A lever that rings longer after a pull-off comes back with more of it. */
+static void a_pull_off_counts_where_it_rings_on(void **state)
+{
+    (void)state;
+    double before = 0.0;
+    for (double quality = 1e2; quality < 1e6; quality *= 10.0) {
+        nt_session_setup setup = lever(0.1, 30e3, 2e-9);
+        setup.rig.probe.quality = quality;
+        assert_int_equal(loop_open(&l, &setup), NT_OK);
+        const nt_hazard found = nt_hazard_of(&l.plan, &l.touch.rig, &l.touch.settings, 0.0);
+        assert_true(found.snap_in >= before && isfinite(found.snap_in));
+        before = found.snap_in;
+    }
+    /* at most all that the pull-off has left, F^2/(2 k_c), twice over for the stiffer contact */
+    const double all = l.plan.pull_off_force * l.plan.pull_off_force / 0.2;
+    assert_true(before > 5e-7 && before < sqrt(2.0 * 4.0 * all * 10.0 * l.plan.maximum_stiffness));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lever_arrives_with_the_energy_of_its_jump),
+        cmocka_unit_test(without_attraction_there_is_none),
+        cmocka_unit_test(a_pull_off_counts_where_it_rings_on),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is promised before arming, in words and numbers; test_session_adversary (C) attacks it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from nanotouch import Faults, Input, Rig, Session, Settings, Surface, record, surface
+
+GRATING = Surface(surface.grating(pixels=128), 20e-9)
+LATCHED = record.STATES.index("LATCHED")
+
+
+def test_the_guarantee_is_the_sum_of_its_terms() -> None:
+    flat, rough = Session(), Session(surface=GRATING, mode="scan")
+    for session in (flat, rough):
+        found = session.guarantee()
+        terms = found.calibration + found.motion + found.ringing + found.snap_in + found.noise
+        assert found.force == pytest.approx(session.settings.limits.force + terms, rel=1e-12)
+        assert found.limit == pytest.approx(session.settings.limits.force, rel=1e-12)
+        assert found.snap_in > session.plan.explain()["pull_off_force"]  # the tip arrives with more than that
+        assert found.with_failure == found.force + max(found.failures.values())
+        assert found.warning is None
+        for number in (found.force, found.with_failure):
+            assert f"{number * 1e9:.4g} nN" in str(found)
+        assert "help is needed within 13.9 h" in str(found)
+    assert rough.guarantee().motion > 3.0 * flat.guarantee().motion  # the flank of the grating
+
+
+def test_a_limit_that_protects_nothing_is_said() -> None:
+    """A soft lever jumps in with forty times the limit: said before anything moves."""
+    rig = Rig(probe={"spring_constant": 0.1, "resonance": 30e3})
+    settings = Settings.for_rig(rig)
+    settings.limits.force, settings.gains.set_point = 2e-9, 1e-9
+    settings.gains.alpha_p, settings.limits.stage_speed = 4e-6, 1e-6
+    session = Session(None, rig, settings=settings, clearance=4e-9)
+    found = session.guarantee()
+    assert found.warning is not None
+    assert "does not protect the sample" in str(found).splitlines()[1]
+    pressed = session.advance(0.1, Input(1.0, 0.0, 0.0, 0.02))["tip_force"].max()
+    assert 20e-9 < pressed < found.force < 120e-9
+
+
+@pytest.mark.parametrize("rate", [1e-9, 1e-6])
+def test_a_stop_lifts_from_the_drift_of_the_frame(rate: float) -> None:
+    session = Session(faults=Faults().add("drift", "stage", at=0.6, value=rate), rate=2000.0)
+    session.advance(0.5, Input(0.2, 0.0, 0.0, 0.1))
+    session.advance(1.0, Input(2.0, 0.0, 0.0, 0.2))
+    session.emergency_stop(True)
+    session.advance(0.1)
+    session.emergency_stop(False)
+    assert session.advance(2.0)["tip_force"].max() < 2e-6
+    later = session.advance(8.0)
+    assert (later["state"] == LATCHED).all()
+    assert np.abs(later["tip_force"]).max() < 60e-9
+    assert session.guarantee().help_time == pytest.approx(50e3)
