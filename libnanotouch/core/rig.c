@@ -95,8 +95,8 @@ nt_rig nt_rig_defaults(void)
                     1e-10,           /* a 20-bit converter over the travel: 1 nm steps make the resonance ring */
                 .max_speed = 100e-6, /* not in the paper; 10 nm per tick at 10 kHz */
                 .axes = 3.0,
-                .drift = 1e-9,       /* not in the paper: of an instrument at rest in a room */
-                .slip = 10e-9,       /* not in the paper */
+                .drift = 1e-9, /* not in the paper: of an instrument at rest in a room */
+                .slip = 10e-9, /* not in the paper */
             },
         .master =
             {
