@@ -193,8 +193,8 @@ static void add_snap_in(nt_hazard *hazard, const nt_plan *plan, const nt_rig *ri
     double energy = energy_of_jump(&w, probe, still->speed, &stiffness);
     const double rest = gap_of_force(&w, still->force, fmin(w.outside, fmax(plan->capture_gap, 0.0)));
     energy *= sqrt(fmax(1.0, (w.spring + law_at(&w, rest).k) / (w.spring + stiffness)));
-    energy += THERMAL * BOLTZMANN * probe->temperature;
-    const double turn = turning_gap(&w, rest, still->force, energy);
+    const double swing = sqrt(energy) + sqrt(THERMAL * BOLTZMANN * probe->temperature); /* in step, at the worst */
+    const double turn = turning_gap(&w, rest, still->force, swing * swing);
     const double blunter = plan->pull_off_force > 0.0 ? plan->largest_pull_off_force / plan->pull_off_force : 1.0;
     hazard->snap_in = fmax(hazard->snap_in, blunter * (law_at(&w, turn).F - law_at(&w, rest).F));
     hazard->snap_in_depth = fmax(hazard->snap_in_depth, blunter * (rest - turn));
