@@ -215,5 +215,6 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
         real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
         add_snap_in(&hazard, plan, &real, &still);
     }
+    hazard.snap_in = fmax(hazard.snap_in, hazard.pull_off_force); /* of either sign */
     return hazard;
 }
