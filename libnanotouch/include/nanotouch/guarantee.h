@@ -48,7 +48,7 @@ typedef struct nt_guarantee {
     double indentation;          /* never more than this past first touch, at rest sideways [m] */
     double help_time;            /* the stage can lift from the drift of the frame for this long [s] ... */
     double frame_drift;          /* ... a stop that cannot lift is pressed by this much more in a second [N/s] */
-    int moves_sideways;          /* 0: the stage has one axis, and all this holds at the place where the session starts */
+    int moves_sideways; /* 0: the stage has one axis, and all this holds at the place where the session starts */
 } nt_guarantee;
 NT_API nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard);
 
