@@ -14,7 +14,7 @@ import pytest
 from nanotouch import curves
 from nanotouch.errors import Error
 from nanotouch_app import view
-from nanotouch_app.live import files, film, reel
+from nanotouch_app.live import cards, files, film, reel
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.subject import of_preset
 from nanotouch_app.main import main
@@ -176,3 +176,23 @@ def test_a_map_is_touched_with_the_modulus_of_each_place(tmp_path: Path) -> None
     host.close()
     assert frame is not None
     assert frame["tip_force"][2] > 0.0
+
+
+@pytest.mark.usefixtures("vtk_works")
+def test_another_sample_is_laid_under_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(film, "RATE", 2.0)
+    studio = film.Studio(of_preset("silicon_in_air"))
+    try:
+        card = cards.boxes(studio.picture.layout.cards)["cell_in_liquid"]
+        assert cards.at(studio.picture.layout.cards, card[0] + 5.0, card[1] + 5.0) == "cell_in_liquid"
+        assert cards.at(studio.picture.layout.cards, card[0] - 5.0, card[1] + 5.0) == ""
+        studio.picture.cards = studio.picture.help = True
+        first = list(studio.play([(0.6, {})]))[-1]
+        studio.picture.cards = studio.picture.help = False
+        second = list(studio.play([(0.6, {"do": "preset", "name": "cell_in_liquid"})]))[-1]
+        assert studio.picture.seen.world["title"] == "A living cell"
+        assert studio.picture.stage.unit == pytest.approx(40e-6)
+        assert "medium.brush_thickness" in [slider.field for slider in studio.picture.sliders.sliders]
+        assert np.any(first != second)
+    finally:
+        studio.close()

@@ -171,3 +171,14 @@ def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("nanotouch._live.WINDOW", "nanotouch_app.live.nothing")
     with pytest.raises(nt.Error, match="could not be opened"):
         nt.Session(seed=1, recorded=False).live()
+
+
+def test_a_window_that_dies_ends_the_session_in_words(screen: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    live = Live(screen, monkeypatch)
+    try:
+        live.desk.process.kill()
+        with pytest.raises(nt.Error, match="the window died of SIGKILL"):
+            live.desk.serve(live.host)
+    finally:
+        live.host.close()
+        live.desk.close()

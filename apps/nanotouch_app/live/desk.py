@@ -7,6 +7,7 @@ import importlib.util
 import json
 import os
 import queue
+import signal
 import subprocess
 import sys
 import tempfile
@@ -85,6 +86,7 @@ class Desk:
                 message = self.asked.get(timeout=TURN)
                 while True:
                     if not host.answer(message):
+                        self._check_end()
                         return
                     message = self.asked.get_nowait()
             except queue.Empty:
@@ -93,6 +95,16 @@ class Desk:
             if time.monotonic() > due:
                 due = time.monotonic() + CLOCK
                 self.tell(host.clock())
+
+    def _check_end(self) -> None:
+        """An error where the window has not left by itself."""
+        try:
+            status = self.process.wait(2.0)
+        except subprocess.TimeoutExpired:  # it still says goodbye
+            return
+        if status:
+            name = signal.Signals(-status).name if status < 0 else f"status {status}"
+            raise Error(f"the window died of {name}; the session has ended in order, and what was recorded is kept")
 
     def close(self) -> None:
         """End the window."""
