@@ -181,8 +181,8 @@ def grains(
     doubts = _doubts(labels, least / jitter if jitter > 0.0 else np.inf, pits)
     if np.ptp(bands) > least:
         doubts += (
-            f"the flat stood {np.ptp(bands) * 1e9:.3g} nm higher in some rows than in others, which was taken off: drift "
-            "or the bow of a scanner that levelling left",
+            f"the flat stood {np.ptp(bands) * 1e9:.3g} nm higher in some rows than in others, which was taken off: "
+            "drift or the bow of a scanner that levelling left",
         )
     for text in doubts:
         warnings.warn(text, stacklevel=2)
