@@ -105,9 +105,9 @@ static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, nt_
     plan->demand.relative_accuracy = demanded > 0.0 ? demanded - rigid : 0.0;
     const nt_status status = nt_plan_choose(plan, options, problem);
     plan->demand.relative_accuracy = demanded;
-    if (status != NT_OK || plan->on_count == 0)
+    if (status != NT_OK || (plan->on_count == 0 && plan->source == NT_ADHESION_NONE))
         return status;
-    plan->bound.force_error += rigid;
+    plan->bound.force_error += rigid; /* a tail that was left out, too, pulls by so much more */
     return NT_OK;
 }
 
@@ -148,7 +148,7 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     const double demanded = plan->demand.relative_accuracy;
     nt_status status = nt_plan_choose(plan, &options, problem);
     plan->rigid_error = nt_plan_rigid_error(plan, scene);
-    const int alone = status == NT_OK && plan->on_count == 0 && !(adheres && isinf(plan->rigid_error));
+    const int alone = status == NT_OK && plan->on_count == 0 && !adheres;
     if ((plan->rigid_error == 0.0 && plan->around_error == 0.0) || alone)
         return status;
     const nt_status rigid = demanded > 0.0 || fmax(plan->rigid_error, plan->around_error) <= UNASKED

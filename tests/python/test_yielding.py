@@ -55,7 +55,7 @@ def test_a_gel_gives_under_a_double_layer() -> None:
     assert abs(float(plan.force(gap)) - truth) <= plan.bound * truth
 
 
-@pytest.mark.parametrize("seed", [12, 34, 50])
+@pytest.mark.parametrize("seed", [12, 34, 49])
 def test_random_soft_scenes_keep_the_bound(seed: int) -> None:
     kind, error, bound = yielding.compare(seed, count=3)
     assert kind in ("yields", "rigid")
