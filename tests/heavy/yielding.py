@@ -80,7 +80,8 @@ def compare_sticky(rng: np.random.Generator) -> tuple[str, float, float]:
                 gaps = gaps[gaps > capture] if history == "approach" else gaps[:0]
                 true = truth.force(gaps, history)
             found = nt.Interaction(plan, history).eval(np.column_stack([0.0 * gaps, 0.0 * gaps, gaps])).Fz
-            error = float(np.maximum(error, np.max(np.abs(found - true) / np.maximum(np.abs(true), plan.scale), initial=0.0)))
+            share = np.abs(found - true) / np.maximum(np.abs(true), plan.scale)
+            error = float(np.maximum(error, np.max(share, initial=0.0)))
     except (SolverError, np.linalg.LinAlgError):
         return "sticky: reference failed", 0.0, plan.bound
     if facts["yields"] and abs(facts["capture_gap"] - capture) > plan.fold_shift_m + 1e-9 * capture:
