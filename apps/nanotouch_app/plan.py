@@ -17,7 +17,9 @@ from typing import Any
 import nanotouch as nt
 from nanotouch import presets
 from nanotouch.errors import InvalidValue
+from nanotouch.plan import hertz_nanoseconds
 from nanotouch.scene import Demand, Rig, Scene, Settings, read_tables
+from nanotouch.units import in_words
 
 from nanotouch_app.quantity import number, parse_quantity
 
@@ -74,6 +76,13 @@ def run(args: argparse.Namespace) -> int:
             sentence = sentence.replace(f"{field} =", f"{field} ({option}) =")
         raise InvalidValue(sentence) from refusal
     print(json.dumps(as_json(plan.explain()), indent=2, allow_nan=False) if args.json else plan)
+    if not args.json:
+        one = hertz_nanoseconds()
+        full = one * plan.explain()["full_cost"]
+        print(
+            f"on this machine a Hertz evaluation takes {in_words(one * 1e-9, 's', 3)}, this plan "
+            f"{in_words(one * plan.cost * 1e-9, 's', 3)}, everything exact {in_words(full * 1e-9, 's', 3)}"
+        )
     if args.scene in PRESETS and not args.json:
         print(f"felt: {presets.FELT[args.scene]}")
     return 0

@@ -44,6 +44,7 @@ static nt_status refuse(nt_problem *problem, const char *name, double value, dou
 static void take(nt_plan *plan, const nt_plan_options *options, const combination *best)
 {
     plan->on_count = 0;
+    plan->latency = 0.0;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         const nt_form form = options->option[term][best->index[term]].form;
         plan->terms[term].name = nt_term_name_of(plan, term);
@@ -53,6 +54,8 @@ static void take(nt_plan *plan, const nt_plan_options *options, const combinatio
         plan->terms[term].form = form;
         plan->terms[term].error = options->option[term][best->index[term]].error;
         plan->terms[term].cost = options->option[term][best->index[term]].cost;
+        plan->terms[term].latency = options->option[term][best->index[term]].latency;
+        plan->latency += plan->terms[term].latency;
         if (term != NT_PLAN_CONTACT && form != NT_FORM_OFF)
             plan->on[plan->on_count++] = term;
     }

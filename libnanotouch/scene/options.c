@@ -5,13 +5,15 @@
  * left out is off by its largest value in the range; one in a simpler form by the largest difference of the two forms.
  * What has a rule of its own, as contact, offers its forms itself (terms/). */
 #include <math.h>
+#include <stddef.h>
 
 #include "scene/terms/term.h"
 
-/* Measured cost of a surface, in evaluations of an inlined Hertz law (tests/bench/bench_plan.c). */
-#define COST_HEIGHT 15.0 /* height and slopes */
-#define COST_PLACE 28.0  /* and the effective radius */
-#define COST_MADE 52.0   /* and what it is made of */
+/* Measured cost and latency of a surface, in Hertz evaluations (tests/bench/bench_plan.c). */
+static const double cost_height[2] = {2.0, 2.3};   /* height and slopes */
+static const double cost_radius[2] = {1.0, 1.0};   /* and the effective radius */
+static const double cost_property[2] = {0.7, 0.6}; /* and each property */
+
 #define LAST_BITS                                                                                                      \
     5e-15 /* of each term beside contact, within which a difference loses some, too; large ones can cancel to a small  \
              sum */
@@ -22,6 +24,7 @@ void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_f
     options->option[term][i].form = form;
     options->option[term][i].error = error;
     options->option[term][i].cost = nt_term_form_of(plan, term, form)->cost;
+    options->option[term][i].latency = nt_term_form_of(plan, term, form)->latency;
 }
 
 double nt_plan_share(const nt_plan *plan, double error)
@@ -89,16 +92,28 @@ static double lost_bits(const nt_plan *plan, double nearest, double beside)
     return LAST_BITS * worst;
 }
 
+/* Of the surface under a contact in a form; 0: cost, 1: latency. */
+static double cost_of_place(const nt_plan *plan, nt_form form, int which)
+{
+    double cost = plan->surface ? cost_height[which] : 0.0;
+    if (!nt_form_is_local(form))
+        return cost;
+    if (plan->followed)
+        cost += cost_radius[which];
+    if (plan->properties)
+        cost += cost_property[which] * ((plan->properties->youngs_modulus.coefficients != NULL) +
+                                        (plan->properties->work_of_adhesion.coefficients != NULL));
+    return cost;
+}
+
 /* What all share, contact bears, whatever its form: the bits that the sum loses, and the surface under it. */
 static void burden_contact(const nt_plan *plan, nt_plan_options *options, double lost)
 {
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
+        const nt_form form = options->option[NT_PLAN_CONTACT][i].form;
         options->option[NT_PLAN_CONTACT][i].error += lost;
-        if (plan->surface)
-            options->option[NT_PLAN_CONTACT][i].cost += !nt_form_is_local(options->option[NT_PLAN_CONTACT][i].form)
-                                                            ? COST_HEIGHT
-                                                        : plan->properties ? COST_MADE
-                                                                           : COST_PLACE;
+        options->option[NT_PLAN_CONTACT][i].cost += cost_of_place(plan, form, 0);
+        options->option[NT_PLAN_CONTACT][i].latency += cost_of_place(plan, form, 1);
     }
 }
 

@@ -112,7 +112,7 @@ enum { NT_OPTIONS_MAX = 6 };
 typedef struct nt_plan_options {
     struct {
         nt_form form;
-        double error, cost;
+        double error, cost, latency;
     } option[NT_PLAN_TERMS][NT_OPTIONS_MAX];
     int count[NT_PLAN_TERMS];
 } nt_plan_options;

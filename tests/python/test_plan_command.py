@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,10 @@ def file(tmp_path: Path) -> str:
 def test_presets_in_words_and_as_data(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", name]) == 0
     plan = getattr(presets, name)()[0].plan()
-    assert capsys.readouterr().out == f"{plan}\nfelt: {presets.FELT[name]}\n"
+    words, on_this_machine, felt = capsys.readouterr().out.rstrip().rsplit("\n", 2)
+    assert (words, felt) == (str(plan), f"felt: {presets.FELT[name]}")
+    one, this = (float(number) for number in re.findall(r"(?:takes|plan) ([0-9.]+) ns", on_this_machine))
+    assert this == pytest.approx(one * plan.cost, rel=0.02)  # three digits each
     data = ask(capsys, name)
     assert data == as_json(plan.explain())
     assert [term["name"] for term in data["terms"] if term["form"] != "off"] == [term.name for term in plan.terms]

@@ -15,8 +15,10 @@ class Form(NamedTuple):
 
     name: str
     cost: float
-    """of one evaluation, in Hertz evaluations"""
+    """of one evaluation in contact, in Hertz evaluations"""
     words: str
+    latency: float
+    """the same where each evaluation waits for the last"""
 
 
 class Row(NamedTuple):
@@ -62,6 +64,8 @@ class Term(NamedTuple):
     """what it is called in sentences: ``"van der Waals"``"""
     words: str
     """how it is computed, in words"""
+    latency: float
+    """as the cost, where each evaluation waits for the last"""
 
     @property
     def included(self) -> bool:

@@ -125,8 +125,8 @@ def _total(facts: dict[str, Any]) -> str:
     text = _folds(facts) if facts["quantity"] == "folds" else f"{_within(facts)}; {_folds(facts)}"
     if not math.isnan(facts["model_error"]):
         text += f" (beside Lennard-Jones the model itself errs by {_percent(facts['model_error'])})"
-    cost, full = (in_words(facts[name], "", 3) for name in ("cost", "full_cost"))
-    return f"{text}; cost {cost} Hertz evaluations, everything exact {full}"
+    cost, latency, full = (in_words(facts[name], "", 3) for name in ("cost", "latency", "full_cost"))
+    return f"{text}; cost {cost} Hertz evaluations ({latency} where each waits for the last), everything exact {full}"
 
 
 def _within(facts: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ static py::list terms_of(const nt_plan &plan)
         if (term.name[0] == '\0') // a place for a law of one's own that has none
             continue;
         terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.error, term.cost, term.title,
-                                    term.words));
+                                    term.words, term.latency));
     }
     return terms;
 }
@@ -45,6 +45,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["fold_distance"] = plan.fold_distance;
     out["model_error"] = plan.bound.model_error;
     out["cost"] = plan.cost;
+    out["latency"] = plan.latency;
     out["full_cost"] = plan.full_cost;
     out["scale"] = plan.scale;
     out["elastic_number"] = plan.elastic_number;
@@ -103,7 +104,8 @@ static py::tuple term_rows()
         const nt_term_words &words = *nt_term_words_of(term);
         py::list forms;
         for (int i = 0; i < words.form_count; ++i)
-            forms.append(py::make_tuple(nt_form_name(words.forms[i].form), words.forms[i].cost, words.forms[i].words));
+            forms.append(py::make_tuple(nt_form_name(words.forms[i].form), words.forms[i].cost, words.forms[i].words,
+                                        words.forms[i].latency));
         rows.append(
             py::make_tuple(words.name, words.title, words.doc, words.tail, py::tuple(forms), words.has_pressure != 0));
     }

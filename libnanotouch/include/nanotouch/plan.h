@@ -41,9 +41,10 @@ typedef struct nt_plan_term {
     const char *title; /* "van der Waals" */
     const char *words; /* how it is computed: "Maugis-Dugdale table", "in Derjaguin's form"; "left out" */
     nt_form form;
-    double force; /* the largest force it has in the scene's range; 0: the scene has no such term [N] */
-    double error; /* bound of what this form errs by, in the norm of the demand [-] */
-    double cost;  /* of one evaluation [Hertz evaluations] */
+    double force;   /* the largest force it has in the scene's range; 0: the scene has no such term [N] */
+    double error;   /* bound of what this form errs by, in the norm of the demand [-] */
+    double cost;    /* of one evaluation [Hertz evaluations] */
+    double latency; /* where each waits for the last [Hertz evaluations] */
 } nt_plan_term;
 
 /* Something that the bound does not cover. */
@@ -92,7 +93,9 @@ typedef struct nt_plan {
     nt_accuracy bound;    /* force_error: of the demanded quantity; model_error: of Maugis-Dugdale beside Lennard-Jones,
                              NaN where not known */
     double fold_distance; /* from this far from a fold and from first touch on the bound holds [m] */
-    double cost;          /* of one evaluation [Hertz evaluations] */
+    double cost;          /* of one evaluation in contact, in evaluations of Hertz' contact by nt_interaction_eval_gap,
+                             when they do not wait for each other [Hertz evaluations] */
+    double latency;       /* and when each waits for the last, as in a loop [Hertz evaluations] */
     double full_cost;     /* of everything on, exact [Hertz evaluations] */
     double scale; /* S: errors are over max(|it|, S); of the force max(F_pull-off, floor/accuracy), a thousandth of the
                    * largest load where nothing pulls [N, N/m, m] */

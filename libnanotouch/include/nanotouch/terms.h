@@ -120,7 +120,8 @@ NT_API const char *nt_form_name(nt_form form);
 /* One way to compute a law. */
 typedef struct nt_term_form {
     nt_form form;
-    double cost;       /* of one evaluation, measured (tests/bench/bench_plan.c) [Hertz evaluations] */
+    double cost;       /* of one evaluation in contact, measured (tests/bench/bench_plan.c) [Hertz evaluations] */
+    double latency;    /* the same where each evaluation waits for the last [Hertz evaluations] */
     const char *words; /* "in Derjaguin's form" */
 } nt_term_form;
 

@@ -11,6 +11,7 @@
 #include "scene/terms/term.h"
 
 #define TABLED 2.0     /* the error of a table oscillates within its cells: what was sampled may be half of it */
+#define NOTHING 0.2    /* cost of an evaluation without contact [Hertz evaluations] */
 #define ROUNDING 1e-12 /* of a force in polished and exact tiers, away from folds (docs/contact.md) */
 #define ROOTS 4e-11    /* and of stiffness and radius, which go as a root there: 32 DBL_EPSILON over twice 1e-4 */
 
@@ -26,26 +27,25 @@ enum {
     OTHERS
 };
 static const nt_term_form forms[] = {
-    {NT_FORM_SHAPE, 3.0, "Hertz"},
-    {NT_FORM_SHAPE, 55.0, "law of the sphere"},
-    {NT_FORM_SHAPE, 6.0, "law of the cone"},
-    {NT_FORM_SHAPE, 6.0, "law of the punch"},
-    {NT_FORM_SHAPE, 6.0, "law of the blunted"},
-    {NT_FORM_SHAPE, 6.0, "law of the truncated"},
-    [IN_PLACE_OF_SPHERE] = {NT_FORM_PARABOLOID, 3.0, "Hertz in place of the sphere"},
-    [IN_PLACE_OF_BLUNTED] = {NT_FORM_PARABOLOID, 3.0, "Hertz in place of the blunted"},
-    [LOCAL_HERTZ] = {NT_FORM_LOCAL, 6.0, "Hertz with the radius of each place"},
-    [LOCAL_MAUGIS] = {NT_FORM_LOCAL, 55.0, "Maugis-Dugdale with the radius of each place"}, /* with dU/dR */
-    [MADE_HERTZ] = {NT_FORM_LOCAL, 7.0, "Hertz with radius and modulus of each place"},
-    [MADE_SHAPE] = {NT_FORM_LOCAL, 60.0, "law of the shape with the modulus of each place"},
-    [MADE_MAUGIS] = {NT_FORM_LOCAL, 60.0, "Maugis-Dugdale with radius, modulus and adhesion of each place"},
-    [OTHERS] = {NT_FORM_SERIES, 4.0, "law of the sphere as a series"},
-    {NT_FORM_JKR, 11.0, "JKR"},
-    {NT_FORM_TABLE, 14.0, "Maugis-Dugdale table"},
-    {NT_FORM_POLISHED, 40.0, "Maugis-Dugdale, polished table"},
-    {NT_FORM_EXACT, 280.0, "Maugis-Dugdale, exact"},
-    {NT_FORM_YIELDING, 14.0, "on a sample that yields to all forces together"},
-    {NT_FORM_LOCAL_EXACT, 1100.0, "Maugis-Dugdale, exact, with the radius of each place"},
+    {NT_FORM_SHAPE, 1.0, 1.0, "Hertz"},
+    {NT_FORM_SHAPE, 11.0, 10.0, "law of the sphere"},
+    {NT_FORM_SHAPE, 1.0, 1.9, "law of the cone"},
+    {NT_FORM_SHAPE, 0.65, 0.6, "law of the punch"},
+    {NT_FORM_SHAPE, 1.1, 1.4, "law of the blunted"},
+    {NT_FORM_SHAPE, 18.0, 16.0, "law of the truncated"},
+    [IN_PLACE_OF_SPHERE] = {NT_FORM_PARABOLOID, 1.0, 1.0, "Hertz in place of the sphere"},
+    [IN_PLACE_OF_BLUNTED] = {NT_FORM_PARABOLOID, 1.0, 1.0, "Hertz in place of the blunted"},
+    [LOCAL_HERTZ] = {NT_FORM_LOCAL, 1.2, 1.2, "Hertz with the radius of each place"},
+    [LOCAL_MAUGIS] = {NT_FORM_LOCAL, 4.1, 3.9, "Maugis-Dugdale with the radius of each place"}, /* with dU/dR */
+    [MADE_HERTZ] = {NT_FORM_LOCAL, 1.2, 1.2, "Hertz with radius and modulus of each place"},
+    [MADE_SHAPE] = {NT_FORM_LOCAL, 11.0, 10.0, "law of the shape with the modulus of each place"},
+    [MADE_MAUGIS] = {NT_FORM_LOCAL, 4.1, 3.9, "Maugis-Dugdale with radius, modulus and adhesion of each place"},
+    [OTHERS] = {NT_FORM_SERIES, 1.05, 1.05, "law of the sphere as a series"},
+    {NT_FORM_JKR, 1.5, 2.4, "JKR"},
+    {NT_FORM_TABLE, 1.5, 1.5, "Maugis-Dugdale table"},
+    {NT_FORM_POLISHED, 6.0, 5.6, "Maugis-Dugdale, polished table"},
+    {NT_FORM_YIELDING, 2.2, 2.4, "on a sample that yields to all forces together"},
+    {NT_FORM_LOCAL_EXACT, 68.0, 59.0, "Maugis-Dugdale, exact, with the radius of each place"},
 };
 enum { FORMS = sizeof forms / sizeof forms[0] };
 
@@ -151,8 +151,7 @@ static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
               NT_SAMPLED * more * nt_plan_contact_distance(plan, NT_FORM_PARABOLOID) + plan->curvature_error);
     const double bits = rounding(plan, more);
     offer(plan, options, NT_FORM_TABLE, more * table + bits + plan->curvature_error);
-    offer(plan, options, NT_FORM_POLISHED, 2.0 * bits + plan->curvature_error);
-    offer(plan, options, NT_FORM_EXACT, bits + plan->curvature_error);
+    offer(plan, options, NT_FORM_POLISHED, bits + plan->curvature_error); /* the exact solver is no better */
     offer_local(plan, options, more);
 }
 
@@ -245,8 +244,8 @@ static void offer_none(nt_plan *plan, nt_plan_options *options, double beside)
     offer(plan, options, NT_FORM_OFF, plan->curvature_error);
     if (nt_plan_is_curved(plan))
         offer(plan, options, exact ? NT_FORM_LOCAL_EXACT : NT_FORM_LOCAL, ROUNDING);
-    for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i)
-        options->option[NT_PLAN_CONTACT][i].cost = 0.0;
+    for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) /* what is left: the way there and back */
+        options->option[NT_PLAN_CONTACT][i].cost = options->option[NT_PLAN_CONTACT][i].latency = NOTHING;
 }
 
 static void offer_all(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, double beside)

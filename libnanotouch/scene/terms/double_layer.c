@@ -102,7 +102,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     return 3;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_ON, 17.0, "computed"}};
+static const nt_term_form forms[] = {{NT_FORM_ON, 1.55, 1.5, "computed"}};
 
 const nt_term_row nt_term_double_layer = {
     .words = {"double_layer", "double layer", "linear theory at constant potential (Hogg, Healy, Fuerstenau 1966)",

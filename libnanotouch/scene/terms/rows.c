@@ -13,7 +13,7 @@ const nt_term_row *const nt_term_rows[NT_PLAN_TERMS] = {ROW(CONTACT, contact, ) 
 const unsigned nt_term_offsets[NT_PLAN_TERMS] = {[NT_PLAN_CONTACT] = 0,
                                                  NT_TERMS_BESIDE(OFFSET) NT_TERMS_CUSTOM(OFFSET)};
 
-static const nt_term_form left_out = {NT_FORM_OFF, 0.0, "left out"};
+static const nt_term_form left_out = {NT_FORM_OFF, 0.0, 0.0, "left out"};
 
 const nt_term_words *nt_term_words_of(int term)
 {

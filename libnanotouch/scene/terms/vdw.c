@@ -51,9 +51,9 @@ static nt_pressure pressure(const void *law, double gap)
 }
 
 static const nt_term_form forms[] = {
-    {NT_FORM_DERJAGUIN, 8.0, "in Derjaguin's form"},
-    {NT_FORM_SPHERE, 10.0, "of the sphere"},
-    {NT_FORM_TIP, 18.0, "of the whole tip"},
+    {NT_FORM_DERJAGUIN, 0.3, 0.25, "in Derjaguin's form"},
+    {NT_FORM_SPHERE, 0.5, 0.5, "of the sphere"},
+    {NT_FORM_TIP, 1.1, 1.05, "of the whole tip"},
 };
 
 const nt_term_row nt_term_vdw = {

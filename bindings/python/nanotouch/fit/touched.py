@@ -56,7 +56,7 @@ def youngs_modulus(scene: Scene, effective_modulus: float) -> float:
         raise InvalidValue(
             f"E* = {effective_modulus:g} Pa: with this tip it stays below {1.0 / tip:g} Pa; raise tip.youngs_modulus"
         )
-    return (1.0 - scene.sample.poisson_ratio**2) / (1.0 / effective_modulus - tip)
+    return float((1.0 - scene.sample.poisson_ratio**2) / (1.0 / effective_modulus - tip))
 
 
 def _range_of(law: Law) -> float:

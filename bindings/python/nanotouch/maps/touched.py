@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from .._arrays import Floats
 from ..errors import InvalidValue
+from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
 from ..fit.touched import Law, scene_of, youngs_modulus
 from ..images import Topography, fill
 from ..scene import Scene
 from ..surface import Surface
 from .dataset import determined
-from .settings import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, SHARP, Settings
+from .settings import SHARP, Settings
 
 Fill = Literal["neighbours", "median"]
 #: w below this share of its largest value is none that a surface can carry
