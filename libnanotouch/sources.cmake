@@ -100,7 +100,7 @@ set(nanotouch_sources_scene
     scene/yield_table.c
     scene/yielding.c)
 set(nanotouch_sources_view view/curve.c view/section.c)
-set(nanotouch_sources_hal hal/hal.c hal/rehearsal.c)
+set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c)
 set(nanotouch_sources_dynamics
     dynamics/cantilever.c
     dynamics/cantilever_dynamic.c

@@ -7,46 +7,39 @@
 
 #include "core/axes.h"
 #include "core/problem.h"
+#include "hal/capabilities.h"
 
 #define ALL_CHANNELS ((1u << NT_READS) - 1u)
-#define LONGEST_PERIOD 1.0 /* between the measurements of a half [s] */
 
-static nt_status check_backend(const nt_backend *backend, nt_half half)
+static nt_status check_backend(const nt_backend *backend, nt_half half, nt_problem *problem)
 {
     if (!backend || !backend->read || !backend->write)
         return NT_E_ARGUMENT;
     if (backend->size != sizeof *backend || backend->version != NT_HAL_API_VERSION || backend->half != half)
         return NT_E_UNSUPPORTED;
-    return NT_OK;
-}
-
-static nt_status check_capabilities(const nt_capabilities *found, nt_problem *problem)
-{
-    if (found->axes < 1 || found->axes > NT_AXES)
-        return nt_problem_set(problem, "capabilities.axes", "", found->axes, 1.0, NT_AXES);
-    if (!(found->period >= 0.0 && found->period <= LONGEST_PERIOD))
-        return nt_problem_set(problem, "capabilities.period", "s", found->period, 0.0, LONGEST_PERIOD);
-    if (found->rows < 0 || (found->rows > 0 && !found->channels))
-        return nt_problem_set(problem, "capabilities.rows", "", found->rows, 0.0, found->channels ? HUGE_VAL : 0.0);
+    if (!backend->name || !backend->name[0]) {
+        (void)nt_problem_set(problem, "backends without a name", "", 1.0, 0.0, 0.0);
+        return NT_E_ARGUMENT;
+    }
     return NT_OK;
 }
 
 nt_status nt_hal_open(nt_hal *hal, nt_half half, const nt_hal_choice *choice, const nt_host *host, nt_problem *problem)
 {
-    nt_status status = check_backend(choice->backend, half);
+    nt_status status = check_backend(choice->backend, half, problem);
     if (status != NT_OK)
         return status;
     const nt_backend *backend = choice->backend;
     nt_hal made = {.backend = backend,
                    .context = choice->context ? choice->context : backend->context,
                    .capabilities = {.size = sizeof made.capabilities, .can = NT_CAN_FEEL | NT_CAN_PUSH, .axes = 1},
-                   .reading = {.size = sizeof made.reading, .flags = NT_SAMPLE_INVALID}};
+                   .reading = {.size = sizeof made.reading}}; /* nothing is valid yet */
     if (backend->open)
         status = backend->open(made.context, host, problem);
     if (status == NT_OK && backend->describe)
         status = backend->describe(made.context, &made.capabilities);
     if (status == NT_OK)
-        status = check_capabilities(&made.capabilities, problem);
+        status = nt_capabilities_check(&made.capabilities, problem);
     if (status == NT_OK)
         *hal = made;
     else if (backend->close)

@@ -42,6 +42,8 @@ static nt_status check_table(nt_module *module, const char *path, nt_half half)
                        is_known ? halves[backend->half] : "half unknown here", halves[half]);
         return refuse(module, NT_E_UNSUPPORTED, path, why);
     }
+    if (!backend->name || !backend->name[0])
+        return refuse(module, NT_E_ARGUMENT, path, "its table has no name");
     if (!backend->read || !backend->write)
         return refuse(module, NT_E_ARGUMENT, path, "its table has no read or no write");
     return NT_OK;

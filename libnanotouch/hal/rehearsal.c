@@ -3,7 +3,6 @@
  * called as it is, without what hal.c makes good. */
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "core/problem.h"
 #include "nanotouch/hal.h"
@@ -30,40 +29,6 @@ static nt_status named(play *p, nt_status status, const char *operation)
 {
     if (status != NT_OK && p->problem && !p->problem->field)
         *p->problem = (nt_problem){operation, "nt_status", (double)status, NT_OK, NT_OK};
-    return status;
-}
-
-/* --- what it says of itself --- */
-
-static nt_status check_row(play *p, const nt_channel_row *row)
-{
-    if (!row->name || !row->name[0])
-        return broken(p, "channels without a name", 1.0, 0.0, 0.0);
-    if (!row->unit || (strcmp(row->unit, "m") != 0 && strcmp(row->unit, "N") != 0))
-        return broken(p, "channels with a unit other than m and N", 1.0, 0.0, 0.0);
-    if (row->axis < NT_X || row->axis > NT_Z)
-        return broken(p, "axis of a channel", row->axis, NT_X, NT_Z);
-    if (!(row->minimum < row->maximum))
-        return broken(p, "minimum of a channel", row->minimum, -HUGE_VAL, row->maximum);
-    if (!(row->step >= 0.0) || !(row->noise >= 0.0) || !(row->latency >= 0.0))
-        return broken(p, "step, noise or latency of a channel", fmin(row->step, fmin(row->noise, row->latency)), 0.0,
-                      HUGE_VAL);
-    const int may_stay = isnan(row->safe) && strcmp(row->unit, "m") == 0;
-    if (row->driven && !may_stay && !(row->safe >= row->minimum && row->safe <= row->maximum))
-        return broken(p, "safe value of a driven channel", row->safe, row->minimum, row->maximum);
-    if (!row->driven && !isnan(row->safe))
-        return broken(p, "safe values of channels that are read", 1.0, 0.0, 0.0);
-    return NT_OK;
-}
-
-static nt_status check_channels(play *p)
-{
-    const nt_capabilities *has = &p->hal.capabilities;
-    nt_status status = NT_OK;
-    if (has->size != sizeof *has)
-        return broken(p, "capabilities.size", has->size, sizeof *has, sizeof *has);
-    for (int i = 0; i < has->rows && status == NT_OK; ++i)
-        status = check_row(p, &has->channels[i]);
     return status;
 }
 
@@ -173,8 +138,7 @@ static nt_status play_life(play *p, int is_armed)
     if (status != NT_OK)
         return named(p, status, "open");
     p->seen->capabilities = p->hal.capabilities;
-    status = check_channels(p);
-    if (status == NT_OK && is_armed)
+    if (is_armed)
         status = play_armed(p);
     nt_hal_close(&p->hal);
     return status;

@@ -42,8 +42,10 @@ static inline nt_status open_device(void *context, const nt_host *host, nt_probl
 static inline nt_status describe_device(void *context, nt_capabilities *capabilities)
 {
     device *d = context;
+    const uint32_t size = capabilities->size; /* the host's to set */
     if (d->describes_itself)
         *capabilities = d->says;
+    capabilities->size = size;
     return note(d, 'd', d->describes);
 }
 

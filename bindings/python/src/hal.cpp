@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <thread>
 #include <utility>
@@ -12,6 +13,14 @@
 static py::object hal_name(const char *name)
 {
     return py::module_::import("nanotouch.hal").attr(name);
+}
+
+py::str text_of(const char *text)
+{
+    PyObject *decoded = PyUnicode_DecodeUTF8(text, static_cast<py::ssize_t>(std::strlen(text)), "replace");
+    if (!decoded)
+        throw py::error_already_set();
+    return py::reinterpret_steal<py::str>(decoded);
 }
 
 // --- a shared object ---
@@ -120,6 +129,9 @@ static nt_status describe_python(void *context, nt_capabilities *capabilities)
 {
     return guarded(context, [capabilities](PythonHalf &half) {
         const py::object found = half.self.attr("describe")();
+        if (!py::isinstance(found, hal_name("Capabilities")))
+            throw py::type_error("describe: it must return a nanotouch.hal.Capabilities, not " +
+                                 py::repr(found).cast<std::string>());
         const auto bit = [&](const char *name, uint32_t value) { return found.attr(name).cast<bool>() ? value : 0u; };
         capabilities->can = bit("feels", NT_CAN_FEEL) | bit("pushes", NT_CAN_PUSH) | bit("servos", NT_CAN_SERVO) |
                             bit("event_driven", NT_IS_EVENT_DRIVEN) | NT_IS_SLOW;
@@ -193,6 +205,9 @@ static void fill(PythonHalf &half, const py::object &found, nt_reading &reading)
     made.flags = flags_of(found.attr("flags"));
     made.buttons = found.attr("buttons").cast<uint32_t>();
     const py::object number = found.attr("sequence"), time = found.attr("time");
+    if (!number.is_none() && (!PyLong_Check(number.ptr()) || number < py::int_(0)))
+        throw py::value_error("read: sequence = " + py::repr(number).cast<std::string>() +
+                              ": valid are whole numbers from 0 up");
     made.sequence = half.sequence = number.is_none() ? half.sequence + 1u : number.cast<uint64_t>();
     made.time = time.is_none() ? half.host->get().now(half.host->host) : time.cast<int64_t>();
     reading = made;
@@ -284,7 +299,7 @@ static void stage_pass(const nt_host *host, double period)
 
 static void stage_say(const nt_host *host, const char *text)
 {
-    stage_of(host).said.emplace_back(text);
+    stage_of(host).said.emplace_back(text ? text : "(no text)");
 }
 
 static void raise_rehearsed(nt_status status, const nt_problem &problem, const std::string &what)
@@ -299,6 +314,9 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
 {
     const nt_half half = is_master ? NT_HALF_MASTER : NT_HALF_SLAVE;
     const std::shared_ptr<Half> made = half_of(given, half);
+    if (!made)
+        throw py::type_error(
+            "rehearse: None is neither a nanotouch.hal.Master, a Slave nor a nanotouch.hal.SharedObject");
     Stage stage{real, 0, {}};
     const nt_host host = {sizeof host, NT_HAL_API_VERSION, stage_now, stage_say, &stage};
     const nt_configuration configuration = {sizeof configuration, 0, period, 1e-6, made->option.c_str()};
@@ -311,8 +329,13 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
         status = nt_hal_rehearse(&rehearsal, &seen, &problem);
     }
     made->rethrow();
-    raise_rehearsed(status, problem, std::string("rehearsal of ") + made->choice.backend->name);
-    return py::make_tuple(seen.readings, seen.oldest, stage.said);
+    raise_rehearsed(status, problem,
+                    std::string("rehearsal of ") +
+                        (made->choice.backend->name ? made->choice.backend->name : "a backend"));
+    py::list said;
+    for (const std::string &line : stage.said)
+        said.append(text_of(line.c_str()));
+    return py::make_tuple(seen.readings, seen.oldest, said);
 }
 
 void bind_hal(py::module_ &module)

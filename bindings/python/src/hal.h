@@ -19,6 +19,9 @@ struct Half {
     }
 };
 
+// What a backend says; bytes that are no UTF-8 are shown as such.
+py::str text_of(const char *text);
+
 // given: None (a null pointer: simulated), nanotouch.hal.SharedObject, or an object of a class derived from
 // nanotouch.hal.Master or Slave; raises if it is none of them, is the other half, or cannot be loaded.
 std::shared_ptr<Half> half_of(const py::object &given, nt_half half);
