@@ -126,8 +126,10 @@ nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflig
 {
     if (state->verdict != NT_PREFLIGHT_RUNNING)
         return state->verdict;
-    if (!is_good(preflight, sample))
+    if (!is_good(preflight, sample)) {
+        state->measure = (double)sample->flags;
         return state->verdict = NT_PREFLIGHT_BAD_SAMPLE;
+    }
     const uint32_t tare = 2u * preflight->ticks, move = preflight->move;
     if (state->tick < tare)
         weigh(preflight, state, sample);
@@ -150,6 +152,8 @@ nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_prefligh
     const double value = state->measure;
     switch (state->verdict) {
     case NT_PREFLIGHT_BAD_SAMPLE:
+        if ((uint32_t)value & NT_SAMPLE_EMERGENCY_STOP)
+            return (nt_problem){"emergency stop before arming", "no|yes", 1.0, 0.0, 0.0};
         return (nt_problem){"a sample before arming", "", NAN, -INFINITY, INFINITY};
     case NT_PREFLIGHT_DEFLECTION_BIAS:
         return (nt_problem){"deflection bias", "m", value, -limits->deflection_bias, limits->deflection_bias};

@@ -14,7 +14,7 @@ nt_sampled nt_sampled_make(double mass, double damping, double stiffness, double
                        .damping = damping,
                        .stiffness = stiffness,
                        .period = period,
-                       .whole = (int)floor(dead_time / period + 1e-9)};
+                       .whole = (int)fmin(1e9, floor(dead_time / period + 1e-9))};
     const double split = fmax(0.0, dead_time / period - part.whole);
     const nt_lti continuous = {.order = 2,
                                .a = {{0.0, 1.0}, {-stiffness * period / mass * period, -damping / mass * period}},

@@ -9,6 +9,9 @@
 #include "control/sampled.h"
 #include "nanotouch/material.h"
 
+/* A dead time beyond this takes as many steps along the circle, and no gain is left to speak of [periods]. */
+enum { LONGEST = 10000 };
+
 /* Gains, each with the others as they are given. */
 typedef enum gain { STAGE_GAIN, FORCE_GAIN_IN_AIR, FORCE_GAIN_IN_CONTACT, KAPPA_WITHOUT_GAIN, KAPPA, GAINS } gain;
 
@@ -123,18 +126,22 @@ static void march(const asked *question, crossing found[GAINS])
 
 nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness)
 {
-    const int is_damped = loop->master.damping > 0.0;
+    const int is_closed = loop->master.damping > 0.0 && loop->master.whole <= LONGEST;
     nt_sampled_loop walked = *loop;
-    if (!is_damped) /* the stage's own loop does not ask the master */
+    if (loop->stage.whole > LONGEST)
+        return (nt_sampled_limits){0.0, NAN, 0.0, 0.0};
+    if (!is_closed) { /* the stage's own loop does not ask the master */
         walked.master.damping = walked.master.mass / walked.master.period;
+        walked.master.whole = walked.stage.whole;
+    }
     const asked question = {&walked, force_gain, reflected_stiffness};
     crossing found[GAINS];
     for (int which = 0; which < GAINS; which++)
         found[which] = (crossing){INFINITY, NAN};
     march(&question, found);
     nt_sampled_limits limits = {0.0, NAN, 0.0, found[STAGE_GAIN].limit};
-    if (!is_damped)
-        return limits; /* nothing takes out what the holds put in */
+    if (!is_closed)
+        return limits; /* nothing takes out what the holds put in, or it comes too late */
     if (stage_gain(loop) >= found[STAGE_GAIN].limit)
         return limits;
     if (force_gain < found[FORCE_GAIN_IN_AIR].limit) {

@@ -90,6 +90,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .deflection_range = nt_probe_deflection_range(probe),
                            .free_force = probe->spring_constant * (FREE_SIGMA * sigma + step),
                            .master_range = rig->master.travel,
+                           .leads_sideways = rig->master.axes > 1.0 && rig->stage.axes > 1.0,
                            .gauge_range = rig->master.gauge != 0.0 ? rig->master.gauge_range : 0.0,
                            .stage_range = rig->stage.travel,
                            .stuck_distance = shows_noise ? travelled : 0.0,
@@ -120,6 +121,12 @@ static int is_within(double value, double range)
     return fabs(value) <= range;
 }
 
+static int is_within_sideways(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    return is_within(sample->master_position[NT_X], supervisor->master_range) &&
+           is_within(sample->master_position[NT_Y], supervisor->master_range);
+}
+
 /* Numbers that no sensor of this rig can give (twice its range) are as bad as no numbers. The deflection is judged by
  * its force. */
 static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
@@ -127,6 +134,7 @@ static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
     const double gauge = supervisor->gauge_range;
     return !(sample->flags & (NT_SAMPLE_INVALID | NT_SAMPLE_DEVICE_LOST)) &&
            is_within(sample->master_position[NT_Z], supervisor->master_range) &&
+           (!supervisor->leads_sideways || is_within_sideways(supervisor, sample)) &&
            (gauge == 0.0 || is_within(sample->operator_force[NT_Z], 2.0 * gauge)) &&
            is_within(sample->stage_position[NT_Z], supervisor->stage_range) && isfinite(sample->deflection[NT_Z]) &&
            isfinite(sample->stage_position[NT_X]) && isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) &&

@@ -58,7 +58,7 @@ static void every_trouble_is_refused_by_name(void **state)
         {.gain = 1.0,
          .flags = NT_SAMPLE_EMERGENCY_STOP,
          .verdict = NT_PREFLIGHT_BAD_SAMPLE,
-         .field = "a sample before arming"},
+         .field = "emergency stop before arming"},
     };
     const nt_rig rig = nt_rig_defaults();
     for (double rate = 300.0; rate < 200e3; rate *= 5.0) {

@@ -265,6 +265,26 @@ static void every_number_of_a_sample_is_checked(void **unused)
     assert_int_equal(step(&in), NT_HOLD);
 }
 
+/* x and y of a hand count where they lead the tip, and only there. */
+static void a_hand_that_leads_sideways_is_judged_there(void **unused)
+{
+    (void)unused;
+    const double bad[] = {NAN, HUGE_VAL, 1.01 * touch.rig.master.travel};
+    nt_rig rig = touch.rig;
+    rig.master.axes = 3.0;
+    const nt_supervisor leading = nt_supervisor_make(&rig, &touch.settings);
+    const nt_situation situation = {.reference = 1e-6};
+    for (int axis = NT_X; axis < NT_Z; axis++)
+        for (int j = 0; j < 3; j++) {
+            input in = healthy(NT_RUN);
+            in.sample.master_position[axis] = bad[j];
+            assert_int_equal(nt_supervisor_step(&touch.supervisor, &in.history, &in.sample, &situation), NT_RUN);
+            assert_int_equal(nt_supervisor_step(&leading, &in.history, &in.sample, &situation), NT_HOLD);
+            assert_int_equal(nt_supervisor_step(&leading, &in.history, &in.sample, &situation), NT_RETRACT);
+            assert_int_equal(in.history.reasons, NT_REASON_INVALID);
+        }
+}
+
 static void a_good_sample_between_bad_ones_ends_the_run(void **unused)
 {
     (void)unused;
@@ -324,6 +344,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_state_and_every_pair_of_events),
         cmocka_unit_test(every_number_of_a_sample_is_checked),
+        cmocka_unit_test(a_hand_that_leads_sideways_is_judged_there),
         cmocka_unit_test(a_good_sample_between_bad_ones_ends_the_run),
         cmocka_unit_test(just_inside_every_limit_is_run),
         cmocka_unit_test(a_master_that_falls_silent_holds),

@@ -50,6 +50,7 @@ typedef struct nt_supervisor {
     double deflection_range; /* [m] */
     double free_force;       /* forces below this are the sensor's noise [N] */
     double master_range;     /* readings beyond these cannot be [m] */
+    int leads_sideways;      /* a master of three axes: its x and y are judged, too */
     double gauge_range;      /* [N], 0 without a gauge */
     double stage_range;      /* [m] */
     double stuck_distance;   /* deflections without noise over this travel are a dead sensor, 0: cannot be told [m] */
