@@ -151,10 +151,12 @@ set(nanotouch_sources_session
     session/history.c
     session/inputs.c
     session/observer.c
+    session/origin.c
     session/pace.c
     session/requests.c
     session/run.c
     session/session.c
+    session/setup.c
     session/shared_memory.c
     session/terrain.c
     session/terrain_reach.c)

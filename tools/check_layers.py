@@ -63,7 +63,7 @@ PYTHON_LAYERS = {
     "descriptions": "description _custom scene presets",
     "measured": "images surface curves",
     "what is computed": "_plan_terms _plan_text plan interaction view reference",
-    "a touch": "_live _path _control supervisor _recorder record replay margins operator options session",
+    "a touch": "_live _path _control supervisor _recorder record replay margins operator options _open session",
     "results": "plots fit maps batch",
     "a process of its own": "_worker_process",
 }

@@ -7,37 +7,22 @@
 #include "core/problem.h"
 #include "session/state.h"
 
-/* Would the loop be armed in this mode, with these scales? */
-static nt_status check_margin(const nt_session *session, nt_mode mode, const nt_scaling *scaling, nt_problem *problem)
+static nt_status compose_mode(const nt_session *session, nt_call *call, nt_problem *problem)
 {
-    const nt_composition *now = session->now;
-    nt_settings settings = now->setup.settings;
-    settings.gains.alpha_p = scaling->alpha_p;
-    settings.gains.alpha_f = scaling->alpha_f;
-    nt_margins margins;
-    const nt_verdict verdict = nt_composition_judge(now, &settings, mode, &margins);
-    if (nt_composition_allows(now, verdict.margin))
-        return NT_OK;
-    (void)nt_problem_set(problem, verdict.field, "", verdict.margin, now->setup.minimum_margin, INFINITY);
-    return NT_E_RANGE;
-}
-
-static nt_status check_mode(const nt_session *session, double mode, nt_problem *problem)
-{
+    const nt_gains *gains = &session->now->setup.settings.gains;
+    const nt_scaling scaling = {gains->alpha_p, gains->alpha_f};
+    const double mode = call->event.value[0];
     if (!(mode >= 0.0 && mode <= NT_MODE_CURVE && mode == floor(mode))) {
         (void)nt_problem_set(problem, "mode", "touch|topography|approach|curve", mode, 0.0, NT_MODE_CURVE);
         return NT_E_ARGUMENT;
     }
-    return check_margin(session, (nt_mode)mode, &session->asked_scaling, problem);
+    return nt_compose_standing(&call->next, session->now, (nt_mode)mode, &scaling, problem);
 }
 
-static nt_status check_scaling(const nt_session *session, const nt_scaling *scaling, nt_problem *problem)
+static nt_status compose_scaling(const nt_session *session, nt_call *call, nt_problem *problem)
 {
-    if (!(scaling->alpha_p > 0.0 && isfinite(scaling->alpha_p)))
-        return nt_problem_set(problem, "alpha_p", "m/m", scaling->alpha_p, 0.0, INFINITY);
-    if (!(scaling->alpha_f > 0.0 && isfinite(scaling->alpha_f)))
-        return nt_problem_set(problem, "alpha_f", "N/N", scaling->alpha_f, 0.0, INFINITY);
-    return check_margin(session, session->asked_mode, scaling, problem);
+    const nt_scaling scaling = {call->event.value[0], call->event.value[1]};
+    return nt_compose_standing(&call->next, session->now, session->now->setup.mode, &scaling, problem);
 }
 
 /* What a surface gives at each place is not the scene's to change. */
@@ -71,40 +56,49 @@ static const nt_field *fields_of(uint32_t kind, int *count)
     return kind == NT_EVENT_SETTING ? nt_settings_fields(count) : nt_scene_fields(count);
 }
 
-/* The setup with one field changed, in the mode and at the scales that were asked for last, composed anew. */
+/* The setup with one field changed, composed anew. */
 static nt_status compose_change(const nt_session *session, nt_call *call, nt_problem *problem)
 {
     int count;
     const nt_field *fields = fields_of(call->event.kind, &count);
-    if (call->event.field >= (uint32_t)count || is_fixed(session, fields[call->event.field].name))
+    if (call->event.field >= (uint32_t)count)
         return NT_E_ARGUMENT;
+    const nt_field *field = &fields[call->event.field];
     nt_session_setup setup = session->now->setup;
-    setup.mode = session->asked_mode;
-    setup.settings.gains.alpha_p = session->asked_scaling.alpha_p;
-    setup.settings.gains.alpha_f = session->asked_scaling.alpha_f;
     const int is_setting = call->event.kind == NT_EVENT_SETTING;
     void *object = is_setting ? (void *)&setup.settings : (void *)&setup.scene;
-    nt_field_set(&fields[call->event.field], object, call->event.value[0]);
+    if (is_fixed(session, field->name)) {
+        const double stays = nt_field_get(field, object);
+        (void)nt_problem_set(problem, field->name, field->unit, call->event.value[0], stays, stays);
+        return NT_E_ARGUMENT;
+    }
+    nt_field_set(field, object, call->event.value[0]);
     const nt_status status =
         is_setting ? nt_settings_check(&setup.settings, problem) : nt_scene_check(&setup.scene, problem);
     return status == NT_OK ? nt_compose(&call->next, &setup, session->now, problem) : status;
 }
 
+static nt_status check_yes(double value, const char *what, nt_problem *problem)
+{
+    return value == 0.0 || value == 1.0 ? NT_OK : nt_problem_set(problem, what, "no|yes", value, 0.0, 1.0);
+}
+
 nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_problem *problem)
 {
     const double *value = call->event.value;
-    const nt_scaling scaling = {value[0], value[1]};
     switch ((nt_event_kind)call->event.kind) {
     case NT_EVENT_STOP:
+        return check_yes(value[0], "stop", problem);
     case NT_EVENT_ARM:
+        return check_yes(value[0], "arm", problem);
     case NT_EVENT_CLUTCH:
-        return NT_OK;
+        return check_yes(value[0], "clutch", problem);
     case NT_EVENT_AIM:
         return nt_session_check_place(session, value[0], value[1], value[2], problem);
     case NT_EVENT_MODE:
-        return check_mode(session, value[0], problem);
+        return compose_mode(session, call, problem);
     case NT_EVENT_RESCALE:
-        return check_scaling(session, &scaling, problem);
+        return compose_scaling(session, call, problem);
     case NT_EVENT_SETTING:
     case NT_EVENT_SCENE:
         return compose_change(session, call, problem);
@@ -119,6 +113,10 @@ nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_proble
 static nt_status request(nt_session *session, const nt_event *event, nt_problem *problem)
 {
     nt_call call = {.event = *event};
+    if (!session)
+        return NT_E_ARGUMENT;
+    if (nt_session_runs_here(session))
+        return NT_E_STATE;
     nt_session_lock(session);
     nt_status status = nt_session_prepare(session, &call, problem);
     if (status == NT_OK)
@@ -144,6 +142,8 @@ nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *pro
 
 nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling, nt_problem *problem)
 {
+    if (!scaling)
+        return NT_E_ARGUMENT;
     const nt_event event = {.kind = NT_EVENT_RESCALE, .value = {scaling->alpha_p, scaling->alpha_f}};
     return request(session, &event, problem);
 }
@@ -152,7 +152,7 @@ nt_status nt_session_change(nt_session *session, nt_event_kind kind, const char 
                             nt_problem *problem)
 {
     nt_event event = {.kind = (uint32_t)kind, .value = {value}};
-    if (kind != NT_EVENT_SETTING && kind != NT_EVENT_SCENE)
+    if (!field || (kind != NT_EVENT_SETTING && kind != NT_EVENT_SCENE))
         return NT_E_ARGUMENT;
     int count;
     const nt_field *fields = fields_of(event.kind, &count);
@@ -170,11 +170,15 @@ nt_status nt_session_rewind(nt_session *session, double duration, nt_problem *pr
 
 nt_status nt_session_inject(nt_session *session, const nt_fault *fault)
 {
+    if (!session || !fault)
+        return NT_E_ARGUMENT;
     nt_fault shifted = *fault;
     if (nt_session_is_running(session))
         return NT_E_STATE;
     if (fault->start < 0.0)
         return NT_E_RANGE;
+    if (!nt_session_has_fault(fault, session->simulates[NT_HALF_MASTER], session->simulates[NT_HALF_SLAVE]))
+        return NT_E_UNSUPPORTED;
     shifted.start += (double)session->flights * session->now->touch.period;
     nt_status status = NT_E_UNSUPPORTED;
     if (session->simulates[NT_HALF_MASTER])

@@ -11,6 +11,7 @@
 #if defined(__linux__)
 
 #include <errno.h>
+#include <pthread.h>
 #include <time.h>
 
 #define NAP 100000 /* between two looks at a lock [ns] */
@@ -38,14 +39,21 @@ void nt_session_keep_time(nt_session *session)
     nt_session_sleep_until(session->deadline);
 }
 
+uintptr_t nt_session_thread(void)
+{
+    return (uintptr_t)pthread_self();
+}
+
 void nt_session_lock(nt_session *session)
 {
     while (atomic_flag_test_and_set_explicit(&session->asking, memory_order_acquire))
         nt_session_sleep_until(nt_session_machine_time() + NAP);
+    atomic_store_explicit(&session->asker, nt_session_thread(), memory_order_relaxed);
 }
 
 void nt_session_unlock(nt_session *session)
 {
+    atomic_store_explicit(&session->asker, 0, memory_order_relaxed);
     atomic_flag_clear_explicit(&session->asking, memory_order_release);
 }
 
@@ -63,13 +71,24 @@ void nt_session_keep_time(nt_session *session)
 {
     (void)session;
 }
+uintptr_t nt_session_thread(void)
+{
+    return 1;
+}
 void nt_session_lock(nt_session *session)
 {
-    (void)session;
+    atomic_store_explicit(&session->asker, 1, memory_order_relaxed);
 }
 void nt_session_unlock(nt_session *session)
 {
-    (void)session;
+    atomic_store_explicit(&session->asker, 0, memory_order_relaxed);
 }
 
 #endif
+
+int nt_session_runs_here(const nt_session *session)
+{
+    const uintptr_t here = nt_session_thread();
+    return atomic_load_explicit(&session->ticker, memory_order_relaxed) == here ||
+           atomic_load_explicit(&session->asker, memory_order_relaxed) == here;
+}

@@ -135,6 +135,8 @@ static int holds_lease(const nt_client *client)
 
 nt_status nt_client_lease(nt_client *client)
 {
+    if (nt_word_of(&client->block->beat) == 0)
+        return NT_E_DEVICE; /* closed */
     const uint64_t term = (uint64_t)(1e3 * NT_LEASE_TERM), now = nt_shared_clock() / 1000000u;
     uint64_t lease = nt_word_of(&client->commands->lease);
     uint64_t epoch = lease / one_epoch;
@@ -184,6 +186,8 @@ static void write_request(nt_request_slot *slot, const nt_request *request)
 
 nt_status nt_client_post(nt_client *client, nt_request *request)
 {
+    if (nt_word_of(&client->block->beat) == 0)
+        return NT_E_DEVICE; /* closed */
     if (request->kind == NT_REQUEST_STOP) {
         request->id = NT_STOP_BIT | (atomic_fetch_add(&client->commands->stops, 1) + 1);
         return NT_OK;

@@ -96,30 +96,14 @@ static void set_borders(nt_composition *made)
     }
 }
 
-static int is_same(const nt_field *fields, int count, const void *a, const void *b)
-{
-    for (int i = 0; i < count; ++i)
-        if (nt_field_get(&fields[i], a) != nt_field_get(&fields[i], b))
-            return 0;
-    return 1;
-}
-
 static int has_same_scene(const nt_session_setup *a, const nt_session_setup *b)
 {
     int count;
     const nt_field *fields = nt_scene_fields(&count);
-    return is_same(fields, count, &a->scene, &b->scene);
-}
-
-int nt_composition_is_same(const nt_session_setup *a, const nt_session_setup *b)
-{
-    int count;
-    const nt_field *fields = nt_settings_fields(&count);
-    if (!is_same(fields, count, &a->settings, &b->settings) || a->settings.control.choice != b->settings.control.choice)
-        return 0;
-    fields = nt_rig_fields(&count);
-    return has_same_scene(a, b) && is_same(fields, count, &a->rig, &b->rig) && a->surface == b->surface &&
-           a->map.heights == b->map.heights && a->properties == b->properties;
+    for (int i = 0; i < count; ++i)
+        if (nt_field_get(&fields[i], &a->scene) != nt_field_get(&fields[i], &b->scene))
+            return 0;
+    return 1;
 }
 
 static int keeps_terrain(const nt_session_setup *setup, const nt_composition *before)
@@ -153,6 +137,26 @@ nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const
         *made = next;
     else
         nt_composition_close(next, before);
+    return status;
+}
+
+nt_status nt_compose_standing(nt_composition **made, const nt_composition *before, nt_mode mode,
+                              const nt_scaling *scaling, nt_problem *problem)
+{
+    nt_composition *next = malloc(sizeof *next);
+    if (!next)
+        return NT_E_NO_MEMORY;
+    *next = *before;
+    next->setup.mode = mode;
+    next->setup.settings.gains.alpha_p = scaling->alpha_p;
+    next->setup.settings.gains.alpha_f = scaling->alpha_f;
+    nt_status status = nt_settings_check(&next->setup.settings, problem);
+    if (status == NT_OK)
+        status = promise(next, problem);
+    if (status == NT_OK)
+        *made = next;
+    else
+        free(next);
     return status;
 }
 

@@ -60,10 +60,16 @@ void nt_frames_close(nt_frames *frames)
 {
     if (!frames)
         return;
-    atomic_store(&frames->block->beat, 0);
+    if (nt_frames_are_own(frames))
+        atomic_store(&frames->block->beat, 0);
     nt_shared_close(&frames->commands_memory);
     nt_shared_close(&frames->frames_memory);
     free(frames);
+}
+
+int nt_frames_are_own(const nt_frames *frames)
+{
+    return frames->frames_memory.file < 0 || nt_shared_is_own(&frames->frames_memory);
 }
 
 void nt_frames_publish(nt_frames *frames, const nt_frame *frame)

@@ -122,6 +122,8 @@ static inline uint64_t nt_request_check(const nt_request *request)
     return hash ^ hash >> 32;
 }
 
+/* Is this the process that made them, or are they private to each? */
+int nt_frames_are_own(const nt_frames *frames);
 /* Maps the frames of that name for reading. Status as of nt_observer_attach. */
 nt_status nt_frames_attach(nt_shared *shared, const nt_frames_block **block, const char *name);
 /* Seconds since the last sign of life; infinite if closed. */

@@ -6,6 +6,8 @@
 #include "core/problem.h"
 #include "session/state.h"
 
+#define MOST_SUBSTEPS 20000.0 /* of a cantilever in a period; the session would hardly move on */
+
 static int64_t session_now(const nt_host *host)
 {
     return ((const nt_session *)host->context)->time;
@@ -70,6 +72,18 @@ static nt_status open_slave(nt_session *session, nt_problem *problem)
     return status == NT_OK ? nt_hal_open(&session->slave, NT_HALF_SLAVE, &choice, &session->host, problem) : status;
 }
 
+static nt_status check_substep(const nt_session *session, nt_problem *problem)
+{
+    const nt_sim_slave *slave = &session->sim.slave;
+    if (!session->simulates[NT_HALF_SLAVE] || !slave->dynamic)
+        return NT_OK;
+    const nt_cantilever_model *model = &slave->cantilever_model;
+    const double least = model->rate * model->period / MOST_SUBSTEPS;
+    if (model->substep >= least)
+        return NT_OK;
+    return nt_problem_set(problem, "substep", "rad", model->substep, least, 1e9);
+}
+
 /* What the halves say of themselves against what the rig says of them: margins and stale limits count with the rig. */
 static nt_status check_halves(const nt_session *session, nt_problem *problem)
 {
@@ -79,7 +93,8 @@ static nt_status check_halves(const nt_session *session, nt_problem *problem)
     if (master->can & slave->can & NT_LEADS_CLOCK)
         return nt_problem_set(problem, "halves that lead the clock", "", 2.0, 0.0, 1.0);
     if (master->period > 1.001 * fmax(declared, period))
-        return nt_problem_set(problem, "master.rate", "Hz", described->rate, 0.0, 1.0 / master->period);
+        return nt_problem_set(problem, "master.rate (of the loop where it is 0)", "Hz", 1.0 / fmax(declared, period),
+                              0.0, 1.0 / master->period);
     if (slave->period > 1.001 * period)
         return nt_problem_set(problem, "gains.rate", "Hz", 1.0 / period, 0.0, 1.0 / slave->period);
     if (session->now->setup.rig.stage.axes > 1.0 && slave->axes < 2)
@@ -117,14 +132,18 @@ static nt_status configure(nt_session *session, nt_problem *problem)
 }
 
 /* A real master is where it is; the stage follows from there. */
-static nt_status find_master(nt_session *session)
+static nt_status find_master(nt_session *session, nt_problem *problem)
 {
     nt_sample sample;
     const nt_status status = nt_session_sample(session, 0, &sample);
     if (status != NT_OK)
         return status;
     session->master_start = sample.master_position[NT_Z];
-    return isfinite(session->master_start) ? NT_OK : NT_E_DEVICE;
+    if (isfinite(session->master_start))
+        return NT_OK;
+    const double end = 0.5 * session->now->setup.rig.master.travel;
+    (void)nt_problem_set(problem, "the master's first reading along z", "m", session->master_start, -end, end);
+    return NT_E_DEVICE;
 }
 
 nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
@@ -135,13 +154,15 @@ nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
         status = open_slave(session, problem);
     if (status == NT_OK)
         status = check_halves(session, problem);
+    if (status == NT_OK)
+        status = check_substep(session, problem);
     if (status == NT_OK && (session->master.capabilities.can | session->slave.capabilities.can) & NT_IS_REAL)
         session->clock = nt_session_machine_time;
     if (status == NT_OK)
         status = configure(session, problem);
     session->master_start = session->sim.master.arm[NT_Z].position;
     if (status == NT_OK && !session->simulates[NT_HALF_MASTER])
-        status = find_master(session);
+        status = find_master(session, problem);
     return status;
 }
 

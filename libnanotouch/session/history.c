@@ -14,38 +14,53 @@ static int is_simulated(const nt_session *session)
 
 static void save(const nt_session *session, nt_past *past)
 {
-    past->setup = session->now->setup;
+    const nt_composition *now = session->now;
+    past->setup = now->setup;
+    past->touch = now->touch;
+    past->margins = now->margins;
+    past->guarantee = now->guarantee;
     past->touch_state = session->touch_state;
     past->sim = session->sim;
     past->readings[NT_HALF_MASTER] = session->master.reading;
     past->readings[NT_HALF_SLAVE] = session->slave.reading;
-    past->asked_mode = session->asked_mode;
-    past->asked_scaling = session->asked_scaling;
 }
 
-/* Pointers stay those of the session that goes on. */
+/* Mode and scales, and what was judged of them. Pointers stay those of the session that goes on. */
+static void load_standing(nt_composition *now, const nt_past *past)
+{
+    const nt_control control = now->touch.settings.control;
+    now->setup.mode = past->setup.mode;
+    now->setup.settings.gains = past->setup.settings.gains;
+    now->margins = past->margins;
+    now->guarantee = past->guarantee;
+    now->touch = past->touch;
+    now->touch.settings.control = control;
+}
+
 static void load(nt_session *session, const nt_past *past)
 {
     const nt_host *host = session->sim.slave.link.host;
+    load_standing(session->now, past);
     session->touch_state = past->touch_state;
     session->sim = past->sim;
     session->sim.master.link.host = session->sim.slave.link.host = host;
     session->sim.slave.plan = nt_terrain_plan(session->now->terrain);
     session->master.reading = past->readings[NT_HALF_MASTER];
     session->slave.reading = past->readings[NT_HALF_SLAVE];
-    session->asked_mode = past->asked_mode;
-    session->asked_scaling = past->asked_scaling;
 }
 
 /* --- snapshots --- */
 
 struct nt_snapshot {
     nt_past past;
+    nt_origin origin;
 };
 
 nt_status nt_session_snapshot(const nt_session *session, nt_snapshot **snapshot)
 {
-    if (nt_session_is_running(session))
+    if (!session || !snapshot)
+        return NT_E_ARGUMENT;
+    if (nt_session_runs_here(session) || nt_session_is_running(session))
         return NT_E_STATE;
     if (!is_simulated(session))
         return NT_E_UNSUPPORTED;
@@ -53,18 +68,30 @@ nt_status nt_session_snapshot(const nt_session *session, nt_snapshot **snapshot)
     if (!made)
         return NT_E_NO_MEMORY;
     save(session, &made->past);
+    made->origin = session->origin;
     *snapshot = made;
     return NT_OK;
 }
 
-nt_status nt_session_restore(nt_session *session, const nt_snapshot *snapshot)
+static nt_status check_snapshot(const nt_session *session, const nt_snapshot *snapshot, nt_problem *problem)
 {
-    if (nt_session_is_running(session) || !nt_composition_is_same(&snapshot->past.setup, &session->now->setup))
+    if (nt_session_runs_here(session) || nt_session_is_running(session))
         return NT_E_STATE;
     if (!is_simulated(session))
         return NT_E_UNSUPPORTED;
+    const nt_status status = nt_origin_check(&snapshot->origin, &session->origin, problem);
+    return status == NT_OK ? nt_origin_check_setup(&snapshot->past.setup, &session->now->setup, problem) : status;
+}
+
+nt_status nt_session_restore(nt_session *session, const nt_snapshot *snapshot, nt_problem *problem)
+{
+    if (!session || !snapshot)
+        return NT_E_ARGUMENT;
+    nt_status status = check_snapshot(session, snapshot, problem);
+    if (status != NT_OK)
+        return status;
     const nt_event event = {.kind = NT_EVENT_REWIND, .value = {(double)snapshot->past.touch_state.ticks}};
-    const nt_status status = nt_session_keep_event(session, &event);
+    status = nt_session_keep_event(session, &event);
     if (status == NT_OK)
         load(session, &snapshot->past);
     return status;
@@ -104,7 +131,8 @@ nt_status nt_history_back(nt_session *session, uint64_t tick)
     const uint64_t oldest = history->next > NT_HISTORY ? history->next - NT_HISTORY : 0u;
     while (history->next > oldest) {
         const nt_past *past = &history->moments[(history->next - 1u) % NT_HISTORY];
-        if (past->touch_state.ticks <= tick && nt_composition_is_same(&past->setup, &session->now->setup)) {
+        if (past->touch_state.ticks <= tick &&
+            nt_origin_check_setup(&past->setup, &session->now->setup, NULL) == NT_OK) {
             load(session, past);
             return NT_OK;
         }

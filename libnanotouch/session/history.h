@@ -7,11 +7,12 @@
 
 typedef struct nt_past {
     nt_session_setup setup;
+    nt_touch touch;
+    nt_margins margins;
+    nt_guarantee guarantee;
     nt_touch_state touch_state;
     nt_sim sim;
     nt_reading readings[2];
-    nt_mode asked_mode;
-    nt_scaling asked_scaling;
 } nt_past;
 
 enum { NT_HISTORY = 128 }; /* moments: half a minute */

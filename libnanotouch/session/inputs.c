@@ -19,10 +19,17 @@ nt_status nt_session_check_place(const nt_session *session, double x, double y, 
 
 static nt_status check_hand(const nt_session *session, const nt_input *input, nt_problem *problem)
 {
+    static const char *const sideways[] = {"input along x of a master of one axis",
+                                           "input along y of a master of one axis"};
     const double travel = 0.5 * session->master_travel;
+    if (input->holds != 0 && input->holds != 1)
+        return nt_problem_set(problem, "input.holds", "no|yes", input->holds, 0.0, 1.0);
     for (int i = 0; i < NT_AXES; ++i) {
         if (!isfinite(input->operator_force[i]))
             return nt_problem_set(problem, "input.operator_force", "N", input->operator_force[i], -INFINITY, INFINITY);
+        const double given = input->holds ? input->master_position[i] : input->operator_force[i];
+        if (i != NT_Z && session->master_axes == 1.0 && given != 0.0)
+            return nt_problem_set(problem, sideways[i], input->holds ? "m" : "N", given, 0.0, 0.0);
         if (input->holds && !(fabs(input->master_position[i]) <= travel))
             return nt_problem_set(problem, "input.master_position", "m", input->master_position[i], -travel, travel);
         if (!session->simulates[NT_HALF_MASTER] && (input->holds || input->operator_force[i] != 0.0)) {
@@ -35,6 +42,8 @@ static nt_status check_hand(const nt_session *session, const nt_input *input, nt
 
 nt_status nt_session_check_input(const nt_session *session, const nt_input *input, nt_problem *problem)
 {
+    if (!session || !input)
+        return NT_E_ARGUMENT;
     if (!(input->duration >= 0.0 && isfinite(input->duration)))
         return nt_problem_set(problem, "input.duration", "s", input->duration, 0.0, INFINITY);
     const nt_status status = check_hand(session, input, problem);

@@ -6,6 +6,7 @@
 #define _POSIX_C_SOURCE 200809L
 #endif
 
+#include "session/frames_memory.h"
 #include "session/state.h"
 
 #if defined(__linux__)
@@ -13,6 +14,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "core/problem.h"
 
@@ -20,10 +22,12 @@
 #define LONGEST_LAG 0.05  /* further behind than this a session slows down instead of catching up, at the most [s] */
 #define SLOWDOWN_TIME 1.0 /* over which the slowdown is told [s] */
 enum { BATCH = 64 };      /* ticks between two looks at what was asked of the thread */
+enum { MOST_STEPS = 1000000000 }; /* that wait to be done */
 
 struct nt_runner {
     pthread_t thread, keeper; /* the loop; and who prepares what clients of published frames ask for */
     int has_keeper;
+    pid_t process;
     nt_pace pace;
     uint64_t last; /* tick to end before; 0: none */
     atomic_int halts, paused, has_ended;
@@ -72,18 +76,24 @@ static void rest(nt_session *session, int64_t deadline)
     nt_session_sleep_until(deadline);
 }
 
-/* How many ticks a paused session may do now. */
-static long granted_steps(nt_runner *runner)
+/* Some of the steps that are granted; what has been done is taken off, unless a new pause has taken all. */
+static long run_steps(nt_session *session)
 {
-    return atomic_exchange(&runner->steps, 0);
+    atomic_long *steps = &session->runner->steps;
+    const long granted = atomic_load(steps), done = run_ticks(session, granted < BATCH ? granted : BATCH);
+    long left = atomic_load(steps);
+    while (done > 0 && left > 0 && !atomic_compare_exchange_weak(steps, &left, left > done ? left - done : 0))
+        continue;
+    return done;
 }
 
 /* Paused: what is asked is done, and steps that are granted. */
 static long pass_pause(nt_session *session)
 {
     nt_session_take_calls(session);
-    const long done = run_ticks(session, granted_steps(session->runner));
-    rest(session, nt_session_machine_time() + WAKE);
+    const long done = run_steps(session);
+    if (done < BATCH)
+        rest(session, nt_session_machine_time() + WAKE);
     return done;
 }
 
@@ -203,6 +213,7 @@ static void *serve(void *context)
 static void *run(void *context)
 {
     nt_session *session = context;
+    nt_session_enter(session);
     switch (session->runner->pace) {
     case NT_PACE_FREE:
         run_free(session);
@@ -214,6 +225,7 @@ static void *run(void *context)
         run_hard(session);
         break;
     }
+    nt_session_leave(session);
     atomic_store_explicit(&session->runner->has_ended, 1, memory_order_release);
     return NULL;
 }
@@ -222,9 +234,9 @@ static void *run(void *context)
 
 nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
 {
-    if ((unsigned)pace > NT_PACE_HARD)
+    if (!session || (unsigned)pace > NT_PACE_HARD)
         return NT_E_ARGUMENT;
-    if (session->runner)
+    if (session->runner || nt_session_runs_here(session) || (session->frames && !nt_frames_are_own(session->frames)))
         return NT_E_STATE;
     nt_status status = nt_session_check_pace(session, pace);
     if (status != NT_OK)
@@ -233,6 +245,7 @@ nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
     if (!runner)
         return NT_E_NO_MEMORY;
     runner->pace = pace;
+    runner->process = getpid();
     runner->last = ticks > 0 ? session->touch_state.ticks + ticks : 0;
     atomic_init(&runner->speed, 1.0);
     atomic_init(&runner->slowdown, 1.0);
@@ -250,13 +263,19 @@ nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
 
 nt_status nt_session_halt(nt_session *session)
 {
+    if (!session)
+        return NT_E_ARGUMENT;
     nt_runner *runner = session->runner;
+    if (nt_session_runs_here(session))
+        return NT_E_STATE;
     if (!runner)
         return NT_OK;
     atomic_store_explicit(&runner->halts, 1, memory_order_release);
-    (void)pthread_join(runner->thread, NULL);
-    if (runner->has_keeper)
-        (void)pthread_join(runner->keeper, NULL);
+    if (runner->process == getpid()) { /* threads do not come along with a fork */
+        (void)pthread_join(runner->thread, NULL);
+        if (runner->has_keeper)
+            (void)pthread_join(runner->keeper, NULL);
+    }
     const nt_status status = (nt_status)atomic_load(&runner->status);
     session->runner = NULL;
     free(runner);
@@ -265,21 +284,25 @@ nt_status nt_session_halt(nt_session *session)
 
 static nt_status check_not_hard(const nt_session *session)
 {
+    if (!session)
+        return NT_E_ARGUMENT;
     return session->runner && session->runner->pace != NT_PACE_HARD ? NT_OK : NT_E_STATE;
 }
 
 nt_status nt_session_pause(nt_session *session, int paused)
 {
     const nt_status status = check_not_hard(session);
-    if (status == NT_OK)
-        atomic_store(&session->runner->paused, paused != 0);
-    return status;
+    if (status != NT_OK)
+        return status;
+    atomic_store(&session->runner->paused, paused != 0);
+    atomic_store(&session->runner->steps, 0);
+    return NT_OK;
 }
 
 nt_status nt_session_step_on(nt_session *session, long ticks)
 {
     nt_status status = check_not_hard(session);
-    if (status == NT_OK && ticks < 0)
+    if (status == NT_OK && !(ticks >= 0 && ticks <= MOST_STEPS - atomic_load(&session->runner->steps)))
         status = NT_E_RANGE;
     if (status == NT_OK && !atomic_load(&session->runner->paused))
         status = NT_E_STATE;

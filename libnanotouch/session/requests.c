@@ -112,15 +112,6 @@ static void free_retired(nt_session *session)
     nt_composition_close(atomic_exchange_explicit(&session->retired, NULL, memory_order_acq_rel), session->now);
 }
 
-/* Modes and scales are judged beside those that were asked for last. */
-static void remember(nt_session *session, const nt_event *event)
-{
-    if (event->kind == NT_EVENT_MODE)
-        session->asked_mode = (nt_mode)event->value[0];
-    if (event->kind == NT_EVENT_RESCALE)
-        session->asked_scaling = (nt_scaling){event->value[0], event->value[1]};
-}
-
 nt_status nt_session_ask(nt_session *session, const nt_call *call)
 {
     atomic_store_explicit(&session->call_status, NT_CALL_WAITING, memory_order_relaxed);
@@ -135,9 +126,7 @@ nt_status nt_session_ask(nt_session *session, const nt_call *call)
         nt_session_take_calls(session); /* nothing runs, or it has ended meanwhile */
     free_retired(session);
     status = (nt_status)atomic_load_explicit(&session->call_status, memory_order_acquire);
-    if (status == NT_OK)
-        remember(session, &call->event);
-    else if (session->now != call->next)
+    if (status != NT_OK && session->now != call->next)
         nt_composition_close(call->next, session->now);
     return status;
 }

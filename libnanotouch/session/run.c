@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/axes.h"
+#include "session/frames_memory.h"
 #include "session/state.h"
 
 /* The button is held, or has been pressed since the last tick: no press is lost to a quick release. */
@@ -149,12 +150,26 @@ nt_status nt_session_tick(nt_session *session)
     return run_tick(session, next_record(session));
 }
 
+void nt_session_enter(nt_session *session)
+{
+    atomic_store_explicit(&session->ticker, nt_session_thread(), memory_order_relaxed);
+}
+
+void nt_session_leave(nt_session *session)
+{
+    atomic_store_explicit(&session->ticker, 0, memory_order_relaxed);
+}
+
 static nt_status check_free(const nt_session *session, long ticks)
 {
+    if (!session)
+        return NT_E_ARGUMENT;
     if (ticks < 0)
         return NT_E_RANGE;
-    if (nt_session_is_running(session))
+    if (nt_session_runs_here(session) || nt_session_is_running(session))
         return NT_E_STATE;
+    if (session->frames && !nt_frames_are_own(session->frames))
+        return NT_E_STATE; /* forked off: they show another process's session */
     if (session->records && (size_t)ticks > session->ring.capacity - nt_ring_count(&session->ring))
         return NT_E_CAPACITY;
     return nt_session_check_pace(session, NT_PACE_FREE);
@@ -163,24 +178,30 @@ static nt_status check_free(const nt_session *session, long ticks)
 nt_status nt_session_advance(nt_session *session, long ticks)
 {
     nt_status status = check_free(session, ticks);
+    if (status != NT_OK)
+        return status;
+    nt_session_enter(session);
     for (long i = 0; i < ticks && status == NT_OK; ++i) {
         if (session->frames)
             nt_session_serve_clients(session); /* no thread does it here */
         status = nt_session_tick(session);
     }
+    nt_session_leave(session);
     return status;
 }
 
 nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *frame)
 {
-    nt_status status = check_free(session, 1);
+    nt_status status = frame ? check_free(session, 1) : NT_E_ARGUMENT;
     if (status == NT_OK && input)
         status = nt_session_aim(session, input, NULL);
     if (status != NT_OK)
         return status;
     nt_frame shown;
     session->stepped = &shown;
+    nt_session_enter(session);
     status = nt_session_tick(session);
+    nt_session_leave(session);
     session->stepped = NULL;
     if (status == NT_OK)
         *frame = shown;
@@ -189,12 +210,14 @@ nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *
 
 long nt_session_read(nt_session *session, nt_record *records, long count)
 {
-    return session->records && count > 0 ? (long)nt_ring_pop(&session->ring, records, (size_t)count) : 0;
+    return session && records && session->records && count > 0
+               ? (long)nt_ring_pop(&session->ring, records, (size_t)count)
+               : 0;
 }
 
 long nt_session_read_events(nt_session *session, nt_event *events, long count)
 {
-    return count > 0 ? (long)nt_ring_pop(&session->events, events, (size_t)count) : 0;
+    return session && events && count > 0 ? (long)nt_ring_pop(&session->events, events, (size_t)count) : 0;
 }
 
 int nt_session_is_dynamic(const nt_session *session)

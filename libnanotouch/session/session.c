@@ -6,60 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/problem.h"
 #include "session/state.h"
-
-nt_session_setup nt_session_defaults(void)
-{
-    const nt_rig rig = nt_rig_defaults();
-    nt_session_setup setup = {.scene = nt_scene_defaults(),
-                              .rig = rig,
-                              .demand = nt_demand_defaults(),
-                              .settings = nt_settings_defaults(&rig),
-                              .mode = NT_MODE_TOUCH,
-                              .clearance = 0.1e-6,
-                              .rise = NAN,
-                              .seed = 1,
-                              .ring_capacity = 65536,
-                              .minimum_margin = 1.5,
-                              .preflight = 1};
-    nt_settings_keep_to(&setup.settings, setup.scene.range.maximum_load);
-    return setup;
-}
-
-static nt_status check_start(const nt_session_setup *setup, nt_problem *problem)
-{
-    const nt_surface *surface = setup->surface;
-    const nt_height_map *map = &setup->map;
-    const int is_flat = !surface && !map->heights;
-    const double width = surface ? (double)(surface->nx - 1) * surface->dx : (double)(map->nx - 1) * map->dx;
-    const double height = surface ? (double)(surface->ny - 1) * surface->dy : (double)(map->ny - 1) * map->dy;
-    if (!isfinite(setup->x) || (!is_flat && !(setup->x >= 0.0 && setup->x <= width)))
-        return nt_problem_set(problem, "x", "m", setup->x, is_flat ? -1.0 : 0.0, is_flat ? 1.0 : width);
-    if (!isfinite(setup->y) || (!is_flat && !(setup->y >= 0.0 && setup->y <= height)))
-        return nt_problem_set(problem, "y", "m", setup->y, is_flat ? -1.0 : 0.0, is_flat ? 1.0 : height);
-    return NT_OK;
-}
-
-/* Numbers of the setup that no other check sees; rig and settings have been checked. */
-static nt_status check_setup(const nt_session_setup *setup, nt_problem *problem)
-{
-    if (setup->settings.gains.delay > NT_SIM_DELAY_MAX)
-        return nt_problem_set(problem, "gains.delay", "periods", setup->settings.gains.delay, 0.0, NT_SIM_DELAY_MAX);
-    if (!(setup->clearance >= 1e-9 && setup->clearance <= 1e-3))
-        return nt_problem_set(problem, "clearance", "m", setup->clearance, 1e-9, 1e-3);
-    if (setup->ring_capacity < 0 || setup->ring_capacity == 1 || setup->ring_capacity > 1L << 26)
-        return nt_problem_set(problem, "ring_capacity", "", (double)setup->ring_capacity, 2.0, 67108864.0);
-    const double climb = setup->settings.gains.alpha_p * 0.8 * setup->rig.master.travel;
-    if (!isnan(setup->rise) && !(setup->rise >= 0.0 && setup->rise <= setup->clearance + climb))
-        return nt_problem_set(problem, "rise", "m", setup->rise, 0.0, setup->clearance + climb);
-    if (!(setup->minimum_margin >= 0.0))
-        return nt_problem_set(problem, "minimum_margin", "", setup->minimum_margin, 0.0, INFINITY);
-    if (setup->settings.control.law && setup->settings.control.choice != NT_CONTROL_OWN)
-        return nt_problem_set(problem, "control.choice beside a law of one's own", "default|paper|impedance|own",
-                              (double)setup->settings.control.choice, NT_CONTROL_OWN, NT_CONTROL_OWN);
-    return check_start(setup, problem);
-}
 
 /* Fresh memory gets its pages when it is first written; that shall not be in a control period. */
 static void *take_memory(size_t count, size_t size)
@@ -106,10 +53,10 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
     if (status != NT_OK)
         return status;
     session->touch_state = nt_touch_start(&session->now->touch, session->master_start, setup->x, setup->y);
-    session->asked_mode = setup->mode;
+    session->origin = nt_origin_of(setup);
     session->master_travel = setup->rig.master.travel;
+    session->master_axes = setup->rig.master.axes;
     memcpy(session->borders, session->now->touch.borders, sizeof session->borders);
-    session->asked_scaling = (nt_scaling){setup->settings.gains.alpha_p, setup->settings.gains.alpha_f};
     return NT_OK;
 }
 
@@ -117,11 +64,7 @@ nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, n
 {
     if (!session || !setup)
         return NT_E_ARGUMENT;
-    nt_status status = nt_rig_check(&setup->rig, problem);
-    if (status == NT_OK)
-        status = nt_settings_check(&setup->settings, problem);
-    if (status == NT_OK)
-        status = check_setup(setup, problem);
+    nt_status status = nt_session_check_setup(setup, problem);
     if (status != NT_OK)
         return status;
     nt_session *made = calloc(1, sizeof *made);
@@ -138,7 +81,9 @@ nt_status nt_session_open(nt_session **session, const nt_session_setup *setup, n
 
 nt_status nt_session_publish(nt_session *session, const char *name)
 {
-    if (nt_session_is_running(session) || session->frames)
+    if (!session)
+        return NT_E_ARGUMENT;
+    if (nt_session_runs_here(session) || nt_session_is_running(session) || session->frames)
         return NT_E_STATE;
     return nt_frames_create(&session->frames, name);
 }
@@ -150,7 +95,7 @@ nt_frames *nt_session_frames(nt_session *session)
 
 void nt_session_close(nt_session *session)
 {
-    if (!session)
+    if (!session || nt_session_runs_here(session))
         return;
     (void)nt_session_halt(session);
     nt_hal_close(&session->master);

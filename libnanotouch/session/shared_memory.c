@@ -90,18 +90,25 @@ static nt_status map(nt_shared *shared, int protection)
     return NT_OK;
 }
 
+/* In a process that was forked off the owner it stays. */
 static void remove_object(nt_shared *shared)
 {
     if (shared->file < 0)
         return;
-    shm_unlink(shared->name);
+    if (nt_shared_is_own(shared))
+        shm_unlink(shared->name);
     close(shared->file);
     shared->file = -1;
 }
 
+int nt_shared_is_own(const nt_shared *shared)
+{
+    return shared->owner == (long)getpid();
+}
+
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size)
 {
-    *shared = (nt_shared){.size = size, .file = -1};
+    *shared = (nt_shared){.size = size, .file = -1, .owner = (long)getpid()};
     if (!name)
         return map(shared, PROT_READ | PROT_WRITE);
     nt_status status = make_name(shared->name, kind, name);
@@ -126,8 +133,8 @@ nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name
     shared->file = shm_open(shared->name, writable ? O_RDWR : O_RDONLY, 0);
     if (shared->file < 0)
         return NT_E_DEVICE;
-    if (fstat(shared->file, &found) != 0 || found.st_size == 0)
-        status = NT_E_DEVICE;
+    if (fstat(shared->file, &found) != 0 || found.st_size == 0 || flock(shared->file, LOCK_SH | LOCK_NB) == 0)
+        status = NT_E_DEVICE; /* who gets the lock has found what an ended owner has left */
     else if (found.st_size != (off_t)size)
         status = NT_E_UNSUPPORTED;
     else
@@ -170,6 +177,12 @@ nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name
 void nt_shared_close(nt_shared *shared)
 {
     (void)shared;
+}
+
+int nt_shared_is_own(const nt_shared *shared)
+{
+    (void)shared;
+    return 1;
 }
 
 uint64_t nt_shared_clock(void)

@@ -15,15 +15,18 @@ typedef struct nt_shared {
     void *memory; /* whole pages; NULL: none */
     size_t size;  /* [byte] */
     int file;     /* the owner's; -1: none */
+    long owner;   /* its process: a copy of it by fork is none */
     char name[NT_SHARED_NAME_SIZE];
 } nt_shared;
 
 /* All 0 at first. kind: "frames" or "commands", part of the system's name for it. name NULL: private memory. Status as
  * of nt_frames_create; after a failure nothing needs to be closed. */
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size);
-/* NT_E_DEVICE if it is not there, NT_E_UNSUPPORTED if it has another size. */
+/* Is this the process that made it? Asks the system. */
+int nt_shared_is_own(const nt_shared *shared);
+/* NT_E_DEVICE if it is not there or its owner has ended, NT_E_UNSUPPORTED if it has another size. */
 nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name, size_t size, int writable);
-/* Gives the memory back; the owner's block is removed. May be repeated. */
+/* Gives the memory back; the owner's block is removed, by the owner alone. May be repeated. */
 void nt_shared_close(nt_shared *shared);
 
 /* The monotonic clock, the same for all processes [ns]; 0 if it fails. */

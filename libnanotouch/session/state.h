@@ -7,6 +7,7 @@
 
 #include "core/ring.h"
 #include "nanotouch/session.h"
+#include "session/origin.h"
 
 /* All that does not change between two ticks. A change makes another one, outside the loop, and swaps the pointer. */
 typedef struct nt_composition {
@@ -44,7 +45,8 @@ struct nt_session {
     int simulates[2];       /* by nt_half */
     nt_host host;
     double master_start, master_travel; /* [m] */
-    double borders[2][2];               /* of the surface, x and y [m]; with master_travel for inputs of any thread */
+    double master_axes;                 /* these three: for inputs of any thread */
+    double borders[2][2];               /* of the surface, x and y [m] */
     int64_t deadline;                   /* of the next tick before it runs, where a half has a clock of its own [ns] */
     nt_frames *frames;
     nt_frame *stepped; /* nt_session_step wants this tick's; else NULL */
@@ -60,16 +62,23 @@ struct nt_session {
     nt_call *call_memory;
     nt_request *client_memory;
     _Atomic(nt_composition *) retired; /* out of the loop's hands, to be freed by who made the next */
-    atomic_flag asking;                /* one thread prepares and asks at a time */
+    atomic_flag asking;                /* one thread prepares and asks at a time ... */
+    atomic_uintptr_t asker, ticker;    /* ... this one; and the one that runs ticks; 0: none (nt_session_thread) */
     atomic_int call_status;            /* of the caller that waits: CALL_WAITING until it has been done */
     nt_runner *runner;                 /* NULL: no thread */
     struct nt_history *history;        /* NULL: none is kept */
-    /* of who makes requests */
-    nt_mode asked_mode;
-    nt_scaling asked_scaling;
+    nt_origin origin;
 };
 
 enum { NT_CALL_WAITING = -1, NT_SESSION_EVENTS = 4096, NT_SESSION_CALLS = 64 };
+
+/* --- setup.c --- */
+
+/* All of it that can be judged before anything is made. */
+nt_status nt_session_check_setup(const nt_session_setup *setup, nt_problem *problem);
+
+/* Does this fault happen in a half that is simulated? */
+int nt_session_has_fault(const nt_fault *fault, int simulates_master, int simulates_slave);
 
 /* --- composition.c --- */
 
@@ -77,10 +86,11 @@ enum { NT_CALL_WAITING = -1, NT_SESSION_EVENTS = 4096, NT_SESSION_CALLS = 64 };
  * settings differ; or NULL. */
 nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const nt_composition *before,
                      nt_problem *problem);
+/* As before, in another mode and at other scales: what is judged and promised is that of the loop that runs then. */
+nt_status nt_compose_standing(nt_composition **made, const nt_composition *before, nt_mode mode,
+                              const nt_scaling *scaling, nt_problem *problem);
 /* Frees it, and those of its terrains that the other does not use. */
 void nt_composition_close(nt_composition *composition, const nt_composition *other);
-/* Do two setups of one session agree in all that can be changed? */
-int nt_composition_is_same(const nt_session_setup *a, const nt_session_setup *b);
 /* Is this margin enough? A minimum of 0 asks for none. */
 int nt_composition_allows(const nt_composition *composition, double margin);
 /* Of these settings in a mode at the stiffest contact of the plan. */
@@ -101,6 +111,9 @@ nt_status nt_session_fly(nt_session *session, nt_problem *problem);
 
 /* --- run.c --- */
 
+/* Around ticks: they are this thread's. What a half then asks of its own session is refused. */
+void nt_session_enter(nt_session *session);
+void nt_session_leave(nt_session *session);
 /* One period. */
 nt_status nt_session_tick(nt_session *session);
 /* Reads both halves as one sample, at the time of this tick. */
@@ -146,6 +159,8 @@ int64_t nt_session_machine_time(void); /* [ns] */
 void nt_session_sleep_until(int64_t deadline);
 /* With a half that measures by a clock of its own, before it runs: waits for the next period. */
 void nt_session_keep_time(nt_session *session);
+/* The calling thread; never 0. */
+uintptr_t nt_session_thread(void);
 /* One thread prepares and asks at a time. */
 void nt_session_lock(nt_session *session);
 void nt_session_unlock(nt_session *session);

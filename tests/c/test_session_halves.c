@@ -267,7 +267,7 @@ static void halves_that_do_not_fit_the_rig_are_refused(void **state)
         nt_capabilities says;
         const char *field;
     } cases[] = {
-        {{.can = NT_CAN_PUSH | NT_CAN_FEEL, .axes = 1, .period = 1e-2}, "master.rate"},
+        {{.can = NT_CAN_PUSH | NT_CAN_FEEL, .axes = 1, .period = 1e-2}, "master.rate (of the loop where it is 0)"},
         {{.can = NT_CAN_PUSH, .axes = 1}, "master.gauge"},
         {{.can = NT_CAN_FEEL, .axes = 1}, "master.motor"},
     };
@@ -304,7 +304,7 @@ static void a_master_without_a_position_is_refused(void **state)
     device d = {0};
     nt_session_setup setup = nt_session_defaults();
     setup.master = (nt_hal_choice){&hand, &d};
-    expect_refusal(&setup, NT_E_DEVICE, "");
+    expect_refusal(&setup, NT_E_DEVICE, "the master's first reading along z");
     assert_string_equal(d.calls, "odcarDC");
 }
 

@@ -54,7 +54,7 @@ static void it_goes_on_to_the_last_bit(void **state)
         assert_int_equal(nt_session_snapshot(session, &snapshot), NT_OK);
         run(session, first, ticks);
         for (int again = 0; again < 2; again++) { /* as often as one likes */
-            assert_int_equal(nt_session_restore(session, snapshot), NT_OK);
+            assert_int_equal(nt_session_restore(session, snapshot, NULL), NT_OK);
             assert_int_equal(nt_session_touch_state(session)->ticks, begin);
             run(session, second, ticks);
             assert_memory_equal(first, second, (size_t)ticks * sizeof *first);
@@ -81,13 +81,13 @@ static void changes_have_to_be_taken_back(void **state)
     assert_int_equal(nt_session_set_mode(session, NT_MODE_CURVE, NULL), NT_OK);
     for (int i = 1; i < 4; i++) { /* more than one: memory is used again */
         assert_int_equal(nt_session_change(session, NT_EVENT_SETTING, "gains.force_gain", gain + 0.1 * i, NULL), NT_OK);
-        assert_int_equal(nt_session_restore(session, snapshot), NT_E_STATE);
+        assert_int_equal(nt_session_restore(session, snapshot, NULL), NT_E_STATE);
     }
     assert_int_equal(nt_session_change(session, NT_EVENT_SETTING, "gains.force_gain", gain, NULL), NT_OK);
     assert_int_equal(nt_session_change(session, NT_EVENT_SCENE, "sample.youngs_modulus", 0.9 * modulus, NULL), NT_OK);
-    assert_int_equal(nt_session_restore(session, snapshot), NT_E_STATE);
+    assert_int_equal(nt_session_restore(session, snapshot, NULL), NT_E_STATE);
     assert_int_equal(nt_session_change(session, NT_EVENT_SCENE, "sample.youngs_modulus", modulus, NULL), NT_OK);
-    assert_int_equal(nt_session_restore(session, snapshot), NT_OK);
+    assert_int_equal(nt_session_restore(session, snapshot, NULL), NT_OK);
     run(session, second, TICKS);
     assert_memory_equal(first, second, sizeof first);
     nt_snapshot_close(snapshot);
@@ -103,14 +103,14 @@ static void a_snapshot_makes_a_copy(void **state)
     assert_int_equal(nt_session_snapshot(one, &snapshot), NT_OK);
     run(one, first, TICKS);
     nt_session_close(one);
-    assert_int_equal(nt_session_restore(other, snapshot), NT_OK);
+    assert_int_equal(nt_session_restore(other, snapshot, NULL), NT_OK);
     run(other, second, TICKS);
     assert_memory_equal(first, second, sizeof first);
     nt_session_close(other);
     nt_session_setup setup = nt_session_defaults();
     setup.rig.probe.spring_constant *= 2.0;
     other = open_session(&setup);
-    assert_int_equal(nt_session_restore(other, snapshot), NT_E_STATE); /* another rig */
+    assert_int_equal(nt_session_restore(other, snapshot, NULL), NT_E_STATE); /* another rig */
     nt_session_close(other);
     nt_snapshot_close(snapshot);
     nt_snapshot_close(NULL);

@@ -77,7 +77,7 @@ static void what_is_refused_leaves_no_event(void **state)
     assert_int_equal(nt_session_set_mode(session, (nt_mode)9, &problem), NT_E_ARGUMENT);
     assert_string_equal(problem.field, "mode");
     assert_int_equal(nt_session_rescale(session, &bad, &problem), NT_E_RANGE);
-    assert_string_equal(problem.field, "alpha_p");
+    assert_string_equal(problem.field, "gains.alpha_p");
     assert_int_equal(nt_session_change(session, NT_EVENT_SETTING, "gains.force_gain", 300.0, &problem), NT_E_RANGE);
     assert_string_equal(problem.field, "stability margin (R5 noise)");
     assert_true(problem.value < 1.5 && problem.minimum == 1.5);

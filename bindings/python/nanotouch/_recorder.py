@@ -14,7 +14,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from io import BytesIO
 from itertools import count
@@ -40,6 +40,14 @@ KILLED = "the program that recorded it was killed"
 REASON_SIZE = 400  # [bytes]
 
 
+class Metadata(dict[str, Any]):
+    """Of an open session: what is asked of it later is an event, which :class:`Writer` adds by itself."""
+
+    def __init__(self, entries: Mapping[str, Any], events: Callable[[], list[Any]]) -> None:
+        super().__init__(entries)
+        self.events = events
+
+
 class Writer:
     """Write a recording block by block; memory does not grow with its length. Use it in a ``with`` statement.
 
@@ -59,6 +67,8 @@ class Writer:
     def __init__(self, path: str | os.PathLike[str], metadata: Mapping[str, Any] | None = None) -> None:
         require("mcap.writer", "record")
         texts = _texts(metadata or {})
+        self._asked = metadata.events if isinstance(metadata, Metadata) else None
+        self._told = len(metadata["events"]) if isinstance(metadata, Metadata) else 0
         self.path = Path(path)
         self.rows = 0
         self._names: tuple[str, ...] = ()
@@ -94,6 +104,16 @@ class Writer:
         self._blocks += 1
         self.rows += times.size
         self._last = float(times[-1]) if times.size else self._last
+        self._keep_up()
+
+    def _keep_up(self) -> None:
+        """With what was asked of the session whose metadata they are: without it a replay would go another way."""
+        if self._asked is None:
+            return
+        events = self._asked()
+        if len(events) > self._told:
+            self._told = len(events)
+            self.update({"events": events})
 
     def update(self, metadata: Mapping[str, Any]) -> None:
         """Write metadata, new or anew: what is known only later, such as the requests of a session."""

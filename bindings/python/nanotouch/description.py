@@ -243,6 +243,9 @@ class Description(Mapping[str, float]):
         first = next((field for field in self.fields if field.startswith(f"{name}.")), next(iter(self.fields)))
         raise AttributeError(f"{type(self).__name__}: set a field of a section, such as {first}, not {name!r} itself")
 
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{type(self).__name__}: {name!r} cannot be deleted")
+
     def __iter__(self) -> Iterator[str]:
         return iter(self.fields)
 

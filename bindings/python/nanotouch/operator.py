@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, SupportsFloat
 
 import numpy as np
 
 from nanotouch import _core
 from nanotouch._arrays import Floats
 from nanotouch._path import Mode
+from nanotouch._words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.plan import Plan
 from nanotouch.scene import Rig, Settings
@@ -63,19 +64,42 @@ class Hold(NamedTuple):
 
 def core_input(input: Input | Hold) -> _core.Input:
     """As the C library takes it."""
+    place = [_number(name, getattr(input, name)) for name in ("x", "y", "duration")]
     if isinstance(input, Hold):
-        return _core.Input(0.0, input.master_position, input.x, input.y, input.duration)
-    return _core.Input(input.operator_force, None, input.x, input.y, input.duration)
+        return _core.Input(0.0, _along(input.master_position, "master_position"), *place)
+    return _core.Input(_along(input.operator_force, "operator_force"), None, *place)
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, bool | str) or not isinstance(value, SupportsFloat):
+        raise InvalidValue(f"input.{name} = {told(value)}: it must be a number")
+    return float(value)
+
+
+def _along(value: object, name: str) -> float | tuple[float, float, float]:
+    """A number along z, or three of them."""
+    if not isinstance(value, Sequence | np.ndarray) or isinstance(value, str):
+        return _number(name, value)
+    if len(value) != 3:
+        raise InvalidValue(f"input.{name} = {told(value)}: it must be a number, or three of them (x, y, z)")
+    x, y, z = (_number(name, one) for one in value)
+    return x, y, z
 
 
 class Touch(Protocol):
     """What a script needs to know of a session."""
 
-    mode: Mode
     rig: Rig
-    settings: Settings
     clearance: float
     """of the tip above the surface at the start [m]"""
+
+    @property
+    def mode(self) -> Mode:
+        """That it is in."""
+
+    @property
+    def settings(self) -> Settings:
+        """That hold."""
 
     @property
     def path(self) -> Sequence[tuple[float, float]]:

@@ -12,6 +12,7 @@ from nanotouch import _core, margins
 from nanotouch._arrays import check_between
 from nanotouch._control import Law
 from nanotouch._plant import ProbeModel
+from nanotouch._words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
 from nanotouch.hal import Master, SharedObject, Slave
@@ -57,7 +58,8 @@ class Options(TypedDict, total=False):
     """how the cantilever is simulated: at rest at every tick, or by its equation of motion (docs/plant.md). "auto"
     takes the first where its error is small enough"""
     substep: float
-    """of the dynamic cantilever: the largest angle of its fastest oscillation in one sub-step; 0.25 [rad]"""
+    """of the dynamic cantilever: the largest angle of its fastest oscillation in one sub-step; 0.25, and no more than
+    20 000 of them in a period [rad]"""
     faults: Faults
     """what fails in the simulated halves, and when"""
     master: Master | SharedObject
@@ -131,6 +133,9 @@ def check_options(options: Mapping[str, Any]) -> None:
     unknown = set(options) - set(Options.__annotations__)
     if unknown:
         raise TypeError(f"Session has no option {min(unknown)!r}; it has {', '.join(Options.__annotations__)}")
+    for name in ("preflight", "recorded"):
+        if not isinstance(options.get(name, True), bool):
+            raise InvalidValue(f"{name} = {told(options[name])}: valid are True and False")
 
 
 def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] | None, delay: float) -> None:

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from nanotouch._control import Law
 from nanotouch._files import checked_path
 from nanotouch._recorder import ENCODING, INCOMPLETE, recovered_name
+from nanotouch._recorder import Metadata as Metadata
 from nanotouch._recorder import Writer as Writer
 from nanotouch._writing import BLOCK_ROWS
 from nanotouch._writing import replacing as replacing

@@ -77,7 +77,9 @@ def _start(metadata: dict[str, Any]) -> dict[str, Any]:
         start = {"mode": core_mode(metadata["mode"]), "master": float(metadata["master_start"]), "x": x, "y": y}
     except (TypeError, ValueError, LookupError) as error:
         raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
-    for _, name, numbers in events:
+    for tick, name, numbers in events:
+        if tick < 0:
+            raise InvalidValue(f"the recording's metadata holds a request at tick {tick}: valid is 0 or more")
         if name == "rewind":
             raise InvalidValue("the recording was rewound: it cannot be replayed")
         if name not in REQUESTS or len(numbers) != REQUESTS[name]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypeVar, Unpack
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from nanotouch import _core, _live, margins
 from nanotouch._control import CONTROLS, Law, choose_control
+from nanotouch._open import Frozen, Runs
 from nanotouch._path import MODES, Mode, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
 from nanotouch.columns import STATES
@@ -21,10 +21,10 @@ from nanotouch.faults import Faults
 from nanotouch.margins import Margins
 from nanotouch.operator import Hold, Input, core_input, script_for, stretched
 from nanotouch.options import INDENTATION_RANGE as INDENTATION_RANGE
-from nanotouch.options import PACES, Options, Pace, Progress, check_options, checked_seed, settings_with
+from nanotouch.options import Options, Pace, Progress, check_options, checked_seed, settings_with
 from nanotouch.options import settings_for_path as settings_for_path
 from nanotouch.plan import Plan
-from nanotouch.record import Recording, Writer
+from nanotouch.record import Metadata, Recording, Writer
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
@@ -37,11 +37,11 @@ __all__ = [
 BLOCK_TICKS = 500  # rows that a killed process may lose
 RING_CAPACITY = 65536
 Columns = dict[str, NDArray[Any]]
-Frozen = TypeVar("Frozen", Scene, Settings)
+Described = TypeVar("Described", Scene, Settings)
 FROZEN = "an open session is changed by session.change({!r}, field, value), which is recorded"
 
 
-class Session:
+class Session(Runs, Frozen):
     """Hand, master, controller, stage, probe and surface, composed once.
 
     Parameters
@@ -80,28 +80,28 @@ class Session:
         if mode not in MODES:
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
         check_options(options)
-        self.scene = (Scene() if scene is None else scene).frozen(FROZEN.format("scene"))
+        self._scene = (Scene() if scene is None else scene).frozen(FROZEN.format("scene"))
         self.rig = (Rig() if rig is None else rig).frozen("the rig of an open session stays as it is: open another one")
         self.surface = surface
-        self.mode: Mode = mode
+        self._mode: Mode = mode  # that it was opened in, or was asked for last
         self.seed = checked_seed(options.get("seed", 1))
         self.minimum_margin = float(options.get("minimum_margin", 1.5))
         self.clearance = options.get("clearance", 0.1e-6)
-        self.path = checked_path(mode, path, surface)
+        self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
         self.relief = float(np.ptp(heights))
-        wanted = settings_with(self.rig, self.relief, self.scene.range.maximum_load, settings, options)
+        wanted = settings_with(self.rig, self.relief, self._scene.range.maximum_load, settings, options)
         control = options.get("control", "default")
         self.control = choose_control(wanted, control)
-        self.settings = wanted.frozen(FROZEN.format("settings"))
+        self._settings = wanted.frozen(FROZEN.format("settings"))
+        self.rate = float(wanted.gains.rate)
+        """of the force loop [Hz]"""
         self._events: list[tuple[int, str, list[Any]]] = []
-        self._scales = [wanted.gains.alpha_p, wanted.gains.alpha_f]
-        self._mode: Mode = mode  # that it is in now
         faults = options.get("faults")
         parts = (None, None, None) if surface is None else surface.parts
-        with self.scene.naming_terms():
+        with self._scene.naming_terms():
             self.core = _core.Session(
-                self.scene.core, self.rig.core, wanted.core, {
+                self._scene.core, self.rig.core, wanted.core, {
                     **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
@@ -109,16 +109,19 @@ class Session:
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
                     "master": options.get("master"), "slave": options.get("slave"),
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
-                    **plant_options(options.get("probe_model", "auto"), options.get("substep", 0.25), faults),
+                    **plant_options(options.get("probe_model", "auto"), options.get("substep"), faults),
                 },
             )  # fmt: skip
-        described = {"scene": self.scene, "rig": self.rig, "settings": self.settings}
+        described = {"scene": self._scene, "rig": self.rig, "settings": self._settings}
         self._opened_with: dict[str, Any] = {name: one.to_dict() for name, one in described.items()}
-        self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
+        self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts).to_dict()
+        margin = self.stability_margin
+        self._opened_with |= {"mode": mode, "stability_margin": margin if math.isfinite(margin) else None}
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
         own = options.get("master") or options.get("slave")
         self._begun = None if own else self.core.snapshot()
+        self._freeze()
 
     @property
     def plan(self) -> Plan:
@@ -126,15 +129,33 @@ class Session:
         return Plan(self.core.plan)
 
     @property
-    def rate(self) -> float:
-        """Rate of the force loop [Hz]."""
-        return float(self.settings.gains.rate)
+    def scene(self) -> Scene:
+        """As it is touched now; frozen."""
+        self._scene = _as_now(self._scene, self.core.scene, "scene")
+        return self._scene
+
+    @property
+    def settings(self) -> Settings:
+        """As they hold now, with the scales that were asked for last; frozen."""
+        self._settings = _as_now(self._settings, self.core.settings, "settings")
+        return self._settings
+
+    @property
+    def mode(self) -> Mode:
+        """That it is in now, or goes over to."""
+        now = self.core.mode
+        if core_mode(self._mode) != now:  # a client of its frames has asked
+            self._mode = next(mode for mode in MODES if core_mode(mode) == now)
+        return self._mode
 
     def margins(self) -> Margins:
-        """Margins at the stiffest contact of the plan, and why the session was to be refused, if it was; of a law of
-        one's own by what it was seen to do before the first tick, NaN where that is not known (docs/control.md)."""
-        amounts = self._amounts if self.control == "own" else self.settings
-        return margins.of_own_law(self.rig, self.settings, amounts, self.plan.maximum_stiffness, self.mode)
+        """Margins in this mode and at these scales, at the stiffest contact of the plan; of a law of one's own by what
+        it was seen to do when it was tried last, NaN where that is not known (docs/control.md)."""
+        settings = self.settings
+        amounts: Settings | None = settings
+        if self.control == "own":
+            amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
+        return margins.of_own_law(self.rig, settings, amounts, self.plan.maximum_stiffness, self.mode)
 
     @property
     def stability_margin(self) -> float:
@@ -167,11 +188,9 @@ class Session:
 
     def advance(self, duration: float, input: Input | Hold | None = None) -> Columns:
         """Run for a time [s] and return what was recorded, as columns; ``input`` is where hand and tip go meanwhile."""
-        if not 0.0 <= duration < math.inf:
-            raise InvalidValue(f"duration = {duration} s: it must be a time of 0 s or more")
+        left = self._ticks(duration)
         if input is not None:
             self.aim(input)
-        left = round(duration * self.rate)
         blocks: list[Columns] = []
         while left > 0 or not blocks:
             ticks = min(left, BLOCK_TICKS)
@@ -245,53 +264,11 @@ class Session:
             writer.update(recording.metadata)
         return recording
 
-    def start(self, pace: Pace = "wall", duration: float | None = None) -> None:
-        """Run in a thread of its own, without the GIL, until :meth:`halt` or for a time [s] of the session.
-
-        ``"free"``: as fast as it goes. ``"wall"``: at the pace of a clock, slower where the machine lags. Both
-        wait for :meth:`read` when the ring is full. ``"hard"``: each tick at its deadline, for halves that are real.
-        """
-        if pace not in PACES:
-            raise InvalidValue(f"pace {pace!r}: valid are {', '.join(PACES)}")
-        if duration is not None and not 0.0 < duration < math.inf:
-            raise InvalidValue(f"duration = {duration} s: it must be above 0 s")
-        self.core.start(PACES.index(pace), max(1, round(duration * self.rate)) if duration else 0)
-
-    def halt(self) -> None:
-        """End the thread between two ticks; raises what it has ended by itself with."""
-        self.core.halt()
-
-    def pause(self, paused: bool = True) -> None:
-        """Stop the clock of a running session, or let it go on; in free and wall pace."""
-        self.core.pause(paused)
-
-    def step_on(self, ticks: int = 1) -> None:
-        """Let a paused session do some ticks."""
-        self.core.step_on(ticks)
-
-    def set_speed(self, speed: float) -> None:
-        """Session time over time on the clock, 0.001 .. 1000: slow motion below 1."""
-        self.core.set_speed(speed)
-
-    @property
-    def progress(self) -> Progress:
-        """How a run in its own thread goes."""
-        return Progress(**self.core.progress)
-
-    def publish(self, name: str = "") -> None:
-        """Show every tick to observers of this name (:mod:`nanotouch.frames`), in any process of this user."""
-        self.core.publish(name)
-        self.core.describe(json.dumps(self.metadata()))
-
     live = _live.watch
 
     def snapshot(self) -> _core.Snapshot:
         """All that a simulated session needs to go on from here."""
         return self.core.snapshot()
-
-    def rewind(self, duration: float) -> None:
-        """Of a simulated session that runs: back by a time [s], to the nearest quarter of a second before that."""
-        self.core.rewind(duration)
 
     def reset(self) -> None:
         """Back to where it was opened; of a session whose halves are simulated."""
@@ -311,29 +288,32 @@ class Session:
     def metadata(self) -> dict[str, Any]:
         """What a recording of this session has to be read with; JSON-able, SI. Scene, rig and settings are those it was
         opened with: what has changed since is in the events."""
-        self._events += self.core.read_events()
-        return {
+        entries = {
             "alpha_p": self._opened_with["settings"]["gains"]["alpha_p"],
             "alpha_f": self._opened_with["settings"]["gains"]["alpha_f"],
             "spring_constant": self.rig.probe.spring_constant,
             "start_height": None if math.isnan(self.core.start_height) else self.core.start_height,
             "master_start": self.core.master_start,
             "control": self.control,
-            "amounts": None if self._amounts is None else self._amounts.to_dict(),
+            "amounts": self._amounts,
             "tare": list(self.core.tare),
-            "events": [[tick, name, numbers] for tick, name, numbers in self._events],
-            "mode": self.mode,
+            "events": self._asked(),
             "path": [list(point) for point in self.path],
             "seed": self.seed,
             "probe_model": self.probe_model,
             "faults": list(self._faults),
             "loop_rate": self.rate,
             "clock": "virtual: ticks times period",
-            "stability_margin": self.stability_margin if math.isfinite(self.stability_margin) else None,
             **self._opened_with,
             "plan": str(self.plan).splitlines(),
             "version": _core.version,
         }
+        return Metadata(entries, self._asked)
+
+    def _asked(self) -> list[list[Any]]:
+        """What was asked of it so far, as JSON keeps it."""
+        self._events += self.core.read_events()
+        return [[tick, name, numbers] for tick, name, numbers in self._events]
 
     def arm(self, confirmed: bool = False) -> None:
         """Back to RUN after RETRACT; after LATCHED only with ``confirmed``."""
@@ -351,10 +331,8 @@ class Session:
 
         Refused where the loop would run closer to its stability limit than the session's minimum.
         """
-        now = self._scales
-        pair = [now[0] if alpha_p is None else alpha_p, now[1] if alpha_f is None else alpha_f]
-        self.core.rescale(*pair)
-        self._scales = pair
+        now = self.settings.gains
+        self.core.rescale(now.alpha_p if alpha_p is None else alpha_p, now.alpha_f if alpha_f is None else alpha_f)
 
     def change(self, what: Literal["scene", "settings"], field: str, value: float | str) -> None:
         """Change a field of the open session's scene or settings, such as ``("scene", "sample.youngs_modulus", 1e9)``.
@@ -364,16 +342,11 @@ class Session:
         """
         if what not in ("scene", "settings"):
             raise InvalidValue(f"change {what!r}: valid are scene, settings")
-        if what == "scene":
-            self.scene = self._changed(self.scene, what, field, value)
-        else:
-            self.settings = self._changed(self.settings, what, field, value)
-
-    def _changed(self, old: Frozen, what: str, field: str, value: float | str) -> Frozen:
-        asked = old.copy()
+        asked: Scene | Settings = (self.scene if what == "scene" else self.settings).copy()
+        if field not in asked.fields:
+            raise InvalidValue(f"change: {what} has no field {field!r}; it has {', '.join(asked.fields)}")
         asked[field] = value
         self.core.change(what == "scene", field, asked[field])
-        return asked.frozen(FROZEN.format(what))
 
     def clutch(self, open: bool = True) -> None:
         """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
@@ -394,6 +367,17 @@ class Session:
     def emergency_stop(self, pressed: bool = True) -> None:
         """Press or release the simulated emergency stop; from any thread, also during :meth:`advance`."""
         self.core.emergency_stop(pressed)
+
+
+def _as_now(told: Described, now: Any, what: str) -> Described:
+    """The description that was told last, with what has changed since."""
+    changed = {name: now.get(name) for name in told.fields if now.get(name) != told[name]}
+    if not changed:
+        return told
+    made = told.copy()
+    for name, value in changed.items():
+        made[name] = value
+    return made.frozen(FROZEN.format(what))
 
 
 def _joined(blocks: Sequence[Columns]) -> Columns:

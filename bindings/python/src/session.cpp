@@ -2,7 +2,37 @@
 // session.h
 #include "session.h"
 
+#include <thread>
+#include <tuple>
+
 #include "faults.h"
+
+// Its thread may be in a law or a backend written in Python. If that is who let go of it last, another thread closes
+// it.
+Session::~Session()
+{
+    const py::gil_scoped_release release;
+    if (!handle || !nt_session_runs_here(handle)) {
+        nt_session_close(handle);
+        return;
+    }
+    using Kept = std::tuple<std::shared_ptr<Surface>, std::shared_ptr<RadiusMap>, std::shared_ptr<Properties>,
+                            std::shared_ptr<OwnLaw>, std::shared_ptr<Half>, std::shared_ptr<Half>>;
+    auto kept = std::make_unique<Kept>(surface, radii, properties, law, master, slave);
+    std::thread([handle = handle, kept = std::move(kept)]() mutable {
+        nt_session_close(handle);
+        const py::gil_scoped_acquire acquire;
+        kept.reset();
+    }).detach();
+}
+
+void refuse_inside(const Session &self)
+{
+    if (self.handle && nt_session_runs_here(self.handle))
+        raise(NT_E_STATE,
+              "a half or a law cannot ask this of the session that is calling it: return first, or ask from "
+              "another thread");
+}
 
 static void take_halves(Session &made, nt_session_setup &setup, const py::dict &options)
 {
@@ -26,10 +56,26 @@ static void say_line(void *, const char *text)
 {
     const py::gil_scoped_acquire gil;
     try {
-        py::module_::import("logging").attr("getLogger")("nanotouch.hal").attr("warning")("%s", text);
+        py::module_::import("logging")
+            .attr("getLogger")("nanotouch.hal")
+            .attr("warning")("%s", text ? text_of(text) : py::str("(no text)"));
     } catch (py::error_already_set &) { // the interpreter shuts down
-        PySys_FormatStderr("%s\n", text);
+        PySys_FormatStderr("%s\n", text ? text : "");
     }
+}
+
+// What a law of one's own amounts to at the scales as they are; nothing where it is not to be tried.
+static void learn_amounts(Session &self)
+{
+    const nt_session_setup *setup = nt_session_setup_of(self.handle);
+    if (setup->settings.control.choice != NT_CONTROL_OWN || !(setup->minimum_margin > 0.0))
+        return;
+    Described<nt_settings> amounts{};
+    const double stiffness = nt_session_plan(self.handle)->maximum_stiffness;
+    self.amounts.reset();
+    if (nt_margins_own_law(&setup->rig, &setup->settings, stiffness, &amounts.value) == NT_OK)
+        self.amounts = std::make_unique<Described<nt_settings>>(amounts);
+    self.law->rethrow();
 }
 
 static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, const Described<nt_rig> &rig,
@@ -64,8 +110,8 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.minimum_margin = options["minimum_margin"].cast<double>();
     setup.demand.relative_accuracy = options["relative_accuracy"].cast<double>();
     if (!options["law"].is_none()) {
-        made->law.call = options["law"];
-        set_control(setup.settings, made->law);
+        made->law->call = options["law"];
+        set_control(setup.settings, *made->law);
     }
     if (py::len(path) > 1 && rig.value.master.axes > 1.0)
         setup.path = nullptr; // the hand leads the tip anywhere
@@ -75,13 +121,7 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     const nt_status status = nt_session_open(&made->handle, &setup, &problem);
     made->rethrow(); // it has been tried
     raise_on(status, problem, "session");
-    if (setup.settings.control.choice == NT_CONTROL_OWN && setup.minimum_margin > 0.0) {
-        Described<nt_settings> amounts{};
-        const double stiffness = nt_session_plan(made->handle)->maximum_stiffness;
-        if (nt_margins_own_law(&setup.rig, &setup.settings, stiffness, &amounts.value) == NT_OK)
-            made->amounts = std::make_unique<Described<nt_settings>>(amounts);
-        made->law.rethrow();
-    }
+    learn_amounts(*made);
     return made;
 }
 
@@ -117,17 +157,28 @@ template <class Call> static void ask(Session &self, const std::string &what, Ca
     const nt_status status = alone(self, [&](nt_session *handle) { return call(handle, &problem); });
     self.rethrow();
     raise_on(status, problem, what);
+    learn_amounts(self);
 }
 
 static void change(Session &self, bool is_scene, const std::string &field, double value)
 {
     const nt_event_kind kind = is_scene ? NT_EVENT_SCENE : NT_EVENT_SETTING;
-    ask(self, field, [&](nt_session *handle, nt_problem *problem) {
+    bool stays = false;
+    const auto change = [&](nt_session *handle, nt_problem *problem) {
         const nt_status status = nt_session_change(handle, kind, field.c_str(), value, problem);
-        if (status == NT_E_ARGUMENT)
-            *problem = {"it cannot change while the session is open", "", value, value, value};
+        stays = status == NT_E_ARGUMENT;
         return status;
-    });
+    };
+    const bool is_scale = field == "gains.alpha_p" || field == "gains.alpha_f";
+    try {
+        ask(self, field, change);
+    } catch (py::error_already_set &refusal) {
+        if (!stays)
+            throw;
+        const std::string why =
+            is_scale ? "a scale is changed by session.rescale" : "it stays while the session is open";
+        raise(NT_E_ARGUMENT, why + ": " + py::str(refusal.value()).cast<std::string>());
+    }
 }
 
 static void bind_requests(py::class_<Session> &type)
@@ -163,7 +214,11 @@ static void bind_requests(py::class_<Session> &type)
         .def("inject",
              [](Session &self, const py::tuple &entry) {
                  const nt_fault fault = fault_of(entry);
-                 raise_on(alone(self, [&](nt_session *handle) { return nt_session_inject(handle, &fault); }), "fault");
+                 const nt_status status =
+                     alone(self, [&](nt_session *handle) { return nt_session_inject(handle, &fault); });
+                 if (status == NT_E_UNSUPPORTED)
+                     raise(status, "fault: it belongs to a half that is not simulated");
+                 raise_on(status, "fault");
              })
         .def("emergency_stop", // never waits for another call
              [](Session &self, bool pressed) { nt_session_emergency_stop(self.handle, pressed); });
@@ -194,6 +249,8 @@ static void bind_facts(py::class_<Session> &type)
             [](const Session &self) { return Described<nt_settings>{nt_session_setup_of(self.handle)->settings}; })
         .def_property_readonly(
             "scene", [](const Session &self) { return Described<nt_scene>{nt_session_setup_of(self.handle)->scene}; })
+        .def_property_readonly("mode",
+                               [](const Session &self) { return mode_name(nt_session_setup_of(self.handle)->mode); })
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
         .def_property_readonly("start_height",

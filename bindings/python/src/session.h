@@ -13,19 +13,15 @@ struct Session {
     std::shared_ptr<Surface> surface; // these outlive the handle, as the law does
     std::shared_ptr<RadiusMap> radii;
     std::shared_ptr<Properties> properties;
-    OwnLaw law;
+    std::shared_ptr<OwnLaw> law = std::make_shared<OwnLaw>();
     std::shared_ptr<Half> master, slave;             // null: simulated
     std::unique_ptr<Described<nt_settings>> amounts; // what the law amounts to, where that is known
     std::mutex one_at_a_time;
-    ~Session()
-    {
-        const py::gil_scoped_release release; // its thread may be in a law or a backend written in Python
-        nt_session_close(handle);
-    }
+    ~Session();
     // Raises what a law or a half written in Python has raised meanwhile.
     void rethrow()
     {
-        law.rethrow();
+        law->rethrow();
         if (master)
             master->rethrow();
         if (slave)
@@ -33,9 +29,13 @@ struct Session {
     }
 };
 
+// A half or a law that calls the session which is calling it would wait for itself.
+void refuse_inside(const Session &self);
+
 // Python threads may share a session: one call at a time, waiting without the GIL.
 template <class Call> auto alone(Session &self, Call call)
 {
+    refuse_inside(self);
     py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(self.one_at_a_time);
     return call(self.handle);

@@ -3,6 +3,8 @@
 #include "frames.h"
 #include "session.h"
 
+#include <algorithm>
+
 // A column of numbers: where it lies in a record, and for vectors along which axis.
 struct Column {
     const char *name;
@@ -59,6 +61,9 @@ template <class T> static py::array_t<T> bits_of(const Records &records, long co
 
 static py::dict read_records(Session &self, long count)
 {
+    if (count < 0)
+        raise(NT_E_RANGE, "read: rows = " + std::to_string(count) + ": valid is 0 or more");
+    count = std::min(count, 2 * nt_session_setup_of(self.handle)->ring_capacity + 2); // more cannot wait
     Records records(static_cast<size_t>(count));
     const long got = alone(self, [&](nt_session *handle) { return nt_session_read(handle, records.data(), count); });
     py::dict out;
@@ -134,6 +139,11 @@ static void advance_session(Session &self, long ticks)
 {
     const nt_status status = alone(self, [ticks](nt_session *handle) { return nt_session_advance(handle, ticks); });
     self.rethrow();
+    if (status == NT_E_CAPACITY)
+        raise(status, "advance: the ring of records is full: read them first");
+    if (status == NT_E_STATE)
+        raise(status, "advance: the session runs in its thread (halt it first), or this process was forked off the one "
+                      "that shows it");
     raise_on(status, "advance");
 }
 
@@ -141,11 +151,15 @@ static void advance_session(Session &self, long ticks)
 static nt_frame step_session(Session &self, const nt_input *input)
 {
     nt_frame frame;
+    refuse_inside(self);
     std::unique_lock<std::mutex> lock(self.one_at_a_time, std::try_to_lock);
     if (!lock) {
         const py::gil_scoped_release release;
         lock.lock();
     }
+    nt_problem problem{};
+    if (input)
+        raise_on(nt_session_check_input(self.handle, input, &problem), problem, "operator input");
     const nt_status status = nt_session_step(self.handle, input, &frame);
     self.rethrow();
     raise_on(status, "step");
@@ -246,7 +260,11 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
         .def("publish",
              [](Session &self, const std::string &name) {
                  const char *given = name.empty() ? nullptr : name.c_str();
-                 raise_on(alone(self, [=](nt_session *h) { return nt_session_publish(h, given); }), "publish");
+                 const nt_status status = alone(self, [=](nt_session *h) { return nt_session_publish(h, given); });
+                 if (status == NT_E_STATE)
+                     raise(status, "publish: another session has the name '" + name +
+                                       "', or this one runs or is published already");
+                 raise_on(status, "publish");
              })
         .def("describe",
              [](Session &self, const std::string &text) {
@@ -260,6 +278,12 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
                  nt_problem problem{};
                  const nt_status status =
                      alone(self, [&](nt_session *h) { return nt_session_rewind(h, duration, &problem); });
+                 if (status == NT_E_UNSUPPORTED && !nt_session_progress(self.handle).runs)
+                     raise(NT_E_STATE, "rewind: the session does not run; reset and restore take it back");
+                 if (status == NT_E_NO_SOLUTION)
+                     raise(status, "rewind: " + std::to_string(duration) +
+                                       " s ago is not kept: valid is half a minute at most, since the run was started "
+                                       "and since the last change");
                  raise_on(status, problem, "rewind");
              })
         .def_property_readonly(
@@ -267,9 +291,11 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
             [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->supervisor.state); })
         .def("restore",
              [](Session &self, const Snapshot &kept) {
-                 raise_on(alone(self, [&](nt_session *h) { return nt_session_restore(h, kept.handle); }), "restore");
+                 nt_problem problem{};
+                 const nt_status status =
+                     alone(self, [&](nt_session *h) { return nt_session_restore(h, kept.handle, &problem); });
+                 raise_on(status, problem, "restore: the snapshot was taken with another setup");
              })
-        .def_property_readonly("ticks", [](const Session &self) { return nt_session_progress(self.handle).ticks; })
         .def_property_readonly(
             "phase", [](const Session &self) { return static_cast<int>(nt_session_touch_state(self.handle)->phase); });
 }

@@ -58,7 +58,8 @@ NT_API nt_status nt_client_lease(nt_client *client);
 NT_API void nt_client_release(nt_client *client);
 
 /* Posts a request, writes its id and renews the lease. NT_E_STATE without the lease, NT_E_CAPACITY if NT_REQUESTS wait
- * for their answers. NT_REQUEST_STOP is never refused. */
+ * for their answers. NT_REQUEST_STOP presses, whatever its values, and needs no lease: a client
+ * cannot release it. NT_E_DEVICE if the session is closed. */
 NT_API nt_status nt_client_post(nt_client *client, nt_request *request);
 /* What became of a request of this client; pending until it is applied or refused. The last NT_REQUESTS answers are
  * kept, and that to the last stop. NT_E_STATE if none can come or it is not kept, NT_E_DEVICE if the session is dead.

@@ -185,10 +185,16 @@ typedef struct nt_progress {
 NT_API nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks);
 /* Ends the thread between two ticks and waits for it. What it ended by itself with, NT_OK otherwise. */
 NT_API nt_status nt_session_halt(nt_session *session);
+/* 1 where the session itself has called, while it runs or prepares a request: a half, a law, who takes its lines. From
+ * there nothing that runs, asks, starts, halts, publishes or copies is done (NT_E_STATE), and it is not closed. Inputs,
+ * emergency stop, pause, steps and speed are taken. */
+NT_API int nt_session_runs_here(const nt_session *session);
 /* Free and wall pace; from any thread. Speed: session time over time on the clock, 1e-3 .. 1e3; below 1 is slow motion.
  */
 NT_API nt_status nt_session_pause(nt_session *session, int paused);
-NT_API nt_status nt_session_step_on(nt_session *session, long ticks); /* of a paused one */
+/* Of a paused one: so many more ticks, at full speed; up to 1e9 may wait. A pause, or its end, takes back what waits.
+ */
+NT_API nt_status nt_session_step_on(nt_session *session, long ticks);
 NT_API nt_status nt_session_set_speed(nt_session *session, double speed, nt_problem *problem);
 /* Of a session whose halves are simulated, while it runs: back by a duration [s], to the nearest quarter of a second
  * before that, half a minute at most. NT_E_NO_SOLUTION if that is too long ago or before a change; NT_E_UNSUPPORTED
@@ -212,9 +218,10 @@ typedef struct nt_snapshot nt_snapshot;
 /* All that a session will need to go on from here: NT_E_UNSUPPORTED with a half that is not simulated, NT_E_STATE while
  * it runs, NT_E_NO_MEMORY. The snapshot belongs to the caller: nt_snapshot_close. */
 NT_API nt_status nt_session_snapshot(const nt_session *session, nt_snapshot **snapshot);
-/* Back to where it was taken, of this session or of one that was opened with the same setup: a copy. What was changed
- * since must be changed back first (NT_E_STATE). Kept as NT_EVENT_REWIND. */
-NT_API nt_status nt_session_restore(nt_session *session, const nt_snapshot *snapshot);
+/* Back to where it was taken, mode and scales with it, of this session or of one that was opened with the same setup: a
+ * copy. NT_E_STATE while it runs, and where the setups differ; what was changed since must be changed back first. What
+ * differs is in *problem (NULL allowed): of the snapshot, and as it is here. Kept as NT_EVENT_REWIND. */
+NT_API nt_status nt_session_restore(nt_session *session, const nt_snapshot *snapshot, nt_problem *problem);
 /* Accepts NULL. */
 NT_API void nt_snapshot_close(nt_snapshot *snapshot);
 

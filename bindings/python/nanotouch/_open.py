@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an open session lets nobody do: assign to it, or copy it; and running it in a thread of its own."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from typing import Any, NoReturn
+
+from nanotouch import _core
+from nanotouch.errors import InvalidValue
+from nanotouch.options import PACES, Pace, Progress
+
+CHANGES = {
+    "scene": "session.change('scene', field, value)",
+    "settings": "session.change('settings', field, value), the scales by session.rescale(alpha_p, alpha_f)",
+    "mode": "session.set_mode(mode)",
+}
+LONGEST = 1e9  # run at one go [s]
+
+
+class Frozen:
+    """Attributes stay as they are once :meth:`_freeze` was called, or recordings would tell what did not run."""
+
+    _is_frozen = False
+
+    def _freeze(self) -> None:
+        self._is_frozen = True
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if self._is_frozen and not name.startswith("_"):
+            self._refuse(name)
+        object.__setattr__(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        self._refuse(name)
+
+    def _refuse(self, name: str) -> NoReturn:
+        instead = CHANGES.get(name, "open another one")
+        raise AttributeError(f"session.{name} of an open session stays as it is: {instead}")
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("an open session cannot be copied: open another one with the same arguments, and take it to "
+                        "where this one is by restore(session.snapshot())")  # fmt: skip
+
+
+class Runs:
+    """A session in a thread of its own."""
+
+    core: _core.Session
+    rate: float
+
+    def metadata(self) -> dict[str, Any]:
+        """What a recording has to be read with."""
+        raise NotImplementedError
+
+    def _ticks(self, duration: float) -> int:
+        """A time [s] in ticks."""
+        if not 0.0 <= duration <= LONGEST:
+            raise InvalidValue(f"duration = {duration} s: it must be a time of 0 s or more, up to {LONGEST:g} s")
+        return round(duration * self.rate)
+
+    def start(self, pace: Pace = "wall", duration: float | None = None) -> None:
+        """Run in a thread of its own, without the GIL, until :meth:`halt` or for a time [s] of the session.
+
+        ``"free"``: as fast as it goes. ``"wall"``: at the pace of a clock, slower where the machine lags. Both
+        wait for :meth:`read` when the ring is full. ``"hard"``: each tick at its deadline, for halves that are real.
+        """
+        if pace not in PACES:
+            raise InvalidValue(f"pace {pace!r}: valid are {', '.join(PACES)}")
+        if duration is not None and not duration > 0.0:
+            raise InvalidValue(f"duration = {duration} s: it must be above 0 s")
+        self.core.start(PACES.index(pace), 0 if duration is None else max(1, self._ticks(duration)))
+
+    def halt(self) -> None:
+        """End the thread between two ticks; raises what it has ended by itself with."""
+        self.core.halt()
+
+    def pause(self, paused: bool = True) -> None:
+        """Stop the clock of a running session, or let it go on; in free and wall pace."""
+        self.core.pause(paused)
+
+    def step_on(self, ticks: int = 1) -> None:
+        """Let a paused session do some ticks, at full speed. A pause, or its end, takes back what is left of them."""
+        self.core.step_on(ticks)
+
+    def set_speed(self, speed: float) -> None:
+        """Session time over time on the clock, 0.001 .. 1000: slow motion below 1."""
+        self.core.set_speed(speed)
+
+    @property
+    def progress(self) -> Progress:
+        """How a run in its own thread goes."""
+        return Progress(**self.core.progress)
+
+    def rewind(self, duration: float) -> None:
+        """Of a simulated session that runs: back by a time [s], to the nearest quarter of a second before that."""
+        if not 0.0 <= duration < math.inf:
+            raise InvalidValue(f"rewind: {duration} s: it must be a time of 0 s or more")
+        self.core.rewind(duration)
+
+    def publish(self, name: str = "") -> None:
+        """Show every tick to observers of this name (:mod:`nanotouch.frames`), in any process of this user."""
+        if not re.fullmatch(r"[A-Za-z0-9._-]{0,64}", name):
+            raise InvalidValue(f"publish: name {name!r}: valid are up to 64 letters, digits, '.', '-' and '_'")
+        self.core.publish(name)
+        self.core.describe(json.dumps(self.metadata()))
