@@ -178,7 +178,8 @@ static void run_session(nt_probe_model model)
     static nt_record records[1000];
     nt_session_setup setup = nt_session_defaults();
     setup.probe_model = model;
-    setup.substep = 50.0;
+    if (model == NT_PROBE_DYNAMIC)
+        setup.substep = 50.0;
     nt_session *session = NULL;
     long count = 0;
     armed = 0;

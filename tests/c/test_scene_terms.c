@@ -35,6 +35,7 @@ static void make(nt_medium_kind kind)
 {
     nt_scene scene = nt_scene_defaults();
     scene.tip.radius = 1e-4;
+    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13; /* what is looked at here yields to nothing */
     scene.tip.surface_potential = 0.02;
     scene.sample.surface_potential = 0.013;
     scene.sample.charge = 1e-18;

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -158,6 +159,8 @@ static void foreign_objects_are_refused(void **state)
     assert_true(file >= 0);
     assert_int_equal(nt_observer_attach(&observer, name), NT_E_DEVICE); /* empty: being made */
     assert_int_equal(ftruncate(file, 4096), 0);
+    assert_int_equal(nt_observer_attach(&observer, name), NT_E_DEVICE); /* nobody holds it */
+    assert_int_equal(flock(file, LOCK_EX), 0);
     assert_int_equal(nt_observer_attach(&observer, name), NT_E_UNSUPPORTED);
     close(file);
     nt_frames *frames = NULL;
