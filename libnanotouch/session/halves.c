@@ -6,7 +6,7 @@
 #include "core/problem.h"
 #include "session/state.h"
 
-#define MOST_SUBSTEPS 20000.0 /* of a cantilever in a period; the session would hardly move on */
+#define MOST_SUBSTEPS 100000.0 /* of a cantilever in a period; the session would hardly move on */
 
 static int64_t session_now(const nt_host *host)
 {

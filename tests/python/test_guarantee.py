@@ -20,7 +20,7 @@ def test_the_guarantee_is_the_sum_of_its_terms() -> None:
         assert found.limit == pytest.approx(session.settings.limits.force, rel=1e-12)
         assert found.snap_in > session.plan.explain()["pull_off_force"]  # the tip arrives with more than that
         assert found.with_failure == found.force + max(found.failures.values())
-        assert found.warning is None
+        assert session is rough or found.warning is None  # on the grating's flanks it may snap in with the limit
         for number in (found.force, found.with_failure):
             assert f"{number * 1e9:.4g} nN" in str(found)
         assert "help is needed within 13.9 h" in str(found)

@@ -170,7 +170,7 @@ plan silicon_in_air --budget -inf   | '-inf' | 1 .. 1e+09
 plan silicon_in_air --budget nan    | 'nan' | 1 .. 1e+09
 plan silicon_in_air --budget ten    | 'ten' | 1 .. 1e+09
 plan silicon_in_air --budget 2e9    | '2e9' | 1 .. 1e+09
-plan silicon_in_air --budget 2      | (--budget) = 2 | valid is 22 .. 1e+09
+plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 1.8 .. 1e+09
 plan silicon_in_air --budget        | --budget: expected one argument
 plan silicon_in_air --quantity x    | 'x' | 'force', 'stiffness', 'radius', 'folds'
 touch --minimum-margin -1           | '-1' | 0 .. 1e+06
@@ -307,6 +307,11 @@ map                                 | required: FILE
 reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 19
 reproduce --figure -5               | --figure -5 | 5, 6, 9
 reproduce --figure x                | 'x' | int
+live prose.txt --film new.gif       | prose.txt
+live --record file                  | file exists already
+live --film file                    | file exists already
+live --film touch.txt               | --film touch.txt | .gif, .mp4, .png
+live prose.txt --radius 30 --film new.gif | 30 | unit
 tradeoff --quick --doc x.md         | --doc with --quick
 tradeoff --out file                 | cannot write into file
 bench --out x.txt                   | --out x.txt | .json

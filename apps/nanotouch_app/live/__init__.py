@@ -47,6 +47,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--radius", metavar="LENGTH", help="of the tip that measured CURVE, as 30nm")
     parser.add_argument("--record", metavar="FILE.mcap", help="record the session to this file")
     parser.add_argument("--film", metavar="FILE", help="film a scripted touch instead: .gif, .mp4, or .png of its end")
+    output.add_overwrite(parser)
     parser.add_argument("--dark", action="store_true", help="begin with the dark colours")
 
 
@@ -56,6 +57,8 @@ def run(args: argparse.Namespace) -> int:
         for name, preset in PRESETS.items():
             print(f"{name:16} {preset.title}: {preset.hint}")
         return 0
+    for file in filter(None, (args.film, args.record)):
+        output.check_free(Path(file), args)
     if args.film is not None:
         return _film(args)
     display.check()

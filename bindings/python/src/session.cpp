@@ -94,8 +94,10 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     made->properties = options["properties"].cast<std::shared_ptr<Properties>>();
     setup.properties = made->properties ? &made->properties->properties : nullptr;
     const Array path = options["path"].cast<Array>();
-    setup.path = path.data();
-    setup.path_count = path.shape(0);
+    if (path.shape(0) == 1 || rig.value.master.axes == 1.0) { // else the hand leads the tip anywhere
+        setup.path = path.data();
+        setup.path_count = path.shape(0);
+    }
     setup.x = path.at(0, 0);
     setup.y = path.at(0, 1);
     setup.clearance = options["clearance"].cast<double>();
@@ -113,8 +115,6 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
         made->law->call = options["law"];
         set_control(setup.settings, *made->law);
     }
-    if (py::len(path) > 1 && rig.value.master.axes > 1.0)
-        setup.path = nullptr; // the hand leads the tip anywhere
     take_halves(*made, setup, options);
     setup.say = say_line;
     nt_problem problem{};
