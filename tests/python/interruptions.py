@@ -25,7 +25,9 @@ from nanotouch import record
 from nanotouch.record import Recording
 
 CHILD = """
-import os, sys, time
+import os, signal, sys, time
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background ignores it
 from nanotouch import record, session
 from nanotouch_app.main import main
 
