@@ -153,8 +153,12 @@ def _silence():  # type: ignore[no-untyped-def]
         contextlib.redirect_stderr(io.StringIO()),
     ):
         warnings.simplefilter("ignore")
+        before = logging.root.manager.disable
         logging.disable()
-        yield
+        try:
+            yield
+        finally:
+            logging.disable(before)
 
 
 def _images_differ(ours: Image, theirs: list[Image]) -> str:
