@@ -16,6 +16,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import cache
 from io import BytesIO
 from itertools import count
 from pathlib import Path
@@ -199,9 +200,15 @@ class Writer:
                 self.path = self._part.replace(wanted)
 
     def _register(self, names: tuple[str, ...]) -> None:
-        schema = {"layout": LAYOUT, "columns": [{"name": name, **vars(COLUMNS[name])} for name in names]}
-        number = self._mcap.register_schema("nanotouch.Touch", ENCODING, json.dumps(schema, indent=1).encode())
+        number = self._mcap.register_schema("nanotouch.Touch", ENCODING, _schema_of(names))
         self._channel = self._mcap.register_channel(TOPIC, ENCODING, number)
+
+
+@cache
+def _schema_of(names: tuple[str, ...]) -> bytes:
+    """Made once: json leaves circular garbage, which would grow with a recording."""
+    schema = {"layout": LAYOUT, "columns": [{"name": name, **vars(COLUMNS[name])} for name in names]}
+    return json.dumps(schema, indent=1).encode()
 
 
 def _new_writer(file: BinaryIO) -> Any:
