@@ -94,13 +94,36 @@ set(nanotouch_sources_scene
     scene/terms/yukawa.c
     scene/warnings.c
     scene/yield_adhere.c
+    scene/yield_contact.c
     scene/yield_follow.c
     scene/yield_mesh.c
     scene/yield_solve.c
     scene/yield_table.c
+    scene/yield_terms.c
     scene/yielding.c)
 set(nanotouch_sources_view view/curve.c view/section.c)
-set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c)
+set(nanotouch_sources_curves
+    curves/baseline.c
+    curves/branch.c
+    curves/contact_point.c
+    curves/film.c
+    curves/flicker.c
+    curves/joint.c
+    curves/line.c
+    curves/pieces.c
+    curves/read.c
+    curves/robust.c
+    curves/wave.c)
+set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c hal/timing.c)
+set(nanotouch_sources_chips
+    hal/chips/ad5686.c
+    hal/chips/ad5791.c
+    hal/chips/ad7606.c
+    hal/chips/ad7768.c
+    hal/chips/chips.c
+    hal/chips/converters.c
+    hal/chips/exchange.c
+    hal/chips/setup.c)
 set(nanotouch_sources_dynamics
     dynamics/cantilever.c
     dynamics/cantilever_dynamic.c
@@ -111,6 +134,7 @@ set(nanotouch_sources_dynamics
     dynamics/sensor.c
     dynamics/stage.c)
 set(nanotouch_sources_control
+    control/calm.c
     control/guarantee.c
     control/impedance.c
     control/lift.c
@@ -136,8 +160,8 @@ set(nanotouch_sources_control
 set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
-set(nanotouch_sources_hosted hal/load.c hal/loop.c)
-set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpiod.c)
+set(nanotouch_sources_hosted hal/load.c hal/loop.c hal/timed_loop.c hal/linux/realtime.c hal/linux/spidev.c)
+set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpio_lines_of_half.c hal/linux/gpiod.c)
 set(nanotouch_sources_session
     session/arming.c
     session/changes.c
@@ -150,6 +174,7 @@ set(nanotouch_sources_session
     session/hazard.c
     session/history.c
     session/inputs.c
+    session/no_thread.c
     session/observer.c
     session/origin.c
     session/pace.c
@@ -161,22 +186,21 @@ set(nanotouch_sources_session
     session/terrain.c
     session/terrain_reach.c)
 set(nanotouch_sources_fit
-    fit/baseline.cpp
     fit/batch.cpp
     fit/branch.c
     fit/contact_model.cpp
     fit/curve.cpp
     fit/custom_model.cpp
     fit/data.cpp
-    fit/flicker.cpp
     fit/guess.cpp
     fit/judgement.cpp
     fit/linear.cpp
     fit/model.cpp
     fit/options.cpp
+    fit/outcome.cpp
     fit/points.cpp
     fit/problem.cpp
-    fit/reading.cpp
+    fit/rating.cpp
     fit/reserve.cpp
     fit/run.cpp
     fit/solve.cpp

@@ -12,6 +12,7 @@
 #include "nanotouch/supervisor.h"
 
 #define SIGMAS 6.0
+#define INTERVALS 400
 
 /* Largest amplitude at which the stage rings if its command goes to and fro at its limit of speed [m]: the square
  * wave's fundamental times the gain of the resonance that the notch leaves, or, where that is more, all that a speed
@@ -53,7 +54,7 @@ static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_h
     b.k_eff = b.spring / (1.0 + b.spring / hazard->stiffness);
     nt_rig slave = b.shape.rig;
     slave.master.rate = 0.0; /* a slow master takes no part in a stop */
-    b.reaction = nt_margins_compute(&slave, &b.shape.gains, hazard->stiffness).loop_delay;
+    b.reaction = nt_margins_loop_delay(&slave, &b.shape.gains);
     b.vertical =
         (1.0 + rig->stage.hysteresis) * limits->stage_speed + b.shape.gains.stage_integral * limits->follow_error;
     return b;
@@ -93,12 +94,28 @@ static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig,
     const double tolerance = s->free_force + b->spring * 1e-9;
     found->failure[NT_FAILURE_READ_OUT] = misread(b, limits);
     found->failure[NT_FAILURE_SENSOR] = b->k_eff * unnoticed(b);
-    found->failure[NT_FAILURE_SLIP] = b->k_eff * fmax(stuck, stage->slip);
+    const int follows = b->shape.gains.stage_integral > 0.0; /* without, hysteresis hides a stage that sticks */
+    found->failure[NT_FAILURE_SLIP] = follows ? b->k_eff * fmax(stuck, stage->slip) : HUGE_VAL;
     found->failure[NT_FAILURE_STAGE] = b->k_eff * runs + tolerance;
     double worst = 0.0;
     for (int i = 0; i < NT_FAILURES; ++i)
         worst = fmax(worst, found->failure[i]);
     found->with_failure = found->force + worst;
+}
+
+/* What the swing of a jump adds to the force `still`. It begins with the tip at the surface and dies away as
+ * exp(-t/tau) while stage and surface press no faster than k_eff (v t + swing): the most that both have in any of some
+ * intervals. */
+static double outlasting(const nt_guarantee *g, const basis *b, const nt_hazard *hazard, double still)
+{
+    const double end = still / (b->k_eff * g->speed), dies = hazard->snap_in - hazard->thermal;
+    double most = still + hazard->thermal;
+    for (int i = 0; i < INTERVALS; ++i) {
+        const double pressed = b->k_eff * g->speed * end * (i + 1) / INTERVALS + g->ringing;
+        const double left = dies * exp(-end * i / INTERVALS / hazard->ring_down);
+        most = fmax(most, fmin(still, pressed) + left + hazard->thermal);
+    }
+    return most - still;
 }
 
 nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
@@ -110,7 +127,7 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     const double read_error = NT_GUARANTEE_SIGMAS * probe->sensitivity_sigma;
     nt_guarantee found = {.reaction_time = b.reaction,
                           .moves_sideways = rig->stage.axes > 1.0,
-                          .snap_in = hazard->snap_in,
+                          .arrival = hazard->arrival,
                           .zero_drift = b.spring * probe->drift,
                           .frame_drift = b.k_eff * rig->stage.drift,
                           .help_time = 0.5 * rig->stage.travel / rig->stage.drift};
@@ -123,12 +140,15 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     found.ringing = b.k_eff * swing;
     const double sigma = nt_probe_force_noise(probe) / probe->spring_constant;
     found.noise = b.spring * (SIGMAS * sigma + probe->sensitivity * probe->resolution);
-    found.force = limits->force + found.calibration + found.motion + found.ringing + found.snap_in + found.noise;
+    const double still = limits->force + found.calibration + found.motion + found.ringing + found.noise;
+    found.snap_in = fmax(outlasting(&found, &b, hazard, still), hazard->pull_off_force); /* of either sign */
+    found.force = still + found.snap_in;
     add_failures(&found, &b, rig, limits);
     /* first touch is noticed where the force leaves the noise, and read with it; a tip that snaps in goes over what
      * that stretches the lever by */
     const double read =
         (2.0 * found.noise + hazard->pull_off_force + read_error * limits->force) / probe->spring_constant;
-    found.indentation = limits->indentation + closer + swing + read + hazard->unseen + hazard->snap_in_depth;
+    const double by_travel = limits->indentation + closer + swing + read + hazard->unseen + hazard->snap_in_depth;
+    found.indentation = fmin(by_travel, hazard->deepest); /* a hard sample is not pressed in that far by this force */
     return found;
 }

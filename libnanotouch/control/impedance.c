@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the hand feels at a contact, over frequency: the impedance Z = (m s + b)/(1 + K_f) + alpha_f alpha_p k_eff C/s,
- * how far it is from the contact's own (transparency, Lawrence 1993), and Llewellyn's criterion on the two-port between
- * hand and tip, h = [[(m s + b)/(1 + K_f), alpha_f C_m], [-alpha_p C_s, 0]] (Hashtrudi-Zaad and Salcudean 2001). */
+ * What the hand feels at a contact, over frequency: Z = f_m/x_m', how far it is from the contact's own (transparency,
+ * Lawrence 1993), and Llewellyn's criterion on the two-port between hand and tip (Hashtrudi-Zaad and Salcudean 2001).
+ *
+ * A hand moves the master as X exp(j w t). With A = (b + j w m) j w X, R = k_r Hs X what the tip reflects, P the
+ * low-pass of f_m, H the motor's hold and dead time, and d the whole periods after which a force is seen by the gauge:
+ *   tau = -(1 + K_f) R + K_f P F,   F = A - z^-d tau  (f_m at the samples),   f_m = A - H tau.
+ * At rest Z is (b + j w m)/(1 + K_f) + k_r C/(j w). Where P has turned f_m, far above its corner, Z can give energy to
+ * the hand: Re Z < 0. Left out is what the steps of the held force put at multiples of the rate. */
 #include <math.h>
 
 #include "control/sampled.h"
@@ -10,13 +15,11 @@
 
 #define SQRT2 1.41421356237309504880
 
-/* C: stage and its hop as sampled, then the motor's dead time and hold. */
-static double complex path_at(const nt_sampled_loop *loop, double dead_time, double angular_frequency)
+/* H: a hold over a period, behind a dead time. */
+static double complex hold(double theta, double dead_angle)
 {
-    const double T = loop->master.period, theta = angular_frequency * T;
-    const double half = 0.5 * theta;
-    const double lag = half + angular_frequency * dead_time;
-    return nt_sampled_stage(loop, theta) * (sin(half) / half * nt_complex(cos(lag), -sin(lag)));
+    const double half = 0.5 * theta, lag = half + dead_angle;
+    return sin(half) / half * nt_complex(cos(lag), -sin(lag));
 }
 
 nt_loop_response nt_margins_response(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,
@@ -26,16 +29,21 @@ nt_loop_response nt_margins_response(const nt_rig *rig, const nt_gains *gains, d
     if (!(frequency > 0.0 && frequency <= 0.5 * gains->rate))
         return response;
     const nt_sampled_loop loop = nt_sampled_loop_make(rig, gains);
-    const double w = 2.0 * NT_PI * frequency, k_c = rig->probe.spring_constant;
+    const double w = 2.0 * NT_PI * frequency, theta = w * loop.master.period, k_c = rig->probe.spring_constant;
     const double k_r = gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
-    const double complex path = path_at(&loop, nt_sampled_dead_time(rig, gains), w);
-    const double complex own = nt_complex(rig->master.damping, w * rig->master.mass) / (1.0 + gains->force_gain);
-    const double complex impedance = own + k_r * path * nt_complex(0.0, -1.0 / w);
+    const double dead_time = nt_sampled_dead_time(rig, gains) + 2.0 * nt_sampled_master_hold(rig, gains);
+    const double seen = (1.0 + loop.master.whole) * theta; /* z^-d */
+    const double complex motor = hold(theta, w * dead_time), stage = nt_sampled_stage(&loop, theta);
+    const double complex gain = gains->force_gain * nt_sampled_low_pass(&loop, theta);
+    const double complex share = motor / (1.0 + gain * nt_complex(cos(seen), -sin(seen)));
+    const double complex path = motor * stage, felt = share * stage; /* of C; of what f_m leaves of it */
+    const double complex own = nt_complex(rig->master.damping, w * rig->master.mass) * (1.0 - gain * share);
+    const double complex impedance = own + (1.0 + gains->force_gain) * k_r * felt * nt_complex(0.0, -1.0 / w);
     response.path[0] = creal(path);
     response.path[1] = cimag(path);
     response.impedance[0] = creal(impedance);
     response.impedance[1] = cimag(impedance);
-    response.llewellyn = creal(path) / cabs(path); /* Re h22 = 0: the stage is a source of position */
+    response.llewellyn = creal(felt) / cabs(felt); /* Re h22 = 0: the stage is a source of position */
     return response;
 }
 

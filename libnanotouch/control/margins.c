@@ -103,6 +103,12 @@ nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double c
     return compute(&real, gains, contact_stiffness, &loop);
 }
 
+double nt_margins_loop_delay(const nt_rig *rig, const nt_gains *gains)
+{
+    const nt_rig real = nt_rig_with_steps(rig);
+    return loop_delay(&real, gains);
+}
+
 /* In touch; rig and gains are those that the law amounts to. */
 static nt_verdict judge_touch(const nt_margins *margins, const nt_rig *rig, const nt_gains *gains, double coupling)
 {
@@ -136,14 +142,7 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
                                nt_margins *margins)
 {
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
-    nt_sampled_loop loop = nt_sampled_loop_make(&shape.rig, &shape.gains);
-    if (settings->control.choice == NT_CONTROL_PAPER) {
-        loop.printed = 1;
-        loop.notched = 0;
-        loop.proportional = settings->gains.stage_proportional;
-        loop.derivative = settings->gains.stage_derivative;
-        loop.force_filter = 1.0; /* the raw f_m */
-    }
+    const nt_sampled_loop loop = nt_sampled_loop_of(&shape.rig, settings, &shape.gains);
     *margins = compute(&shape.rig, &shape.gains, shape.contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
         return (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed");

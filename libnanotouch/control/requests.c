@@ -59,3 +59,12 @@ void nt_touch_clutch(nt_touch_state *state, int open)
 {
     state->clutch_open = open;
 }
+
+void nt_touch_index(nt_touch_state *state, double master_position)
+{
+    nt_signals *signals = &state->signals;
+    state->offset += signals->scaling.alpha_p * (signals->master_position - master_position);
+    signals->master_position = master_position;
+    state->passivity.last_hand.position = master_position;
+    state->hand_at[NT_X] = state->hand_at[NT_Y] = NAN; /* until it is seen */
+}

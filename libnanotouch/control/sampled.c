@@ -102,6 +102,19 @@ nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)
     return loop;
 }
 
+nt_sampled_loop nt_sampled_loop_of(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains)
+{
+    nt_sampled_loop loop = nt_sampled_loop_make(rig, gains);
+    if (settings->control.choice == NT_CONTROL_PAPER) {
+        loop.printed = 1;
+        loop.notched = 0;
+        loop.proportional = settings->gains.stage_proportional;
+        loop.derivative = settings->gains.stage_derivative;
+        loop.force_filter = 1.0; /* the raw f_m */
+    }
+    return loop;
+}
+
 /* H, from the stage's reference to its position, as numerator and denominator. The notch's zeros are the stage's
  * poles: both are left out. */
 static double complex stage_numerator(const nt_sampled_loop *loop, double theta, double complex *denominator)
@@ -113,6 +126,12 @@ static double complex stage_numerator(const nt_sampled_loop *loop, double theta,
     return loop->notched ? loop->stage_loop.b[0] * stage.position : stage.position;
 }
 
+double complex nt_sampled_low_pass(const nt_sampled_loop *loop, double theta)
+{
+    const double complex less = from_one(theta);
+    return loop->force_filter * (1.0 + less) / (less + loop->force_filter);
+}
+
 nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
 {
     const double complex less = from_one(theta), z = 1.0 + less;
@@ -122,7 +141,7 @@ nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
     const nt_hand *hand = &loop->hand;
     const double complex reaction =
         -(hand->mass * master.acceleration + hand->damping * master.speed + hand->stiffness * master.position);
-    const double complex low_pass = loop->force_filter * z / (less + loop->force_filter);
+    const double complex low_pass = nt_sampled_low_pass(loop, theta);
     const double complex drive =
         loop->proportional + loop->derivative / loop->stage.period * less * back_by(theta); /* of Eq. 17 */
     nt_sampled_terms terms = {.stage = less * below,
@@ -147,4 +166,52 @@ double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta)
         return drive * above / (below + drive * above);
     }
     return (less + integral) * above / (less * below + integral * above);
+}
+
+nt_sampled_flow nt_sampled_flow_at(const nt_sampled_loop *loop, double force_gain, double theta)
+{
+    const nt_sampled_terms terms = nt_sampled_terms_at(loop, theta);
+    const nt_sampled_value stage = nt_sampled_at(&loop->stage, theta), master = nt_sampled_at(&loop->master, theta);
+    const double gain = loop->printed ? 1.0 : loop->stage_loop.integral;
+    const double complex servo = terms.stage + gain * terms.tracking; /* 1 + G I over less and below */
+    return (nt_sampled_flow){
+        .stage = nt_sampled_stage(loop, theta),
+        .command = stage.position / stage.determinant * terms.stage / servo,
+        .reading = gain * terms.tracking / servo,
+        .master = master.position / (terms.master - force_gain * terms.finger),
+        .low_pass = nt_sampled_low_pass(loop, theta),
+    };
+}
+
+/* Slowest corner of all parts, as an angle: nothing crosses far below it. */
+static double slowest(const nt_sampled_loop *loop)
+{
+    const nt_sampled *master = &loop->master, *stage = &loop->stage;
+    double corner = fmin(1.0, sqrt(stage->stiffness / stage->mass) * stage->period);
+    corner = fmin(corner, stage->stiffness / stage->damping * stage->period);
+    corner = fmin(corner, master->damping / master->mass * master->period);
+    if (master->stiffness > 0.0) {
+        corner = fmin(corner, master->stiffness / master->damping * master->period);
+        corner = fmin(corner, sqrt(master->stiffness / master->mass) * master->period);
+    }
+    return corner;
+}
+
+double nt_sampled_first(const nt_sampled_loop *loop)
+{
+    return 1e-3 * slowest(loop);
+}
+
+/* A share of the way to or from the nearest resonance, where the phase turns fastest, no closer than a fraction of its
+ * width; and so near that dead times do not turn the phase by more than a quarter. */
+double nt_sampled_next(const nt_sampled_loop *loop, double theta, double share)
+{
+    const nt_sampled *parts[] = {&loop->stage, &loop->master};
+    double step = fmin(share * theta, 0.25 * NT_PI / (2.0 * loop->master.whole + 8.0));
+    for (int i = 0; i < 2; i++) {
+        const double width = 0.5 * parts[i]->damping / parts[i]->mass * parts[i]->period;
+        const double distance = fabs(theta - nt_sampled_angle(parts[i]));
+        step = fmin(step, fmax(share * distance, 0.05 * width));
+    }
+    return theta + fmax(step, 1e-12);
 }

@@ -51,6 +51,8 @@ typedef struct nt_sampled_loop {
     double derivative;   /* K_v [s] */
 } nt_sampled_loop;
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains);
+/* The same of the law that the settings name; rig and gains are those of nt_servo_shape_of. */
+nt_sampled_loop nt_sampled_loop_of(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains);
 /* How long a master that is slower than the loop holds its reading, and its motor a force, beyond a period [s]. */
 double nt_sampled_master_hold(const nt_rig *rig, const nt_gains *gains);
 /* Dead time of one hop: computing, conversion [s]. */
@@ -66,8 +68,26 @@ typedef struct nt_sampled_terms {
     double complex contact;  /* E: from the motor over x_m, stage and contact back to the motor */
 } nt_sampled_terms;
 nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta);
+/* P, of f_m. */
+double complex nt_sampled_low_pass(const nt_sampled_loop *loop, double theta);
 /* x_s over its reference, dead time included. */
 double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta);
+
+/* Between the parts of the loop, each closed in itself; factors on x_s at the operator's scale. */
+typedef struct nt_sampled_flow {
+    double complex stage;    /* from its reference [-] */
+    double complex command;  /* from an error of its command, past the notch [-] */
+    double complex reading;  /* from an error of its read-out [-] */
+    double complex master;   /* from the motor's force to x_m, hand on it, gauge closed through K_f [m/N] */
+    double complex low_pass; /* of f_m [-] */
+} nt_sampled_flow;
+nt_sampled_flow nt_sampled_flow_at(const nt_sampled_loop *loop, double force_gain, double theta);
+/* The next angle on a walk along the circle, no farther than a share of this one, closer near a bare resonance. */
+double nt_sampled_next(const nt_sampled_loop *loop, double theta, double share);
+/* Far below the slowest corner of all parts: where a walk begins. */
+double nt_sampled_first(const nt_sampled_loop *loop);
+/* A dead time beyond this takes as many steps along the circle, and no gain is left to speak of [periods]. */
+enum { NT_SAMPLED_LONGEST = 10000 };
 
 /* Where the loop turns unstable; INFINITY where it never does, 0 where it is unstable anyhow. */
 typedef struct nt_sampled_limits {

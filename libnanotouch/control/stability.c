@@ -9,9 +9,6 @@
 #include "control/sampled.h"
 #include "nanotouch/material.h"
 
-/* A dead time beyond this takes as many steps along the circle, and no gain is left to speak of [periods]. */
-enum { LONGEST = 10000 };
-
 /* Gains, each with the others as they are given. */
 typedef enum gain { STAGE_GAIN, FORCE_GAIN_IN_AIR, FORCE_GAIN_IN_CONTACT, KAPPA_WITHOUT_GAIN, KAPPA, GAINS } gain;
 
@@ -76,39 +73,11 @@ static void refine(const asked *question, gain which, double low, double high, c
         *found = (crossing){size, high};
 }
 
-/* Slowest corner of all parts, as an angle: nothing crosses far below it. */
-static double slowest(const nt_sampled_loop *loop)
-{
-    const nt_sampled *master = &loop->master, *stage = &loop->stage;
-    double corner = fmin(1.0, sqrt(stage->stiffness / stage->mass) * stage->period);
-    corner = fmin(corner, stage->stiffness / stage->damping * stage->period);
-    corner = fmin(corner, master->damping / master->mass * master->period);
-    if (master->stiffness > 0.0) {
-        corner = fmin(corner, master->stiffness / master->damping * master->period);
-        corner = fmin(corner, sqrt(master->stiffness / master->mass) * master->period);
-    }
-    return corner;
-}
-
-/* The next angle: an eighth of the way to or from the nearest resonance, where the phase turns fastest, no closer than
- * a fraction of its width; and so near that dead times do not turn the phase by more than a quarter. */
-static double next(const nt_sampled_loop *loop, double theta)
-{
-    const nt_sampled *parts[] = {&loop->stage, &loop->master};
-    double step = fmin(0.125 * theta, 0.25 * NT_PI / (2.0 * loop->master.whole + 8.0));
-    for (int i = loop->notched; i < 2; i++) {
-        const double width = 0.5 * parts[i]->damping / parts[i]->mass * parts[i]->period;
-        const double distance = fabs(theta - nt_sampled_angle(parts[i]));
-        step = fmin(step, fmax(0.125 * distance, 0.05 * width));
-    }
-    return theta + fmax(step, 1e-12);
-}
-
 /* The phases of all gains along the circle. */
 static void march(const asked *question, crossing found[GAINS])
 {
-    double last_theta = 1e-3 * slowest(question->loop), last[GAINS] = {0.0}, size;
-    for (double theta = last_theta;; theta = fmin(next(question->loop, theta), NT_PI)) {
+    double last_theta = nt_sampled_first(question->loop), last[GAINS] = {0.0}, size;
+    for (double theta = last_theta;; theta = fmin(nt_sampled_next(question->loop, theta, 0.125), NT_PI)) {
         const nt_sampled_terms terms = nt_sampled_terms_at(question->loop, theta);
         for (int which = 0; which < GAINS; which++) {
             const double complex g = phasor(question, (gain)which, &terms, &size);
@@ -126,9 +95,9 @@ static void march(const asked *question, crossing found[GAINS])
 
 nt_sampled_limits nt_sampled_limits_of(const nt_sampled_loop *loop, double force_gain, double reflected_stiffness)
 {
-    const int is_closed = loop->master.damping > 0.0 && loop->master.whole <= LONGEST;
+    const int is_closed = loop->master.damping > 0.0 && loop->master.whole <= NT_SAMPLED_LONGEST;
     nt_sampled_loop walked = *loop;
-    if (loop->stage.whole > LONGEST)
+    if (loop->stage.whole > NT_SAMPLED_LONGEST)
         return (nt_sampled_limits){0.0, NAN, 0.0, 0.0};
     if (!is_closed) { /* the stage's own loop does not ask the master */
         walked.master.damping = walked.master.mass / walked.master.period;

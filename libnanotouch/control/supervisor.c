@@ -100,6 +100,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .stage_most = most,
                            .correction_most = follows ? all : 0.0,
                            .turn_slack = slack,
+                           .lift_share = 2.0 * rig->stage.hysteresis + CREEP_DECADES * rig->stage.creep,
                            .path_kept = exp(-period / settings->limits.follow_time),
                            .limits = settings->limits};
 }
@@ -162,18 +163,19 @@ static int is_saturated(const nt_supervisor *supervisor, const nt_sample *sample
     return sample->flags & NT_SAMPLE_SATURATED || fabs(sample->deflection[NT_Z]) >= supervisor->deflection_range;
 }
 
-/* Does the sample tell how the force changes? */
+/* Does the sample tell how the force changes? A sensor that shows noise again does. */
 static int tells_force(const nt_supervisor *supervisor, const nt_supervisor_state *state, const nt_sample *sample)
 {
     return isfinite(sample->deflection[NT_Z]) && !is_saturated(supervisor, sample) &&
-           !(state->reasons & NT_REASON_STUCK);
+           state->stuck_run < NT_STUCK_SAMPLES;
 }
 
-static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
+                            int saturated)
 {
     const double force = supervisor->spring_constant * sample->deflection[NT_Z];
     nt_state verdict = NT_RUN;
-    if (is_saturated(supervisor, sample))
+    if (saturated)
         verdict = blame(state, NT_REASON_SATURATED, NT_RETRACT);
     if (fabs(force) > supervisor->limits.force)
         verdict = blame(state, NT_REASON_FORCE_LIMIT, NT_RETRACT);
@@ -231,9 +233,10 @@ static nt_state judge_lateness(const nt_supervisor *supervisor, nt_supervisor_st
 }
 
 /* HOLD steps the probe away (touch.c); if that changes nothing for as many samples again: LATCHED. */
-static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
+                            int saturated)
 {
-    const nt_state verdict = nt_stuck_judge(supervisor, state, sample, is_saturated(supervisor, sample));
+    const nt_state verdict = nt_stuck_judge(supervisor, state, sample, saturated);
     return verdict == NT_RUN ? NT_RUN : blame(state, NT_REASON_STUCK, verdict);
 }
 
@@ -249,13 +252,20 @@ static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, 
     state->path = supervisor->path_kept * state->path + fabs(step);
 }
 
-/* Not where it should be: hold; for follow_time: latched, and it stays there. A lift whose force cannot be read is
- * given up. */
+/* What of the way that it lifts a stage may lose, while the integral stands still [m]. */
+static double lost_in_lift(const nt_supervisor *supervisor, const nt_supervisor_state *state)
+{
+    const int lifts = state->state >= NT_RETRACT && isfinite(state->turn);
+    return lifts ? supervisor->lift_share * fabs(state->expected - state->turn) : 0.0;
+}
+
+/* Not where it should be: hold; for follow_time: latched, and it stays there. So does a lift whose force cannot be
+ * read, until it can be and grows; one that was a second try is given up. */
 static nt_state judge_place(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
     const nt_limits *limits = &supervisor->limits;
     const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
-    if (fabs(sample->stage_position[NT_Z] - state->expected) <= slack) {
+    if (fabs(sample->stage_position[NT_Z] - state->expected) <= slack + lost_in_lift(supervisor, state)) {
         state->off_run = 0;
         return NT_RUN;
     }
@@ -265,7 +275,7 @@ static nt_state judge_place(const nt_supervisor *supervisor, nt_supervisor_state
     if (state->state < NT_RETRACT && lasts)
         state->lift = NT_LIFT_WAITS;
     else if (state->state >= NT_RETRACT && !tells_force(supervisor, state, sample))
-        state->lift = NT_LIFT_GIVEN_UP;
+        state->lift = state->lift < NT_LIFT_TRIES ? NT_LIFT_WAITS : NT_LIFT_GIVEN_UP;
     return blame(state, NT_REASON_FOLLOW, state->state >= NT_RETRACT || lasts ? NT_LATCHED : NT_HOLD);
 }
 
@@ -330,11 +340,12 @@ static nt_state judge_stops(nt_supervisor_state *state, const nt_sample *sample)
 static nt_state judge_measured(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
                                const nt_situation *situation)
 {
-    nt_state verdict = judge_force(supervisor, state, sample);
+    const int saturated = is_saturated(supervisor, sample);
+    nt_state verdict = judge_force(supervisor, state, sample, saturated);
     verdict = worse(verdict, judge_indentation(supervisor, state, sample, situation->moves_sideways));
     verdict = worse(verdict, judge_age(supervisor, state, sample));
     verdict = worse(verdict, judge_motion(supervisor, state, sample));
-    return worse(verdict, judge_stuck(supervisor, state, sample));
+    return worse(verdict, judge_stuck(supervisor, state, sample, saturated));
 }
 
 /* RETRACT and LATCHED are not left by themselves. */

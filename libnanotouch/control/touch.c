@@ -21,11 +21,14 @@ static double low_pass_factor(double bandwidth, double period)
     return -expm1(-2.0 * NT_PI * bandwidth * period);
 }
 
-/* The rate at which every sample would be stale: older than two periods [Hz]. */
+/* The rate above which some samples are older than two periods [Hz]: one is repeated in as many ticks as begin before
+ * the next, three without latency; with it two, if that is a period at most, or none. */
 static double stale_rate(const nt_converters *converters)
 {
-    const double repeats = converters->adc_rate > 0.0 ? 1.0 / converters->adc_rate : 0.0;
-    return (repeats > 0.0 ? 3.0 : 2.0) / (converters->adc_latency + repeats); /* the last period of a repeat is fresh */
+    const double latency = converters->adc_latency, each = converters->adc_rate;
+    if (each == 0.0)
+        return 2.0 / latency;
+    return latency == 0.0 ? 3.0 * each : greater(lesser(2.0 * each, 1.0 / latency), lesser(each, 2.0 / latency));
 }
 
 /* No limit may promise more than the rig can keep: beyond saturation no force would be seen. */

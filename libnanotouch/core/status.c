@@ -32,6 +32,14 @@ const char *nt_problem_print(const nt_problem *problem, char *text, unsigned siz
         return text;
     const char *field = problem->field == NULL ? "?" : problem->field;
     const char *unit = problem->unit == NULL ? "" : problem->unit;
+    if (strcmp(unit, NT_UNIT_ERROR) == 0) { /* no field, but a reason */
+        if (isfinite(problem->value))
+            (void)snprintf(text, size, "%s: error %.2g where %.2g is demanded", field, problem->value,
+                           problem->maximum);
+        else
+            (void)snprintf(text, size, "%s: no bound of the error is known", field);
+        return text;
+    }
     if (strchr(unit, '|') != NULL) { /* a choice: its unit are the names */
         (void)snprintf(text, size, "%s = %g: valid is %g .. %g (%s)", field, problem->value, problem->minimum,
                        problem->maximum, unit);

@@ -42,7 +42,7 @@ typedef struct place {
     double slope; /* S [N/m] */
 } place;
 
-static place place_at(walk *w, double z)
+static inline place place_at(walk *w, double z)
 {
     const nt_law_value value = w->field->eval(w->field->context, z);
     w->evaluations++;
@@ -151,7 +151,7 @@ nt_status nt_cantilever_settle(nt_cantilever_state *state, const nt_probe *probe
 {
     if (field->eval == NULL || !(field->length > 0.0) || !(probe->spring_constant > 0.0))
         return NT_E_ARGUMENT;
-    const double cosine = cos(probe->tilt);
+    const double cosine = probe->tilt != 0.0 ? cos(probe->tilt) : 1.0; /* most are level */
     walk w = {.field = field, .stiffness = probe->spring_constant / cosine, .base = base_height, .way = 1.0};
     place a = place_at(&w, state->tip_height);
     if (!place_is_finite(&a))

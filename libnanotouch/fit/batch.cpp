@@ -21,7 +21,7 @@ namespace
 constexpr double typical_spring_constant = 1.0; // N/m
 constexpr double typical_loss_scale = 1e-9;     // N
 
-void fit_safely(const nt_fit_recipe &recipe, const nt_fit_curve &curve, nt_fit_outcome *outcome) noexcept
+void fit_safely(const nt_fit_recipe &recipe, const nt_curve &curve, nt_fit_outcome *outcome) noexcept
 {
     try {
         fit_recorded(recipe, curve, outcome);
@@ -37,7 +37,7 @@ nt_status check_curves(const nt_fit_curves *curves)
     if (!curves || curves->count < 0 || curves->threads < 0 || (curves->count > 0 && !curves->curve))
         return NT_E_ARGUMENT;
     for (long i = 0; i < curves->count; i++)
-        for (const nt_fit_segment *segment : {&curves->curve[i].approach, &curves->curve[i].retract})
+        for (const nt_curve_segment *segment : {&curves->curve[i].approach, &curves->curve[i].retract})
             if (segment->count < 0 || (segment->count > 0 && (!segment->z || !segment->force)))
                 return NT_E_ARGUMENT;
     return NT_OK;
@@ -70,7 +70,7 @@ nt_fit_recipe nt_fit_recipe_defaults(nt_fit_model model)
 {
     const double all = std::numeric_limits<double>::infinity();
     const bool adhesive = model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
-    nt_fit_recipe recipe{nt_fit_defaults(model), !adhesive, 1, 0, {}, -all, all, 0.03};
+    nt_fit_recipe recipe{nt_fit_defaults(model), !adhesive, {NT_CURVE_AUTO, 0.0, 0.0}, 0, {}, -all, all, 0.03};
     recipe.options.loss_scale = 0.0;
     return recipe;
 }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "points.hpp"
 
@@ -25,7 +24,6 @@ constexpr double stiff = 5.0;          // contact stiffness over spring constant
 constexpr double wide = 0.5;           // a/R up to which a paraboloid on a half-space is believed
 constexpr double misfitting = 3.0;     // residual over noise
 constexpr double wrong = 0.05;         // residual over the span of the force
-constexpr double correlated = 2.0;     // of white noise this ratio is 1 +- 0.3
 constexpr double as_given = 0.05;      // relative difference of scatter and noise that changes nothing
 constexpr double torn_elsewhere = 2.5; // standard deviations of the place of the tear
 constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
@@ -36,26 +34,6 @@ constexpr double moved = 0.5;                      // of ln E*
 constexpr double computed = 1e-9;                  // noise over force of a curve in which nothing is to be weighed
 constexpr double least_loss_scale = 1e-18;         // N
 constexpr double largest_spring_constant = 1e6;    // N/m
-constexpr std::size_t most_blocks = 20;            // of residuals, whose means show how they hang together
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-// By how much the residuals' correlation raises the variance of their mean; 1 where it is not evident.
-double correlation_of(const std::vector<double> &rest, double mean_square)
-{
-    const std::size_t blocks = std::max<std::size_t>(2, std::min(most_blocks, rest.size() / 4));
-    const std::size_t size = rest.size() / blocks;
-    if (mean_square == 0.0 || size < 2)
-        return 1.0;
-    double squares = 0.0;
-    for (std::size_t block = 0; block < blocks; block++) {
-        double sum = 0.0;
-        for (std::size_t i = block * size; i < (block + 1) * size; i++)
-            sum += rest[i];
-        squares += (sum / double(size)) * (sum / double(size));
-    }
-    const double ratio = squares / double(blocks) * double(size) / mean_square;
-    return ratio > correlated ? ratio : 1.0;
-}
 
 // Standard deviation of one point such that N independent ones would scatter as the mean of these N does [N].
 double scatter_of(const Fitted &fitted, const std::vector<nt_fit_point> &points)
@@ -67,7 +45,7 @@ double scatter_of(const Fitted &fitted, const std::vector<nt_fit_point> &points)
         squares += rest[i] * rest[i];
     }
     const double mean_square = squares / double(rest.size());
-    return std::sqrt(mean_square * correlation_of(rest, mean_square));
+    return std::sqrt(mean_square * nt_curve_residual_correlation(rest.data(), static_cast<long>(rest.size())));
 }
 
 // What a fit is made with and what it found.
@@ -82,7 +60,7 @@ struct Solution {
 class Curve
 {
   public:
-    Curve(const nt_fit_recipe &recipe, double spring_constant, const Branch &branch, nt_fit_outcome *outcome)
+    Curve(const nt_fit_recipe &recipe, double spring_constant, const nt_curve_branch &branch, nt_fit_outcome *outcome)
         : recipe_(recipe), spring_constant_(spring_constant), branch_(branch), outcome_(*outcome)
     {
     }
@@ -98,13 +76,15 @@ class Curve
     nt_status contradicts_tear(bool *contradicts) const;
     nt_status solve();
     bool is_exact() const;
+    double correlated_noise() const;
     double noise() const; // of the free cantilever, as far as the fitted points are worth independent ones [N]
     nt_status doubt_calibration();
+    double rating() const;
     void judge();
 
     const nt_fit_recipe &recipe_;
     const double spring_constant_;
-    const Branch &branch_;
+    const nt_curve_branch &branch_;
     nt_fit_outcome &outcome_;
     Fitted fitted_;
     Solution solution_{};
@@ -144,7 +124,7 @@ nt_status Curve::run()
     found.points.resize(fitted_.position.size());
     status = nt_fit_model_n(&found.options, found.result.value, &data, found.points.data());
     if (status == NT_OK)
-        found.scatter = std::max(scatter_of(fitted_, found.points), branch_.correlated_noise(fitted_.position.size()));
+        found.scatter = std::max(scatter_of(fitted_, found.points), correlated_noise());
     return status;
 }
 
@@ -162,9 +142,15 @@ nt_status Curve::contradicts_tear(bool *contradicts) const
     return status;
 }
 
+double Curve::correlated_noise() const
+{
+    return nt_curve_correlated_noise(branch_.noise, &branch_.baseline.noise,
+                                     static_cast<long>(fitted_.position.size()));
+}
+
 double Curve::noise() const
 {
-    return std::max(branch_.noise, branch_.correlated_noise(fitted_.position.size()));
+    return std::max(branch_.noise, correlated_noise());
 }
 
 bool Curve::is_exact() const
@@ -275,6 +261,18 @@ nt_status Curve::doubt_calibration()
     return NT_OK;
 }
 
+double Curve::rating() const
+{
+    std::vector<double> indentation(solution_.points.size()), fitted(solution_.points.size());
+    for (std::size_t i = 0; i < fitted.size(); i++) {
+        indentation[i] = solution_.points[i].indentation;
+        fitted[i] = solution_.points[i].force;
+    }
+    const nt_fit_rated rated{indentation.data(), fitted_.force.data(), fitted.data(), static_cast<long>(fitted.size()),
+                             branch_.noise};
+    return nt_fit_rating(&rated);
+}
+
 void Curve::judge()
 {
     nt_fit_result &fit = solution_.result;
@@ -289,14 +287,16 @@ void Curve::judge()
         flags |= NT_FIT_STIFF;
     if (round && fit.contact_radius > wide * options.radius)
         flags |= NT_FIT_WIDE;
-    if (branch_.baseline.wave.amplitude() > 0.0)
+    if (std::hypot(branch_.baseline.wave.cosine, branch_.baseline.wave.sine) > 0.0)
         flags |= NT_FIT_WAVES;
     const bool tear_unused =
         fitted_.torn && !options.parameter[NT_FIT_WORK_OF_ADHESION].fixed && options.tear_sigma == 0.0;
     if (tear_unused && !is_exact())
         flags |= NT_FIT_TORN_ELSEWHERE;
+    outcome_.rating = rating();
     if (misfit > misfitting && std::isfinite(misfit)) {
-        flags |= NT_FIT_MISFIT;
+        if (outcome_.rating < NT_FIT_GOOD)
+            flags |= NT_FIT_MISFIT;
         if (tear_unused || fit.residual_rms > wrong * (*highest - *lowest)) {
             flags |= NT_FIT_WRONG_MODEL;
             std::fill_n(fit.identifiable, NT_FIT_PARAMETERS, 0);
@@ -325,63 +325,41 @@ nt_status Curve::fit()
     return NT_OK;
 }
 
-void read_curve(const Branch *approach, const Branch *retract, nt_fit_reading *reading)
+// A force that never changes is none that a model could be fitted to.
+nt_status check_span(const nt_curve_segment &segment, nt_problem *problem)
 {
-    const Branch &first = approach ? *approach : *retract;
-    reading->baseline_tilt = first.baseline.slope;
-    reading->contact_slope = first.contact_slope();
-    reading->noise = approach && retract ? 0.5 * (approach->noise + retract->noise) : first.noise;
-    if (approach)
-        reading->snap_in_force = approach->dip();
-    if (retract) {
-        reading->pull_off_force = retract->dip();
-        reading->adhesion_work = retract->adhesion_work();
-    }
+    const auto [lowest, highest] = std::minmax_element(segment.force, segment.force + segment.count);
+    if (segment.count < NT_CURVE_FEWEST || *highest > *lowest || std::isnan(*lowest))
+        return NT_OK;
+    *problem = {"force (span)", "N", 0.0, 1e-18, 1.0};
+    return NT_E_RANGE;
 }
 
 } // namespace
 
-nt_fit_outcome failed(nt_status status)
-{
-    nt_fit_outcome outcome{};
-    const nt_fit_measured unknown{not_a_number, not_a_number};
-    outcome.status = status;
-    outcome.reading = {not_a_number, not_a_number, unknown, unknown, unknown, unknown};
-    nt_fit_result &fit = outcome.fit;
-    std::fill_n(fit.value, NT_FIT_PARAMETERS, not_a_number);
-    std::fill_n(fit.sigma, NT_FIT_PARAMETERS, not_a_number);
-    std::fill_n(fit.from_tear, NT_FIT_PARAMETERS, not_a_number);
-    std::fill_n(&fit.covariance[0][0], NT_FIT_PARAMETERS * NT_FIT_PARAMETERS, not_a_number);
-    fit.residual_rms = fit.residual_noise = fit.misfit = fit.transition_parameter = fit.pull_off_force = not_a_number;
-    fit.contact_radius = fit.contact_stiffness = not_a_number;
-    return outcome;
-}
-
-void fit_recorded(const nt_fit_recipe &recipe, const nt_fit_curve &curve, nt_fit_outcome *outcome)
+void fit_recorded(const nt_fit_recipe &recipe, const nt_curve &curve, nt_fit_outcome *outcome)
 {
     *outcome = failed(NT_OK);
-    Branch branches[2]; // approach, retraction
-    const nt_fit_segment *segments[2] = {&curve.approach, &curve.retract};
-    const Branch *known[2] = {nullptr, nullptr};
-    for (int i = 0; i < 2; i++) {
-        if (segments[i]->count < NT_FIT_MIN_POINTS)
-            continue;
-        outcome->status = check_segment(*segments[i], &outcome->problem);
+    const nt_curve_segment &fitted = recipe.approach ? curve.approach : curve.retract;
+    std::vector<double> work(static_cast<std::size_t>(nt_curve_work_size(curve.approach.count + curve.retract.count)));
+    nt_curve_reading read;
+    if (curve.approach.count >= NT_CURVE_FEWEST || curve.retract.count >= NT_CURVE_FEWEST) {
+        outcome->status = nt_curve_read(&curve, &recipe.baseline, work.data(), &read, &outcome->problem);
+        for (const nt_curve_segment *segment : {&curve.approach, &curve.retract})
+            if (outcome->status == NT_OK)
+                outcome->status = check_span(*segment, &outcome->problem);
         if (outcome->status != NT_OK)
             return;
-        branches[i] = Branch(*segments[i], recipe.waves);
-        known[i] = &branches[i];
+        summarise(read, &outcome->reading);
     }
-    if (known[0] || known[1])
-        read_curve(known[0], known[1], &outcome->reading);
-    const int fitted = recipe.approach ? 0 : 1;
-    if (!known[fitted]) {
-        const char *name = fitted ? "retract.count" : "approach.count";
-        outcome->problem = {name, "", double(segments[fitted]->count), NT_FIT_MIN_POINTS, 1e9};
+    if (fitted.count < NT_CURVE_FEWEST) {
+        const char *name = recipe.approach ? "approach.count" : "retract.count";
+        outcome->problem = {name, "", double(fitted.count), NT_CURVE_FEWEST, 1e9};
         outcome->status = NT_E_RANGE;
         return;
     }
-    outcome->status = Curve(recipe, curve.spring_constant, *known[fitted], outcome).fit();
+    outcome->status =
+        Curve(recipe, curve.spring_constant, recipe.approach ? read.approach : read.retract, outcome).fit();
     if (outcome->status != NT_OK)
         outcome->flags = 0;
 }

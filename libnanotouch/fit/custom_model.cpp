@@ -37,7 +37,7 @@ struct Root {
     {
         (excess > 0.0 ? hi : lo) = x;
         const double newton = x - excess / slope;
-        if (slope > 0.0 && newton > lo && newton < hi)
+        if (slope > 0.0 && newton >= lo && newton <= hi) // equal to x once it is found
             return newton;
         if (std::isinf(lo))
             return x - 2.0 * std::max(std::fabs(excess), unit);

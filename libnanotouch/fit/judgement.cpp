@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "baseline.hpp"
+#include "nanotouch/curves.h"
 
 namespace nanotouch
 {
@@ -60,7 +60,8 @@ void judge_residuals(const nt_fit_options &options, const nt_fit_data &data, con
                      nt_fit_result *result)
 {
     const std::vector<double> left = in_order(data, residuals);
-    const double noise = point_noise({nullptr, left.data(), data.count});
+    std::vector<double> work(left.size());
+    const double noise = nt_curve_point_noise(left.data(), data.count, work.data());
     const double size = options.loss == NT_LOSS_SQUARES ? result->residual_rms : typical_size(left);
     const double limit = at_most + of_few / std::sqrt(double(data.count));
     const bool stated = options.force_noise > 0.0;

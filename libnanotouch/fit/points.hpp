@@ -2,7 +2,9 @@
 // Which points of a branch are fitted; private to fit/.
 #pragma once
 
-#include "reading.hpp"
+#include <vector>
+
+#include "nanotouch/fit.h"
 
 namespace nanotouch
 {
@@ -20,7 +22,7 @@ struct Fitted {
 };
 
 // Those that the law can describe. NT_E_RANGE if they are too few.
-nt_status take_points(const nt_fit_recipe &recipe, const Branch &branch, Fitted *fitted, nt_problem *problem);
+nt_status take_points(const nt_fit_recipe &recipe, const nt_curve_branch &branch, Fitted *fitted, nt_problem *problem);
 nt_status check_count(const Fitted &fitted, nt_problem *problem);
 
 } // namespace nanotouch

@@ -88,19 +88,28 @@ static void keep_valid(nt_reading *reading)
     keep(reading, NT_READS_FELT + NT_Z, &reading->felt[NT_Z]);
 }
 
+/* A device that fails is lost, whatever it says of it; a model that fails is the caller's matter. */
+static int is_loss(const nt_hal *hal, nt_status status)
+{
+    return status == NT_E_DEVICE || (status != NT_OK && !hal->is_model);
+}
+
 nt_status nt_hal_read(nt_hal *hal)
 {
     if (!hal->backend)
         return NT_E_STATE;
     const uint64_t sequence = hal->reading.sequence;
     const nt_status status = hal->backend->read(hal->context, &hal->reading);
-    if (status == NT_E_DEVICE || hal->is_lost)
+    const int lost = is_loss(hal, status);
+    if (lost || hal->is_lost)
         forget(&hal->reading, NT_SAMPLE_DEVICE_LOST | NT_SAMPLE_INVALID);
     else if (hal->reading.sequence < sequence)
         forget(&hal->reading, NT_SAMPLE_INVALID);
     else if ((hal->reading.valid & ALL_CHANNELS) != ALL_CHANNELS)
         keep_valid(&hal->reading);
-    return status == NT_E_DEVICE ? NT_OK : status;
+    if (!(hal->reading.lateness >= 0.0))
+        hal->reading.lateness = INFINITY; /* nobody knows how late: too late */
+    return lost ? NT_OK : status;
 }
 
 nt_status nt_hal_write(nt_hal *hal, const nt_action *action)
@@ -108,7 +117,7 @@ nt_status nt_hal_write(nt_hal *hal, const nt_action *action)
     if (!hal->backend)
         return NT_E_STATE;
     const nt_status status = hal->backend->write(hal->context, action);
-    hal->is_lost = status == NT_E_DEVICE;
+    hal->is_lost = is_loss(hal, status);
     return hal->is_lost ? NT_OK : status;
 }
 
@@ -134,17 +143,12 @@ void nt_hal_close(nt_hal *hal)
 
 static double seconds_between(int64_t from, int64_t to)
 {
-    return (double)(to - from) / 1e9;
+    return (double)(int64_t)((uint64_t)to - (uint64_t)from) / 1e9; /* whatever a half calls its time */
 }
 
-nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
+void nt_hal_join(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
 {
     const nt_reading *hand = &master->reading, *probe = &slave->reading;
-    nt_status status = nt_hal_read(master);
-    if (status == NT_OK)
-        status = nt_hal_read(slave);
-    if (status != NT_OK)
-        return status;
     sample->tick = tick;
     sample->age = seconds_between(probe->time, now);
     sample->master_age = seconds_between(hand->time, now);
@@ -154,7 +158,16 @@ nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t no
     copy_axes(sample->operator_force, hand->felt);
     copy_axes(sample->stage_position, probe->position);
     copy_axes(sample->deflection, probe->felt);
-    return NT_OK;
+}
+
+nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
+{
+    nt_status status = nt_hal_read(master);
+    if (status == NT_OK)
+        status = nt_hal_read(slave);
+    if (status == NT_OK)
+        nt_hal_join(master, slave, tick, now, sample);
+    return status;
 }
 
 nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command, nt_action *action)

@@ -35,9 +35,22 @@ void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adh
         plan->capture_gap = 0.0;
 }
 
-nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation)
+/* The laws with adhesion; NaN where there is no contact. */
+static nt_law_value adhesive_eval(const nt_plan *plan, nt_form form, double indentation)
 {
     nt_law_value value = {NAN, NAN, NAN, NAN};
+    const nt_tier tier = form == NT_FORM_POLISHED ? NT_TIER_POLISHED : NT_TIER_TABLE;
+    if (form == NT_FORM_JKR)
+        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
+    else if (form == NT_FORM_EXACT)
+        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
+    else
+        (void)nt_maugis_table_eval(&plan->table, tier, indentation, NT_BRANCH_STABLE, &value);
+    return value;
+}
+
+nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation)
+{
     switch (form) {
     case NT_FORM_PARABOLOID:
         return nt_hertz_eval(&plan->contact, indentation);
@@ -45,16 +58,10 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
         return nt_sphere_series_eval(plan->shape.radius, plan->contact.effective_modulus, indentation);
     case NT_FORM_SHAPE:
         return nt_shape_eval(&plan->shape, plan->contact.effective_modulus, indentation);
-    case NT_FORM_JKR:
-        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
-        return value;
-    case NT_FORM_EXACT:
-        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
-        return value;
+    case NT_FORM_YIELDING: /* is in the table, with all that acts around it */
+        return (nt_law_value){0.0, 0.0, 0.0, 0.0};
     default:
-        (void)nt_maugis_table_eval(&plan->table, form == NT_FORM_POLISHED ? NT_TIER_POLISHED : NT_TIER_TABLE,
-                                   indentation, NT_BRANCH_STABLE, &value);
-        return value;
+        return adhesive_eval(plan, form, indentation);
     }
 }
 

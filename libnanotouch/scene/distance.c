@@ -47,6 +47,18 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
     }
 }
 
+double nt_plan_force_scale(const nt_plan *plan, double maximum_load)
+{
+    const int felt = plan->demand.quantity == NT_QUANTITY_FORCE;
+    if (nt_plan_contact_form(plan) == NT_FORM_EXACT) {
+        const double own = nt_maugis_pull_off_force(&plan->maugis);
+        return felt ? fmin(plan->scale, own) : own;
+    }
+    if (felt)
+        return plan->scale;
+    return pull_of(plan) > 0.0 ? pull_of(plan) : SMALL_LOAD * maximum_load;
+}
+
 typedef nt_law_value contact_law(const nt_plan *plan, double indentation);
 
 static nt_law_value full_at(const nt_plan *plan, double indentation)

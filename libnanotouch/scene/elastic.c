@@ -4,21 +4,25 @@
  * e = k^(3/2)/(E* sqrt(2 R F)), F and k the sums of |F| and |k| of the terms on the undeformed gap, is the deformation
  * under their pressure over its range, as Tabor's number is for adhesion. Beside contact the sum is off by at most
  * 1.025 e/sqrt(2 pi) of F; where something pulls, by 1/sqrt(1 - e/e_c) more, up to the jump at e_c. In contact the
- * pressure around it moves the surface there by u, so that the force falls by k_c u, and by no more than half of F. */
+ * pressure around it moves the surface there by u, so that the force falls by k_c u, and by no more than half of F.
+ * Folds and contact radius of an adhesive contact are moved by that u, and by what the tail, which is taken out of w,
+ * pulls more. Over a surface all is that of the softest place; F and k grow with the radius there, e and u as its root.
+ */
 #include <math.h>
 
 #include "scene/terms/term.h"
 #include "scene/yield.h"
 
 #define BESIDE 0.409  /* 1.025/sqrt(2 pi) */
-#define JUMP 0.55     /* e_c: 0.56 of a pressure as 1/g^3, 0.81 of an exponential */
 #define SLOPE 3.0     /* the stiffness is off by so much more than the force, at most */
-#define UNDER 0.593   /* u E* sqrt(2 R l)/F under a pressure of range l, at most */
+#define UNDER 0.637   /* u E* sqrt(2 R l)/F, at most: 2/pi, of a pressure that is even over l */
+#define WIDER 0.3     /* u grows by so much e */
 #define HALF 0.55     /* of F, in deep contact */
 #define GAPS 1.1      /* ratio of gaps that are looked at */
 #define NEAREST 1e-13 /* [m] */
 #define FARTHEST 1e-2 /* [m] */
 #define DEEPER 1.05   /* than the largest load */
+#define MOST_OF_W 0.5 /* share of w that may be wrong */
 
 nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap)
 {
@@ -43,24 +47,30 @@ static double number_of(const nt_plan *plan, const nt_elastic_sum *s)
     return s->all_k * sqrt(s->all_k / s->all_F) / (plan->contact.effective_modulus * sqrt(2.0 * plan->contact.radius));
 }
 
-/* What rigid bodies err by, over the sum of |F|; infinite beyond a jump. */
+/* Where the surface is bluntest: F, k and the error in them grow with the radius, e as its root. */
+static double bluntest(const nt_plan *plan)
+{
+    return nt_plan_is_curved(plan) ? nt_plan_largest_ratio(plan) : 1.0;
+}
+
+/* What rigid bodies err by, over the sum of |F|, where e is largest; infinite beyond a jump. */
 static double share_of(const nt_plan *plan, const nt_elastic_sum *s)
 {
-    const double e = number_of(plan, s);
+    const double e = number_of(plan, s) * sqrt(bluntest(plan));
     if (!s->pulls)
         return BESIDE * e;
-    return e < JUMP ? BESIDE * e / sqrt(1.0 - e / JUMP) : (double)INFINITY;
+    return e < NT_ELASTIC_JUMP ? BESIDE * e / sqrt(1.0 - e / NT_ELASTIC_JUMP) : (double)INFINITY;
 }
 
 /* The same as a share of the demand. */
 double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s)
 {
-    const double share = share_of(plan, s);
+    const double share = share_of(plan, s), scale = plan->scale, ratio = bluntest(plan);
     if (share == 0.0)
         return 0.0;
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
-        return SLOPE * share * s->all_k / fmax(fabs(s->k), plan->scale);
-    return share * s->all_F / fmax(fabs(s->F), plan->scale);
+        return SLOPE * share * ratio * s->all_k / fmax(ratio * fabs(s->k), scale);
+    return share * ratio * s->all_F / fmax(ratio * fabs(s->F), scale);
 }
 
 double nt_elastic_hold(const nt_plan *plan)
@@ -81,19 +91,53 @@ static double under(const nt_plan *plan, nt_law_value value)
     return UNDER * fabs(value.F) / (plan->contact.effective_modulus * width);
 }
 
-/* In contact without adhesion. */
-static double error_in_contact(const nt_plan *plan)
+/* The sum of that over the terms; with tails or without [m]. Under the apex, where contact takes hold, it grows with e,
+ * up to e^2 l/8 of a pressure that is Hertz' own. */
+static double under_all(const nt_plan *plan, int tails)
 {
-    const double hold = nt_elastic_hold(plan) * (1.0 + 1e-12);
-    const nt_elastic_sum touching = nt_elastic_sum_at(plan, 0.0);
-    double u = 0.0, worst = 0.0;
+    double u = 0.0;
+    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        if (!nt_term_rows[term]->pressure || (nt_term_rows[term]->words.tail && !tails))
+            continue;
+        const double hold = nt_plan_hold_gap(plan, term) * (1.0 + 1e-12);
         const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), hold);
         u += under(plan, value);
+        s.all_F += fabs(value.F);
+        s.all_k += fabs(value.k);
     }
+    return u * sqrt(bluntest(plan)) * (1.0 + WIDER * number_of(plan, &s) * sqrt(bluntest(plan)));
+}
+
+/* Without adhesion, as a share of the demand: sqrt(d) - sqrt(d - u) is largest where contact would begin. */
+static double radius_at(const nt_plan *plan, double u)
+{
+    const double blunter = sqrt(bluntest(plan));
+    return u > 0.0 ? nt_plan_contact_eval(plan, nt_plan_contact_form(plan), u).a * blunter / plan->scale : 0.0;
+}
+
+/* The same where the largest load is reached before the bodies touch, at a gap: the surface is pushed so far that
+ * undeformed bodies would. */
+static double radius_before_contact(const nt_plan *plan, double gap)
+{
+    double u = 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (nt_term_rows[term]->pressure)
+            u += under(plan, nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap));
+    return radius_at(plan, u * sqrt(bluntest(plan)) - gap);
+}
+
+/* In contact without adhesion: a force that is less by k_c u, a radius that is that of an indentation less u. */
+static double error_in_contact(const nt_plan *plan)
+{
+    const nt_elastic_sum touching = nt_elastic_sum_at(plan, 0.0);
+    const double u = under_all(plan, 1), ratio = bluntest(plan);
+    double worst = 0.0;
+    if (plan->demand.quantity == NT_QUANTITY_RADIUS)
+        return radius_at(plan, u);
     for (double d = NEAREST; d < plan->largest_indentation && u > 0.0; d *= GAPS) {
         const nt_law_value contact = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), d);
-        const double lost = fmin(contact.k * u, HALF * touching.all_F);
+        const double lost = fmin(sqrt(ratio) * contact.k * u, HALF * ratio * touching.all_F);
         const double error = plan->demand.quantity == NT_QUANTITY_STIFFNESS
                                  ? SLOPE * fmin(lost / d, contact.k) / fmax(contact.k, plan->scale)
                                  : lost / fmax(fabs(contact.F + touching.F), plan->scale);
@@ -112,45 +156,112 @@ static double where_force_is(const nt_plan *plan, double force, double nearer, d
     return nearer;
 }
 
-/* Of what is no tail, around an adhesive contact. */
-static double error_around(const nt_plan *plan)
+/* By which share of w the tail pulls more than on a surface that keeps still. */
+static double more_of_w(const nt_plan *plan)
 {
-    double u = 0.0, all = 0.0;
-    if (plan->demand.quantity != NT_QUANTITY_FORCE && plan->demand.quantity != NT_QUANTITY_STIFFNESS)
+    const double hold = plan->capture_gap * (1.0 + 1e-12);
+    const nt_elastic_sum s = nt_elastic_sum_at(plan, hold);
+    double tail = 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (nt_term_rows[term]->words.tail)
+            tail += fabs(nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), hold).F);
+    if (tail == 0.0)
         return 0.0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
-        if (nt_term_rows[term]->words.tail || !nt_term_rows[term]->pressure)
-            continue;
-        const nt_form form = nt_plan_full_form(plan, term);
-        all += fabs(nt_plan_law_eval(plan, term, form, 0.0).F);
-        u += under(plan, nt_plan_law_eval(plan, term, form, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12)));
-    }
-    const double lost = fmin(plan->maximum_stiffness * u, HALF * all);
-    return plan->demand.quantity == NT_QUANTITY_STIFFNESS ? SLOPE * lost / plan->length / plan->scale
-                                                          : lost / plan->scale;
+    return share_of(plan, &s) * tail / (2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion);
 }
 
-/* Of a radius or a fold nothing is known beside a jump: what is, is that of contact alone. */
+static double shift_of(const nt_plan *plan, int tails)
+{
+    const double more = tails ? more_of_w(plan) : 0.0;
+    if (more > MOST_OF_W)
+        return INFINITY;
+    return (under_all(plan, 0) + more * fabs(plan->release_gap)) * nt_plan_largest_unit(plan, NT_QUANTITY_FOLDS);
+}
+
+double nt_plan_rigid_shift(const nt_plan *plan)
+{
+    if (plan->source == NT_ADHESION_NONE || plan->yield.holds)
+        return 0.0;
+    return shift_of(plan, plan->yield.count == 0); /* of a table the tail is right */
+}
+
+/* The radius of an adhesive contact with another w, at an indentation; NaN beyond its fold. */
+static double radius_with(const nt_plan *plan, double more, double indentation)
+{
+    nt_contact contact = plan->contact;
+    contact.work_of_adhesion *= 1.0 + more;
+    contact.cohesive_stress *= 1.0 + more;
+    nt_maugis maugis;
+    nt_law_value value = {NAN, NAN, NAN, NAN};
+    if (nt_maugis_init(&maugis, &contact) == NT_OK)
+        (void)nt_maugis_eval(&maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
+    return value.a;
+}
+
+/* What the pressure around an adhesive contact and a w that is not quite right do to its radius, from where the bound
+ * begins: beside fold and first touch. */
+static double error_of_radius(const nt_plan *plan, int tails)
+{
+    enum { SAMPLES = 48 };
+    const double u = under_all(plan, 0), more = tails ? more_of_w(plan) : 0.0;
+    const double moved = shift_of(plan, tails), beside = 2.0 * moved + nt_plan_away_from_folds(plan);
+    if (u == 0.0 && more == 0.0)
+        return 0.0;
+    if (nt_plan_contact_form(plan) != NT_FORM_EXACT || isinf(moved))
+        return INFINITY;
+    const double fold = beside - plan->release_gap;
+    const double touch = plan->maugis.folds.touch_indentation * plan->maugis.indentation_scale;
+    double worst = 0.0;
+    for (int i = 0; i <= SAMPLES; ++i) {
+        const double t = (double)i / SAMPLES;
+        double d = fold + t * t * t * (plan->largest_indentation - fold);
+        if (fabs(d - touch) < beside)
+            d = touch + beside;
+        const double a = radius_with(plan, 0.0, d);
+        const double wider = radius_with(plan, more, d + u) - a, narrower = a - radius_with(plan, -more, d - u);
+        worst = fmax(worst, fmax(fabs(wider), fabs(narrower)) / fmax(a, plan->scale));
+    }
+    return NT_SAMPLED * worst * nt_plan_largest_unit(plan, NT_QUANTITY_RADIUS);
+}
+
+double nt_plan_around_error(const nt_plan *plan, int tails)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    double all = 0.0;
+    if (quantity == NT_QUANTITY_FOLDS)
+        return shift_of(plan, tails) / plan->scale;
+    if (quantity == NT_QUANTITY_RADIUS)
+        return error_of_radius(plan, tails);
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure)
+            all += fabs(nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F);
+    const double lost = fmin(plan->maximum_stiffness * under_all(plan, 0), HALF * all) * bluntest(plan);
+    return quantity == NT_QUANTITY_STIFFNESS ? SLOPE * lost / plan->length / plan->scale : lost / plan->scale;
+}
+
+/* Beside contact there is no radius and, but for a jump, no fold. */
 static double error_of(const nt_plan *plan, double worst)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     if (quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS)
         return worst;
-    return plan->source != NT_ADHESION_NONE && isinf(worst) ? worst : 0.0;
+    return isinf(worst) ? worst : 0.0;
 }
 
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
 {
     const double nearest = scene->range.minimum_gap;
     const double outside = nt_elastic_hold(plan) * (1.0 + 1e-12);
-    double worst = 0.0;
+    double worst = 0.0, reached = 0.0;
     plan->elastic_number = 0.0;
-    const double last = fmax(fmax(nearest, outside), NEAREST), load = DEEPER * scene->range.maximum_load;
+    const double last = fmax(fmax(nearest, outside), NEAREST);
+    const double load = DEEPER * scene->range.maximum_load;
+    const int is_radius = plan->demand.quantity == NT_QUANTITY_RADIUS && plan->source == NT_ADHESION_NONE;
     int touches = plan->source == NT_ADHESION_NONE && nearest <= 0.0;
     for (double gap = FARTHEST; gap > last && touches >= 0;) {
         double next = fmax(gap / GAPS, last);
         if (nt_elastic_sum_at(plan, next).F > load) { /* closer than any load comes */
-            next = where_force_is(plan, load, next, gap);
+            reached = next = where_force_is(plan, load, next, gap);
             touches = -1;
         }
         const nt_elastic_sum s = nt_elastic_sum_at(plan, next);
@@ -158,8 +269,11 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
         plan->elastic_number = fmax(plan->elastic_number, number_of(plan, &s));
         gap = next;
     }
-    if (touches > 0)
+    worst = error_of(plan, worst);
+    if (touches > 0 && plan->demand.quantity != NT_QUANTITY_FOLDS)
         worst = fmax(worst, error_in_contact(plan));
-    plan->around_error = plan->source != NT_ADHESION_NONE && nearest <= 0.0 ? error_around(plan) : 0.0;
-    return error_of(plan, worst);
+    if (touches < 0 && is_radius)
+        worst = fmax(worst, radius_before_contact(plan, reached));
+    plan->around_error = plan->source != NT_ADHESION_NONE && nearest <= 0.0 ? nt_plan_around_error(plan, 1) : 0.0;
+    return worst;
 }

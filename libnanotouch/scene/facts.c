@@ -9,7 +9,7 @@
 static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
 {
     nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
-    if (attached) {
+    if (attached && !plan->yield.holds) {
         const nt_form form = nt_plan_contact_form(plan);
         sum = nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, -gap);
     }
@@ -79,7 +79,9 @@ static double strongest_hold(const nt_plan *plan)
 {
     const double release = plan->release_gap;
     double deepest = -3.0 * (plan->source == NT_ADHESION_NONE ? plan->contact.radius : fmax(release, 1e-15));
-    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
+    if (plan->yield.holds)
+        deepest = plan->yield.last;
+    else if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
         deepest = -plan->maugis.folds.zero_load_indentation * plan->maugis.indentation_scale;
     double best = fmax(largest_of(plan, pull_out, (sweep){deepest, release, 0}), pull_out(plan, release));
     if (release > NEAREST)
@@ -118,7 +120,8 @@ static double steepest_pull(const nt_plan *plan)
 static double energy_of_contact(const nt_plan *plan, double gap)
 {
     const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;
-    return nt_plan_contact_eval(plan, form, -gap).U + nt_plan_rise(plan, gap);
+    const double contact = plan->yield.holds ? 0.0 : nt_plan_contact_eval(plan, form, -gap).U;
+    return contact + nt_plan_rise(plan, gap);
 }
 
 nt_status nt_plan_facts(nt_plan *plan)

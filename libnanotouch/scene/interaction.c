@@ -76,45 +76,77 @@ static void add_properties(vertical *sum, const nt_plan *plan, const nt_place *p
         sum->dU_dw = (contact->law.U - by_modulus) / here.work_of_adhesion;
 }
 
-static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+/* The terms beside contact, where nothing varies. */
+static inline nt_law_value beside_at(const nt_plan *plan, double gap)
 {
-    vertical sum = {{0.0, 0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
-    if (plan->yield.count > 0 && !isnan(gap)) {
-        const int holds = plan->source != NT_ADHESION_NONE && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF &&
-                          nt_plan_is_attached(plan, state->attached, place, gap);
-        sum.law = nt_plan_around(plan, holds, gap);
-        if (holds)
-            add(&sum.law, nt_plan_contact_at(plan, place, gap).law);
-        return sum;
-    }
+    nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
     for (int i = 0; i < plan->on_count; ++i) {
         const int term = plan->on[i];
-        add(&sum.law, nt_term_rows[term]->eval(nt_term_law(plan, term), plan->terms[term].form, gap));
+        add(&sum, nt_term_rows[term]->eval(nt_term_law(plan, term), plan->terms[term].form, gap));
     }
-    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
-    if (nt_form_is_local(form)) { /* beside contact all is proportional to the effective radius */
-        const double ratio = nt_plan_radius_at(plan, place) / plan->contact.radius;
-        sum.dU_dR = sum.law.U / plan->contact.radius;
-        sum.law.U *= ratio;
-        sum.law.F *= ratio;
-        sum.law.k *= ratio;
-    }
-    if (form != NT_FORM_OFF && (isnan(gap) || nt_plan_is_attached(plan, state->attached, place, gap))) {
+    return sum;
+}
+
+static int has_contact(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+{
+    return plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF && nt_plan_is_attached(plan, state->attached, place, gap);
+}
+
+/* A sample that yields to all together. */
+static nt_law_value yielding_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place,
+                                double gap)
+{
+    const int holds = plan->source != NT_ADHESION_NONE && has_contact(plan, state, place, gap);
+    nt_law_value sum = nt_plan_around(plan, holds, gap);
+    if (holds)
+        add(&sum, nt_plan_contact_at(plan, place, gap).law);
+    return sum;
+}
+
+/* The same contact everywhere. */
+static nt_law_value uniform_at(const nt_plan *plan, const nt_interaction_state *state, double gap)
+{
+    nt_law_value sum = beside_at(plan, gap);
+    if (has_contact(plan, state, NULL, gap))
+        add(&sum, nt_plan_contact_eval(plan, plan->terms[NT_PLAN_CONTACT].form, -gap));
+    return sum;
+}
+
+/* That of each place; beside contact all is proportional to the effective radius. */
+static vertical local_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+{
+    vertical sum = {.law = beside_at(plan, gap)};
+    const double ratio = nt_plan_radius_at(plan, place) / plan->contact.radius;
+    sum.dU_dR = sum.law.U / plan->contact.radius;
+    sum.law.U *= ratio;
+    sum.law.F *= ratio;
+    sum.law.k *= ratio;
+    if (has_contact(plan, state, place, gap)) {
         const nt_bank_value contact = nt_plan_contact_at(plan, place, gap);
         add(&sum.law, contact.law);
         sum.dU_dR += contact.dU_dR;
         if (plan->properties && place)
             add_properties(&sum, plan, place, &contact);
     }
-    if (isnan(gap))
-        sum.law.U = sum.law.F = sum.law.k = sum.law.a = gap;
     return sum;
+}
+
+static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+{
+    if (isnan(gap))
+        return (vertical){{gap, gap, gap, gap}, gap, gap, gap};
+    if (plan->yield.count > 0)
+        return (vertical){.law = yielding_at(plan, state, place, gap)};
+    if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
+        return local_at(plan, state, place, gap);
+    return (vertical){.law = uniform_at(plan, state, gap)};
 }
 
 nt_law_value nt_interaction_eval_gap(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place,
                                      double gap)
 {
-    return eval_at(plan, state, place, gap).law;
+    const int is_uniform = plan->yield.count == 0 && !nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
+    return is_uniform && !isnan(gap) ? uniform_at(plan, state, gap) : eval_at(plan, state, place, gap).law;
 }
 
 nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interaction_state *state, const nt_pose *pose)
@@ -139,7 +171,7 @@ nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interacti
 
 void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state, const nt_place *place, double gap)
 {
-    if (isnan(gap))
+    if (isnan(gap) || nt_plan_is_attached(plan, state->attached, place, gap) == state->attached)
         return;
     const nt_term_row *contact = nt_term_rows[NT_PLAN_CONTACT]; /* the one law with a history */
     state->dissipated += contact->advance(plan, &state->attached, place, gap, 0.0).dissipated;

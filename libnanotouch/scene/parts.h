@@ -92,6 +92,8 @@ nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *probl
 
 /* distance.c: the quantity of a demand. */
 double nt_plan_pick(nt_law_value value, nt_quantity quantity);
+/* What forces are measured by, whatever is demanded; of adhesive contact no more than its own pull-off force [N]. */
+double nt_plan_force_scale(const nt_plan *plan, double maximum_load);
 /* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
 double nt_plan_scale_of(const nt_plan *plan, double maximum_load);
 /* The largest difference, over max(|truth|, S), of a form of contact (paraboloid: Hertz) to the fullest one; of the
@@ -123,13 +125,24 @@ void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_f
 double nt_plan_share(const nt_plan *plan, double error);
 
 /* elastic.c: what the terms beside contact err by where they add on the undeformed gap, as a share of the demand;
- * also the elastic number. */
+ * also the elastic number, and where a sample that is pulled jumps: 0.56 of a pressure as 1/g^3, 0.81 of an
+ * exponential. */
+#define NT_ELASTIC_JUMP 0.55
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
+/* Of what acts around an adhesive contact; of folds and radius, with `tails`, also of what the tail pulls more. */
+double nt_plan_around_error(const nt_plan *plan, int tails);
+/* How far the folds of an adhesive contact are from where they would be on a sample that yields [m]. */
+double nt_plan_rigid_shift(const nt_plan *plan);
 /* yielding.c: the plan of a scene whose sample yields to all terms together. */
 nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* yield_adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share of the
  * demand. NT_E_RANGE: contact and table do not fit. */
 nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
+/* Whether other laws press on the sample around its adhesive contact by so much that contact and laws are solved
+ * together. */
+int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene);
+/* Of a contact that is in that table: where it lets go, its depth and stiffness at the largest load. */
+void nt_plan_hold_facts(nt_plan *plan, double maximum_load);
 /* All beside contact, with everything on, where contact holds or does not. */
 nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap);
 /* In contact that the surface does not jump into: there the tail keeps its force. */
@@ -138,6 +151,8 @@ nt_law_value nt_plan_kept_at(const nt_plan *plan, double gap);
 double nt_plan_yield_share(const nt_plan *plan);
 /* U of that where contact holds less U where it does not [J]. */
 double nt_plan_rise(const nt_plan *plan, double gap);
+/* How far from first touch of a table without adhesion the bound of its contact radius begins [m]. */
+double nt_plan_yield_touch(const nt_plan *plan);
 /* {U, F, k, a} of it at a gap; the sum of its terms on the undeformed gap. */
 nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap);
 nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);

@@ -3,10 +3,12 @@
 #include "nanotouch/plan.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "scene/terms/term.h"
 
 #define STIFF 0.1    /* elastic number of samples that may count as rigid */
+#define WORST 0.5    /* an error that is no bound any more: the largest that can be demanded */
 #define UNASKED 0.01 /* without a demand the sample is rigid up to this error */
 
 const char *nt_form_name(nt_form form)
@@ -54,7 +56,10 @@ static void finish(nt_plan *plan, double maximum_load)
         plan->bound.fold_shift += nt_plan_curvature_shift(plan);
     if (plan->yield.count > 0 && plan->yield.jumps)
         plan->bound.fold_shift += plan->yield.jump_error;
-    plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift;
+    plan->bound.fold_shift += nt_plan_rigid_shift(plan);
+    plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift + nt_plan_yield_touch(plan);
+    if (plan->yield.count > 0 && plan->yield.jumps && plan->demand.quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
+        plan->fold_distance += plan->yield.jump_error / plan->bound.force_error;
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */
         plan->bound.fold_shift = fmax(plan->release_gap, plan->capture_gap);
         plan->capture_gap = plan->release_gap = plan->capture_energy = plan->release_energy = 0.0;
@@ -96,50 +101,94 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     return status == NT_OK ? check_shape(plan, &scene, problem) : status;
 }
 
-/* With the error of terms that add on the undeformed gap, if the demand keeps that. */
-static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
+/* Nothing but a contact of its own is computed, and what is not cannot be felt. */
+static int is_alone(const nt_plan *plan)
+{
+    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
+    return felt && plan->on_count == 0 && plan->source == NT_ADHESION_NONE;
+}
+
+/* With the error of terms that add on the undeformed gap: inside the demand, or beside it. */
+static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int inside, nt_problem *problem)
 {
     const double demanded = plan->demand.relative_accuracy, rigid = fmax(plan->rigid_error, plan->around_error);
-    if (demanded > 0.0 && rigid >= demanded)
+    if (inside && demanded > 0.0 && rigid >= demanded)
         return NT_E_RANGE;
-    plan->demand.relative_accuracy = demanded > 0.0 ? demanded - rigid : 0.0;
+    plan->demand.relative_accuracy = inside && demanded > 0.0 ? demanded - rigid : demanded;
     const nt_status status = nt_plan_choose(plan, options, problem);
     plan->demand.relative_accuracy = demanded;
-    if (status != NT_OK || (plan->on_count == 0 && plan->source == NT_ADHESION_NONE))
+    if (status != NT_OK || is_alone(plan))
         return status;
     plan->bound.force_error += rigid; /* a tail that was left out, too, pulls by so much more */
     return NT_OK;
+}
+
+/* The law that presses most on a sample that does not keep still. */
+static int strongest(const nt_plan *plan)
+{
+    int found = NT_PLAN_CONTACT;
+    double most = 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        const nt_term_row *row = nt_term_rows[term];
+        const int of_contact = plan->around_error > plan->rigid_error && row->words.tail != NULL;
+        const double force = row->pressure && !of_contact ? plan->terms[term].force : 0.0;
+        if (force > most) {
+            found = term;
+            most = force;
+        }
+    }
+    return found;
 }
 
 /* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
  */
 static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
 {
-    double least = plan->rigid_error * (1.0 + 1e-9);
+    double least = fmax(plan->rigid_error, plan->around_error) * (1.0 + 1e-9);
     int count = 0;
-    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
+    const nt_field *field = nt_demand_fields(&count);                              /* the first is the accuracy */
+    if (problem && problem->field && strcmp(problem->field, "demand.budget") == 0) /* a dearer table would do */
+        return NT_E_RANGE;
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         least += options->option[term][options->count[term] - 1].error;
+    const int which = strongest(plan);
+    const char *law = nt_term_rows[which]->refused;
+    if (!law)
+        law = NT_TERM_REFUSED("the forces before contact");
+    const int known = problem && problem->field && strcmp(problem->field, field->name) == 0;
+    const int finer = known && problem->minimum < field->maximum; /* a table of another demand would do */
+    if (problem && law && !finer && !(least < field->maximum)) {
+        const double error = fmax(plan->rigid_error, plan->around_error);
+        *problem = (nt_problem){law, NT_UNIT_ERROR, error, 0.0, plan->demand.relative_accuracy};
+        return NT_E_RANGE;
+    }
     const int better = problem && (problem->field != field->name || least < problem->minimum);
     if (problem && least < field->maximum && better && !(plan->demand.budget > 0.0))
         *problem = (nt_problem){field->name, field->unit, plan->demand.relative_accuracy, least, field->maximum};
     return NT_E_RANGE;
 }
 
-/* What no table was made for adds on the undeformed gap, and the plan warns of the error: with adhesion, if the sample
- * is stiff, has properties of each place or nobody asked how true the force is; without, where something pulls. */
-static int is_left(const nt_plan *plan)
+/* What no table was made for adds on the undeformed gap, with an error of force or stiffness beyond the demand that is
+ * part of the bound and that the plan warns of: over a surface with properties; with adhesion, if the sample is stiff;
+ * without, where something pulls. A demand of 0 takes whatever that errs by, with no bound where the surface jumps. */
+static int is_left(const nt_plan *plan, double maximum_load)
 {
-    const double demanded = plan->demand.relative_accuracy;
-    const int asked = plan->demand.quantity == NT_QUANTITY_FORCE || plan->demand.quantity == NT_QUANTITY_STIFFNESS;
-    if (plan->source == NT_ADHESION_NONE)
-        return plan->pull_off_force > UNASKED * plan->scale;
-    return !asked || demanded == 0.0 || plan->properties || plan->elastic_number <= STIFF ||
-           plan->rigid_error <= demanded;
+    const double scale = nt_plan_force_scale(plan, maximum_load);
+    if (!(plan->demand.relative_accuracy > 0.0))
+        return 1;
+    const double errs = fmax(plan->rigid_error, plan->around_error);
+    if (isinf(errs))
+        return 0;
+    if (plan->source == NT_ADHESION_NONE && !plan->properties)
+        return plan->pull_off_force > UNASKED * scale;
+    if (plan->properties || errs > WORST)
+        return errs <= WORST;
+    return plan->elastic_number <= STIFF || plan->rigid_error <= plan->demand.relative_accuracy;
 }
 
-/* The cheapest plan whose terms add on the undeformed gap, with what that errs by; if it errs by too much, the sample
- * yields. A demand of 0 asks for every law in full. */
+/* The cheapest plan whose terms add on the undeformed gap, with what that errs by in its bound; if it errs by too much,
+ * the sample yields. A demand of 0 asks for every law in full. */
 static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const int adheres = plan->source != NT_ADHESION_NONE;
@@ -148,29 +197,22 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     const double demanded = plan->demand.relative_accuracy;
     nt_status status = nt_plan_choose(plan, &options, problem);
     plan->rigid_error = nt_plan_rigid_error(plan, scene);
-    const int alone = status == NT_OK && plan->on_count == 0 && !adheres;
+    const int alone = status == NT_OK && is_alone(plan);
     if ((plan->rigid_error == 0.0 && plan->around_error == 0.0) || alone)
         return status;
-    const nt_status rigid = demanded > 0.0 || fmax(plan->rigid_error, plan->around_error) <= UNASKED
-                                ? choose_rigid(plan, &options, NULL)
-                                : NT_E_RANGE;
-    if (rigid == NT_OK)
+    const double errs = fmax(plan->rigid_error, plan->around_error);
+    if ((demanded > 0.0 || errs <= UNASKED) && choose_rigid(plan, &options, 1, NULL) == NT_OK)
         return NT_OK;
-    const nt_status yields = plan->properties ? NT_E_RANGE : nt_plan_yield(plan, scene, problem);
-    if (yields == NT_OK)
+    if (problem)
+        *problem = (nt_problem){0};
+    if (!plan->properties && nt_plan_yield(plan, scene, problem) == NT_OK)
         return NT_OK;
     if (adheres) {
         status = nt_plan_adhere(plan, scene, problem); /* as it was */
         nt_plan_options_of(plan, scene, &options);
     }
-    if (status == NT_OK && is_left(plan))
-        return nt_plan_choose(plan, &options, problem);
-    if (!(demanded > 0.0) && isfinite(plan->rigid_error))
-        return choose_rigid(plan, &options, problem);
-    if (plan->properties && problem)
-        *problem = (nt_problem){"sample.youngs_modulus (so soft that forces before contact move it, which no plan of a "
-                                "surface with properties knows)",
-                                "Pa", scene->sample.youngs_modulus, scene->sample.youngs_modulus, 1e13};
+    if (is_left(plan, scene->range.maximum_load))
+        return adheres && status != NT_OK ? status : choose_rigid(plan, &options, 0, problem);
     return refuse(plan, &options, problem);
 }
 

@@ -22,6 +22,8 @@ nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_a
     nt_status status = nt_plan_laws_of(plan, scene, problem);
     if (status == NT_OK)
         status = nt_plan_contact_laws(plan, scene);
+    if (status == NT_OK && plan->yield.holds)
+        nt_plan_hold_facts(plan, scene->range.maximum_load);
     return status == NT_OK ? nt_plan_facts(plan) : status;
 }
 

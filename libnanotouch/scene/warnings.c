@@ -51,21 +51,26 @@ static void check_drag(nt_plan *plan, const nt_scene *scene)
         nt_plan_add_warning(plan, (nt_plan_warning){"viscous drag at the fastest approach, left out", "N", drag, felt});
 }
 
+#define UNRESOLVED 0.05 /* of the pixels: edges of steps, of which any map with steps has some */
+
 static void check_surface(nt_plan *plan)
 {
     if (plan->radii && !nt_plan_has_local_form(plan))
         nt_plan_add_warning(
             plan, (nt_plan_warning){"curvature of the surface, which this tip's law does not know: least radius", "m",
                                     plan->radii->minimum, plan->contact.radius});
-    if (plan->radii && plan->radii->limited > 0)
-        nt_plan_add_warning(plan, (nt_plan_warning){"pixels whose curvature is beyond what the map resolves", "",
-                                                    (double)plan->radii->limited, 0.0});
+    if (!plan->radii)
+        return;
+    const double share = (double)plan->radii->limited / ((double)plan->radii->ratio.nx * (double)plan->radii->ratio.ny);
+    if (share > UNRESOLVED)
+        nt_plan_add_warning(plan, (nt_plan_warning){"share of pixels whose curvature is beyond what the map resolves",
+                                                    "", share, UNRESOLVED});
 }
 
 #define SPHERE 0.1 /* over delta/R: what the force of a sphere lacks of its paraboloid's */
 
-/* A sample that yields has a paraboloid before it. With adhesion, or where a jump is left to the
- * laws, the terms beside contact add on the undeformed gap, whatever that errs by. */
+/* A sample that yields has a paraboloid before it. With adhesion, or where something pulls, the terms beside contact
+ * may add on the undeformed gap though that errs by more than is demanded: it is part of the bound. */
 static void check_yielding(nt_plan *plan)
 {
     const double demanded = plan->demand.relative_accuracy;
@@ -74,11 +79,16 @@ static void check_yielding(nt_plan *plan)
         nt_plan_add_warning(
             plan, (nt_plan_warning){"sphere taken for a paraboloid, whose force is larger by", "", flatter, demanded});
     const double rigid = fmax(plan->rigid_error, plan->around_error);
-    const int left = plan->yield.count == 0 && plan->on_count > 0 && plan->bound.force_error < rigid;
-    if (left && rigid > (demanded > 0.0 ? demanded : 0.01))
+    const int left = plan->yield.count == 0 && rigid > 0.0 && plan->bound.force_error >= rigid;
+    if (left && isinf(rigid)) /* beyond a jump no error is known */
         nt_plan_add_warning(plan,
-                            (nt_plan_warning){"error of forces before contact, to which this sample yields, left out",
-                                              "", rigid, demanded});
+                            (nt_plan_warning){"sample jumps to the tip before contact, so that no bound is known: "
+                                              "elastic number",
+                                              "", plan->elastic_number, NT_ELASTIC_JUMP});
+    else if (left && plan->bound.force_error > (demanded > 0.0 ? demanded : 0.01))
+        nt_plan_add_warning(plan, (nt_plan_warning){"error of forces before contact, to which this sample yields, more "
+                                                    "than demanded and part of the bound",
+                                                    "", rigid, demanded});
 }
 
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)

@@ -28,6 +28,7 @@ typedef struct nt_yield_sample {
     double pole;                /* the gap where the law diverges, <= 0; contact is at gap 0 [m] */
     double ends[NT_YIELD_ENDS]; /* gaps where the law has a kink, as where a brush ends [m] */
     int end_count;
+    double stress, range; /* sigma0, h0 of adhesion in contact, beside the law; 0: none [Pa, m] */
 } nt_yield_sample;
 
 /* yield_mesh.c: panels of x = r^2 - a^2, on each of which p is a polynomial, and what pressures at their nodes do. */
@@ -39,6 +40,7 @@ typedef struct nt_yield_mesh {
     double area[NT_YIELD_NODES];              /* [m^2] */
     double K[NT_YIELD_NODES][NT_YIELD_NODES]; /* u = K p [m/Pa] */
     double K0[NT_YIELD_NODES];                /* u(0) = K0 . p; in contact 2 q(a)/E* = K0 . p [m/Pa] */
+    double K1[NT_YIELD_NODES];                /* u at the first edge, where adhesion ends [m/Pa] */
     double load[NT_YIELD_NODES];              /* 4 Int q dt = load . p [m^2] */
 } nt_yield_mesh;
 /* From edges, panels and a; `waves` is room for NT_YIELD_WAVES times NT_YIELD_NODES numbers. */
@@ -67,10 +69,17 @@ typedef struct nt_yield_point {
 
 typedef struct nt_yield_solver {
     const nt_yield_sample *sample;
-    double tolerance; /* of the force, of the mesh [-] */
-    double placed;    /* how near to a kink an edge is, over x [-] */
-    double rough;     /* the worst panel, in what it must resolve [-] */
-    double h;         /* [m] */
+    double tolerance;           /* of the force, of the mesh, over max(|F|, scale) [-] */
+    double scale;               /* [N] */
+    double placed;              /* how near to a kink an edge is, over x [-] */
+    double rough;               /* the worst panel, in what it must resolve [-] */
+    double h;                   /* [m] */
+    double reach;               /* of the law outside an adhesive contact [m] */
+    double end;                 /* r^2 - a^2 where its adhesion ends [m^2] */
+    int left;                   /* meshes that may still be made for a contact */
+    double end_slope;           /* of the gap there over h0, over ln of it; 0: not known [-] */
+    double share;               /* of the law that acts, on the way to all of it [-] */
+    double kink[NT_YIELD_ENDS]; /* x of the ends of the law [m^2] */
     nt_yield_mesh mesh;
     double gap[NT_YIELD_NODES]; /* [m] */
     double A[NT_YIELD_NODES + 1][NT_YIELD_NODES + 1];
@@ -80,6 +89,26 @@ static inline nt_pressure nt_yield_law(const nt_yield_solver *s, double gap)
 {
     return s->sample->law(s->sample->context, gap);
 }
+
+/* What the pressure in contact does at x outside [m], and its slope in h. */
+double nt_yield_rim(const nt_yield_solver *s, double h, double x, double *slope);
+/* Solves A y = b in place, n x n: Gauss with row pivots; 0 where A is singular. */
+int nt_yield_eliminate(nt_yield_solver *s, double *b, int n);
+
+/* What an equilibrium is on its mesh. */
+typedef struct nt_yield_state {
+    double gap[NT_YIELD_NODES], edges[NT_YIELD_PANELS + 1], h, a, end;
+    int panels;
+} nt_yield_state;
+nt_yield_state nt_yield_keep(const nt_yield_solver *s);
+void nt_yield_restore(nt_yield_solver *s, const nt_yield_state *state);
+
+/* yield_contact.c: the sample has adhesion and touches over a radius [m]. */
+nt_status nt_yield_begin_contact(nt_yield_solver *s, const nt_yield_sample *sample, double a);
+/* From a guess of where adhesion ends, r^2 - a^2 [m^2]. */
+nt_status nt_yield_settle_contact(nt_yield_solver *s, double a, double guess);
+int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point);
+double nt_yield_energy_in_contact(const nt_yield_solver *s);
 
 /* yield_follow.c. */
 /* Edges in rising order, in the making. */
@@ -99,19 +128,40 @@ nt_status nt_yield_begin(nt_yield_solver *solver, const nt_yield_sample *sample,
 /* The next equilibrium, not far from the last one; on failure the last one stands. */
 nt_status nt_yield_go(nt_yield_solver *solver, nt_yield_hold hold, double value, nt_yield_point *point);
 
+#define NT_YIELD_STIFFER 0.05 /* of the tolerance: meshes of a stiffness, whose error grows beside a jump */
+
 /* yield_table.c: {U, F, k} over h, from `farthest` inwards until the force is `load` or the gap `nearest`. */
 typedef struct nt_yield_range {
     double farthest, nearest; /* [m] */
+    double centre;            /* above 0: ends where this gap is left under the apex, or in a jump before [m] */
     double load;              /* [N] */
     double tolerance;         /* of F, over max(|F|, scale) [-] */
     double scale;             /* [N] */
     int attracts;             /* ends in a jump, or at `nearest` */
-    int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale) */
+    int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale); a finer mesh */
     double stiffness_scale;   /* [N/m] */
+    double radius_scale;      /* above 0: so is a, over max(a, radius_scale) [m] */
 } nt_yield_range;
 nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range);
-/* Where the table holds, h <= its first; deeper than its last F goes on with the last slope. */
+/* Adds the contact of a sample with adhesion, from where it lets go to the load; it touches over some `radius` [m]. */
+nt_status nt_yield_table_hold(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range,
+                              double radius);
+/* Where the table holds, h <= its first; deeper than its last F goes on with the last slope. Apart from that contact;
+ * in it. */
 nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h);
+nt_law_value nt_yield_table_held(const nt_yield_table *table, double h);
+
+/* yield_terms.c: the pressures of all terms, at a gap that is counted from `hold` [m]. */
+typedef struct nt_yield_terms {
+    const nt_plan *plan;
+    double hold;
+    int around; /* only those around an adhesive contact: tails are part of w */
+} nt_yield_terms;
+/* What yields to them; `farthest`: the gap where it begins to [m]. */
+nt_yield_sample nt_yield_sample_of(const nt_yield_terms *in, const nt_scene *scene, double farthest);
+
+/* yield_adhere.c: adds the contact with all that acts around it to the table of a surrounded contact. */
+nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yield_range *range);
 
 /* elastic.c: all terms beside contact at a gap of undeformed bodies. */
 typedef struct nt_elastic_sum {

@@ -14,6 +14,7 @@
 #include "scene/yield.h"
 
 #define INSIDE 0.01   /* of what a cycle can lose: at least so much is lost at either jump */
+#define FELT 0.2      /* of the demand: what laws around a contact err by on the undeformed gap */
 #define STRONGEST 0.9 /* of w: what a tail may pull of it */
 
 /* What acts beside contact and has nothing to do with w, on the undeformed gap. */
@@ -36,6 +37,11 @@ nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap)
 {
     if (plan->yield.count == 0)
         return nt_plan_beside_at(plan, gap);
+    if (attached && plan->yield.holds) {
+        nt_law_value value = nt_yield_table_held(&plan->yield, gap);
+        value.U += plan->yield.offset;
+        return value;
+    }
     return attached && plan->yield.jumps ? others_at(plan, gap) : nt_plan_yield_at(plan, gap);
 }
 
@@ -88,6 +94,50 @@ static nt_status count_from_fold(nt_plan *plan)
     return NT_OK;
 }
 
+int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
+{
+    const double demanded = plan->demand.relative_accuracy;
+    const int wet = plan->source == NT_ADHESION_SOLID && scene->medium.kind == NT_MEDIUM_LIQUID;
+    const int known = scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF && scene->sample.thickness == 0.0 &&
+                      nt_plan_contact_form(plan) == NT_FORM_EXACT;
+    return wet && known && demanded > 0.0 && plan->around_error > FELT * demanded;
+}
+
+/* Laws act from where adhesion ends, there as at the interatomic distance: inside they keep their force. */
+nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yield_range *range)
+{
+    const nt_contact *contact = &plan->contact;
+    const double radius = plan->maugis.folds.zero_load_radius * plan->maugis.radius_scale;
+    const double h0 = contact->work_of_adhesion / contact->cohesive_stress;
+    const nt_yield_terms in = {plan, scene->adhesion.equilibrium_distance - h0, 1};
+    nt_yield_sample sample = nt_yield_sample_of(&in, scene, range->farthest);
+    nt_yield_range held = *range;
+    sample.stress = contact->cohesive_stress;
+    sample.range = h0;
+    held.nearest = -INFINITY;
+    return nt_yield_table_hold(&plan->yield, &sample, &held, radius);
+}
+
+void nt_plan_hold_facts(nt_plan *plan, double maximum_load)
+{
+    const nt_yield_table *table = &plan->yield;
+    double low = table->release, high = table->last;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        *(nt_yield_table_held(table, middle).F < maximum_load ? &low : &high) = middle;
+    }
+    plan->release_gap = table->release;
+    plan->largest_indentation = -high;
+    plan->maximum_stiffness = nt_yield_table_held(table, high).k;
+}
+
+/* Contact and all around it are one table. */
+static void take_contact(const nt_plan *plan, nt_plan_options *options, double error)
+{
+    options->count[NT_PLAN_CONTACT] = 0;
+    nt_plan_offer(plan, options, NT_PLAN_CONTACT, NT_FORM_YIELDING, error);
+}
+
 /* Only forms of contact with the tip's own radius: all else is in the table. */
 static void drop_others(const nt_plan *plan, nt_plan_options *options, double error)
 {
@@ -119,6 +169,8 @@ nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double erro
         return NT_E_RANGE;
     nt_plan_options_of(plan, scene, &options);
     drop_others(plan, &options, error);
+    if (plan->yield.holds)
+        take_contact(plan, &options, error);
     status = nt_plan_choose(plan, &options, problem);
     if (status == NT_OK)
         status = count_from_fold(plan);

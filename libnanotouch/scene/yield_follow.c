@@ -48,6 +48,17 @@ void nt_yield_move(nt_yield_solver *s, const double *edges, int panels, double a
     memcpy(s->gap, moved, (size_t)m->count * sizeof *moved);
 }
 
+/* At the nodes; of their size all that is pressed, or the scale [N]. */
+static double pressures(const nt_yield_solver *s, double *p)
+{
+    double all = 0.0;
+    for (int i = 0; i < s->mesh.count; ++i) {
+        p[i] = nt_yield_law(s, s->gap[i]).pressure;
+        all += fabs(p[i]) * s->mesh.area[i];
+    }
+    return fmax(all, s->scale);
+}
+
 /* Per panel, in what is tolerated: the last coefficients of pressure and gap. */
 static double roughness(const nt_yield_solver *s, int panel, const double *p, double all)
 {
@@ -109,14 +120,11 @@ static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel,
 int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
 {
     const nt_yield_mesh *m = &s->mesh;
-    double p[NT_YIELD_NODES], all = 0.0;
+    double p[NT_YIELD_NODES];
     int changed = 0;
     list->count = m->panels + 1;
     memcpy(list->at, m->edges, (size_t)list->count * sizeof *m->edges);
-    for (int i = 0; i < m->count; ++i) {
-        p[i] = nt_yield_law(s, s->gap[i]).pressure;
-        all += fabs(p[i]) * m->area[i];
-    }
+    const double all = pressures(s, p);
     s->rough = 0.0;
     for (int panel = 0; panel < m->panels && all > 0.0; ++panel) {
         int kinked = 0;
@@ -147,12 +155,9 @@ int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
 int nt_yield_coarsen(nt_yield_solver *s)
 {
     const nt_yield_mesh *m = &s->mesh;
-    double p[NT_YIELD_NODES], all = 0.0, edges[NT_YIELD_PANELS + 1];
+    double p[NT_YIELD_NODES], edges[NT_YIELD_PANELS + 1];
     int count = 0, dropped = 0;
-    for (int i = 0; i < m->count; ++i) {
-        p[i] = nt_yield_law(s, s->gap[i]).pressure;
-        all += fabs(p[i]) * m->area[i];
-    }
+    const double all = pressures(s, p);
     edges[count++] = 0.0;
     for (int panel = 0; panel < m->panels; ++panel) {
         const int inner = panel + 1 < m->panels && !dropped && all > 0.0;

@@ -187,6 +187,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     place_nodes(mesh, &b);
     memset(mesh->K, 0, sizeof mesh->K);
     memset(mesh->load, 0, sizeof mesh->load);
+    memset(mesh->K1, 0, sizeof mesh->K1);
     memset(waves, 0, NT_YIELD_WAVES * NT_YIELD_NODES * sizeof *waves);
     for (int panel = 0; panel < mesh->panels; ++panel)
         for (int i = 0; i < NT; ++i) {
@@ -195,6 +196,8 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
             abel_row(mesh, &b, tau, row);
             const double weight = 2.0 * span * y[i] * w[i] * tau / t;
             add_row(mesh, row, weight);
+            for (int j = 0; j < mesh->count && panel == 0 && sample->stress > 0.0; ++j) /* u(r) by Abel */
+                mesh->K1[j] += 4.0 / (NT_PI * sample->modulus) * weight / sqrt(mesh->edges[1] - tau * tau) * row[j];
             if (layered)
                 add_waves(mesh, &s, row, waves, (double[2]){t, weight});
         }

@@ -7,7 +7,7 @@
 
 #include "scene/yield.h"
 
-enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, STRICT = 5, HALVINGS = 24 };
+enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, STRICT = 5, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
 
 #define CONVERGED 1e-11     /* of the largest gap */
 #define AHEAD 0.7           /* of the way to where a law diverges */
@@ -15,16 +15,14 @@ enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, STRICT = 5, HALVINGS = 24 };
 #define ROUGHLY_PLACED 4e-3 /* the same after some meshes; the force errs by its square */
 #define TOLERABLE 10.0      /* times what a panel must resolve */
 
-/* What the pressure in contact does at x outside [m], and its slope in h. */
-static double rim(const nt_yield_solver *s, double h, double x, double *slope)
+double nt_yield_rim(const nt_yield_solver *s, double h, double x, double *slope)
 {
     const double a = s->mesh.a, R = s->sample->radius, r2 = a * a + x, arc = asin(fmin(a / sqrt(r2), 1.0));
     *slope = -2.0 / NT_PI * arc;
     return 2.0 / NT_PI * ((-h - 0.5 * r2 / R) * arc + 0.5 * a / R * sqrt(x));
 }
 
-/* Solves A y = b in place, b in the last column of nothing: Gauss with row pivots; 0 where A is singular. */
-static int eliminate(nt_yield_solver *s, double *b, int n)
+int nt_yield_eliminate(nt_yield_solver *s, double *b, int n)
 {
     for (int c = 0; c < n; ++c) {
         int best = c;
@@ -83,7 +81,7 @@ static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
     for (int j = 0; j < n; ++j)
         p[j] = nt_yield_law(s, s->gap[j]);
     for (int i = 0; i < n; ++i) {
-        double slope = 0.0, u = m->a > 0.0 ? rim(s, s->h, m->x[i], &slope) : 0.0;
+        double slope = 0.0, u = m->a > 0.0 ? nt_yield_rim(s, s->h, m->x[i], &slope) : 0.0;
         for (int j = 0; j < n; ++j) {
             u += m->K[i][j] * p[j].pressure;
             s->A[i][j] = -m->K[i][j] * p[j].slope;
@@ -93,7 +91,7 @@ static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
         b[i] = s->h + 0.5 * (m->a * m->a + m->x[i]) / s->sample->radius + u - s->gap[i];
     }
     b[n] = held(s, hold, value, p);
-    if (!eliminate(s, b, n + 1))
+    if (!nt_yield_eliminate(s, b, n + 1))
         return NAN;
     for (int i = 0; i < n; ++i)
         if (-b[i] > AHEAD * (s->gap[i] - s->sample->pole))
@@ -171,12 +169,12 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
     for (int i = 0; i < n; ++i) {
         double slope = 0.0;
         if (a > 0.0)
-            (void)rim(s, s->h, m->x[i], &slope);
+            (void)nt_yield_rim(s, s->h, m->x[i], &slope);
         y[i] = 1.0 + slope;
         for (int j = 0; j < n; ++j)
             s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
     }
-    if (!eliminate(s, y, n))
+    if (!nt_yield_eliminate(s, y, n))
         return 0;
     const nt_pressure outer = nt_yield_law(s, s->gap[n - 1]);
     double F = 2.0 * NT_PI * R * outer.energy, k = 2.0 * NT_PI * R * outer.pressure, u0 = 0.0, u0_slope = 0.0;
@@ -205,37 +203,58 @@ static double value_of(const nt_yield_solver *s, nt_yield_hold hold)
     return s->h + u0;
 }
 
+nt_yield_state nt_yield_keep(const nt_yield_solver *s)
+{
+    nt_yield_state state = {.h = s->h, .a = s->mesh.a, .end = s->end, .panels = s->mesh.panels};
+    memcpy(state.gap, s->gap, sizeof state.gap);
+    memcpy(state.edges, s->mesh.edges, sizeof state.edges);
+    return state;
+}
+
+void nt_yield_restore(nt_yield_solver *s, const nt_yield_state *state)
+{
+    nt_yield_move(s, state->edges, state->panels, state->a);
+    memcpy(s->gap, state->gap, sizeof s->gap);
+    s->h = state->h;
+    s->end = state->end;
+}
+
+static int sticks(const nt_yield_solver *s)
+{
+    return s->sample->stress > 0.0;
+}
+
 /* One step, from and back to what was found last. */
 static nt_status step_to(nt_yield_solver *s, nt_yield_hold hold, double value)
 {
-    double gap[NT_YIELD_NODES], edges[NT_YIELD_PANELS + 1];
-    const double h = s->h, a = s->mesh.a;
-    const int panels = s->mesh.panels;
-    memcpy(gap, s->gap, sizeof gap);
-    memcpy(edges, s->mesh.edges, sizeof edges);
-    if (hold == NT_YIELD_CONTACT)
-        nt_yield_move(s, edges, panels, value);
-    const nt_status status = settle(s, hold, value);
-    if (status != NT_OK) {
-        nt_yield_move(s, edges, panels, a);
-        memcpy(s->gap, gap, sizeof gap);
-        s->h = h;
-    }
+    const nt_yield_state before = nt_yield_keep(s);
+    if (hold == NT_YIELD_CONTACT && !sticks(s))
+        nt_yield_move(s, before.edges, before.panels, value);
+    const nt_status status =
+        sticks(s) ? nt_yield_settle_contact(s, value, s->end * value / before.a) : settle(s, hold, value);
+    if (status != NT_OK)
+        nt_yield_restore(s, &before);
     return status;
+}
+
+static int report_of(nt_yield_solver *s, nt_yield_point *point)
+{
+    return sticks(s) ? nt_yield_report_contact(s, point) : report(s, point);
 }
 
 nt_status nt_yield_go(nt_yield_solver *s, nt_yield_hold hold, double value, nt_yield_point *point)
 {
     double here = value_of(s, hold), target = value;
-    (void)nt_yield_coarsen(s);
-    for (int halvings = 0; halvings < HALVINGS;) {
+    if (!sticks(s))
+        (void)nt_yield_coarsen(s);
+    for (int halvings = 0; halvings < (sticks(s) ? HALVINGS_IN_CONTACT : HALVINGS);) {
         if (step_to(s, hold, target) != NT_OK) {
             target = 0.5 * (here + target);
             ++halvings;
             continue;
         }
         if (target == value)
-            return report(s, point) ? NT_OK : NT_E_NO_CONVERGENCE;
+            return report_of(s, point) ? NT_OK : NT_E_NO_CONVERGENCE;
         here = target;
         target = value;
     }

@@ -5,73 +5,32 @@
  * before a jump, where F - F_jump begins with a square root, in sqrt(h - h_jump). v grows inwards. */
 #include <math.h>
 
-#include "scene/yield.h"
+#include "scene/yield_cubic.h"
 
 #define FIRST_STEP 0.5 /* of the length over which the law falls */
 #define FIRST_RIM 0.05 /* of sqrt(2 R l): the first radius of contact */
 #define MESH 0.1       /* of the tolerance: what a panel must resolve, which is far more than the error of its force */
 #define SHORTER 0.8    /* steps of the centre gap, over the pole, on the way to a jump */
 #define BEFORE_JUMP 1e-4 /* of that gap: the table ends so much before it */
+#define TOUCHING 1e-4    /* of the length over which the law falls: a surface that bulges so far touches the tip */
 #define SMALLEST 1e-7    /* of the first step */
+#define UPHILL 0.15      /* steps of ln a on the way to where contact lets go */
+#define BEYOND 0.02      /* of the radius there: the table of contact begins so much farther */
+#define HIGHEST 1e-3     /* of ln a: where that is */
+#define RESOLVED 2.0     /* times the tolerance: energy that the force does not tell */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
-/* The cubic of a cell at t = v - v0, and its slope. */
-static void cubic(const nt_yield_node *from, const nt_yield_node *to, double c[4])
-{
-    const double w = to->v - from->v, rise = (to->F - from->F) / w;
-    c[0] = from->F;
-    c[1] = from->slope;
-    c[2] = (3.0 * rise - 2.0 * from->slope - to->slope) / w;
-    c[3] = (from->slope + to->slope - 2.0 * rise) / (w * w);
-}
+enum { CLIMB = 60, PARABOLAS = 12 };
 
-static double force_at(const double c[4], double t)
-{
-    return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-}
-
-static double slope_at(const double c[4], double t)
-{
-    return c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]);
-}
-
-/* Whether v is a square root in the part of a node: -1 before a jump, 1 in contact, 0: v = -h. */
-static int part_of(const nt_yield_table *table, int node)
-{
-    return node >= table->apart ? 1 : table->jumps ? -1 : 0;
-}
-
-static double v_of(const nt_yield_table *table, int part, double h)
-{
-    return part == 0 ? -h : part > 0 ? sqrt(fmax(table->touch - h, 0.0)) : -sqrt(fmax(h - table->touch, 0.0));
-}
-
-/* -dh/dv */
-static double metric(int part, double v)
-{
-    return part == 0 ? 1.0 : 2.0 * fabs(v);
-}
-
-/* U from v0 to v0 + t: Int F (-dh/dv) dv. */
-static double work(const double c[4], int part, double v0, double t)
-{
-    double sum = 0.0, power = t;
-    for (int i = 0; i < 4; ++i) {
-        sum += c[i] * (part == 0 ? power / (i + 1.0) : 2.0 * part * (v0 * power / (i + 1.0) + power * t / (i + 2.0)));
-        power *= t;
-    }
-    return sum;
-}
-
-nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h)
+/* In the part of the nodes low .. high - 1. */
+static nt_law_value eval(const nt_yield_table *table, int low, int high, double h)
 {
     const nt_yield_node *node = table->node;
-    const int contact = h < table->touch && table->apart < table->count;
-    int low = contact ? table->apart : 0, high = contact ? table->count - 1 : table->apart - 1;
     const int part = part_of(table, low);
-    const double v = v_of(table, part, h), past = v - node[high].v;
+    const double v = v_of(table, part, h), past = v - node[--high].v;
     if (past >= 0.0) { /* deeper than the table: with its last slope */
-        const double F = node[high].F, k = node[high].k, d = high == table->count - 1 ? table->last - h : 0.0;
+        const double F = node[high].F, k = node[high].k;
+        const double d = high == table->count - 1 ? fmax(table->last - h, 0.0) : 0.0;
         return (nt_law_value){node[high].U + d * (F + 0.5 * k * d), F + k * d, k, node[high].a};
     }
     while (high - low > 1) {
@@ -88,6 +47,17 @@ nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h)
     const double share = t / (node[high].v - node[low].v);
     return (nt_law_value){node[low].U + work(c, part, node[low].v, t), force_at(c, t), k,
                           node[low].a + share * (node[high].a - node[low].a)};
+}
+
+nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h)
+{
+    const int contact = h < table->touch && table->apart < table->count && !table->holds;
+    return contact ? eval(table, table->apart, table->count, h) : eval(table, 0, table->apart, h);
+}
+
+nt_law_value nt_yield_table_held(const nt_yield_table *table, double h)
+{
+    return eval(table, table->apart, table->count, h);
 }
 
 /* --- Making it --- */
@@ -128,6 +98,10 @@ static double distance(const maker *m, const nt_yield_node ends[2], int part, co
     if (range->stiffness) /* largest beside the middle, where a cubic's slope is best */
         error = fmax(error, 4.0 * over((force_at(c, t) - between->F) / (metric(part, v) * t), between->k,
                                        range->stiffness_scale));
+    if (range->radius_scale > 0.0) {
+        const double share = t / (ends[1].v - ends[0].v), a = ends[0].a + share * (ends[1].a - ends[0].a);
+        error = fmax(error, over(a - between->a, between->a, range->radius_scale));
+    }
     return error;
 }
 
@@ -196,6 +170,25 @@ static nt_status march(maker *m, int part, double step)
     return status;
 }
 
+/* No jump, but contact takes hold where this gap is left under the apex. */
+static nt_status end_at(maker *m, double centre)
+{
+    const double pole = m->solver.sample->pole;
+    nt_yield_point point;
+    const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, centre, &point);
+    m->table->jumps = 1;
+    m->table->touch = point.h;
+    m->hold = NT_YIELD_CENTRE;
+    m->end = centre + BEFORE_JUMP * (centre - pole);
+    return status;
+}
+
+/* No jump: the table ends at the nearest h, or at a gap under the apex. */
+static nt_status end_at_centre(maker *m)
+{
+    return m->range->centre > 0.0 ? end_at(m, m->range->centre) : NT_OK;
+}
+
 /* Where the surface jumps: the smallest h over the gap under the apex, which falls all the way. Without a jump before
  * the nearest h the table ends there. */
 static nt_status find_jump(maker *m)
@@ -204,10 +197,12 @@ static nt_status find_jump(maker *m)
     double high = m->last.centre, low = high;
     nt_yield_point point = m->last;
     while (point.slope > 0.0) {
-        if (point.h <= m->range->nearest)
-            return NT_OK;
+        if (m->range->centre > 0.0 ? point.centre <= m->range->centre : point.h <= m->range->nearest)
+            return end_at_centre(m);
         high = low;
         low = pole + SHORTER * (low - pole);
+        if (low - pole < TOUCHING * m->solver.sample->length)
+            return end_at(m, low);
         const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, low, &point);
         if (status != NT_OK)
             return status;
@@ -219,8 +214,8 @@ static nt_status find_jump(maker *m)
             return status;
         *(point.slope > 0.0 ? &high : &low) = middle;
     }
-    if (point.h <= m->range->nearest)
-        return NT_OK;
+    if (m->range->centre > 0.0 ? point.centre <= m->range->centre : point.h <= m->range->nearest)
+        return end_at_centre(m);
     m->table->jumps = 1;
     m->table->touch = point.h;
     m->hold = NT_YIELD_CENTRE;
@@ -252,14 +247,14 @@ static nt_status make_apart(maker *m, double length)
     return status;
 }
 
-/* U of each node; the last h. */
-static void integrate(nt_yield_table *table)
+/* U of each node; of a contact that holds it begins with `energy`. */
+static void integrate(nt_yield_table *table, double energy)
 {
-    for (int i = 1; i < table->count; ++i) {
+    for (int i = 0; i < table->count; ++i) {
         const int part = part_of(table, i);
         double c[4];
-        if (i == table->apart) {
-            table->node[i].U = table->node[i - 1].U;
+        if (i == 0 || i == table->apart) {
+            table->node[i].U = table->holds && i == table->apart ? energy : i == 0 ? 0.0 : table->node[i - 1].U;
             continue;
         }
         cubic(&table->node[i - 1], &table->node[i], c);
@@ -275,7 +270,8 @@ nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *samp
     m.table = table;
     m.range = range;
     m.solver.sample = sample;
-    m.solver.tolerance = MESH * range->tolerance;
+    m.solver.tolerance = MESH * range->tolerance * (range->stiffness ? NT_YIELD_STIFFER : 1.0);
+    m.solver.scale = range->scale;
     *table = empty;
     table->touch = -INFINITY;
     nt_status status = make_apart(&m, sample->length);
@@ -290,6 +286,95 @@ nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *samp
     }
     table->first = range->farthest;
     table->last = m.last.h;
-    integrate(table);
+    integrate(table, 0.0);
     return status;
+}
+
+/* --- Adhesive contact with what acts around it --- */
+
+static double gap_at(maker *m, double log_radius)
+{
+    nt_yield_point point;
+    return nt_yield_go(&m->solver, NT_YIELD_CONTACT, exp(log_radius), &point) == NT_OK ? point.h : (double)NAN;
+}
+
+/* Between ln a of which the middle one is highest: by parabolas. */
+static int refine_release(maker *m, double x[3], double h[3])
+{
+    for (int i = 0; i < PARABOLAS; ++i) {
+        const double p = (x[1] - x[0]) * (h[1] - h[2]), q = (x[1] - x[2]) * (h[1] - h[0]);
+        const double left = x[1] - x[0], right = x[1] - x[2];
+        double next = x[1] - 0.5 * (left * p - right * q) / (p - q);
+        if (!(fabs(next - x[1]) > HIGHEST))
+            break;
+        const double there = gap_at(m, next);
+        if (isnan(there))
+            return 0;
+        const int outer = (next - x[1]) * (x[2] - x[1]) > 0.0 ? 2 : 0;
+        if (there > h[1]) {
+            x[2 - outer] = x[1];
+            h[2 - outer] = h[1];
+            x[1] = next;
+            h[1] = there;
+        } else {
+            x[outer] = next;
+            h[outer] = there;
+        }
+    }
+    m->table->release = h[1];
+    return 1;
+}
+
+/* Where contact lets go the gap is largest: uphill in ln a, from a radius; the ln a of it, NaN if there is none. */
+static double find_release(maker *m, double radius)
+{
+    double x[3] = {log(radius) - UPHILL, log(radius), 0.0}, h[3] = {gap_at(m, x[0]), gap_at(m, x[1]), 0.0};
+    if (h[0] > h[1]) {
+        const double at = x[0], gap = h[0];
+        x[0] = x[1];
+        h[0] = h[1];
+        x[1] = at;
+        h[1] = gap;
+    }
+    for (int i = 0; i < CLIMB; ++i) {
+        x[2] = 2.0 * x[1] - x[0];
+        h[2] = gap_at(m, x[2]);
+        if (!(h[2] > h[1]))
+            return !isnan(h[1]) && !isnan(h[2]) && refine_release(m, x, h) ? x[1] : (double)NAN;
+        x[0] = x[1];
+        x[1] = x[2];
+        h[0] = h[1];
+        h[1] = h[2];
+    }
+    return NAN;
+}
+
+/* What the force does over the table is the energy of its ends, unless the mesh does not resolve the pressure. */
+static int is_resolved(const maker *m, double first, double last)
+{
+    const nt_yield_table *table = m->table;
+    const nt_yield_node *from = &table->node[table->apart], *to = &table->node[table->count - 1];
+    const double depth = to->v * to->v - from->v * from->v;
+    const double most = fmax(fmax(fabs(from->F), fabs(to->F)), m->range->scale);
+    return fabs((last - first) - (to->U - from->U)) <= RESOLVED * m->range->tolerance * most * depth;
+}
+
+nt_status nt_yield_table_hold(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range,
+                              double radius)
+{
+    maker m = {.table = table, .range = range, .hold = NT_YIELD_CONTACT, .end = INFINITY};
+    table->apart = table->count;
+    nt_status status = nt_yield_begin_contact(&m.solver, sample, radius);
+    const double fold = status == NT_OK ? find_release(&m, radius) : (double)NAN;
+    if (isnan(fold))
+        return NT_E_NO_CONVERGENCE;
+    table->holds = 1;
+    status = nt_yield_go(&m.solver, NT_YIELD_CONTACT, exp(fold + BEYOND), &m.last);
+    const double first = nt_yield_energy_in_contact(&m.solver);
+    if (status == NT_OK)
+        status = march(&m, 1, BEYOND * exp(fold));
+    table->last = m.last.h;
+    integrate(table, first);
+    return status == NT_OK && !is_resolved(&m, first, nt_yield_energy_in_contact(&m.solver)) ? NT_E_NO_CONVERGENCE
+                                                                                             : status;
 }

@@ -11,107 +11,30 @@
 #define SEAM 0.1      /* of the tolerance: where the table begins */
 #define PARTS 2.5     /* a table's bound over its tolerance */
 #define ROUGHEST 1e-2 /* tolerances of a table */
-#define FINEST 2e-5
+#define FINEST 2e-6
 #define UNASKED 0.01 /* without a demand all that a table does not know comes to less */
-#define STEP 1e-4    /* of a gap: differences */
+#define ENDED 20.0   /* times the finest, where a law ends with a kink */
+#define PLENTY 10.0  /* times the finest, then */
+#define INSIDE 0.9   /* of what is left, in a second attempt */
 #define LEAVES 0.7   /* of the demand; the rest is for the form of contact */
 #define WEAKER 0.7   /* of the pull-off of rigid bodies: that of a sample that yields, at least */
-#define FADED 1e-6   /* of what a law is at half the gap: it ends without a kink */
 #define FINER 0.45   /* each attempt */
 #define CLOSER 1.02  /* ratio of gaps at which forces are sampled */
-#define FLAT 50.0    /* tables of a stiffness are coarser by */
+#define FLAT 10.0    /* tables of a stiffness are coarser by */
+#define STIFF 0.3    /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
 #define DEEPER 1.05  /* than the largest load */
 
 enum { ATTEMPTS = 4, SAMPLES = 1000 };
-
-/* The pressures of all terms at a gap that is counted from where the bodies touch. */
-typedef struct pressures {
-    const nt_plan *plan;
-    double hold;
-} pressures;
 
 static int adheres(const nt_plan *plan)
 {
     return plan->source != NT_ADHESION_NONE;
 }
 
-/* Whether a law is one of the tip and not of flats. */
-static int is_of_tip(const nt_plan *plan, int term, double gap)
-{
-    const nt_form form = nt_plan_full_form(plan, term);
-    return (form == NT_FORM_SPHERE || form == NT_FORM_TIP) && gap > nt_plan_hold_gap(plan, term);
-}
-
-/* That of the whole tip, as rigid bodies have it: p = k/(2 pi R). */
-static nt_pressure pressure_of_tip(const nt_plan *plan, int term, double gap)
-{
-    const double per_area = 2.0 * NT_PI * plan->contact.radius, step = STEP * gap;
-    const nt_form form = nt_plan_full_form(plan, term);
-    const nt_law_value here = nt_plan_law_eval(plan, term, form, gap);
-    const double far = nt_plan_law_eval(plan, term, form, gap + step).k;
-    const double near = nt_plan_law_eval(plan, term, form, gap - step).k;
-    return (nt_pressure){here.F / per_area, here.k / per_area, (far - near) / (2.0 * step * per_area)};
-}
-
-static nt_pressure pressure_at(const void *context, double gap)
-{
-    const pressures *in = context;
-    nt_pressure all = {0.0, 0.0, 0.0};
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        if (nt_term_rows[term]->pressure && nt_plan_full_form(in->plan, term) != NT_FORM_OFF) {
-            const nt_pressure p = adheres(in->plan) && is_of_tip(in->plan, term, gap)
-                                      ? pressure_of_tip(in->plan, term, gap)
-                                      : nt_term_rows[term]->pressure(nt_term_law(in->plan, term), gap + in->hold);
-            all.energy += p.energy;
-            all.pressure += p.pressure;
-            all.slope += p.slope;
-        }
-    return all;
-}
-
-/* Where a term ends, as a brush does, and does not only fade, from where the bodies touch [m]; 0 if it goes on. */
-static double end_of(const pressures *in, int term)
-{
-    const nt_term_row *row = nt_term_rows[term];
-    double low = fmax(in->hold, 1e-11), high = 1e-5;
-    if (!row->pressure || nt_plan_full_form(in->plan, term) == NT_FORM_OFF ||
-        row->pressure(nt_term_law(in->plan, term), high).energy != 0.0)
-        return 0.0;
-    for (int i = 0; i < 100; ++i) {
-        const double middle = sqrt(low * high);
-        *(row->pressure(nt_term_law(in->plan, term), middle).energy == 0.0 ? &high : &low) = middle;
-    }
-    const double inside = row->pressure(nt_term_law(in->plan, term), 0.9 * high).pressure;
-    const double deeper = row->pressure(nt_term_law(in->plan, term), 0.5 * high).pressure;
-    return fabs(inside) > FADED * fabs(deeper) ? high - in->hold : 0.0;
-}
-
-static nt_yield_sample sample_of(const nt_plan *plan, const nt_scene *scene, const pressures *in, double farthest)
-{
-    const nt_specimen *s = &scene->sample;
-    const double compliance = (1.0 - s->poisson_ratio * s->poisson_ratio) / s->youngs_modulus;
-    nt_yield_sample sample = {.radius = plan->contact.radius,
-                              .modulus = plan->contact.effective_modulus,
-                              .thickness = s->thickness,
-                              .poisson_ratio = s->poisson_ratio,
-                              .share = compliance * plan->contact.effective_modulus,
-                              .law = pressure_at,
-                              .context = in,
-                              .pole = -in->hold};
-    const nt_elastic_sum far = nt_elastic_sum_at(plan, farthest);
-    sample.length = far.all_F / far.all_k;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
-        const double end = end_of(in, term);
-        if (end > 0.0 && sample.end_count < NT_YIELD_ENDS)
-            sample.ends[sample.end_count++] = end;
-    }
-    return sample;
-}
-
 /* The gap from which on the terms add within an error: bisected to where they no longer do. */
 static double where_rigid(const nt_plan *plan, double hold, double error)
 {
-    double low = hold * (1.0 + 1e-12), high = FARTHEST;
+    double low = fmax(hold, nt_elastic_hold(plan)) * (1.0 + 1e-12), high = FARTHEST; /* held, they have no length */
     nt_elastic_sum s = nt_elastic_sum_at(plan, low);
     const double length = s.all_F / s.all_k;
     for (double gap = FARTHEST; gap > low; gap /= GAPS) {
@@ -272,12 +195,9 @@ static nt_status refuse(nt_problem *problem, nt_problem reason)
 static nt_status check(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const nt_shape_kind kind = plan->shape.kind;
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
     const int round = kind == NT_SHAPE_PARABOLOID || kind == NT_SHAPE_SPHERE;
     if (!round && !(kind == NT_SHAPE_BLUNTED && adheres(plan)))
         return refuse(problem, (nt_problem){"tip.shape", "", scene->tip.shape, 0.0, 1.0});
-    if (quantity != NT_QUANTITY_FORCE && quantity != NT_QUANTITY_STIFFNESS && !adheres(plan))
-        return refuse(problem, (nt_problem){"demand.quantity", "", plan->demand.quantity, 0.0, 1.0});
     return NT_OK;
 }
 
@@ -295,34 +215,55 @@ static double held_pull(const nt_plan *plan)
     return lost;
 }
 
-static nt_status table_of(nt_plan *plan, const nt_scene *scene, const pressures *in, double tolerance)
+/* What a table is made for. */
+typedef struct wanted {
+    nt_quantity quantity; /* of the demand; tables themselves are of forces or stiffnesses */
+    double tolerance;
+    double scale;        /* of that quantity */
+    double around;       /* error of laws around an adhesive contact that are not in the table */
+    double radius_scale; /* 0: not demanded [m] */
+} wanted;
+
+static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const wanted *of)
 {
-    const int sticks = adheres(plan);
+    const double tolerance = of->tolerance;
+    const int sticks = adheres(plan), surrounded = sticks && nt_plan_is_surrounded(plan, scene);
+    const double load = scene->range.maximum_load, least = scene->range.minimum_gap;
     const double farthest = where_rigid(plan, sticks ? plan->capture_gap : in->hold, SEAM * tolerance);
-    const nt_yield_sample sample = sample_of(plan, scene, in, farthest);
+    const nt_yield_sample sample = nt_yield_sample_of(in, scene, farthest);
     const nt_yield_range range = {.farthest = farthest - in->hold,
-                                  .nearest = sticks ? fmax(plan->capture_gap, scene->range.minimum_gap)
-                                                    : scene->range.minimum_gap - in->hold,
-                                  .load = sticks ? (double)INFINITY : DEEPER * scene->range.maximum_load,
+                                  .nearest = sticks && !surrounded ? fmax(plan->capture_gap, least) : least - in->hold,
+                                  .centre = surrounded ? plan->length : 0.0,
+                                  .load = sticks && !surrounded ? (double)INFINITY : DEEPER * load,
                                   .tolerance = tolerance,
-                                  .scale = sticks ? WEAKER * plan->scale : plan->scale,
+                                  .scale = (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, load),
                                   .attracts = sticks,
                                   .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
-                                  .stiffness_scale = plan->scale};
-    return nt_yield_table_make(&plan->yield, &sample, &range);
+                                  .stiffness_scale = plan->scale,
+                                  .radius_scale = of->radius_scale};
+    const nt_status status = nt_yield_table_make(&plan->yield, &sample, &range);
+    if (status != NT_OK || !surrounded)
+        return status;
+    return nt_plan_yield_hold(plan, scene, &range) == NT_OK ? NT_OK : NT_E_RANGE; /* no finer one would do */
 }
 
 /* With a tolerance, or finer, where Newton or the mesh do not come to an end. */
-static nt_status tabulate(nt_plan *plan, const nt_scene *scene, double tolerance)
+static nt_status tabulate(nt_plan *plan, const nt_scene *scene, const wanted *of)
 {
-    const pressures in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan)};
+    const double tolerance = of->tolerance;
+    const nt_yield_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
     nt_status status = NT_E_NO_CONVERGENCE;
     if (adheres(plan)) /* inside the range of adhesion, too */
         nt_plan_prepare_laws(plan, scene, 0.0);
-    for (int i = 0; i < ATTEMPTS && status != NT_OK; ++i)
-        status = table_of(plan, scene, &in, tolerance * pow(FINER, i));
+    for (int i = 0; i < ATTEMPTS && status == NT_E_NO_CONVERGENCE; ++i) {
+        wanted finer = *of;
+        finer.tolerance = tolerance * pow(FINER, i);
+        status = table_of(plan, scene, &in, &finer);
+    }
     plan->yield.hold = in.hold;
-    plan->yield.jump_error = tolerance * plan->yield.touch;
+    plan->yield.jump_error = tolerance * fmax(fabs(plan->yield.touch), plan->length);
+    if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+        plan->yield.jump_error *= STIFF;
     if (status == NT_OK && held_pull(plan) > fmax(plan->demand.relative_accuracy, tolerance) * plan->scale)
         status = NT_E_NO_CONVERGENCE;
     return status;
@@ -351,42 +292,89 @@ static nt_status refuse_modulus(const nt_plan *plan, const nt_scene *scene, nt_p
     return refuse(problem, (nt_problem){"sample.youngs_modulus", "Pa", E, fmin(fmax(stiffer, E), 1e13), 1e13});
 }
 
+/* The finest tolerance that was measured: where a law ends, as a brush, the mesh only nearly knows where. */
+static double finest_of(const nt_plan *plan, const nt_scene *scene)
+{
+    const nt_yield_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
+    const nt_yield_sample sample = nt_yield_sample_of(&in, scene, FARTHEST);
+    const double finest = sample.end_count > 0 ? ENDED * FINEST : FINEST;
+    return plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : finest;
+}
+
+/* Of the folds: where the surface jumps is known to a distance. */
+static double error_of_folds(const nt_plan *plan, const wanted *of)
+{
+    if (of->quantity != NT_QUANTITY_FOLDS || !plan->yield.jumps)
+        return 0.0;
+    return plan->yield.jump_error / plan->scale;
+}
+
+/* With one tolerance; `error`: of all that is in no table, as a share of the demand. */
+static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const wanted *of, double error, nt_problem *problem)
+{
+    if (tabulate(plan, scene, of) != NT_OK)
+        return refuse_modulus(plan, scene, problem);
+    plan->demand.quantity = of->quantity;
+    nt_problem reason = {0};
+    const nt_status status = compose(plan, scene, error + PARTS * of->tolerance, &reason);
+    if (status == NT_OK) {
+        plan->bound.force_error = fmax(plan->bound.force_error, error + error_of_folds(plan, of));
+        return NT_OK;
+    }
+    return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
+}
+
 /* Tables are of forces, whatever is demanded. */
-static nt_status yield(nt_plan *plan, const nt_scene *scene, double quantity, nt_problem *problem)
+static nt_status yield(nt_plan *plan, const nt_scene *scene, wanted *of, nt_problem *problem)
 {
     const double nearest = fmax(scene->range.minimum_gap, 0.0), demanded = plan->demand.relative_accuracy;
-    const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
-    const double others = felt ? other_errors(plan, nearest) + plan->around_error : 0.0;
-    const double finest = plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : FINEST;
-    const double left = (demanded > 0.0 ? demanded - others : fmin(UNASKED - others, PARTS * finest)) / PARTS;
-    const double tolerance = fmin(adheres(plan) ? LEAVES * left : left, ROUGHEST);
-    if (left < finest)
+    const int felt = of->quantity == NT_QUANTITY_FORCE || of->quantity == NT_QUANTITY_STIFFNESS;
+    const int surrounded = nt_plan_is_surrounded(plan, scene);
+    const double others = (felt ? other_errors(plan, nearest) : 0.0) + (surrounded ? 0.0 : of->around);
+    const double finest = finest_of(plan, scene);
+    const double left = (demanded > 0.0 ? demanded - others : fmin(UNASKED - others, PLENTY * PARTS * finest)) / PARTS;
+    of->tolerance = fmin(adheres(plan) && !surrounded ? LEAVES * left : left, ROUGHEST);
+    if (!(left >= finest))
         return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,
                                             (others + PARTS * finest) * (1.0 + 1e-9), 0.5});
-    nt_status status = tabulate(plan, scene, tolerance);
-    if (status != NT_OK)
-        return refuse_modulus(plan, scene, problem);
-    plan->demand.quantity = quantity;
-    nt_problem reason = {0};
-    status = compose(plan, scene, others + PARTS * tolerance, &reason);
-    if (status == NT_OK)
+    nt_status status = yield_within(plan, scene, of, others, problem);
+    const double error = plan->bound.force_error - others;
+    if (status != NT_OK || !(demanded > 0.0) || others + error <= demanded)
         return status;
-    return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
+    of->tolerance *= INSIDE * (demanded - others) / error; /* of folds */
+    plan->demand.quantity = NT_QUANTITY_FORCE;
+    plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
+    return yield_within(plan, scene, of, others, problem);
 }
 
 nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
-    const double quantity = plan->demand.quantity;
+    const double quantity = plan->demand.quantity, load = scene->range.maximum_load;
+    wanted of = {.quantity = (nt_quantity)(int)quantity, .scale = plan->scale};
     nt_status status = check(plan, scene, problem);
     if (status != NT_OK)
         return status;
+    of.around = adheres(plan) ? nt_plan_around_error(plan, 0) : 0.0;
+    if (of.quantity == NT_QUANTITY_RADIUS)
+        of.radius_scale = plan->scale;
     if (quantity != NT_QUANTITY_STIFFNESS) {
         plan->demand.quantity = NT_QUANTITY_FORCE;
-        plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
+        plan->scale = nt_plan_scale_of(plan, load);
     }
-    status = yield(plan, scene, quantity, problem);
+    status = yield(plan, scene, &of, problem);
     plan->demand.quantity = quantity;
+    if (of.quantity == NT_QUANTITY_RADIUS || of.quantity == NT_QUANTITY_FOLDS)
+        plan->scale = of.quantity == NT_QUANTITY_RADIUS ? of.scale : nt_plan_scale_of(plan, load);
     if (status != NT_OK)
-        plan->yield.count = 0;
+        plan->yield.count = plan->yield.holds = 0; /* no table: the facts are those of the laws again */
     return status;
+}
+
+double nt_plan_yield_touch(const nt_plan *plan)
+{
+    const int touches = plan->yield.count > 0 && !adheres(plan) && !isinf(plan->yield.touch);
+    if (!touches || plan->demand.quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
+        return 0.0;
+    const double root = 0.5 * plan->yield.jump_error / plan->bound.force_error;
+    return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->yield.jump_error;
 }

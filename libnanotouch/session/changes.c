@@ -73,9 +73,12 @@ static nt_status compose_change(const nt_session *session, nt_call *call, nt_pro
         return NT_E_ARGUMENT;
     }
     nt_field_set(field, object, call->event.value[0]);
-    const nt_status status =
-        is_setting ? nt_settings_check(&setup.settings, problem) : nt_scene_check(&setup.scene, problem);
-    return status == NT_OK ? nt_compose(&call->next, &setup, session->now, problem) : status;
+    nt_status status = is_setting ? nt_settings_check(&setup.settings, problem) : nt_scene_check(&setup.scene, problem);
+    if (status == NT_OK)
+        status = nt_compose(&call->next, &setup, session->now, problem);
+    if (status == NT_OK && !is_setting)
+        call->next->touch = session->now->touch; /* it does not see the scene: a replay leaves it alone, too */
+    return status;
 }
 
 static nt_status check_yes(double value, const char *what, nt_problem *problem)
@@ -104,6 +107,7 @@ nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_proble
         return compose_change(session, call, problem);
     case NT_EVENT_REWIND:
         return session->history && value[0] >= 0.0 ? NT_OK : NT_E_UNSUPPORTED;
+    case NT_EVENT_INDEX:
     case NT_EVENT_KINDS:
         break;
     }

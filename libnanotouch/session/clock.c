@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The machine's monotonic clock, and one thread at a time where requests are prepared. */
+ * The machine's monotonic clock, the clock of the half that leads, what a session at wall pace owes, and one thread at
+ * a time where requests are prepared. */
 #if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
 #endif
@@ -7,6 +8,9 @@
 #include <math.h>
 
 #include "session/state.h"
+
+#define LONGEST_LAG 0.05  /* further behind than this a session slows down instead of catching up, at the most [s] */
+#define SLOWDOWN_TIME 1.0 /* over which the slowdown is told [s] */
 
 #if defined(__linux__)
 
@@ -30,13 +34,40 @@ void nt_session_sleep_until(int64_t deadline)
         continue;
 }
 
-void nt_session_keep_time(nt_session *session)
+/* A period after the last one. */
+static int64_t next_deadline(const nt_session *session)
 {
-    if (!session->clock && isinf(nt_session_own_period(session)))
-        return;
-    const int64_t now = nt_session_machine_time(), next = session->deadline + llround(1e9 * session->now->touch.period);
+    return session->deadline + llround(1e9 * session->now->touch.period);
+}
+
+static void wait_for_deadline(nt_session *session)
+{
+    const int64_t now = nt_session_machine_time(), next = next_deadline(session);
     session->deadline = next > now ? next : now;
     nt_session_sleep_until(session->deadline);
+}
+
+void nt_session_keep_time(nt_session *session)
+{
+    if (!session->leader && (session->clock || isfinite(nt_session_own_period(session))))
+        wait_for_deadline(session);
+}
+
+nt_status nt_session_follow_leader(nt_session *session)
+{
+    nt_hal *leader = session->leader;
+    const uint64_t before = leader->reading.sequence;
+    const int64_t due = session->deadline > 0 ? next_deadline(session) : INT64_MAX;
+    session->waits = 1;
+    const nt_status status = nt_hal_read(leader);
+    session->waits = 0;
+    if (leader->reading.sequence == before || leader->reading.flags & NT_SAMPLE_DEVICE_LOST)
+        wait_for_deadline(session);
+    else
+        session->deadline = nt_session_machine_time();
+    const double late = session->deadline > due ? 1e-9 * (double)(session->deadline - due) : 0.0;
+    session->lateness = late > leader->reading.lateness ? late : leader->reading.lateness;
+    return status;
 }
 
 uintptr_t nt_session_thread(void)
@@ -71,6 +102,10 @@ void nt_session_keep_time(nt_session *session)
 {
     (void)session;
 }
+nt_status nt_session_follow_leader(nt_session *session)
+{
+    return nt_hal_read(session->leader);
+}
 uintptr_t nt_session_thread(void)
 {
     return 1;
@@ -85,6 +120,28 @@ void nt_session_unlock(nt_session *session)
 }
 
 #endif
+
+/* What is owed is run at once, and meanwhile no device says anything new. A quarter of a device's own period is the
+ * most: twice that may come between two readings, half a period more than they are apart, and two make it stale. */
+double nt_wall_longest_lag(const nt_session *session)
+{
+    const double due = fmax(0.25 * nt_session_own_period(session), 2.0 * session->now->touch.period);
+    return fmin(LONGEST_LAG, due);
+}
+
+double nt_wall_look(nt_wall_clock *clock, double speed)
+{
+    const int64_t now = nt_session_machine_time();
+    const double passed = 1e-9 * (double)(now - clock->last);
+    clock->last = now;
+    clock->due += speed * passed;
+    const double lost = fmax(0.0, clock->due - speed * clock->lag);
+    clock->due -= lost;
+    const double share = -expm1(-passed / SLOWDOWN_TIME);
+    if (passed > 0.0)
+        clock->lost += share * (lost / (speed * passed) - clock->lost);
+    return 1.0 / fmax(1e-9, 1.0 - clock->lost);
+}
 
 int nt_session_runs_here(const nt_session *session)
 {

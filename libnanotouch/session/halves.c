@@ -10,7 +10,8 @@
 
 static int64_t session_now(const nt_host *host)
 {
-    return ((const nt_session *)host->context)->time;
+    const nt_session *session = host->context;
+    return session->waits && session->clock ? session->clock() : session->time;
 }
 
 static void session_say(const nt_host *host, const char *text)
@@ -46,30 +47,46 @@ static nt_sim_setup sim_setup_of(const nt_session *session)
                           .faults = setup->faults};
 }
 
-static nt_status open_master(nt_session *session, nt_problem *problem)
+/* The one that the setup names, or a simulated one. */
+static nt_status open_half(nt_session *session, nt_half half, nt_problem *problem)
 {
-    const nt_sim_setup sim = sim_setup_of(session);
-    nt_hal_choice choice = session->now->setup.master;
+    const nt_session_setup *setup = &session->now->setup;
+    const nt_sim_setup simulated = sim_setup_of(session);
+    const int is_master = half == NT_HALF_MASTER;
+    nt_hal_choice choice = is_master ? setup->master : setup->slave;
     nt_status status = NT_OK;
-    session->simulates[NT_HALF_MASTER] = choice.backend == NULL;
-    if (!choice.backend) {
-        status = nt_sim_master_init(&session->sim.master, &sim);
+    session->simulates[half] = choice.backend == NULL;
+    if (!choice.backend && is_master) {
+        status = nt_sim_master_init(&session->sim.master, &simulated);
         choice = (nt_hal_choice){nt_sim_master_backend(), &session->sim.master};
-    }
-    return status == NT_OK ? nt_hal_open(&session->master, NT_HALF_MASTER, &choice, &session->host, problem) : status;
-}
-
-static nt_status open_slave(nt_session *session, nt_problem *problem)
-{
-    const nt_sim_setup sim = sim_setup_of(session);
-    nt_hal_choice choice = session->now->setup.slave;
-    nt_status status = NT_OK;
-    session->simulates[NT_HALF_SLAVE] = choice.backend == NULL;
-    if (!choice.backend) {
-        status = nt_sim_slave_init(&session->sim.slave, &sim);
+    } else if (!choice.backend) {
+        status = nt_sim_slave_init(&session->sim.slave, &simulated);
         choice = (nt_hal_choice){nt_sim_slave_backend(), &session->sim.slave};
     }
-    return status == NT_OK ? nt_hal_open(&session->slave, NT_HALF_SLAVE, &choice, &session->host, problem) : status;
+    nt_hal *hal = is_master ? &session->master : &session->slave;
+    if (status == NT_OK)
+        status = nt_hal_open(hal, half, &choice, &session->host, problem);
+    hal->is_model = session->simulates[half];
+    return status;
+}
+
+static int leads(const nt_hal *half)
+{
+    return (half->capabilities.can & NT_LEADS_CLOCK) != 0;
+}
+
+/* One at most, and once in every period of the loop. */
+static nt_status find_leader(nt_session *session, nt_problem *problem)
+{
+    const double period = session->now->touch.period;
+    if (leads(&session->master) && leads(&session->slave))
+        return nt_problem_set(problem, "halves that lead the clock", "", 2.0, 0.0, 1.0);
+    if (leads(&session->master) || leads(&session->slave))
+        session->leader = leads(&session->master) ? &session->master : &session->slave;
+    const double own = session->leader ? session->leader->capabilities.period : 0.0;
+    if (own > 0.0 && fabs(own / period - 1.0) > 1e-3)
+        return nt_problem_set(problem, "gains.rate (a half leads the clock)", "Hz", 1.0 / period, 1.0 / own, 1.0 / own);
+    return NT_OK;
 }
 
 static nt_status check_substep(const nt_session *session, nt_problem *problem)
@@ -90,8 +107,6 @@ static nt_status check_halves(const nt_session *session, nt_problem *problem)
     const nt_master *described = &session->now->setup.rig.master;
     const nt_capabilities *master = &session->master.capabilities, *slave = &session->slave.capabilities;
     const double period = session->now->touch.period, declared = described->rate > 0.0 ? 1.0 / described->rate : 0.0;
-    if (master->can & slave->can & NT_LEADS_CLOCK)
-        return nt_problem_set(problem, "halves that lead the clock", "", 2.0, 0.0, 1.0);
     if (master->period > 1.001 * fmax(declared, period))
         return nt_problem_set(problem, "master.rate (of the loop where it is 0)", "Hz", 1.0 / fmax(declared, period),
                               0.0, 1.0 / master->period);
@@ -149,9 +164,11 @@ static nt_status find_master(nt_session *session, nt_problem *problem)
 nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
 {
     session->host = (nt_host){sizeof session->host, NT_HAL_API_VERSION, session_now, session_say, session};
-    nt_status status = open_master(session, problem);
+    nt_status status = open_half(session, NT_HALF_MASTER, problem);
     if (status == NT_OK)
-        status = open_slave(session, problem);
+        status = open_half(session, NT_HALF_SLAVE, problem);
+    if (status == NT_OK)
+        status = find_leader(session, problem);
     if (status == NT_OK)
         status = check_halves(session, problem);
     if (status == NT_OK)

@@ -9,8 +9,8 @@
  * lever's ringing after a pull-off when the base comes down again as fast as it can.
  *
  * The hand presses on meanwhile, slowly beside the lever: then e/w is constant (adiabatic invariant), w^2 ~ K + k. The
- * peak is the force where V regains its value with that e, at the base that presses with all that can be pressed. So
- * peaks between two samples are counted. */
+ * peak is the force where V regains its value with that e, at the base that presses with all that can be pressed; how
+ * much of it is left by then, the guarantee reckons (ring_down). So peaks between two samples are counted. */
 #include "nanotouch/hazard.h"
 
 #include <math.h>
@@ -180,6 +180,22 @@ static double turning_gap(well *w, double rest, double force, double energy)
     return down;
 }
 
+/* What swings of `energy` [J] add to a force at rest [N]; depth [m]. */
+static double peak_over(well *w, double force, double energy, double *depth)
+{
+    const double rest = gap_of_force(w, force, fmin(w->outside, fmax(w->plan->capture_gap, 0.0)));
+    const double turn = turning_gap(w, rest, force, energy);
+    *depth = rest - turn;
+    return law_at(w, turn).F - law_at(w, rest).F;
+}
+
+/* How much stiffer the tip is held under a force than at the bottom of its well: w over w. */
+static double stiffened(const well *w, double force, double stiffness)
+{
+    const double rest = gap_of_force(w, force, fmin(w->outside, fmax(w->plan->capture_gap, 0.0)));
+    return sqrt(fmax(1.0, (w->spring + law_at(w, rest).k) / (w->spring + stiffness)));
+}
+
 static void add_snap_in(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_guarantee *still)
 {
     const nt_probe *probe = &rig->probe;
@@ -189,15 +205,25 @@ static void add_snap_in(nt_hazard *hazard, const nt_plan *plan, const nt_rig *ri
               .rate = 2.0 * NT_PI * probe->resonance,
               .stage_rate = 2.0 * NT_PI * rig->stage.resonance,
               .outside = HUGE_VAL};
-    double stiffness;
-    double energy = energy_of_jump(&w, probe, still->speed, &stiffness);
-    const double rest = gap_of_force(&w, still->force, fmin(w.outside, fmax(plan->capture_gap, 0.0)));
-    energy *= sqrt(fmax(1.0, (w.spring + law_at(&w, rest).k) / (w.spring + stiffness)));
-    const double swing = sqrt(energy) + sqrt(THERMAL * BOLTZMANN * probe->temperature); /* in step, at the worst */
-    const double turn = turning_gap(&w, rest, still->force, swing * swing);
+    const double forces[] = {0.0, still->force}, thermal = THERMAL * BOLTZMANN * probe->temperature;
+    double stiffness, found[2], depth;
+    const double energy = energy_of_jump(&w, probe, still->speed, &stiffness);
     const double blunter = plan->pull_off_force > 0.0 ? plan->largest_pull_off_force / plan->pull_off_force : 1.0;
-    hazard->snap_in = fmax(hazard->snap_in, blunter * (law_at(&w, turn).F - law_at(&w, rest).F));
-    hazard->snap_in_depth = fmax(hazard->snap_in_depth, blunter * (rest - turn));
+    for (int i = 0; i < 2; ++i) {
+        const double swing = sqrt(energy * stiffened(&w, forces[i], stiffness)) + sqrt(thermal); /* in step */
+        found[i] = blunter * peak_over(&w, forces[i], swing * swing, &depth);
+        hazard->snap_in_depth = fmax(hazard->snap_in_depth, blunter * depth);
+    }
+    hazard->arrival = fmax(hazard->arrival, found[0]);
+    hazard->snap_in = fmax(hazard->snap_in, found[1]);
+    hazard->thermal = fmax(hazard->thermal, blunter * peak_over(&w, still->force, thermal, &depth));
+}
+
+/* How far a force presses where the sample is softest; not known where each place has a radius of its own [m]. */
+static double deepest_under(const nt_plan *plan, double force)
+{
+    const well soft = {.plan = plan, .place = place_of(plan, 0)};
+    return plan->radii ? HUGE_VAL : -gap_of_force(&soft, force, 0.0);
 }
 
 nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope)
@@ -207,6 +233,7 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
     const double free_force = nt_supervisor_make(rig, settings).free_force / (1.0 - off); /* as it may be */
     nt_hazard hazard = {.slope = slope,
                         .pull_off_force = plan->largest_pull_off_force,
+                        .ring_down = lever->quality / (NT_PI * lever->resonance),
                         .stiffness = plan->maximum_stiffness,
                         .unseen = unseen_indentation(plan, free_force)};
     const nt_guarantee still = nt_guarantee_compute(rig, settings, &hazard);
@@ -215,6 +242,6 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
         real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
         add_snap_in(&hazard, plan, &real, &still);
     }
-    hazard.snap_in = fmax(hazard.snap_in, hazard.pull_off_force); /* of either sign */
+    hazard.deepest = deepest_under(plan, still.force + fmax(hazard.snap_in, hazard.pull_off_force));
     return hazard;
 }

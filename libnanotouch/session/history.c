@@ -21,6 +21,7 @@ static void save(const nt_session *session, nt_past *past)
     past->guarantee = now->guarantee;
     past->touch_state = session->touch_state;
     past->sim = session->sim;
+    past->kept_events = session->kept_events;
     past->readings[NT_HALF_MASTER] = session->master.reading;
     past->readings[NT_HALF_SLAVE] = session->slave.reading;
 }
@@ -54,6 +55,8 @@ static void load(nt_session *session, const nt_past *past)
 struct nt_snapshot {
     nt_past past;
     nt_origin origin;
+    const nt_session *of; /* whose it is, ... */
+    int64_t opened;       /* ... unless another one has its place since [ns] */
 };
 
 nt_status nt_session_snapshot(const nt_session *session, nt_snapshot **snapshot)
@@ -69,6 +72,8 @@ nt_status nt_session_snapshot(const nt_session *session, nt_snapshot **snapshot)
         return NT_E_NO_MEMORY;
     save(session, &made->past);
     made->origin = session->origin;
+    made->of = session;
+    made->opened = session->opened;
     *snapshot = made;
     return NT_OK;
 }
@@ -90,7 +95,10 @@ nt_status nt_session_restore(nt_session *session, const nt_snapshot *snapshot, n
     nt_status status = check_snapshot(session, snapshot, problem);
     if (status != NT_OK)
         return status;
-    const nt_event event = {.kind = NT_EVENT_REWIND, .value = {(double)snapshot->past.touch_state.ticks}};
+    const int is_own = snapshot->of == session && snapshot->opened == session->opened;
+    const nt_event event = {
+        .kind = NT_EVENT_REWIND,
+        .value = {(double)snapshot->past.touch_state.ticks, is_own ? (double)snapshot->past.kept_events : -1.0}};
     status = nt_session_keep_event(session, &event);
     if (status == NT_OK)
         load(session, &snapshot->past);
@@ -125,7 +133,7 @@ void nt_history_keep(nt_session *session)
     ++history->next;
 }
 
-nt_status nt_history_back(nt_session *session, uint64_t tick)
+nt_status nt_history_back(nt_session *session, uint64_t tick, double *events)
 {
     nt_history *history = session->history;
     const uint64_t oldest = history->next > NT_HISTORY ? history->next - NT_HISTORY : 0u;
@@ -134,6 +142,7 @@ nt_status nt_history_back(nt_session *session, uint64_t tick)
         if (past->touch_state.ticks <= tick &&
             nt_origin_check_setup(&past->setup, &session->now->setup, NULL) == NT_OK) {
             load(session, past);
+            *events = (double)past->kept_events;
             return NT_OK;
         }
         --history->next; /* later than where it goes back to */

@@ -13,6 +13,7 @@ typedef struct nt_past {
     nt_touch_state touch_state;
     nt_sim sim;
     nt_reading readings[2];
+    uint64_t kept_events; /* until then */
 } nt_past;
 
 enum { NT_HISTORY = 128 }; /* moments: half a minute */

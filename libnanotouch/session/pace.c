@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A session in a thread of its own, at one of three paces. Free: as fast as it goes. Wall: time is virtual; the thread
  * wakes each millisecond and runs the ticks that are due, so a machine that cannot keep up slows the session down, and
- * no tick is late or lost. Hard: each tick at its deadline on the monotonic clock (loop.c). */
+ * no tick is late or lost. Hard: each tick at its deadline on the monotonic clock (loop.c). Where a half leads the
+ * clock, its readings give the ticks at any pace. */
 #if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
 #endif
@@ -18,10 +19,8 @@
 
 #include "core/problem.h"
 
-#define WAKE 1000000      /* wall pace: [ns] */
-#define LONGEST_LAG 0.05  /* further behind than this a session slows down instead of catching up, at the most [s] */
-#define SLOWDOWN_TIME 1.0 /* over which the slowdown is told [s] */
-enum { BATCH = 64 };      /* ticks between two looks at what was asked of the thread */
+#define WAKE 1000000              /* wall pace: [ns] */
+enum { BATCH = 64 };              /* ticks between two looks at what was asked of the thread */
 enum { MOST_STEPS = 1000000000 }; /* that wait to be done */
 
 struct nt_runner {
@@ -29,10 +28,10 @@ struct nt_runner {
     int has_keeper;
     pid_t process;
     nt_pace pace;
-    uint64_t last; /* tick to end before; 0: none */
-    atomic_int halts, paused, has_ended;
-    atomic_long steps;     /* that a paused one still has to do */
-    _Atomic(double) speed; /* session time over time on the clock */
+    uint64_t last;                               /* tick to end before; 0: none */
+    atomic_int halts, paused, stands, has_ended; /* stands: the thread has seen the pause */
+    atomic_long steps;                           /* that a paused one still has to do */
+    _Atomic(double) speed;                       /* session time over time on the clock */
     _Atomic(double) slowdown, worst_delay;
     atomic_ullong ticks;
     atomic_int status;
@@ -49,6 +48,8 @@ static int is_over(const nt_session *session)
 
 static int has_room(const nt_session *session)
 {
+    if (session->comes_back && nt_session_events_are_full(session))
+        return 0;
     return !session->records || nt_ring_count(&session->ring) < session->ring.capacity;
 }
 
@@ -87,11 +88,23 @@ static long run_steps(nt_session *session)
     return done;
 }
 
+/* What is asked while no tick runs. */
+static void take_requests(nt_session *session)
+{
+    if (session->frames)
+        nt_session_take_clients(session);
+    nt_session_take_calls(session);
+}
+
 /* Paused: what is asked is done, and steps that are granted. */
 static long pass_pause(nt_session *session)
 {
-    nt_session_take_calls(session);
+    take_requests(session);
     const long done = run_steps(session);
+    if (done == 0) {
+        session->comes_back = !session->simulates[NT_HALF_MASTER];
+        atomic_store(&session->runner->stands, 1);
+    }
     if (done < BATCH)
         rest(session, nt_session_machine_time() + WAKE);
     return done;
@@ -107,7 +120,7 @@ static void run_free(nt_session *session)
             return;
         const int64_t now = nt_session_machine_time();
         if (!paused && done < BATCH) { /* no room: a reader has to come, who may be asking for something */
-            nt_session_take_calls(session);
+            take_requests(session);
             rest(session, now + WAKE / 4);
         }
         if (now - beat > 50 * WAKE && session->frames) {
@@ -117,41 +130,20 @@ static void run_free(nt_session *session)
     }
 }
 
-/* Time that the session owes its person, and how much slower than it should it goes. */
-typedef struct wall_clock {
-    int64_t last; /* when it was looked at [ns] */
-    double lag;   /* the most that it may owe [s] */
-    double due;   /* session time that has to be run yet [s] */
-    double lost;  /* share of time that could not be run, lately [-] */
-} wall_clock;
-
-/* What is owed is run at once, and meanwhile no device says anything new. A quarter of a device's own period is the
- * most: twice that may come between two readings, half a period more than they are apart, and two make it stale. */
-static double longest_lag(const nt_session *session)
+/* How many ticks are due; where a half leads the clock, the next one whenever it comes. */
+static long due_ticks(const nt_session *session, nt_wall_clock *clock)
 {
-    const double due = fmax(0.25 * nt_session_own_period(session), 2.0 * session->now->touch.period);
-    return fmin(LONGEST_LAG, due);
-}
-
-static void look_at(wall_clock *clock, nt_runner *runner)
-{
-    const int64_t now = nt_session_machine_time();
-    const double passed = 1e-9 * (double)(now - clock->last), speed = atomic_load(&runner->speed);
-    clock->last = now;
-    clock->due += speed * passed;
-    const double lost = fmax(0.0, clock->due - speed * clock->lag);
-    clock->due -= lost;
-    const double share = -expm1(-passed / SLOWDOWN_TIME);
-    if (passed > 0.0)
-        clock->lost += share * (lost / (speed * passed) - clock->lost);
-    atomic_store(&runner->slowdown, 1.0 / fmax(1e-9, 1.0 - clock->lost));
+    if (!session->leader)
+        return (long)(clock->due / session->now->touch.period);
+    clock->due = fmax(clock->due, 0.0); /* it may be early */
+    return 1;
 }
 
 static void run_wall(nt_session *session)
 {
     nt_runner *runner = session->runner;
     const double period = session->now->touch.period;
-    wall_clock clock = {.last = nt_session_machine_time(), .lag = longest_lag(session)};
+    nt_wall_clock clock = {.last = nt_session_machine_time(), .lag = nt_wall_longest_lag(session)};
     const int64_t wake = llround(fmin(WAKE, 0.5e9 * clock.lag));
     while (!is_over(session)) {
         if (atomic_load(&runner->paused)) {
@@ -160,14 +152,14 @@ static void run_wall(nt_session *session)
             clock.last = nt_session_machine_time();
             continue;
         }
-        look_at(&clock, runner);
-        const long done = run_ticks(session, (long)(clock.due / period));
+        atomic_store(&runner->slowdown, nt_wall_look(&clock, atomic_load(&runner->speed)));
+        const long done = run_ticks(session, due_ticks(session, &clock));
         if (done < 0)
             return;
         if (done == 0)
-            nt_session_take_calls(session);
+            take_requests(session);
         clock.due -= (double)done * period;
-        rest(session, clock.last + wake);
+        rest(session, session->leader && done > 0 ? clock.last : clock.last + wake);
     }
 }
 
@@ -177,9 +169,9 @@ static int hard_tick(void *context, uint64_t tick, double lateness)
     nt_runner *runner = session->runner;
     (void)tick;
     session->lateness = lateness;
-    if (lateness > atomic_load_explicit(&runner->worst_delay, memory_order_relaxed))
-        atomic_store_explicit(&runner->worst_delay, lateness, memory_order_relaxed);
     const nt_status status = nt_session_tick(session);
+    if (session->lateness > atomic_load_explicit(&runner->worst_delay, memory_order_relaxed))
+        atomic_store_explicit(&runner->worst_delay, session->lateness, memory_order_relaxed);
     atomic_store_explicit(&runner->ticks, session->touch_state.ticks, memory_order_relaxed);
     if (status != NT_OK)
         atomic_store(&runner->status, (int)status);
@@ -191,7 +183,12 @@ static void run_hard(nt_session *session)
     int64_t (*const before)(void) = session->clock;
     session->may_drop = 1;
     session->clock = nt_session_machine_time;
-    const nt_status status = nt_loop_run(session->now->touch.period, UINT64_MAX, hard_tick, session, NULL);
+    nt_status status = NT_OK;
+    if (!session->leader)
+        status = nt_loop_run(session->now->touch.period, UINT64_MAX, hard_tick, session, NULL);
+    else
+        while (hard_tick(session, 0, 0.0) == 0)
+            continue;
     if (status != NT_OK)
         atomic_store(&session->runner->status, (int)status);
     session->may_drop = 0;
@@ -239,6 +236,8 @@ nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
     if (session->runner || nt_session_runs_here(session) || (session->frames && !nt_frames_are_own(session->frames)))
         return NT_E_STATE;
     nt_status status = nt_session_check_pace(session, pace);
+    if (status == NT_OK && nt_session_events_are_full(session))
+        status = NT_E_CAPACITY;
     if (status != NT_OK)
         return status;
     nt_runner *runner = calloc(1, sizeof *runner);
@@ -250,6 +249,8 @@ nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
     atomic_init(&runner->speed, 1.0);
     atomic_init(&runner->slowdown, 1.0);
     atomic_init(&runner->ticks, session->touch_state.ticks);
+    session->deadline = 0; /* nothing is late yet */
+    session->comes_back = !session->simulates[NT_HALF_MASTER];
     status = pace == NT_PACE_HARD ? NT_OK : nt_history_make(session);
     session->runner = runner;
     if (status == NT_OK && pthread_create(&runner->thread, NULL, run, session) == 0) {
@@ -294,6 +295,7 @@ nt_status nt_session_pause(nt_session *session, int paused)
     const nt_status status = check_not_hard(session);
     if (status != NT_OK)
         return status;
+    atomic_store(&session->runner->stands, 0); /* set again by the thread alone, once it has seen the pause */
     atomic_store(&session->runner->paused, paused != 0);
     atomic_store(&session->runner->steps, 0);
     return NT_OK;
@@ -316,6 +318,8 @@ nt_status nt_session_set_speed(nt_session *session, double speed, nt_problem *pr
     const nt_status status = check_not_hard(session);
     if (status != NT_OK)
         return status;
+    if (session->leader && speed != 1.0)
+        return nt_problem_set(problem, "speed of a session whose clock a half leads", "", speed, 1.0, 1.0);
     if (!(speed >= 1e-3 && speed <= 1e3))
         return nt_problem_set(problem, "speed", "", speed, 1e-3, 1e3);
     atomic_store(&session->runner->speed, speed);
@@ -335,6 +339,7 @@ nt_progress nt_session_progress(const nt_session *session)
     found.worst_delay = atomic_load(&runner->worst_delay);
     found.runs = !atomic_load_explicit(&runner->has_ended, memory_order_acquire);
     found.paused = atomic_load(&runner->paused);
+    found.stands = found.paused && atomic_load(&runner->stands) && atomic_load(&runner->steps) == 0;
     found.status = (nt_status)atomic_load(&runner->status);
     return found;
 }
@@ -352,48 +357,6 @@ nt_status nt_session_await(nt_session *session)
         nt_session_sleep_until(nt_session_machine_time() + WAKE / 10);
     }
     return NT_OK;
-}
-
-#else
-
-nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
-{
-    (void)session, (void)pace, (void)ticks;
-    return NT_E_UNSUPPORTED;
-}
-nt_status nt_session_halt(nt_session *session)
-{
-    (void)session;
-    return NT_OK;
-}
-nt_status nt_session_pause(nt_session *session, int paused)
-{
-    (void)session, (void)paused;
-    return NT_E_UNSUPPORTED;
-}
-nt_status nt_session_step_on(nt_session *session, long ticks)
-{
-    (void)session, (void)ticks;
-    return NT_E_UNSUPPORTED;
-}
-nt_status nt_session_set_speed(nt_session *session, double speed, nt_problem *problem)
-{
-    (void)session, (void)speed, (void)problem;
-    return NT_E_UNSUPPORTED;
-}
-nt_progress nt_session_progress(const nt_session *session)
-{
-    return (nt_progress){.ticks = session->touch_state.ticks, .slowdown = 1.0};
-}
-int nt_session_is_running(const nt_session *session)
-{
-    (void)session;
-    return 0;
-}
-nt_status nt_session_await(nt_session *session)
-{
-    (void)session;
-    return NT_E_UNSUPPORTED;
 }
 
 #endif

@@ -6,13 +6,20 @@
 
 #include "session/state.h"
 
+static nt_status push_event(nt_session *session, const nt_event *event)
+{
+    const nt_status status = nt_ring_push(&session->events, event);
+    session->kept_events += status == NT_OK;
+    return status;
+}
+
 nt_status nt_session_keep_event(nt_session *session, const nt_event *event)
 {
     if (!session->records)
         return NT_OK; /* there is nothing to replay */
     nt_event kept = *event;
     kept.tick = session->touch_state.ticks;
-    return nt_ring_push(&session->events, &kept);
+    return push_event(session, &kept);
 }
 
 int nt_session_events_are_full(const nt_session *session)
@@ -26,7 +33,7 @@ static void swap(nt_session *session, nt_composition *next)
 {
     nt_composition *old = session->now;
     session->now = next;
-    session->sim.slave.plan = nt_terrain_plan(next->terrain);
+    nt_sim_change_plan(&session->sim.slave, nt_terrain_plan(next->terrain));
     atomic_store_explicit(&session->retired, old, memory_order_release);
 }
 
@@ -53,6 +60,7 @@ static nt_status apply_event(nt_session *session, const nt_event *event)
     case NT_EVENT_SCENE:
         return NT_OK; /* the swap is all */
     case NT_EVENT_REWIND:
+    case NT_EVENT_INDEX:
     case NT_EVENT_KINDS:
         break;
     }
@@ -65,9 +73,9 @@ static nt_status rewind_to(nt_session *session, const nt_event *event)
     const uint64_t now = session->touch_state.ticks;
     const double back = round(event->value[0] / session->now->touch.period);
     nt_event done = {.tick = now, .kind = NT_EVENT_REWIND};
-    const nt_status status = nt_history_back(session, back < (double)now ? now - (uint64_t)back : 0u);
+    const nt_status status = nt_history_back(session, back < (double)now ? now - (uint64_t)back : 0u, &done.value[1]);
     done.value[0] = (double)session->touch_state.ticks;
-    return status == NT_OK && session->records ? nt_ring_push(&session->events, &done) : status;
+    return status == NT_OK && session->records ? push_event(session, &done) : status;
 }
 
 static nt_status apply(nt_session *session, const nt_call *call)

@@ -81,15 +81,33 @@ static int64_t time_of(const nt_session *session, uint64_t tick)
     return llround((double)(session->flights + tick) * session->now->touch.period * 1e9);
 }
 
+/* The one that leads the clock first: this tick begins when it has come. */
+static nt_status read_halves(nt_session *session, uint64_t tick)
+{
+    nt_status status = NT_OK;
+    session->time = time_of(session, tick);
+    if (session->leader) {
+        status = nt_session_follow_leader(session);
+        session->time = time_of(session, tick);
+    }
+    if (status == NT_OK && session->leader != &session->master)
+        status = nt_hal_read(&session->master);
+    if (status == NT_OK && session->leader != &session->slave)
+        status = nt_hal_read(&session->slave);
+    return status;
+}
+
 nt_status nt_session_sample(nt_session *session, uint64_t tick, nt_sample *sample)
 {
-    session->time = time_of(session, tick);
-    const nt_status status = nt_hal_sample(&session->master, &session->slave, tick, session->time, sample);
+    const nt_status status = read_halves(session, tick);
+    if (status != NT_OK)
+        return status;
+    nt_hal_join(&session->master, &session->slave, tick, session->time, sample);
     if (session->now->touch.rig.stage.axes == 1.0) { /* nothing moves it sideways */
         sample->stage_position[NT_X] = session->now->setup.x;
         sample->stage_position[NT_Y] = session->now->setup.y;
     }
-    return status;
+    return NT_OK;
 }
 
 nt_status nt_session_write(nt_session *session, uint64_t tick, const nt_command *command)
@@ -123,6 +141,17 @@ static nt_status keep(nt_session *session, const nt_record *record)
     return NT_OK;
 }
 
+/* Where a real hand has gone while nothing ran moves nothing. Nothing runs without room for the event. */
+static void come_back(nt_session *session, const nt_sample *sample)
+{
+    const nt_event event = {.kind = NT_EVENT_INDEX, .value = {sample->master_position[NT_Z]}};
+    if (!isfinite(event.value[0]))
+        return; /* it is not known yet */
+    nt_touch_index(&session->touch_state, event.value[0]);
+    (void)nt_session_keep_event(session, &event);
+    session->comes_back = 0;
+}
+
 static nt_status run_tick(nt_session *session, nt_record *record)
 {
     nt_sample sample;
@@ -139,6 +168,8 @@ static nt_status run_tick(nt_session *session, nt_record *record)
     sample.flags |= take_stop(session);
     if (session->clock)
         sample.lateness = session->lateness;
+    if (session->comes_back)
+        come_back(session, &sample);
     nt_touch_step(&session->now->touch, &session->touch_state, &sample, &command);
     fill(record, session, &sample, &command);
     const nt_status kept = keep(session, record);
@@ -171,6 +202,8 @@ static nt_status check_free(const nt_session *session, long ticks)
     if (session->frames && !nt_frames_are_own(session->frames))
         return NT_E_STATE; /* forked off: they show another process's session */
     if (session->records && (size_t)ticks > session->ring.capacity - nt_ring_count(&session->ring))
+        return NT_E_CAPACITY;
+    if (session->comes_back && nt_session_events_are_full(session))
         return NT_E_CAPACITY;
     return nt_session_check_pace(session, NT_PACE_FREE);
 }

@@ -53,7 +53,9 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
     if (status != NT_OK)
         return status;
     session->touch_state = nt_touch_start(&session->now->touch, session->master_start, setup->x, setup->y);
+    session->comes_back = !session->simulates[NT_HALF_MASTER];
     session->origin = nt_origin_of(setup);
+    session->opened = nt_session_machine_time();
     session->master_travel = setup->rig.master.travel;
     session->master_axes = setup->rig.master.axes;
     memcpy(session->borders, session->now->touch.borders, sizeof session->borders);

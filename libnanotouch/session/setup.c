@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What a session is opened with, and what of it is refused before anything is made. */
+#include <limits.h>
 #include <math.h>
 
 #include "core/problem.h"
 #include "session/state.h"
 
-#define LONGEST_PATH (1L << 40) /* points */
+#define LONGEST_PATH (LONG_MAX >> (sizeof(long) > 4 ? 23 : 5)) /* points; their size fits a size_t */
 
 nt_session_setup nt_session_defaults(void)
 {

@@ -39,6 +39,9 @@ struct nt_session {
     int64_t time;           /* of this tick on the halves' clock [ns] */
     int64_t (*clock)(void); /* hard pace: of the machine; else NULL, and ticks times period count */
     double lateness;        /* of this tick, hard pace [s] */
+    nt_hal *leader;         /* the half that leads the clock; NULL: none does */
+    int waits;              /* it is waited for: on a clock of the machine its host's time goes on meanwhile */
+    int comes_back;         /* the next tick is the first one after a pause */
     uint64_t flights;       /* ticks of the preflight */
     int may_drop;           /* hard pace: a full ring is counted, the loop goes on */
     nt_sim sim;             /* halves that are simulated */
@@ -47,7 +50,7 @@ struct nt_session {
     double master_start, master_travel; /* [m] */
     double master_axes;                 /* these three: for inputs of any thread */
     double borders[2][2];               /* of the surface, x and y [m] */
-    int64_t deadline;                   /* of the next tick before it runs, where a half has a clock of its own [ns] */
+    int64_t deadline;                   /* of this tick, where a half has a clock of its own [ns] */
     nt_frames *frames;
     nt_frame *stepped; /* nt_session_step wants this tick's; else NULL */
     /* between threads */
@@ -68,6 +71,8 @@ struct nt_session {
     nt_runner *runner;                 /* NULL: no thread */
     struct nt_history *history;        /* NULL: none is kept */
     nt_origin origin;
+    uint64_t kept_events; /* since it was opened */
+    int64_t opened;       /* with its address: which session it is [ns] */
 };
 
 enum { NT_CALL_WAITING = -1, NT_SESSION_EVENTS = 4096, NT_SESSION_CALLS = 64 };
@@ -146,8 +151,9 @@ typedef struct nt_history nt_history;
 nt_status nt_history_make(nt_session *session);
 /* Keeps this moment, if it is one to be kept. */
 void nt_history_keep(nt_session *session);
-/* Goes back to the newest moment that is not after a tick. NT_E_NO_SOLUTION if none is left. */
-nt_status nt_history_back(nt_session *session, uint64_t tick);
+/* Goes back to the newest moment that is not after a tick, when *events events had been kept. NT_E_NO_SOLUTION if none
+ * is left. */
+nt_status nt_history_back(nt_session *session, uint64_t tick, double *events);
 
 /* --- frame.c --- */
 
@@ -159,6 +165,18 @@ int64_t nt_session_machine_time(void); /* [ns] */
 void nt_session_sleep_until(int64_t deadline);
 /* With a half that measures by a clock of its own, before it runs: waits for the next period. */
 void nt_session_keep_time(nt_session *session);
+/* Wall pace: time that a session owes its person, and how much slower than it should it goes. */
+typedef struct nt_wall_clock {
+    int64_t last; /* when it was looked at [ns] */
+    double lag;   /* the most that it may owe [s] */
+    double due;   /* session time that has to be run yet [s] */
+    double lost;  /* share of time that could not be run, lately [-] */
+} nt_wall_clock;
+double nt_wall_longest_lag(const nt_session *session);
+/* More is due; how many times slower than `speed` the session goes. */
+double nt_wall_look(nt_wall_clock *clock, double speed);
+/* Reads the half that leads the clock. One that says nothing new, or is gone, is waited for no longer than a period. */
+nt_status nt_session_follow_leader(nt_session *session);
 /* The calling thread; never 0. */
 uintptr_t nt_session_thread(void);
 /* One thread prepares and asks at a time. */

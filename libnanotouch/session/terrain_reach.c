@@ -50,10 +50,23 @@ static nt_status check_path(const nt_terrain *terrain, const double *xy, long co
     return status;
 }
 
-static const nt_surface *ratio_of(const nt_terrain *terrain)
+static const nt_surface *if_given(const nt_surface *field)
+{
+    return field->coefficients ? field : NULL;
+}
+
+static nt_fields fields_of(const nt_terrain *terrain)
 {
     const nt_radius_map *radii = nt_terrain_radii(terrain);
-    return radii && radii->ratio.coefficients ? &radii->ratio : NULL;
+    const nt_properties *properties = nt_terrain_plan(terrain)->properties;
+    nt_fields fields = {{NULL, NULL, NULL}};
+    if (radii)
+        fields.of[NT_FIELD_RATIO] = if_given(&radii->ratio);
+    if (properties) {
+        fields.of[NT_FIELD_MODULUS] = if_given(&properties->youngs_modulus);
+        fields.of[NT_FIELD_WORK] = if_given(&properties->work_of_adhesion);
+    }
+    return fields;
 }
 
 /* Nothing rises on a flat. */
@@ -67,11 +80,16 @@ static nt_reach reach_of(const nt_terrain *terrain, const nt_extremes *found, do
 {
     const double R = nt_terrain_plan(terrain)->contact.radius;
     const double start = nt_surface_height(nt_terrain_surface(terrain), x, y).z;
+    const int curves = fields_of(terrain).of[NT_FIELD_RATIO] != NULL;
     return (nt_reach){.rise = fmax(found->highest - start, 0.0),
                       .relief = found->highest - found->lowest,
                       .slope = found->steepest,
-                      .least_radius = R * found->least_ratio,
-                      .largest_radius = R * found->most_ratio};
+                      .least_radius = curves ? R * found->least[NT_FIELD_RATIO] : R,
+                      .largest_radius = curves ? R * found->most[NT_FIELD_RATIO] : R,
+                      .least_modulus = found->least[NT_FIELD_MODULUS],
+                      .largest_modulus = found->most[NT_FIELD_MODULUS],
+                      .least_work = found->least[NT_FIELD_WORK],
+                      .largest_work = found->most[NT_FIELD_WORK]};
 }
 
 nt_status nt_terrain_reach_path(const nt_terrain *terrain, const double *xy, long count, nt_reach *reach,
@@ -84,7 +102,8 @@ nt_status nt_terrain_reach_path(const nt_terrain *terrain, const double *xy, lon
         return status;
     *reach = level(terrain);
     if (has_borders(terrain)) {
-        const nt_extremes found = nt_extremes_on_path(nt_terrain_surface(terrain), ratio_of(terrain), xy, count);
+        const nt_fields fields = fields_of(terrain);
+        const nt_extremes found = nt_extremes_on_path(nt_terrain_surface(terrain), &fields, xy, count);
         *reach = reach_of(terrain, &found, xy[0], xy[1]);
     }
     return NT_OK;
@@ -125,7 +144,8 @@ nt_status nt_terrain_reach_area(const nt_terrain *terrain, const nt_area *area, 
     *reach = level(terrain);
     if (has_borders(terrain)) {
         const double x[2] = {area->x_min, area->x_max}, y[2] = {area->y_min, area->y_max};
-        const nt_extremes found = nt_extremes_in_area(nt_terrain_surface(terrain), ratio_of(terrain), x, y);
+        const nt_fields fields = fields_of(terrain);
+        const nt_extremes found = nt_extremes_in_area(nt_terrain_surface(terrain), &fields, x, y);
         *reach = reach_of(terrain, &found, area->x, area->y);
     }
     return NT_OK;

@@ -272,8 +272,25 @@ static search search_of(const nt_surface *surface, int on_path)
         .close = {CLOSE_HEIGHT * (high - low) + rounding, 1e-9 + rounding / fmin(surface->dx, surface->dy)}};
 }
 
+#define NOTHING_YET                                                                                                    \
+    {                                                                                                                  \
+        {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL},                                                                  \
+        {                                                                                                              \
+            HUGE_VAL, -HUGE_VAL                                                                                        \
+        }                                                                                                              \
+    }
+
+/* No such spline is beyond its coefficients. */
+static void ranges_of(const nt_fields *fields, const cells *c, double range[NT_FIELDS][2])
+{
+    for (int field = 0; field < NT_FIELDS; field++)
+        if (fields->of[field])
+            range_of(fields->of[field], c, range[field]);
+}
+
 /* Between two points, in pieces of a pixel at most. */
-static void search_leg(search *s, const double from[2], const double to[2], const nt_surface *ratio, double range[2])
+static void search_leg(search *s, const double from[2], const double to[2], const nt_fields *fields,
+                       double range[NT_FIELDS][2])
 {
     const nt_surface *surface = s->surface;
     const double along[2] = {to[0] - from[0], to[1] - from[1]};
@@ -283,8 +300,7 @@ static void search_leg(search *s, const double from[2], const double to[2], cons
         const piece p = {from[0] + t * along[0], from[1] + t * along[1], half * along[0], half * along[1]};
         const cells c = cells_of(surface, &p);
         search_piece(s, &c, &p);
-        if (ratio)
-            range_of(ratio, &c, range);
+        ranges_of(fields, &c, range);
     }
 }
 
@@ -296,7 +312,8 @@ static piece cell_in(const nt_surface *s, const double x[2], const double y[2], 
 }
 
 /* First a value of each cell, so that most cells need no second look. */
-static void search_area(search *s, const double x[2], const double y[2], const nt_surface *ratio, double range[2])
+static void search_area(search *s, const double x[2], const double y[2], const nt_fields *fields,
+                        double range[NT_FIELDS][2])
 {
     const piece all = {0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]), 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])};
     const cells c = cells_of(s->surface, &all);
@@ -313,34 +330,38 @@ static void search_area(search *s, const double x[2], const double y[2], const n
             const cells cell = {{i, j}, {i, j}};
             const piece p = cell_in(s->surface, x, y, i, j);
             search_piece(s, &cell, &p);
-            if (ratio)
-                range_of(ratio, &cell, range);
+            ranges_of(fields, &cell, range);
         }
 }
 
-static nt_extremes extremes_of(const search *s, const double range[2])
+static nt_extremes extremes_of(const search *s, const nt_fields *fields, double range[NT_FIELDS][2])
 {
     double most[SOUGHT];
     for (int what = 0; what < SOUGHT; what++)
         most[what] = fmax(s->found[what], s->bound[what]);
-    return (nt_extremes){most[HIGHEST], -most[LOWEST], most[STEEPEST], range[0], range[1]};
+    nt_extremes found = {.highest = most[HIGHEST], .lowest = -most[LOWEST], .steepest = most[STEEPEST]};
+    for (int field = 0; field < NT_FIELDS; field++) {
+        found.least[field] = fields->of[field] ? range[field][0] : 0.0;
+        found.most[field] = fields->of[field] ? range[field][1] : 0.0;
+    }
+    return found;
 }
 
-nt_extremes nt_extremes_on_path(const nt_surface *surface, const nt_surface *ratio, const double *xy, long count)
+nt_extremes nt_extremes_on_path(const nt_surface *surface, const nt_fields *fields, const double *xy, long count)
 {
     search s = search_of(surface, 1);
-    double range[2] = {ratio ? HUGE_VAL : 1.0, ratio ? -HUGE_VAL : 1.0};
-    search_leg(&s, xy, xy, ratio, range);
+    double range[NT_FIELDS][2] = NOTHING_YET;
+    search_leg(&s, xy, xy, fields, range);
     for (long i = 0; i + 1 < count; i++)
-        search_leg(&s, xy + 2 * i, xy + 2 * (i + 1), ratio, range);
-    return extremes_of(&s, range);
+        search_leg(&s, xy + 2 * i, xy + 2 * (i + 1), fields, range);
+    return extremes_of(&s, fields, range);
 }
 
-nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_surface *ratio, const double x[2],
+nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_fields *fields, const double x[2],
                                 const double y[2])
 {
     search s = search_of(surface, 0);
-    double range[2] = {ratio ? HUGE_VAL : 1.0, ratio ? -HUGE_VAL : 1.0};
-    search_area(&s, x, y, ratio, range);
-    return extremes_of(&s, range);
+    double range[NT_FIELDS][2] = NOTHING_YET;
+    search_area(&s, x, y, fields, range);
+    return extremes_of(&s, fields, range);
 }

@@ -6,17 +6,24 @@
 
 #include "nanotouch/surface.h"
 
+/* What else there is at each place of a surface, on its grid: ratio of effective to tip radius [-], E of the sample
+ * [Pa], w [J/m^2]. NULL: not given. */
+enum { NT_FIELD_RATIO, NT_FIELD_MODULUS, NT_FIELD_WORK, NT_FIELDS };
+typedef struct nt_fields {
+    const nt_surface *of[NT_FIELDS];
+} nt_fields;
+
 typedef struct nt_extremes {
-    double highest, lowest;         /* [m] */
-    double steepest;                /* along a path in its direction, in an area in any direction [-] */
-    double least_ratio, most_ratio; /* of effective to tip radius; 1 without `ratio` [-] */
+    double highest, lowest;                   /* [m] */
+    double steepest;                          /* along a path in its direction, in an area in any direction [-] */
+    double least[NT_FIELDS], most[NT_FIELDS]; /* of the fields; 0 where there is none */
 } nt_extremes;
 
-/* Straight from point to point; xy: count >= 1 points on the surface [m]. `ratio`: of a radius map of that surface, or
- * NULL. Neither is a flat (without coefficients). */
-nt_extremes nt_extremes_on_path(const nt_surface *surface, const nt_surface *ratio, const double *xy, long count);
+/* Straight from point to point; xy: count >= 1 points on the surface [m]. None of the surfaces is a flat (without
+ * coefficients). */
+nt_extremes nt_extremes_on_path(const nt_surface *surface, const nt_fields *fields, const double *xy, long count);
 /* Over the rectangle x[0] .. x[1], y[0] .. y[1] on the surface [m]. */
-nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_surface *ratio, const double x[2],
+nt_extremes nt_extremes_in_area(const nt_surface *surface, const nt_fields *fields, const double x[2],
                                 const double y[2]);
 
 #endif

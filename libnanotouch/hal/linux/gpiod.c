@@ -23,10 +23,16 @@ typedef struct input {
     int gone; /* could not be read once: pressed for good */
 } input;
 
+typedef struct output {
+    struct gpiod_line_request *request; /* NULL: not wired */
+    unsigned offset;
+    int level;
+} output;
+
 struct nt_gpio {
     input emergency_stop, limit_switch;
-    struct gpiod_line_request *laser; /* NULL: not wired */
-    unsigned laser_offset;
+    output laser, watchdog, convert;
+    uint64_t lost_outputs;
     struct gpiod_edge_event_buffer *events;
 };
 
@@ -48,23 +54,30 @@ static nt_status fail(const reason *why, nt_status status, const char *format, .
 
 /* --- requests --- */
 
-static int configure(struct gpiod_line_settings *settings, int is_output)
+/* How a line is requested. */
+typedef struct manner {
+    int is_output;
+    unsigned long debounce; /* [us] */
+} manner;
+
+static int configure(struct gpiod_line_settings *settings, const manner *how)
 {
-    if (is_output)
+    if (how->is_output)
         return gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_OUTPUT) ||
                gpiod_line_settings_set_output_value(settings, GPIOD_LINE_VALUE_INACTIVE);
     return gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_INPUT) ||
            gpiod_line_settings_set_bias(settings, GPIOD_LINE_BIAS_PULL_DOWN) ||
-           gpiod_line_settings_set_edge_detection(settings, GPIOD_LINE_EDGE_BOTH);
+           gpiod_line_settings_set_edge_detection(settings, GPIOD_LINE_EDGE_BOTH) ||
+           (gpiod_line_settings_set_debounce_period_us(settings, how->debounce), 0);
 }
 
-static struct gpiod_line_request *request_offset(struct gpiod_chip *chip, unsigned offset, int is_output)
+static struct gpiod_line_request *request_offset(struct gpiod_chip *chip, unsigned offset, const manner *how)
 {
     struct gpiod_line_settings *settings = gpiod_line_settings_new();
     struct gpiod_line_config *lines = gpiod_line_config_new();
     struct gpiod_request_config *config = gpiod_request_config_new();
     struct gpiod_line_request *request = NULL;
-    if (settings && lines && config && !configure(settings, is_output) &&
+    if (settings && lines && config && !configure(settings, how) &&
         !gpiod_line_config_add_line_settings(lines, &offset, 1, settings)) {
         gpiod_request_config_set_consumer(config, "nanotouch");
         gpiod_request_config_set_event_buffer_size(config, EVENTS_MAX);
@@ -95,7 +108,7 @@ static nt_status find_line(const char *name, const reason *why, nt_gpio_line *li
 }
 
 /* Requests the line of that name; NULL is "not wired" and leaves *request NULL. */
-static nt_status take_line(const char *name, int is_output, const reason *why, struct gpiod_line_request **request,
+static nt_status take_line(const char *name, const manner *how, const reason *why, struct gpiod_line_request **request,
                            unsigned *offset)
 {
     char path[NT_GPIO_NAME_SIZE + 8];
@@ -108,7 +121,7 @@ static nt_status take_line(const char *name, int is_output, const reason *why, s
     snprintf(path, sizeof path, "/dev/%s", line.chip);
     struct gpiod_chip *chip = gpiod_chip_open(path);
     if (chip)
-        *request = request_offset(chip, line.offset, is_output);
+        *request = request_offset(chip, line.offset, how);
     const int error = errno;
     if (chip)
         gpiod_chip_close(chip);
@@ -121,11 +134,17 @@ static nt_status take_line(const char *name, int is_output, const reason *why, s
 static nt_status take_lines(nt_gpio *gpio, const nt_gpio_wiring *wiring, const reason *why)
 {
     input *stop = &gpio->emergency_stop, *limit = &gpio->limit_switch;
-    nt_status status = take_line(wiring->emergency_stop, 0, why, &stop->request, &stop->offset);
+    const manner at_once = {0, 0}, debounced = {0, (unsigned long)(1e6 * wiring->debounce + 0.5)}, driven = {1, 0};
+    const struct {
+        const char *name;
+        output *line;
+    } outputs[] = {
+        {wiring->laser_enable, &gpio->laser}, {wiring->watchdog, &gpio->watchdog}, {wiring->convert, &gpio->convert}};
+    nt_status status = take_line(wiring->emergency_stop, &at_once, why, &stop->request, &stop->offset);
     if (status == NT_OK)
-        status = take_line(wiring->limit_switch, 0, why, &limit->request, &limit->offset);
-    if (status == NT_OK)
-        status = take_line(wiring->laser_enable, 1, why, &gpio->laser, &gpio->laser_offset);
+        status = take_line(wiring->limit_switch, &debounced, why, &limit->request, &limit->offset);
+    for (int i = 0; i < 3 && status == NT_OK; i++)
+        status = take_line(outputs[i].name, &driven, why, &outputs[i].line->request, &outputs[i].line->offset);
     return status;
 }
 
@@ -161,6 +180,29 @@ static int read_input(input *in, struct gpiod_edge_event_buffer *events)
     return edges != 0 || level != GPIOD_LINE_VALUE_ACTIVE;
 }
 
+/* --- outputs --- */
+
+static nt_status set_output(nt_gpio *gpio, output *out, int level)
+{
+    if (!out->request)
+        return NT_E_STATE;
+    out->level = level;
+    const enum gpiod_line_value value = level ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
+    if (gpiod_line_request_set_value(out->request, out->offset, value) == 0)
+        return NT_OK;
+    ++gpio->lost_outputs;
+    return NT_E_DEVICE;
+}
+
+/* Low, and given back: what a pin does after that is for a resistor to say. */
+static void leave_output(nt_gpio *gpio, output *out)
+{
+    if (!out->request)
+        return;
+    (void)set_output(gpio, out, 0);
+    gpiod_line_request_release(out->request);
+}
+
 /* --- public --- */
 
 nt_gpio_wiring nt_gpio_wiring_defaults(void)
@@ -173,6 +215,8 @@ nt_status nt_gpio_open(const nt_gpio_wiring *wiring, char *text, unsigned size, 
     const reason why = {text, size};
     if (!wiring || !result || !wiring->emergency_stop)
         return fail(&why, NT_E_ARGUMENT, "the wiring must name an emergency stop");
+    if (!(wiring->debounce >= 0.0 && wiring->debounce <= 0.1))
+        return fail(&why, NT_E_RANGE, "the limit switch's debounce is %g s: valid is 0 .. 0.1 s", wiring->debounce);
     nt_gpio *gpio = calloc(1, sizeof *gpio);
     if (!gpio)
         return fail(&why, NT_E_NO_MEMORY, "out of memory");
@@ -191,10 +235,9 @@ void nt_gpio_close(nt_gpio *gpio)
 {
     if (!gpio)
         return;
-    if (gpio->laser) {
-        gpiod_line_request_set_value(gpio->laser, gpio->laser_offset, GPIOD_LINE_VALUE_INACTIVE);
-        gpiod_line_request_release(gpio->laser);
-    }
+    leave_output(gpio, &gpio->laser);
+    leave_output(gpio, &gpio->convert);
+    leave_output(gpio, &gpio->watchdog);
     if (gpio->limit_switch.request)
         gpiod_line_request_release(gpio->limit_switch.request);
     if (gpio->emergency_stop.request)
@@ -213,15 +256,25 @@ nt_status nt_gpio_read(nt_gpio *gpio, nt_gpio_state *state)
     state->flags =
         (stopped ? (uint32_t)NT_SAMPLE_EMERGENCY_STOP : 0u) | (limited ? (uint32_t)NT_SAMPLE_LIMIT_SWITCH : 0u);
     state->lost_events = stop->lost_events + limit->lost_events;
+    state->lost_outputs = gpio->lost_outputs;
     return stop->gone || limit->gone ? NT_E_DEVICE : NT_OK;
 }
 
 nt_status nt_gpio_laser(nt_gpio *gpio, int on)
 {
+    return gpio ? set_output(gpio, &gpio->laser, on != 0) : NT_E_ARGUMENT;
+}
+
+nt_status nt_gpio_beat(nt_gpio *gpio)
+{
+    return gpio ? set_output(gpio, &gpio->watchdog, !gpio->watchdog.level) : NT_E_ARGUMENT;
+}
+
+nt_status nt_gpio_convert(nt_gpio *gpio)
+{
     if (!gpio)
         return NT_E_ARGUMENT;
-    if (!gpio->laser)
-        return NT_E_STATE;
-    const enum gpiod_line_value value = on ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
-    return gpiod_line_request_set_value(gpio->laser, gpio->laser_offset, value) ? NT_E_DEVICE : NT_OK;
+    const nt_status status = set_output(gpio, &gpio->convert, 1);
+    const nt_status second = set_output(gpio, &gpio->convert, 0);
+    return status == NT_OK ? second : status;
 }

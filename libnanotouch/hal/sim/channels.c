@@ -65,7 +65,7 @@ void nt_sim_list_master(nt_sim_master *master)
                                     .axis = i,
                                     .minimum = -arm->max_force,
                                     .maximum = arm->max_force,
-                                    .step = nt_sim_motor_step(link),
+                                    .step = master->motor_step,
                                     .latency = effect_latency(link),
                                     .safe = 0.0});
 }

@@ -11,6 +11,7 @@
 enum { SENSORS = NT_CHANNEL_OPERATOR_FORCE + 1 };
 #define ON(channel) (1u << (channel))
 #define ON_SENSORS (ON(SENSORS) - 1u)
+#define ON_POSITIONS (ON(NT_CHANNEL_DEFLECTION) | ON(NT_CHANNEL_STAGE_POSITION) | ON(NT_CHANNEL_MASTER_POSITION))
 
 /* Beyond these numbers nothing is simulated any more; a stage may creep and turn as the rig's own may (rig.c). */
 #define ANY -1e6, 1e6
@@ -46,6 +47,12 @@ static const nt_fault_description descriptions[] = {
     [NT_FAULT_LIMIT_SWITCH] = {"limit-switch", "", "the stage stands at its end switch", NO_VALUE, 13,
                                ON(NT_CHANNEL_RIG)},
     [NT_FAULT_DEVICE_LOST] = {"device-lost", "", "a device is gone", NO_VALUE, 9, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_POWER] = {"power", "m", "without power the stage goes to the value, where it rests; the motor lets go",
+                        -1e-3, -1e-3, 1e-3, 36, ON(NT_CHANNEL_STAGE) | ON(NT_CHANNEL_MOTOR)},
+    [NT_FAULT_CLOCK_DRIFT] = {"clock-drift", "s/s",
+                              "the clocks drift apart: samples seem older by the value each second", 1e-3, -1.0, 1.0,
+                              37, ON(NT_CHANNEL_RIG)},
+    [NT_FAULT_SLIP] = {"slip", "m", "the reading slips by the value at once", 1e-6, -1e-2, 1e-2, 40, ON_POSITIONS},
 };
 enum { KINDS = (int)(sizeof descriptions / sizeof *descriptions) };
 
@@ -104,10 +111,8 @@ static const nt_fault *next_active(const nt_sim_link *link, nt_fault_kind kind, 
     return NULL;
 }
 
-static double sum_of(const nt_sim_link *link, nt_fault_kind kind)
+double nt_sim_sum_of_faults(const nt_sim_link *link, nt_fault_kind kind)
 {
-    if (link->faults.count == 0)
-        return 0.0;
     double sum = 0.0;
     const nt_fault *fault;
     for (int i = 0; (fault = next_active(link, kind, &i)) != NULL;)
@@ -162,6 +167,9 @@ static void spoil_channel(nt_sim_link *link, const nt_sim_sensors *sensors, cons
     case NT_FAULT_DRIFT:
         *value += fault->value * elapsed(link, fault);
         break;
+    case NT_FAULT_SLIP:
+        *value += fault->value;
+        break;
     default:
         break;
     }
@@ -182,6 +190,9 @@ static void spoil_frame(const nt_sim_link *link, const nt_fault *fault, nt_readi
         break;
     case NT_FAULT_CLOCK:
         *age = fault->value;
+        break;
+    case NT_FAULT_CLOCK_DRIFT:
+        *age += fault->value * elapsed(link, fault);
         break;
     case NT_FAULT_EMERGENCY_STOP:
         reading->flags |= NT_SAMPLE_EMERGENCY_STOP;
@@ -230,19 +241,29 @@ int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *r
     return stale;
 }
 
-int nt_sim_lost_periods(const nt_sim_link *link)
-{
-    if (link->faults.count == 0)
-        return 0;
-    return (int)fmin(sum_of(link, NT_FAULT_LATE), NT_SIM_LOST_MAX); /* of several faults */
-}
-
 /* Whatever its gain, a driver keeps to the stage's travel and speed. */
 static double driven_by(const nt_sim_slave *slave, double drive, double time)
 {
     const nt_stage *stage = &slave->link.rig.stage;
     const double way = stage->max_speed * time, half = 0.5 * stage->travel;
     return fmax(-half, fmin(half, fmax(slave->driven - way, fmin(slave->driven + way, drive))));
+}
+
+/* Without power the stage goes where it rests; when that is back, to where it is told: never faster than it can. */
+static double powered(nt_sim_slave *slave, double driven, double time)
+{
+    int from = 0;
+    const nt_fault *fault;
+    while ((fault = next_active(&slave->link, NT_FAULT_POWER, &from)) != NULL)
+        if (fault->channel == NT_CHANNEL_STAGE) {
+            slave->was_off = 1;
+            return driven_by(slave, fault->value, time);
+        }
+    if (!slave->was_off)
+        return driven;
+    const double reached = driven_by(slave, driven, time);
+    slave->was_off = reached != driven;
+    return reached;
 }
 
 double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time)
@@ -263,8 +284,8 @@ double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time)
     }
     if (!spoilt)
         slave->stood = drive;
-    slave->driven = driven;
-    return driven;
+    slave->driven = powered(slave, driven, time);
+    return slave->driven;
 }
 
 double nt_sim_stage_hysteresis(const nt_sim_link *link)
@@ -280,7 +301,7 @@ double nt_sim_spoil_motor(const nt_sim_link *link, double force)
     for (int i = 0; i < link->faults.count; i++) {
         const nt_fault *fault = &link->faults.list[i];
         if (fault->channel == NT_CHANNEL_MOTOR && is_active(link, fault))
-            pushed *= fault->value;
+            pushed *= fault->kind == NT_FAULT_POWER ? 0.0 : fault->value;
     }
     return pushed;
 }
@@ -292,14 +313,4 @@ double nt_sim_stage_drift(const nt_sim_link *link)
     for (int i = 0; (fault = next_active(link, NT_FAULT_DRIFT, &i)) != NULL;)
         sum += fault->channel == NT_CHANNEL_STAGE ? fault->value * elapsed(link, fault) : 0.0;
     return sum;
-}
-
-double nt_sim_surface_jump(const nt_sim_link *link)
-{
-    return sum_of(link, NT_FAULT_JUMP);
-}
-
-double nt_sim_push(const nt_sim_link *link)
-{
-    return sum_of(link, NT_FAULT_PUSH);
 }

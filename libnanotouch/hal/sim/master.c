@@ -16,6 +16,8 @@ static void init_sensors(nt_sim_master *master)
     const nt_master *arm = &real.master;
     master->position_sensor = (nt_sensor){0.0, arm->resolution, 0.5 * arm->travel};
     master->gauge = (nt_sensor){arm->gauge_noise, arm->gauge_resolution, arm->gauge_range};
+    const double bits = real.converters.dac_bits;
+    master->motor_step = bits > 0.0 ? arm->max_force * exp2(1.0 - bits) : 0.0;
 }
 
 /* A command acts after delay and latency; a part of a period splits the period in two. */
@@ -94,31 +96,25 @@ nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
     return NT_OK;
 }
 
-double nt_sim_motor_step(const nt_sim_link *link)
-{
-    const double bits = link->rig.converters.dac_bits;
-    return bits > 0.0 ? link->rig.master.max_force * exp2(1.0 - bits) : 0.0;
-}
-
 /* Without a motor nothing comes of a command. */
-static double drive_motor(const nt_sim_link *link, double command)
+static double drive_motor(const nt_sim_master *master, double command)
 {
-    if (link->rig.master.motor == 0.0)
+    const nt_master *arm = &master->link.rig.master;
+    if (arm->motor == 0.0)
         return 0.0;
-    const double most = link->rig.master.max_force;
-    const double force = nt_sim_spoil_motor(link, command);
-    return nt_sim_in_steps(clamp(force, -most, most), nt_sim_motor_step(link));
+    const double force = nt_sim_spoil_motor(&master->link, command);
+    return nt_sim_in_steps(clamp(force, -arm->max_force, arm->max_force), master->motor_step);
 }
 
 static void push_arm(nt_sim_master *master, const nt_master_model *model, const double *motor_force)
 {
-    const double motor = drive_motor(&master->link, motor_force[NT_Z]);
+    const double motor = drive_motor(master, motor_force[NT_Z]);
     nt_master_step(model, &master->arm[NT_Z], motor + effort_of(master), master->hand.rest);
     if (!(master->link.rig.master.axes > 1.0))
         return;
     const nt_hand_target hand = nt_hand_now(&master->hand);
     for (int i = NT_X; i < NT_Z; i++)
-        nt_master_step(model, &master->arm[i], drive_motor(&master->link, motor_force[i]) + hand.force[i], 0.0);
+        nt_master_step(model, &master->arm[i], drive_motor(master, motor_force[i]) + hand.force[i], 0.0);
 }
 
 /* Where the hand holds it at the end of the period, within its travel. */

@@ -69,22 +69,27 @@ static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
 void nt_sim_list_master(nt_sim_master *master);
 void nt_sim_list_slave(nt_sim_slave *slave);
 
-/* --- master.c --- */
-
-/* Of the motor's converter [N]. */
-double nt_sim_motor_step(const nt_sim_link *link);
-
 /* --- probe.c: one period of the cantilever, base and surface where they are now --- */
 
 double nt_sim_surface_height(const nt_sim_slave *slave);
 nt_status nt_sim_move_probe(nt_sim_slave *slave);
 
-/* --- faults.c: what each fault does, where it acts --- */
+/* --- faults.c: what each fault does, where it acts; most rigs have none --- */
+
+/* The values of all faults of a kind that act now. */
+double nt_sim_sum_of_faults(const nt_sim_link *link, nt_fault_kind kind);
+static inline double nt_sim_sum_of(const nt_sim_link *link, nt_fault_kind kind)
+{
+    return link->faults.count > 0 ? nt_sim_sum_of_faults(link, kind) : 0.0;
+}
 
 /* What becomes of a reading on its way; age: of what was measured [s]. 1: the link has brought old news. */
 int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double *age);
-/* Periods that are lost before this command arrives. */
-int nt_sim_lost_periods(const nt_sim_link *link);
+/* Periods that are lost before this command arrives, of several faults. */
+static inline int nt_sim_lost_periods(const nt_sim_link *link)
+{
+    return link->faults.count > 0 ? (int)fmin(nt_sim_sum_of(link, NT_FAULT_LATE), NT_SIM_LOST_MAX) : 0;
+}
 /* What stage, in this time [s], and motor make of what they are told [m], [N]. */
 double nt_sim_spoil_stage(nt_sim_slave *slave, double drive, double time);
 double nt_sim_spoil_motor(const nt_sim_link *link, double force);
@@ -92,9 +97,15 @@ double nt_sim_stage_hysteresis(const nt_sim_link *link);
 /* Of the whole frame, unseen by the read-out [m]. */
 double nt_sim_stage_drift(const nt_sim_link *link);
 /* By how much the surface has risen [m]. */
-double nt_sim_surface_jump(const nt_sim_link *link);
+static inline double nt_sim_surface_jump(const nt_sim_link *link)
+{
+    return nt_sim_sum_of(link, NT_FAULT_JUMP);
+}
 /* The operator's own [N]. */
-double nt_sim_push(const nt_sim_link *link);
+static inline double nt_sim_push(const nt_sim_link *link)
+{
+    return nt_sim_sum_of(link, NT_FAULT_PUSH);
+}
 
 #ifdef __cplusplus
 }

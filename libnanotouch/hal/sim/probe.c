@@ -15,7 +15,7 @@
 typedef struct probe_context {
     const nt_plan *plan;
     nt_interaction_state *interaction;
-    nt_place place;
+    const nt_place *place;
     double gap; /* of the last answer [m] */
     nt_law_value law;
     double peak, deepest; /* |F| and h on the way [N], [m] */
@@ -26,7 +26,7 @@ static nt_law_value force_at(void *context, double gap)
     probe_context *probe = context;
     if (gap != probe->gap) {
         probe->gap = gap;
-        probe->law = nt_interaction_eval_gap(probe->plan, probe->interaction, &probe->place, gap);
+        probe->law = nt_interaction_eval_gap(probe->plan, probe->interaction, probe->place, gap);
     }
     return probe->law;
 }
@@ -34,7 +34,7 @@ static nt_law_value force_at(void *context, double gap)
 static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
-    nt_interaction_advance_gap(probe->plan, probe->interaction, &probe->place, gap);
+    nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
 }
 
 /* A dynamic probe has really been where it passes. */
@@ -66,18 +66,36 @@ double nt_sim_surface_height(const nt_sim_slave *slave)
     return nt_interaction_place(slave->plan, slave->x, slave->y).surface.z + nt_sim_surface_jump(&slave->link);
 }
 
+/* What is known of the place under the tip; 1: it is another one. */
+static int find_place(nt_sim_slave *slave)
+{
+    if (slave->x == slave->place_x && slave->y == slave->place_y)
+        return 0;
+    slave->place = nt_interaction_place(slave->plan, slave->x, slave->y);
+    slave->place_x = slave->x;
+    slave->place_y = slave->y;
+    return 1;
+}
+
+void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
+{
+    if (plan == slave->plan)
+        return;
+    slave->plan = plan;
+    slave->place_x = slave->law_gap = NAN; /* nothing is known of it yet */
+}
+
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
+    const int is_elsewhere = find_place(slave);
+    const double surface = slave->place.surface.z + nt_sim_surface_jump(&slave->link);
+    const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties);
     probe_context context = {.plan = slave->plan,
                              .interaction = &slave->interaction,
-                             .place = nt_interaction_place(slave->plan, slave->x, slave->y),
-                             .gap = slave->truth.gap,
+                             .place = &slave->place,
+                             .gap = knows ? slave->law_gap : (double)NAN, /* another place: nothing is known there */
                              .law = slave->law,
                              .deepest = HUGE_VAL};
-    const double surface = context.place.surface.z + nt_sim_surface_jump(&slave->link);
-    const int is_elsewhere = slave->x != slave->law_x || slave->y != slave->law_y;
-    if (surface != slave->truth.surface_height || (is_elsewhere && slave->plan->properties))
-        context.gap = NAN; /* another place: nothing is known there */
     const nt_force_field field = {force_at, slave->dynamic ? passed : moved_to, &context, slave->plan->length};
     const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
     const nt_status status = slave->dynamic
@@ -87,8 +105,7 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const double gap = slave->cantilever.tip_height;
     const nt_law_value law = law_there(&context, gap);
     slave->law = law;
-    slave->law_x = slave->x;
-    slave->law_y = slave->y;
+    slave->law_gap = gap;
     slave->truth = (nt_truth){.gap = gap,
                               .tip_force = {[NT_Z] = law.F},
                               .peak_force = fmax(context.peak, fabs(law.F)),

@@ -113,8 +113,8 @@ nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup)
 
 nt_status nt_sim_read(nt_sim *sim, nt_sample *sample)
 {
-    nt_hal master = {.backend = nt_sim_master_backend(), .context = &sim->master};
-    nt_hal slave = {.backend = nt_sim_slave_backend(), .context = &sim->slave};
+    nt_hal master = {.backend = nt_sim_master_backend(), .context = &sim->master, .is_model = 1};
+    nt_hal slave = {.backend = nt_sim_slave_backend(), .context = &sim->slave, .is_model = 1};
     const nt_sim_link *link = &sim->slave.link;
     const int64_t now = llround((double)link->tick * link->period * 1e9);
     return nt_hal_sample(&master, &slave, link->tick, now, sample);
@@ -125,8 +125,8 @@ nt_status nt_sim_write(nt_sim *sim, const nt_command *command)
     for (int i = 0; i < NT_AXES; i++)
         if (!isfinite(command->motor_force[i]) || !isfinite(command->stage_position[i]))
             return NT_E_NOT_FINITE;
-    nt_hal master = {.backend = nt_sim_master_backend(), .context = &sim->master};
-    nt_hal slave = {.backend = nt_sim_slave_backend(), .context = &sim->slave};
+    nt_hal master = {.backend = nt_sim_master_backend(), .context = &sim->master, .is_model = 1};
+    nt_hal slave = {.backend = nt_sim_slave_backend(), .context = &sim->slave, .is_model = 1};
     nt_action action = {.size = sizeof action, .tick = sim->slave.link.tick};
     return nt_hal_command(&master, &slave, command, &action);
 }

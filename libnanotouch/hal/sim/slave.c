@@ -54,7 +54,7 @@ static nt_status begin(nt_sim_slave *slave, const nt_sim_setup *setup)
         slave->converted.position[i] = slave->converted.felt[i] = NAN;
     slave->start_height = nt_sim_surface_height(slave) + setup->clearance;
     slave->cantilever = nt_cantilever_at(setup->clearance);
-    slave->truth.gap = NAN;                      /* nothing is known yet */
+    slave->place_x = slave->law_gap = NAN;       /* nothing is known yet */
     nt_status status = nt_sim_move_probe(slave); /* at rest, whatever the model */
     slave->dynamic = is_dynamic(slave, setup->probe_model);
     if (status == NT_OK && slave->dynamic)

@@ -28,7 +28,10 @@ typedef enum nt_fault_kind {
     NT_FAULT_PUSH,
     NT_FAULT_EMERGENCY_STOP,
     NT_FAULT_LIMIT_SWITCH,
-    NT_FAULT_DEVICE_LOST
+    NT_FAULT_DEVICE_LOST,
+    NT_FAULT_POWER,
+    NT_FAULT_CLOCK_DRIFT,
+    NT_FAULT_SLIP
 } nt_fault_kind;
 
 /* Where. The four sensors come first. */

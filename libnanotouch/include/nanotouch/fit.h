@@ -24,6 +24,7 @@
 #define NANOTOUCH_FIT_H
 
 #include "nanotouch/contact.h"
+#include "nanotouch/curves.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -166,28 +167,28 @@ NT_API nt_status nt_fit_model_n(const nt_fit_options *options, const double valu
 NT_API nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
                                       double *position);
 
+/* What a fit left over, for its rating. */
+typedef struct nt_fit_rated {
+    const double *indentation; /* delta of each point [m], in the order of the base's positions */
+    const double *force;       /* measured, baseline taken off [N] */
+    const double *fitted;      /* the model's [N] */
+    long count;
+    double noise; /* of the force from point to point, standard deviation [N] */
+} nt_fit_rated;
+/* 0 (reject) to 10: the largest residuals of three parts of the indentation from a quarter of its depth on, beside the
+ * load, as people have rated such curves. 0 where the load does not rise above ten times the noise. */
+NT_API double nt_fit_rating(const nt_fit_rated *rated);
+#define NT_FIT_GOOD 4.5 /* below, a fit is a misfit if its residuals are no noise either */
+
 /* ---- Curves as they were recorded, many at once: baseline, what is fitted of each, the fit ---- */
-
-/* One movement of the base in the order of time. */
-typedef struct nt_fit_segment {
-    const double *z;     /* height of the base, away from the sample [m] */
-    const double *force; /* + repulsive, baseline still in it [N] */
-    long count;          /* fewer than NT_FIT_MIN_POINTS: as if there were none */
-} nt_fit_segment;
-enum { NT_FIT_MIN_POINTS = 16 };
-
-typedef struct nt_fit_curve {
-    nt_fit_segment approach, retract;
-    double spring_constant; /* k_c [N/m] */
-} nt_fit_curve;
 
 /* How each curve is fitted. */
 typedef struct nt_fit_recipe {
     nt_fit_options options; /* as for nt_fit_run; spring constant, noise, tear and what is known of sensitivity, offset
                                and tilt come from each curve; loss_scale 0: three times its noise. Positions are -z. */
     int approach;           /* 1: the approach is fitted; 0: the retraction */
-    int waves;              /* 1: the baseline takes interference where it is evident; 0: a straight line */
-    int fit_offset;         /* 1: the force offset is free; 0: known as well as the baseline is */
+    nt_curve_choice baseline;           /* which is taken off */
+    int fit_offset;                     /* 1: the force offset is free; 0: known as well as the baseline is */
     int held[NT_FIT_PARAMETERS];        /* 1: of sensitivity, offset, tilt, stays at its value in options */
     double lowest_force, highest_force; /* only points between these are fitted [N]; -inf, inf: all */
     double sensitivity_uncertainty;     /* of the deflection, relative; 0: exact */
@@ -197,25 +198,24 @@ NT_API nt_fit_recipe nt_fit_recipe_defaults(nt_fit_model model);
 /* As nt_fit_check, of the recipe with any valid spring constant. */
 NT_API nt_status nt_fit_recipe_check(const nt_fit_recipe *recipe, nt_problem *problem);
 
-typedef struct nt_fit_measured {
-    double value, sigma; /* SI; NaN where the curve does not show it */
-} nt_fit_measured;
-
-/* What a curve shows without any model. */
+/* What a curve shows without any model (curves.h). */
 typedef struct nt_fit_reading {
-    double noise;                  /* of the force from point to point, standard deviation [N] */
-    double baseline_tilt;          /* [N/m]; of the approach, of the retraction where there is no approach */
-    nt_fit_measured snap_in_force; /* depth below the baseline, positive [N]; 0 where no dip is visible */
-    nt_fit_measured pull_off_force;
-    nt_fit_measured adhesion_work; /* area of the retraction below its baseline [J]; 0 without pull-off */
-    nt_fit_measured contact_slope; /* -dF/dz over the upper half of the load [N/m] */
+    double noise;                    /* of the force from point to point, standard deviation [N] */
+    double baseline_tilt;            /* [N/m]; of the approach, of the retraction where there is no approach */
+    nt_curve_measured snap_in_force; /* depth below the baseline, positive [N]; 0 where no dip is visible */
+    nt_curve_measured pull_off_force;
+    nt_curve_measured adhesion_work;      /* area of the retraction below its baseline [J]; 0 without pull-off */
+    nt_curve_measured contact_slope;      /* -dF/dz over the upper half of the load [N/m] */
+    double pull_off_least, pull_off_most; /* ends of the 95 % interval of the pull-off [N] (curves.h) */
+    nt_curve_measured offset; /* by which the retraction ends below the approach: drag, or what still holds [N] */
+    int ruptures;             /* how many tear off on the retraction */
 } nt_fit_reading;
 
 /* What the user of a fit has to know, one bit each. */
 typedef enum nt_fit_flag {
     NT_FIT_NOT_CONVERGED = 1,   /* stopped at max_iterations */
     NT_FIT_STIFF = 2,           /* contact much stiffer than the cantilever: E* hardly shows */
-    NT_FIT_MISFIT = 4,          /* residuals above 3 times the noise */
+    NT_FIT_MISFIT = 4,          /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
     NT_FIT_WIDE = 8,            /* contact radius above R/2: no paraboloid on a half-space */
     NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
     NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
@@ -229,12 +229,13 @@ typedef struct nt_fit_outcome {
     nt_fit_reading reading; /* NaN where the curve could not be read */
     nt_fit_result fit;      /* value, sigma, rms, ... NaN and identifiable 0 where status is not NT_OK */
     unsigned flags;         /* nt_fit_flag */
+    double rating;          /* nt_fit_rating; NaN where status is not NT_OK */
 } nt_fit_outcome;
 
 /* Fits count curves in up to `threads` threads (0: one per processor). Every outcome is written; none depends on
  * another curve or on the number of threads. NT_OK, or what is wrong with the arguments, with nothing written. */
 typedef struct nt_fit_curves {
-    const nt_fit_curve *curve;
+    const nt_curve *curve;
     long count;
     int threads;
 } nt_fit_curves;

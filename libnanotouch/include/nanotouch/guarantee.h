@@ -16,10 +16,14 @@ extern "C" {
 typedef struct nt_hazard {
     double slope;          /* of the surface where it is steepest, dilated by the tip [-] */
     double pull_off_force; /* the strongest pull, positive [N] */
-    double snap_in;        /* what the energy of a jump adds at the peak [N] ... */
+    double snap_in;        /* what the energy of a jump adds at the peak, pressed with all that can be [N] ... */
     double snap_in_depth;  /* ... and to the indentation [m] */
+    double arrival;        /* the same at first touch, before anything presses [N] */
+    double thermal;        /* what of snap_in is thermal motion, which never dies away [N] */
+    double ring_down;      /* the rest dies away with this time constant, 2 Q/w0 of the lever [s] */
     double stiffness;      /* of the stiffest contact [N/m] */
     double unseen;         /* indentation at which the force leaves the noise of the reading [m] */
+    double deepest;        /* indentation that no force presses beyond, as all that is promised presses [m] */
 } nt_hazard;
 
 /* What may fail, one at a time. */
@@ -39,7 +43,8 @@ typedef struct nt_guarantee {
     double calibration;          /* of the limit, if k_c and sensitivity are off by 3 sigma [N] */
     double motion;               /* stage and surface come closer meanwhile, times stiffness [N] */
     double ringing;              /* the stage's resonance, excited by its own commands [N] */
-    double snap_in;              /* the tip arrives with the energy of its jump [N] */
+    double snap_in;              /* what is left of the swing of a jump when the force is there [N] */
+    double arrival;              /* a snap-in alone presses with this, limit or not [N] */
     double noise;                /* 6 sigma and a step of the reading [N] */
     double force;                /* limit and all five: never more than this on the sample, either sign [N] */
     double zero_drift;           /* and this more for each second since the tare [N/s] */

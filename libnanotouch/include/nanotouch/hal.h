@@ -17,7 +17,8 @@ typedef struct nt_hal {
     nt_capabilities capabilities;
     nt_reading reading; /* the newest; it is held until a newer one comes */
     int is_armed;
-    int is_lost; /* a write has failed: the next sample says so */
+    int is_lost;  /* a write has failed: the next sample says so */
+    int is_model; /* a simulated half: what fails in it is for the caller, and no lost device */
 } nt_hal;
 
 /* Which backend, and its context; NULL takes that of the backend itself. */
@@ -34,7 +35,8 @@ NT_API nt_status nt_hal_open(nt_hal *hal, nt_half half, const nt_hal_choice *cho
 NT_API nt_status nt_hal_configure(nt_hal *hal, const nt_configuration *configuration, nt_problem *problem);
 NT_API nt_status nt_hal_arm(nt_hal *hal);
 /* A new reading into hal->reading, or the last one held. A half that is gone, whose sequence runs backwards or that
- * gives what it does not call valid shows that in hal->reading.flags and as NaN: NT_OK; else what the backend says. */
+ * gives what it does not call valid shows that in hal->reading.flags and as NaN: NT_OK. So does one that fails with any
+ * other status, unless is_model. A lateness below 0 or NaN is infinite. */
 NT_API NT_REALTIME nt_status nt_hal_read(nt_hal *hal);
 /* A device that fails is NT_OK here and shows with the next reading. */
 NT_API NT_REALTIME nt_status nt_hal_write(nt_hal *hal, const nt_action *action);
@@ -43,6 +45,9 @@ NT_API void nt_hal_disarm(nt_hal *hal);
 /* Accepts NULL and a closed half. */
 NT_API void nt_hal_close(nt_hal *hal);
 
+/* Both halves as they were last read, as one sample of tick `tick` at time `now` [ns]. */
+NT_API NT_REALTIME void nt_hal_join(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64_t now,
+                                    nt_sample *sample);
 /* Reads both halves as one sample of tick `tick` at time `now` [ns]; the first status that is not NT_OK. */
 NT_API NT_REALTIME nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t now,
                                            nt_sample *sample);

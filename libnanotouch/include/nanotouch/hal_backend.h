@@ -38,7 +38,7 @@ enum {
     NT_CAN_FEEL = 1u << 0,         /* master: measures the operator's force; slave: measures deflections */
     NT_CAN_PUSH = 1u << 1,         /* master: has motors. Without them it is a position device: a mouse */
     NT_CAN_SERVO = 1u << 2,        /* slave: owns its z servo; what is written is its set-point */
-    NT_LEADS_CLOCK = 1u << 3,      /* read waits for the half's own next period; one half at most may */
+    NT_LEADS_CLOCK = 1u << 3,      /* read waits for the half's own next period, two at most; one half at most may */
     NT_IS_REAL = 1u << 4,          /* an actuator can move something: needs the hard pace */
     NT_IS_EVENT_DRIVEN = 1u << 5,  /* readings come when something happens; a heartbeat comes every period */
     NT_KEEPS_OWN_SAFETY = 1u << 6, /* stops by itself when writes stay away */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Safety lines of a real rig on a Linux machine's GPIO: emergency stop and limit switch in, laser enable out.
+ * Safety lines of a real rig on a Linux machine's GPIO: emergency stop and limit switch in, laser enable, watchdog
+ * and conversion start out.
  * Built into nanotouch::linux on libgpiod 2.1 or newer. One thread per handle; nothing here is real-time safe by proof:
  * reading costs up to four system calls, which do not wait. */
 #ifndef NANOTOUCH_HAL_LINUX_H
@@ -7,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "nanotouch/status.h"
+#include "nanotouch/converters.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -36,8 +37,11 @@ typedef struct nt_gpio_wiring {
     const char *emergency_stop; /* input, normally closed to HIGH */
     const char *limit_switch;   /* input, normally closed to HIGH */
     const char *laser_enable;   /* output, HIGH switches the laser on; needs a pull-down in hardware */
+    const char *watchdog; /* output, an edge in each period of the loop; a circuit that misses them stops the rig */
+    const char *convert;  /* output, a pulse before the ADCs are read; low at rest */
+    double debounce;      /* of the limit switch alone: an emergency stop is never late [s], 0 .. 0.1 */
 } nt_gpio_wiring;
-/* "estop", "limit", "laser-en". */
+/* "estop", "limit", "laser-en"; neither watchdog nor conversion line; 0 s. */
 NT_API nt_gpio_wiring nt_gpio_wiring_defaults(void);
 
 typedef struct nt_gpio nt_gpio;
@@ -51,14 +55,22 @@ NT_API void nt_gpio_close(nt_gpio *gpio);
 
 /* What the inputs said since the last call. */
 typedef struct nt_gpio_state {
-    uint32_t flags;       /* NT_SAMPLE_EMERGENCY_STOP, NT_SAMPLE_LIMIT_SWITCH (types.h) */
-    uint64_t lost_events; /* edges that the kernel dropped since open [-]; each counts as pressed when it is seen */
+    uint32_t flags;        /* NT_SAMPLE_EMERGENCY_STOP, NT_SAMPLE_LIMIT_SWITCH (types.h) */
+    uint64_t lost_events;  /* edges that the kernel dropped since open [-]; each counts as pressed when it is seen */
+    uint64_t lost_outputs; /* writes to an output that failed since open [-] */
 } nt_gpio_state;
 /* A press shorter than the time between two calls is seen. Unlike elsewhere *state is written on failure too: when a
  * line cannot be read (NT_E_DEVICE: chip gone) its flag is set, now and for good. */
 NT_API nt_status nt_gpio_read(nt_gpio *gpio, nt_gpio_state *state);
 /* Switches the laser. NT_E_STATE if no laser line was wired, NT_E_DEVICE if the line is gone. */
 NT_API nt_status nt_gpio_laser(nt_gpio *gpio, int on);
+/* The next edge of the watchdog; a pulse of the conversion line. NT_E_STATE if it is not wired, NT_E_DEVICE if it is
+ * gone. */
+NT_API nt_status nt_gpio_beat(nt_gpio *gpio);
+NT_API nt_status nt_gpio_convert(nt_gpio *gpio);
+/* The lines of a half on converters: what is not wired is left alone. A lost input is an emergency stop; a lost laser
+ * or watchdog line counts in lost_outputs of nt_gpio_state. */
+NT_API nt_converter_lines nt_gpio_lines(nt_gpio *gpio);
 
 #ifdef __cplusplus
 }

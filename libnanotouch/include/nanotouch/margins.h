@@ -13,12 +13,12 @@ extern "C" {
 
 /* Limits that nothing comes near are infinite. */
 typedef struct nt_margins {
-    double loop_stiffness;    /* kappa = (1 + K_f) alpha_f alpha_p k_eff at the stiffest contact [N/m] */
-    double loop_delay;        /* D = 2 (T/2 + dead time) + tau_stage [s] */
-    double stability_limit;   /* R1: b_m/D, less what the stage's integral costs [N/m] */
-    double margin;            /* stability_limit/loop_stiffness [-]; 1 is the limit */
-    double pad_limit;         /* R2: K_f at which a pad b_h on the gauge oscillates, f_m unfiltered [-] */
-    double mass_limit;        /* R3: K_f at which a finger m_h rigidly on the gauge does, f_m unfiltered [-] */
+    double loop_stiffness;  /* kappa = (1 + K_f) alpha_f alpha_p k_eff at the stiffest contact [N/m] */
+    double loop_delay;      /* D = 2 (T/2 + dead time) + tau_stage [s] */
+    double stability_limit; /* R1: b_m/D, less what the stage's integral costs; a rule of thumb, knows no hand [N/m] */
+    double margin;          /* stability_limit/loop_stiffness [-]; 1 is the limit */
+    double pad_limit;       /* R2: K_f at which a pad b_h on the gauge oscillates, f_m unfiltered [-] */
+    double mass_limit;      /* R3: K_f at which a finger m_h rigidly on the gauge does, f_m unfiltered [-] */
     double quantisation_step; /* R4: motor force of one step of stage or scaled master [N] */
     double force_noise;       /* R5: motor noise that the sensors' noise makes, RMS [N] */
     double height_margin;     /* topography: of the height servo or of the master's spring, the smaller one [-] */
@@ -29,6 +29,8 @@ typedef struct nt_margins {
 } nt_margins;
 /* contact_stiffness: k of the stiffest contact [N/m]; k_eff = k k_c/(k + k_c). */
 NT_API nt_margins nt_margins_compute(const nt_rig *rig, const nt_gains *gains, double contact_stiffness);
+/* loop_delay alone, a thousand times cheaper [s]. */
+NT_API double nt_margins_loop_delay(const nt_rig *rig, const nt_gains *gains);
 
 /* What a session is to be judged by: the smallest of its margins, each scaled so that 1 is the limit. */
 typedef struct nt_verdict {
@@ -52,10 +54,44 @@ NT_API nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *setting
 NT_API nt_status nt_margins_own_law(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
                                     nt_settings *amounts);
 
+/* What stirs the hand where nothing moves: steps of converters and noise of sensors. */
+typedef enum nt_ripple_source {
+    NT_RIPPLE_MASTER,        /* steps of the master's position sensor */
+    NT_RIPPLE_STAGE_COMMAND, /* steps of the stage's command, past the notch */
+    NT_RIPPLE_STAGE_READING, /* steps and noise of the stage's read-out, through the stage's integral */
+    NT_RIPPLE_PROBE,         /* noise and steps of the deflection */
+    NT_RIPPLE_GAUGE,         /* noise and steps of the hand's gauge, behind the low-pass */
+    NT_RIPPLE_SOURCES
+} nt_ripple_source;
+
+/* A force at the hand that nobody misses [N]. */
+#define NT_CLEARLY_FELT 0.3
+/* A contact that answers a slow oscillation of the hand with more than so many times its force rings. */
+#define NT_RINGING_MOST 2.0
+
+/* Whether a loop that is stable is calm, too: three numbers, each as a margin that is 1 where it begins to be felt. */
+typedef struct nt_calm {
+    double ripple;                   /* of the force at the hand, pressing at rest, peak to peak [N] */
+    double parts[NT_RIPPLE_SOURCES]; /* of it [N] */
+    double felt;                     /* ripple from which it is not calm: NT_CLEARLY_FELT, or where the force limit
+                                        leaves the hand less, a quarter of that [N] */
+    double ringing;                  /* largest force at the contact over that of a hand that oscillates [-] */
+    double slewing;                  /* R1's margin, counting that the stage takes a while for one step of the master,
+                                        for it goes no faster than limits.stage_speed [-] */
+    double margin;                   /* the least of felt/ripple, NT_RINGING_MOST/ringing and slewing [-] */
+    const char *rule;                /* which one: "ripple", "ringing", "slewing"; static */
+} nt_calm;
+/* In touch, at the contact stiffness [N/m]; of the law that the settings name, a law of one's own as the default one.
+ * Nothing where no loop closes through the hand: a master without a motor. NaN where the master has no
+ * damping or a dead time is beyond 10 000 periods. The loop is taken as linear; each converter adds a white error of
+ * its step, doubled, or one whole step (half a step of the stage's read-out), whichever is more. docs/margins.md says
+ * how near that comes. A millisecond. */
+NT_API nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double contact_stiffness);
+
 /* The loop at one frequency. */
 typedef struct nt_loop_response {
     double path[2]; /* C, real and imaginary: from x_m to the force at the motor, held and delayed, 1 at rest [-] */
-    double impedance[2]; /* Z = f_m/x_m', felt by the hand at the contact [N s/m] */
+    double impedance[2]; /* Z = f_m/x_m', felt by the hand at the contact, the low-pass of f_m included [N s/m] */
     double llewellyn;    /* 2 Re h11 Re h22/|h12 h21| - cos(arg(h12 h21)): absolutely stable where >= 1 [-] */
 } nt_loop_response;
 /* frequency: above 0, below half the rate [Hz]. NaN beyond. */

@@ -9,6 +9,7 @@
 #include "nanotouch/contact_control.h"
 #include "nanotouch/contact_table.h"
 #include "nanotouch/control.h"
+#include "nanotouch/curves.h"
 #include "nanotouch/dynamics.h"
 #include "nanotouch/field.h"
 #include "nanotouch/forces.h"

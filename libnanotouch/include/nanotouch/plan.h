@@ -75,7 +75,7 @@ typedef struct nt_yield_node {
 } nt_yield_node;
 typedef struct nt_yield_table {
     int count;         /* of nodes; 0: the sample does not yield */
-    int apart;         /* of them before contact */
+    int apart;         /* of them before contact; those after it are of contact */
     int jumps;         /* 1: apart ends in a jump */
     double touch;      /* h where the bodies touch or jump; -inf: never [m] */
     double first;      /* the largest h; farther out the laws add on the undeformed gap [m] */
@@ -83,7 +83,9 @@ typedef struct nt_yield_table {
     double shift;      /* of the gap there, by which force and table meet [m] */
     double hold;       /* in contact the gap below which laws keep their force [m] */
     double offset;     /* of U of an adhesive contact that the surface jumps into [J] */
-    double jump_error; /* of the gap of the jump [m] */
+    double jump_error; /* of the gap of the jump, and of that where contact lets go [m] */
+    int holds;         /* 1: the nodes from `apart` on are an adhesive contact and all that acts around it ... */
+    double release;    /* ... that lets go at this h [m] */
     nt_yield_node node[NT_YIELD_TABLE];
 } nt_yield_table;
 

@@ -100,7 +100,10 @@ typedef enum nt_event_kind {
     NT_EVENT_CLUTCH,                 /* open */
     NT_EVENT_SETTING,                /* field: of nt_settings_fields; its value */
     NT_EVENT_SCENE,                  /* field: of nt_scene_fields; its value */
-    NT_EVENT_REWIND,                 /* the tick that it goes back to */
+    NT_EVENT_REWIND,                 /* the tick that it goes back to; how many of the session's events had been kept
+                                        there: only they hold then. -1: it has gone on from another session's snapshot */
+    NT_EVENT_INDEX, /* nobody asks for it: where a hand that is not simulated was when ticks went on after
+                       opening, a start or a pause; the stage did not follow it there. x_m [m] */
     NT_EVENT_KINDS
 } nt_event_kind;
 typedef struct nt_event {
@@ -176,12 +179,13 @@ typedef struct nt_progress {
     double slowdown;    /* wall pace: time on the clock over time in the session, lately; 1 where it keeps up [-] */
     double worst_delay; /* hard pace: of a wake-up [s] */
     int runs;           /* 1: in its thread */
-    int paused;
-    nt_status status; /* why it has ended by itself, NT_OK otherwise */
+    int paused;         /* 1: asked for */
+    int stands;         /* 1: paused, no tick runs any more, and no granted step is left */
+    nt_status status;   /* why it has ended by itself, NT_OK otherwise */
 } nt_progress;
 
 /* Starts the thread; `ticks` 0: until nt_session_halt. NT_E_STATE if it runs already; NT_E_UNSUPPORTED for a real half
- * in a pace other than hard, or a Python one in hard pace; NT_E_NO_MEMORY. */
+ * in a pace other than hard, or a Python one in hard pace; NT_E_NO_MEMORY; NT_E_CAPACITY as nt_session_aim. */
 NT_API nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks);
 /* Ends the thread between two ticks and waits for it. What it ended by itself with, NT_OK otherwise. */
 NT_API nt_status nt_session_halt(nt_session *session);

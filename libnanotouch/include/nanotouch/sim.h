@@ -93,6 +93,7 @@ typedef struct nt_sim_master {
     nt_sim_link link;
     nt_master_model models[2]; /* before and after a command begins to act within a period; length 0: none */
     nt_sensor position_sensor, gauge;
+    double motor_step; /* of its converter, 0: none [N] */
     nt_hand_state hand;
     nt_master_state arm[NT_AXES];
     double pending[NT_SIM_SLOTS][NT_AXES]; /* motor forces [N] */
@@ -115,6 +116,7 @@ typedef struct nt_sim_slave {
     double stage_drive;             /* the command as far as the driver has slewed [m] */
     double driven;                  /* the same, as a fault of the stage leaves it [m] */
     double stood;                   /* the command, when a fault of the stage began [m] */
+    int was_off;                    /* without power, and not yet back where it is told to be */
     nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
     double x, y;
@@ -122,8 +124,10 @@ typedef struct nt_sim_slave {
     double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */
     nt_reading converted;
     nt_truth truth;
-    nt_law_value law;    /* of the interaction, at truth.gap */
-    double law_x, law_y; /* and where [m] */
+    nt_law_value law;        /* of the interaction, the last one that was asked for ... */
+    double law_gap;          /* ... and at which gap; NaN: of another plan [m] */
+    nt_place place;          /* what the plan knows of the surface ... */
+    double place_x, place_y; /* ... there [m] */
 } nt_sim_slave;
 
 /* Both. All state is inside: copying one, or a half, is a snapshot. */
@@ -146,6 +150,8 @@ NT_API NT_REALTIME nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *
  * probe does not come to rest. */
 NT_API NT_REALTIME nt_status nt_sim_master_write(nt_sim_master *master, const nt_action *action);
 NT_API NT_REALTIME nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action);
+/* Another scene from now on; the plan is borrowed as the first one. */
+NT_API NT_REALTIME void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan);
 /* Both halves by hand, as one rig: for tests, and for loops of one's own. */
 NT_API NT_REALTIME nt_status nt_sim_read(nt_sim *sim, nt_sample *sample);
 NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command);

@@ -49,6 +49,10 @@ typedef struct nt_problem {
     double minimum, maximum; /* the valid range, both ends included */
 } nt_problem;
 
+/* The unit of a problem that is no value out of range but a reason in words, its field: `value` is then the error that
+ * there would be (infinite: not known), `maximum` the one demanded. */
+#define NT_UNIT_ERROR "error"
+
 /* Writes "tip.radius = 20 m: valid is 1e-10 .. 0.001 m" into text (always ended by 0 when size > 0).
  * Returns text. */
 NT_API const char *nt_problem_print(const nt_problem *problem, char *text, unsigned size);

@@ -60,6 +60,7 @@ typedef struct nt_supervisor {
     double stage_most;       /* never by more than this: follow_error, and hysteresis that no integral takes away [m] */
     double correction_most;  /* that the integral may add to where the stage is told to be [m] */
     double turn_slack;       /* when it should be farther back than this, a lift has begun to show [m] */
+    double lift_share;       /* of the way up that declared hysteresis and creep may take, while no integral acts [-] */
     double path_kept;        /* of that way, per period: it fades over follow_time [-] */
     nt_limits limits;
 } nt_supervisor;

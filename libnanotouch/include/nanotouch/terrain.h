@@ -50,6 +50,9 @@ typedef struct nt_reach {
     double slope;  /* steepest: along a path in its direction, in an area in any direction [-] */
     double least_radius,
         largest_radius; /* bounds of the effective radius of the contact; the tip's without radii [m] */
+    /* bounds of what the sample is made of; 0: the scene's everywhere */
+    double least_modulus, largest_modulus; /* E [Pa] */
+    double least_work, largest_work;       /* w [J/m^2] */
 } nt_reach;
 
 /* A rectangle over which the tip moves freely in x and y, and where it starts. */

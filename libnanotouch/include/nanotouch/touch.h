@@ -90,6 +90,8 @@ NT_API NT_REALTIME nt_status nt_touch_set_mode(nt_touch_state *state, nt_mode mo
 NT_API NT_REALTIME nt_status nt_touch_rescale(nt_touch_state *state, const nt_scaling *scaling);
 /* Open: master and stage are uncoupled, the stage stays, the force fades out. Closed: re-indexed, it fades in. */
 NT_API NT_REALTIME void nt_touch_clutch(nt_touch_state *state, int open);
+/* The master is at x_m [m], finite, after a time in which no step was made: stage and tip stay where they are. */
+NT_API NT_REALTIME void nt_touch_index(nt_touch_state *state, double master_position);
 
 #ifdef __cplusplus
 }

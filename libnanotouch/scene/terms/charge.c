@@ -39,11 +39,6 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 
 static const nt_term_form forms[] = {{NT_FORM_ON, 0.45, 0.4, "computed"}};
 
-const nt_term_row nt_term_charge = {
-    .words = {"charge", "trapped charge", "its image in the tip (Thomson)", NULL, forms, 1, 0},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .facts = facts,
-};
+NT_TERM_BESIDE(charge, prepare, full_form, eval, hold, NULL,
+               .words = {"charge", "trapped charge", "its image in the tip (Thomson)", NULL, forms, 1, 0},
+               .facts = facts);

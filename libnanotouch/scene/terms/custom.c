@@ -106,13 +106,8 @@ static const nt_term_form forms[] = {{NT_FORM_TABLE, 1.4, 1.3, "tabulated"}};
     {                                                                                                                  \
         return tabulate(law, scene, NT_PLAN_##ID - NT_PLAN_CUSTOM_1, problem);                                         \
     }                                                                                                                  \
-    const nt_term_row nt_term_##name_ = {.words = {#name_, #name_, "a law of one's own", NULL, forms, 1, 1},           \
-                                         .full_form = full_form,                                                       \
-                                         .eval = eval,                                                                 \
-                                         .hold = hold,                                                                 \
-                                         .limit = limit,                                                               \
-                                         .pressure = pressure,                                                         \
-                                         .tabulate = tabulate_##name_,                                                 \
-                                         .error = error,                                                               \
-                                         .name_of = name_of};
+    NT_TERM_BESIDE(name_, NULL, full_form, eval, hold, pressure,                                                       \
+                   .words = {#name_, #name_, "a law of one's own", NULL, forms, 1, 1}, .limit = limit,                 \
+                   .tabulate = tabulate_##name_, .error = error, .name_of = name_of,                                   \
+                   .refused = NT_TERM_REFUSED("a law of its own"));
 NT_TERMS_CUSTOM(CUSTOM)

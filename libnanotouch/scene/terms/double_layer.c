@@ -104,15 +104,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 
 static const nt_term_form forms[] = {{NT_FORM_ON, 1.55, 1.5, "computed"}};
 
-const nt_term_row nt_term_double_layer = {
-    .words = {"double_layer", "double layer", "linear theory at constant potential (Hogg, Healy, Fuerstenau 1966)",
-              NULL, forms, 1, 1},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .limit = limit,
-    .pressure = pressure,
-    .warn = warn,
-    .facts = facts,
-};
+NT_TERM_BESIDE(double_layer, prepare, full_form, eval, hold, pressure,
+               .words = {"double_layer", "double layer",
+                         "linear theory at constant potential (Hogg, Healy, Fuerstenau 1966)", NULL, forms, 1, 1},
+               .limit = limit, .warn = warn, .facts = facts, .refused = NT_TERM_REFUSED("the double layer"));

@@ -60,13 +60,7 @@ static const nt_term_form forms[] = {
     {NT_FORM_TIP, 1.15, 1.1, "of the whole tip"},
 };
 
-const nt_term_row nt_term_electrostatic = {
-    .words = {"electrostatic", "electrostatic", "conductors at a potential difference (Hudlet 1998)", NULL, forms, 2,
-              1},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .pressure = pressure,
-    .facts = facts,
-};
+NT_TERM_BESIDE(electrostatic, prepare, full_form, eval, hold, pressure,
+               .words = {"electrostatic", "electrostatic", "conductors at a potential difference (Hudlet 1998)", NULL,
+                         forms, 2, 1},
+               .facts = facts, .refused = NT_TERM_REFUSED("the electrostatic force"));

@@ -48,12 +48,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 
 static const nt_term_form forms[] = {{NT_FORM_ON, 0.65, 0.7, "computed"}};
 
-const nt_term_row nt_term_hydration = {
-    .words = {"hydration", "hydration", "exponential, also hydrophobic (Israelachvili 2011)", NULL, forms, 1, 1},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .pressure = pressure,
-    .facts = facts,
-};
+NT_TERM_BESIDE(hydration, prepare, full_form, eval, hold, pressure,
+               .words = {"hydration", "hydration", "exponential, also hydrophobic (Israelachvili 2011)", NULL, forms, 1,
+                         1},
+               .facts = facts, .refused = NT_TERM_REFUSED("hydration"));

@@ -54,12 +54,6 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 
 static const nt_term_form forms[] = {{NT_FORM_ON, 0.8, 0.7, "computed"}};
 
-const nt_term_row nt_term_steric = {
-    .words = {"steric", "polymer brush", "scaling law of Alexander and de Gennes", NULL, forms, 1, 1},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .pressure = pressure,
-    .facts = facts,
-};
+NT_TERM_BESIDE(steric, prepare, full_form, eval, hold, pressure,
+               .words = {"steric", "polymer brush", "scaling law of Alexander and de Gennes", NULL, forms, 1, 1},
+               .facts = facts, .refused = NT_TERM_REFUSED("the brush"));

@@ -21,6 +21,10 @@ typedef struct nt_term_fact {
 } nt_term_fact;
 enum { NT_TERM_FACTS_MAX = 4 };
 
+#define NT_TERM_REFUSED(law)                                                                                           \
+    "sample.youngs_modulus: the sample is so soft that it yields to " law                                              \
+    ", which cannot be planned here (stiffen it, weaken the law, or demand less)"
+
 typedef struct nt_term_row {
     nt_term_words words;
 
@@ -41,6 +45,9 @@ typedef struct nt_term_row {
     nt_law_value (*limit)(const void *law, double gap);
     /* Two flats (terms.h), where words.has_pressure. */
     nt_pressure (*pressure)(const void *law, double gap);
+
+    /* What a plan says that is refused because the sample yields to it: NT_TERM_REFUSED, by a law with a pressure. */
+    const char *refused;
 
     /* --- Each of these may be NULL --- */
 
@@ -64,6 +71,16 @@ typedef struct nt_term_row {
     size_t state_size;
     nt_term_step (*advance)(const void *law, void *state, const nt_place *place, double gap, double dt);
 } nt_term_row;
+
+/* The row nt_term_NAME of a law beside contact. What every such law has goes by its place, so that one that is
+ * forgotten does not compile; NULL says that there is none. After it what may be missing, by name. */
+#define NT_TERM_BESIDE(NAME, PREPARE, FULL_FORM, EVAL, HOLD, PRESSURE, ...)                                            \
+    const nt_term_row nt_term_##NAME = {.prepare = (PREPARE),                                                          \
+                                        .full_form = (FULL_FORM),                                                      \
+                                        .eval = (EVAL),                                                                \
+                                        .hold = (HOLD),                                                                \
+                                        .pressure = (PRESSURE),                                                        \
+                                        __VA_ARGS__}
 
 #define NT_TERM_ROW(ID, name, type) extern const nt_term_row nt_term_##name;
 NT_TERM_ROW(CONTACT, contact, )

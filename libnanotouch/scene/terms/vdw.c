@@ -56,12 +56,7 @@ static const nt_term_form forms[] = {
     {NT_FORM_TIP, 1.1, 1.05, "of the whole tip"},
 };
 
-const nt_term_row nt_term_vdw = {
-    .words = {"vdw", "van der Waals", "Hamaker's sum over sphere, or sphere and cone, and a flat",
-              "adhesion.hamaker_constant", forms, 3, 1},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .pressure = pressure,
-};
+NT_TERM_BESIDE(vdw, prepare, full_form, eval, hold, pressure,
+               .words = {"vdw", "van der Waals", "Hamaker's sum over sphere, or sphere and cone, and a flat",
+                         "adhesion.hamaker_constant", forms, 3, 1},
+               .refused = NT_TERM_REFUSED("van der Waals"));

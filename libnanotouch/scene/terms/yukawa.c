@@ -69,13 +69,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 
 static const nt_term_form forms[] = {{NT_FORM_ON, 0.8, 0.5, "computed"}};
 
-const nt_term_row nt_term_yukawa = {
-    .words = {"yukawa", "Yukawa", "screened force of all matter in sphere and flat (Fischbach 2001)", NULL, forms, 1,
-              1},
-    .prepare = prepare,
-    .full_form = full_form,
-    .eval = eval,
-    .hold = hold,
-    .pressure = pressure,
-    .facts = facts,
-};
+NT_TERM_BESIDE(yukawa, prepare, full_form, eval, hold, pressure,
+               .words = {"yukawa", "Yukawa", "screened force of all matter in sphere and flat (Fischbach 2001)", NULL,
+                         forms, 1, 1},
+               .facts = facts, .refused = NT_TERM_REFUSED("the Yukawa force"));

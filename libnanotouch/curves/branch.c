@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What happens on one branch: snap-in or pull-off, the tearing-off, the work of adhesion, the slope in contact. */
+#include <math.h>
+
+#include "curves/parts.h"
+#include "curves/robust.h"
+
+enum { NEIGHBOURS = 5 };
+static const double end_part = 0.1; /* of the travel, beyond which no baseline is left to judge a point by */
+static const double before_tear = 0.5, after_tear = 0.25; /* of the depth: a tear leads past both within two points */
+static const double beyond_contact = 1.5;                 /* of the loaded travel, seen where nothing attracts */
+static const double in_contact = 0.5;                     /* of the load: from there on contact is firm */
+
+/* The first point with z >= limit. */
+static long first_from(const nt_curve_branch *branch, double limit)
+{
+    long low = 0, high = branch->count;
+    while (low < high) {
+        const long middle = low + (high - low) / 2;
+        if (branch->z[middle] < limit)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static long lowest(const nt_curve_branch *branch)
+{
+    const double last = branch->z[branch->count - 1];
+    const long inner = first_from(branch, last - end_part * (last - branch->z[0]));
+    long found = 0;
+    for (long i = 1; i < inner; i++)
+        found = branch->force[i] < branch->force[found] ? i : found;
+    return found;
+}
+
+static int dips(const nt_curve_branch *branch)
+{
+    if (-branch->force[branch->lowest] > branch->visible)
+        return 1;
+    const long end = branch->lowest + NEIGHBOURS < branch->count ? branch->lowest + NEIGHBOURS : branch->count;
+    double smallest = 0.0;
+    for (long i = 0; i + NEIGHBOURS <= end; i++) {
+        double sum = 0.0;
+        for (long j = 0; j < NEIGHBOURS; j++)
+            sum += branch->force[i + j];
+        smallest = fmin(smallest, sum / NEIGHBOURS);
+    }
+    return -smallest > fmax(NT_CURVE_EVENT / sqrt((double)NEIGHBOURS) * branch->noise,
+                            NT_CURVE_SCATTERED * branch->baseline.scatter);
+}
+
+static long torn(const nt_curve_branch *branch)
+{
+    if (!branch->dips)
+        return -1;
+    const double depth = -branch->force[branch->lowest];
+    long after = branch->lowest;
+    while (after < branch->count && !(branch->force[after] > -before_tear * depth))
+        after++;
+    if (after == branch->count)
+        return -1;
+    const long next = after + 1 < branch->count ? after + 1 : after;
+    return fmax(branch->force[after], branch->force[next]) > -after_tear * depth ? after - 1 : -1;
+}
+
+static long repulsive(const nt_curve_branch *branch)
+{
+    long zero = 0;
+    for (long i = 1; i < branch->count; i++)
+        zero = branch->force[i] > branch->force[zero] ? i : zero;
+    while (zero < branch->count && branch->force[zero] > 0.0)
+        zero++;
+    if (branch->dips)
+        return zero;
+    const double end = branch->z[zero < branch->count ? zero : branch->count - 1];
+    const long beyond = first_from(branch, branch->z[0] + beyond_contact * (end - branch->z[0]));
+    return beyond > zero ? beyond : zero;
+}
+
+/* From where the force crosses the baseline to its last visible dip. */
+static nt_curve_measured adhesion_work(const nt_curve_branch *branch)
+{
+    if (!branch->dips)
+        return (nt_curve_measured){0.0, NAN};
+    const double limit = fmax(-branch->visible, branch->force[branch->lowest]);
+    long first = branch->lowest, last = branch->count - 1;
+    while (first > 0 && branch->force[first - 1] < 0.0)
+        first--;
+    while (!(branch->force[last] <= limit))
+        last--;
+    last += last + 1 < branch->count;
+    double area = 0.0, squares = 0.0;
+    for (long i = first; i < last; i++) {
+        const double step = branch->z[i + 1] - branch->z[i];
+        area -= 0.5 * (branch->force[i] + branch->force[i + 1]) * step;
+        squares += step * step;
+    }
+    const double level = nt_curve_baseline_sigma(&branch->baseline, branch->z[branch->lowest]);
+    return (nt_curve_measured){area,
+                               hypot(level * (branch->z[last] - branch->z[first]), branch->noise * sqrt(squares))};
+}
+
+static nt_curve_measured contact_slope(const nt_curve_branch *branch)
+{
+    const double least = in_contact * nt_curve_highest(branch->force, branch->count);
+    double count = 0.0, z_mean = 0.0, mean = 0.0, spread = 0.0, product = 0.0, squares = 0.0;
+    for (long i = 0; i < branch->count; i++) {
+        const int firm = branch->force[i] > least;
+        count += firm;
+        z_mean += firm ? branch->z[i] : 0.0;
+        mean += firm ? branch->force[i] : 0.0;
+    }
+    if (least / in_contact <= branch->visible || count < 4.0)
+        return (nt_curve_measured){NAN, NAN};
+    z_mean /= count;
+    mean /= count;
+    for (long i = 0; i < branch->count; i++) {
+        const double x = branch->z[i] - z_mean, firm = branch->force[i] > least;
+        spread += firm * x * x;
+        product += firm * x * (branch->force[i] - mean);
+    }
+    const double slope = product / spread;
+    for (long i = 0; i < branch->count; i++) {
+        const double rest = branch->force[i] - mean - slope * (branch->z[i] - z_mean);
+        squares += branch->force[i] > least ? rest * rest : 0.0;
+    }
+    return (nt_curve_measured){-slope, sqrt(squares / (count - 2.0) / spread)};
+}
+
+static void order_outwards(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work)
+{
+    const long n = segment->count;
+    nt_curve_point *points = (nt_curve_point *)(void *)(work + 2 * n);
+    for (long i = 0; i < n; i++)
+        points[i] = (nt_curve_point){segment->z[i], segment->force[i] - nt_curve_baseline_at(baseline, segment->z[i])};
+    nt_curve_sort(points, n, points + n);
+    for (long i = 0; i < n; i++) {
+        work[i] = points[i].z;
+        work[n + i] = points[i].force;
+    }
+}
+
+double nt_curve_branch_sigma(const nt_curve_branch *branch, double z)
+{
+    return hypot(branch->noise, nt_curve_baseline_sigma(&branch->baseline, z));
+}
+
+void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work,
+                          nt_curve_branch *branch)
+{
+    const double noise = nt_curve_point_noise(segment->force, segment->count, work);
+    order_outwards(segment, baseline, work);
+    *branch = (nt_curve_branch){
+        .z = work,
+        .force = work + segment->count,
+        .count = segment->count,
+        .baseline = *baseline,
+        .noise = noise,
+        .visible = fmax(NT_CURVE_EVENT * noise, NT_CURVE_SCATTERED * baseline->scatter),
+    };
+    branch->lowest = lowest(branch);
+    branch->dips = dips(branch);
+    branch->torn = torn(branch);
+    branch->repulsive = repulsive(branch);
+    const double z = branch->z[branch->lowest];
+    branch->dip =
+        (nt_curve_measured){branch->dips ? -branch->force[branch->lowest] : 0.0, nt_curve_branch_sigma(branch, z)};
+    branch->dip_z = branch->dips ? z : (double)NAN;
+    branch->adhesion_work = adhesion_work(branch);
+    branch->contact_slope = contact_slope(branch);
+}
+
+nt_status nt_curve_read_branch(const nt_curve_segment *segment, const nt_curve_choice *choice, double *work,
+                               nt_curve_branch *branch, nt_problem *problem)
+{
+    nt_curve_baseline baseline;
+    const nt_status status = nt_curve_fit_baseline(segment, choice, work, &baseline, problem);
+    if (status == NT_OK)
+        nt_curve_read_events(segment, &baseline, work, branch);
+    return status;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What the files of curves/ share; private to curves/. */
+#ifndef NANOTOUCH_CURVES_PARTS_H
+#define NANOTOUCH_CURVES_PARTS_H
+
+#include "nanotouch/curves.h"
+
+#define NT_CURVE_EVENT 5.0     /* standard deviations of the noise: one in 2e6 points */
+#define NT_CURVE_SCATTERED 3.0 /* standard deviations of the scatter about the line, where interference makes waves */
+
+/* Reads a branch whose baseline is known; z and force of *branch are the first 2 count doubles of work, 4 count more
+ * are scratch. */
+void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work,
+                          nt_curve_branch *branch);
+/* Fills the contact point of a reading from its first branch. scratch: 2 count doubles. */
+void nt_curve_find_contact(const nt_curve_branch *first, double spring_constant, double *scratch,
+                           nt_curve_reading *reading);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Can this setup be a half? And what the half says of itself: its rows of channels. */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "core/problem.h"
+#include "hal/chips/half.h"
+
+typedef struct use {
+    const char *name; /* of the field */
+    const nt_converter_channel *channels;
+    int is_driven;
+} use;
+
+static nt_status bad(nt_problem *problem, const char *field, double value, double minimum, double maximum)
+{
+    return nt_problem_set(problem, field, "", value, minimum, maximum);
+}
+
+static nt_status check_span(const nt_converter *converter, nt_problem *problem)
+{
+    const double low = converter->span.low, high = converter->span.high;
+    if (!converter->chip)
+        return bad(problem, "converter without a chip", 1.0, 0.0, 0.0);
+    if (!isfinite(low) || fabs(low) > 1000.0)
+        return nt_problem_set(problem, "converter.span.low", "V", low, -1000.0, 1000.0);
+    if (!isfinite(high) || !(high > low) || high > 1000.0)
+        return nt_problem_set(problem, "converter.span.high", "V", high, low, 1000.0);
+    return NT_OK;
+}
+
+/* The two values at the ends of what the chip gives or takes, in order. */
+static void reach(const nt_converter_setup *setup, const nt_converter_channel *channel, double ends[2])
+{
+    const nt_converter *on = &setup->converter[channel->converter];
+    const double low = nt_chip_volts(on->chip, &on->span, nt_chip_lowest(on->chip));
+    const double high = nt_chip_volts(on->chip, &on->span, nt_chip_highest(on->chip));
+    const int falls = channel->gain < 0.0;
+    ends[falls] = channel->offset + channel->gain * low;
+    ends[!falls] = channel->offset + channel->gain * high;
+}
+
+static nt_status check_numbers(const nt_converter_channel *channel, nt_problem *problem)
+{
+    if (!isfinite(channel->gain) || channel->gain == 0.0)
+        return bad(problem, "channel.gain, which is not 0", channel->gain, -HUGE_VAL, HUGE_VAL);
+    if (!isfinite(channel->offset))
+        return bad(problem, "channel.offset", channel->offset, -HUGE_VAL, HUGE_VAL);
+    if (!(channel->uncertainty >= 0.0 && channel->uncertainty <= 1.0))
+        return bad(problem, "channel.uncertainty", channel->uncertainty, 0.0, 1.0);
+    if (!(channel->noise >= 0.0) || isinf(channel->noise))
+        return bad(problem, "channel.noise", channel->noise, 0.0, HUGE_VAL);
+    if (!(channel->latency >= 0.0 && channel->latency <= 1.0))
+        return nt_problem_set(problem, "channel.latency", "s", channel->latency, 0.0, 1.0);
+    return NT_OK;
+}
+
+/* Both ends of the range can be reached, but for the step that a DAC keeps to itself at either end. */
+static nt_status check_range(const nt_converter_setup *setup, const nt_converter_channel *channel, nt_problem *problem)
+{
+    const nt_converter *on = &setup->converter[channel->converter];
+    const double slack = 2.0 * fabs(channel->gain) * nt_chip_step(on->chip, &on->span);
+    double ends[2];
+    reach(setup, channel, ends);
+    if (!(channel->minimum >= ends[0] - slack && channel->minimum < channel->maximum))
+        return bad(problem, "channel.minimum", channel->minimum, ends[0], channel->maximum);
+    if (!(channel->maximum <= ends[1] + slack))
+        return bad(problem, "channel.maximum", channel->maximum, channel->minimum, ends[1]);
+    return NT_OK;
+}
+
+static int drives_it(const nt_converter_setup *setup, const nt_converter_channel *read, int axis)
+{
+    const nt_converter_channel *driven = &setup->driven[axis];
+    return driven->is_used && driven->converter == read->converter && driven->channel == read->channel;
+}
+
+static nt_status check_channel(const nt_converter_setup *setup, const use *as, int axis, nt_problem *problem)
+{
+    const nt_converter_channel *channel = &as->channels[axis];
+    if (channel->converter < 0 || channel->converter >= setup->converters)
+        return bad(problem, "channel.converter", channel->converter, 0.0, setup->converters - 1);
+    const nt_chip *chip = setup->converter[channel->converter].chip;
+    if (channel->channel < 0 || channel->channel >= chip->channels)
+        return bad(problem, "channel.channel", channel->channel, 0.0, chip->channels - 1);
+    if (as->is_driven ? !chip->is_dac
+                      : chip->is_dac && !(as->channels == setup->position && drives_it(setup, channel, axis)))
+        return bad(problem, as->name, chip->is_dac, as->is_driven, as->is_driven);
+    const nt_status status = check_numbers(channel, problem);
+    return status == NT_OK ? check_range(setup, channel, problem) : status;
+}
+
+static nt_status check_uses(const nt_converter_setup *setup, nt_problem *problem)
+{
+    const use uses[] = {{"position: channels of an ADC", setup->position, 0},
+                        {"felt: channels of an ADC", setup->felt, 0},
+                        {"driven: channels of a DAC", setup->driven, 1}};
+    for (int i = 0; i < 3; ++i)
+        for (int axis = 0; axis < NT_AXES; ++axis) {
+            if (!uses[i].channels[axis].is_used)
+                continue;
+            if (setup->axes == 1 && axis != NT_Z)
+                return bad(problem, "channels of an axis that the half does not have", 1.0, 0.0, 0.0);
+            const nt_status status = check_channel(setup, &uses[i], axis, problem);
+            if (status != NT_OK)
+                return status;
+        }
+    return NT_OK;
+}
+
+nt_status nt_converter_setup_check(const nt_converter_setup *setup, nt_problem *problem)
+{
+    if (!setup || !setup->exchange || (setup->half != NT_HALF_MASTER && setup->half != NT_HALF_SLAVE))
+        return NT_E_ARGUMENT;
+    if (setup->axes < 1 || setup->axes > NT_AXES)
+        return bad(problem, "axes", setup->axes, 1.0, NT_AXES);
+    if (setup->converters < 1 || setup->converters > NT_CONVERTERS)
+        return bad(problem, "converters", setup->converters, 1.0, NT_CONVERTERS);
+    for (int i = 0; i < setup->converters; ++i) {
+        const nt_status status = check_span(&setup->converter[i], problem);
+        if (status != NT_OK)
+            return status;
+    }
+    if (!setup->position[NT_Z].is_used)
+        return bad(problem, "channels of the position along z", 0.0, 1.0, 1.0);
+    if (setup->half == NT_HALF_SLAVE && (!setup->driven[NT_Z].is_used || !setup->felt[NT_Z].is_used))
+        return bad(problem, "channels of a slave's travel and deflection along z", 0.0, 1.0, 1.0);
+    return check_uses(setup, problem);
+}
+
+/* --- what it says of itself --- */
+
+static const char *const names[2][3][NT_AXES] = {
+    {{"position x", "position y", "position z"},
+     {"force x", "force y", "force z"},
+     {"motor force x", "motor force y", "motor force z"}},
+    {{"stage x", "stage y", "stage z"},
+     {"deflection x", "deflection y", "deflection z"},
+     {"travel x", "travel y", "travel z"}},
+};
+
+static nt_channel_row row_of(const nt_converter_half *c, int kind, int axis, const nt_converter_channel *channel)
+{
+    const nt_converter *on = &c->setup.converter[channel->converter];
+    const int is_master = c->setup.half == NT_HALF_MASTER, is_driven = kind == 2;
+    const int is_force = is_master && kind != 0;
+    return (nt_channel_row){.name = names[!is_master][kind][axis],
+                            .unit = is_force ? "N" : "m",
+                            .driven = is_driven,
+                            .axis = axis,
+                            .minimum = channel->minimum,
+                            .maximum = channel->maximum,
+                            .step = fabs(channel->gain) * nt_chip_step(on->chip, &on->span),
+                            .noise = channel->noise,
+                            .latency = channel->latency + on->chip->settle,
+                            .safe = is_driven && is_force ? 0.0 : (double)NAN};
+}
+
+void nt_converter_half_describe(nt_converter_half *c)
+{
+    const nt_converter_channel *const kinds[] = {c->setup.position, c->setup.felt, c->setup.driven};
+    c->row_count = 0;
+    for (int kind = 0; kind < 3; ++kind)
+        for (int axis = 0; axis < NT_AXES; ++axis)
+            if (kinds[kind][axis].is_used)
+                c->rows[c->row_count++] = row_of(c, kind, axis, &kinds[kind][axis]);
+}

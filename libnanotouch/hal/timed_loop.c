@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The loop with its phases timed. A clock read costs some 20 ns, four of them a period. */
+#if defined(__linux__)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include <math.h>
+#include <stddef.h>
+
+#include "nanotouch/hal.h"
+#include "nanotouch/timing.h"
+
+#if defined(__linux__)
+
+#include <time.h>
+
+typedef struct timed {
+    const nt_loop_phases *phases;
+    nt_timing *timing;
+    int64_t length; /* of a period [ns] */
+} timed;
+
+static int64_t read_clock(void)
+{
+    struct timespec now = {0, 0};
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static int run_phases(const timed *t, uint64_t tick, double lateness, int64_t at[NT_LOOP_PHASES])
+{
+    const nt_loop_phases *do_it = t->phases;
+    at[0] = read_clock();
+    int stop = do_it->read ? do_it->read(do_it->context, tick, lateness) : 0;
+    at[1] = read_clock();
+    stop |= do_it->compute && !stop ? do_it->compute(do_it->context) : 0;
+    at[2] = read_clock();
+    stop |= do_it->write && !stop ? do_it->write(do_it->context) : 0;
+    at[3] = read_clock();
+    return stop;
+}
+
+static int step(void *context, uint64_t tick, double lateness)
+{
+    const timed *t = context;
+    nt_timing *timing = t->timing;
+    int64_t at[NT_LOOP_PHASES] = {0};
+    const int stop = run_phases(t, tick, lateness, at);
+    const int64_t late = (int64_t)llround(1e9 * lateness),
+                  within = late % t->length; /* lost periods are counted apart */
+    const int64_t slack = t->length - within - (at[3] - at[0]);
+    nt_histogram_add(&timing->phases[NT_LOOP_WAKE], late);
+    for (int i = 0; i < 3; ++i)
+        nt_histogram_add(&timing->phases[NT_LOOP_READ + i], at[i + 1] - at[i]);
+    nt_histogram_add(&timing->phases[NT_LOOP_SLACK], slack);
+    timing->overrun += slack < 0;
+    ++timing->ticks;
+    return stop;
+}
+
+nt_status nt_loop_run_timed(double period, uint64_t ticks, const nt_loop_phases *phases, nt_timing *timing)
+{
+    if (!phases || !timing)
+        return NT_E_ARGUMENT;
+    const int usable = isfinite(period) && period >= 1e-6 && period < 1.0;
+    timed t = {phases, timing, usable ? (int64_t)llround(1e9 * period) : 1};
+    nt_loop_statistics statistics = {.missed = 0};
+    const nt_status status = nt_loop_run(period, ticks, step, &t, &statistics);
+    timing->missed += statistics.missed;
+    return status;
+}
+
+#else
+
+nt_status nt_loop_run_timed(double period, uint64_t ticks, const nt_loop_phases *phases, nt_timing *timing)
+{
+    (void)period, (void)ticks, (void)phases, (void)timing;
+    return NT_E_UNSUPPORTED;
+}
+
+#endif

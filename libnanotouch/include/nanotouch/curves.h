@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What a measured force curve shows before any model is fitted: noise, baseline, snap-in, pull-off, contact point.
+ *
+ * z is the height of the cantilever's base and grows away from the sample [m]; forces are positive where tip and sample
+ * repel [N]. A branch is one movement of the base: the approach or the retraction.
+ *
+ * All functions: thread-safe, no state, no heap. Memory comes from the caller: `work` holds nt_curve_work_size()
+ * doubles. Not real-time (time grows with the points). Uncertainties are standard ones and statistical: those of spring
+ * constant and deflection sensitivity are not in them. */
+#ifndef NANOTOUCH_CURVES_H
+#define NANOTOUCH_CURVES_H
+
+#include "nanotouch/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { NT_CURVE_FEWEST = 16 }; /* points of a branch that is read */
+
+/* One movement of the base in the order of time. */
+typedef struct nt_curve_segment {
+    const double *z;     /* height of the base [m], |z| <= 1 */
+    const double *force; /* + repulsive, baseline still in it [N], |force| <= 1 */
+    long count;          /* fewer than NT_CURVE_FEWEST: as if there were none */
+} nt_curve_segment;
+/* NT_OK, or NT_E_NOT_FINITE / NT_E_RANGE with "z", "force" or "z (travel)" in *problem (NULL allowed). */
+NT_API nt_status nt_curve_segment_check(const nt_curve_segment *segment, nt_problem *problem);
+
+/* A recorded curve. */
+typedef struct nt_curve {
+    nt_curve_segment approach, retract;
+    double spring_constant; /* k_c [N/m]; NaN: unknown */
+    /* How far drag puts the free retraction below the free approach, 2 D of a lever that moves with +-v [N]. It cannot
+     * be told from two free branches; lever and medium, or curves at two speeds, bound it. most_drag 0: unknown. */
+    double least_drag, most_drag;
+} nt_curve;
+
+/* Doubles of work that a curve of so many points, both branches together, needs. */
+NT_API long nt_curve_work_size(long points);
+
+/* --- Noise --- */
+
+/* The mean of n neighbouring points has the variance white/n + flicker [N^2]. */
+typedef struct nt_curve_noise {
+    double white, flicker;
+} nt_curve_noise;
+
+/* Standard deviation of white noise from differences of neighbours, so that no shape of the curve enters [N]: 1.4826
+ * times their median, over sqrt(2). Where more than half of them are 0, because the converter's step exceeds the noise,
+ * from all but the largest hundredth. work: count doubles. */
+NT_API double nt_curve_point_noise(const double force[], long count, double *work);
+
+/* White and 1/f noise of residuals in the order of time, by the Allan variances of their means (Allan 1966): w/m of
+ * white noise in means of m points and a constant of flicker noise, fitted by maximum likelihood to the five coarsest
+ * octaves of m >= 8. `scatter`: their robust standard deviation, which white is no less than [N]. work: count doubles.
+ */
+NT_API nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scatter, double *work);
+
+/* Standard deviation of one of `count` points such that the mean of independent ones would scatter as theirs does [N]:
+ * (max(point_noise^2, white) + count flicker)^(1/2); 0 where the free cantilever does not show that they are not
+ * independent. */
+NT_API double nt_curve_correlated_noise(double point_noise, const nt_curve_noise *free, long count);
+/* By how much the correlation of residuals raises the variance of their mean, from the means of 20 blocks; 1 where it
+ * is not evident (below 2). */
+NT_API double nt_curve_residual_correlation(const double rest[], long count);
+
+/* --- Baseline: the force of the free cantilever --- */
+
+/* Interference of light from the sample with that from the cantilever: cosine cos(phase) + sine sin(phase), phase
+ * 2 pi x/period. */
+typedef struct nt_curve_wave {
+    double period;       /* half a wavelength of the light, 160 .. 800 nm [m] */
+    double cosine, sine; /* [N]; both 0: no wave */
+} nt_curve_wave;
+
+/* force + slope x + wave(x) with x = z - z_mean. */
+typedef struct nt_curve_baseline {
+    double force;                          /* at z_mean [N] */
+    double slope;                          /* [N/m] */
+    double z_mean;                         /* mean of the points it was fitted to [m] */
+    double scatter;                        /* robust standard deviation of these about it [N] */
+    double force_variance, slope_variance; /* [N^2], [N^2/m^2]; flicker noise included */
+    nt_curve_noise noise;                  /* of the free cantilever */
+    nt_curve_wave wave;
+} nt_curve_baseline;
+
+typedef enum nt_curve_baseline_kind {
+    NT_CURVE_AUTO, /* a line, with a wave where there is very strong evidence for one (BIC); of a curve with both
+                      branches the retraction's is judged beside the approach's */
+    NT_CURVE_LINE, /* of each branch alone: a line by Tukey's weights through the far half of the travel, then through
+                      all that it can explain */
+    NT_CURVE_WAVE, /* a line and the strongest wave */
+    NT_CURVE_CONSTANT, /* the median of the far half: tilt stays in the force */
+    NT_CURVE_BETWEEN   /* a line through the points with lowest <= z <= highest */
+} nt_curve_baseline_kind;
+
+/* Which baseline is taken off. */
+typedef struct nt_curve_choice {
+    nt_curve_baseline_kind kind;
+    double lowest, highest; /* z [m], of NT_CURVE_BETWEEN */
+} nt_curve_choice;
+
+/* The baseline of one branch alone. NT_E_ARGUMENT for no kind; NT_E_RANGE with "baseline (points)" if fewer than
+ * NT_CURVE_FEWEST lie between the ends. segment: checked, of at least NT_CURVE_FEWEST points. */
+NT_API nt_status nt_curve_fit_baseline(const nt_curve_segment *segment, const nt_curve_choice *choice, double *work,
+                                       nt_curve_baseline *baseline, nt_problem *problem);
+/* Its force at z [N], and the standard uncertainty of that [N]. */
+NT_API double nt_curve_baseline_at(const nt_curve_baseline *baseline, double z);
+NT_API double nt_curve_baseline_sigma(const nt_curve_baseline *baseline, double z);
+
+/* --- Events of a branch --- */
+
+typedef struct nt_curve_measured {
+    double value, sigma; /* SI; NaN where the curve does not show it */
+} nt_curve_measured;
+
+/* A branch with its baseline taken off, from the deepest point outwards. */
+typedef struct nt_curve_branch {
+    const double *z;     /* growing [m]; in the caller's work */
+    const double *force; /* above the baseline [N]; in the caller's work */
+    long count;          /* 0: there is no such branch */
+    nt_curve_baseline baseline;
+    double noise;   /* standard deviation from point to point [N] */
+    double visible; /* smallest force that can be told from the baseline: five times the noise, three times the scatter,
+                       whichever is more [N] */
+    long lowest;    /* index of the smallest force, not within the last tenth of the travel */
+    int dips;       /* 1: it lies visibly below the baseline, alone or together with its neighbours */
+    long torn;      /* index of the last point before the tip is torn off, found by the jump; -1: the force comes back
+                       gradually, or not at all */
+    long repulsive; /* how many points a law without attraction can describe: up to where the force is 0, and where
+                       nothing dips half as far again */
+    nt_curve_measured dip;           /* depth below the baseline, positive [N]; 0 where nothing dips */
+    double dip_z;                    /* z there [m]; NaN where nothing dips */
+    nt_curve_measured adhesion_work; /* area below the baseline up to the last visible dip [J]; 0 where nothing dips */
+    nt_curve_measured contact_slope; /* -dF/dz over the upper half of the load [N/m] */
+} nt_curve_branch;
+
+/* One branch alone, with its own baseline. The arrays of *branch lie in work. segment: checked, of at least
+ * NT_CURVE_FEWEST points. Errors of nt_curve_fit_baseline. */
+NT_API nt_status nt_curve_read_branch(const nt_curve_segment *segment, const nt_curve_choice *choice, double *work,
+                                      nt_curve_branch *branch, nt_problem *problem);
+/* Standard uncertainty of one force of a branch at z [N]. */
+NT_API double nt_curve_branch_sigma(const nt_curve_branch *branch, double z);
+
+/* --- The whole curve --- */
+
+/* Methods for the contact point, none of which is right for every curve. */
+typedef enum nt_curve_contact_method {
+    NT_CURVE_CROSSING,  /* after a snap-in: the force crosses the baseline */
+    NT_CURVE_DEVIATION, /* without one: the last point above the noise */
+    NT_CURVE_HERTZ,     /* foot of F^(2/3) over the indentation */
+    NT_CURVE_TWO_LINES, /* baseline and a line through the lower half of the load meet */
+    NT_CURVE_GRADIENT,  /* without a snap-in: the slope leaves that of the baseline */
+    NT_CURVE_METHODS    /* how many there are */
+} nt_curve_contact_method;
+/* "crossing", "deviation", ...; NULL for no method. */
+NT_API const char *nt_curve_contact_method_name(nt_curve_contact_method method);
+
+/* One tearing-off on the retraction. */
+typedef struct nt_curve_rupture {
+    double z;     /* of the base [m] */
+    double force; /* depth below the baseline right before it, positive [N] */
+    double slope; /* dF/dz of the straight piece before it [N/m]; about -k_c where the tip was held fast */
+    double step;  /* by which the force rises within a few points [N] */
+} nt_curve_rupture;
+enum { NT_CURVE_RUPTURES = 64 };
+
+/* What the baseline of the retraction, and so its pull-off, rests on. */
+typedef enum nt_curve_support {
+    NT_CURVE_ALONE,  /* the retraction's own far half, not judged beside an approach */
+    NT_CURVE_TAIL,   /* a free tail whose level drag explains */
+    NT_CURVE_SHARED, /* the level of a short free tail, with the approach's tilt */
+    NT_CURVE_BOUND   /* the approach less drag: nothing of the retraction is free, or it was offset by more than drag */
+} nt_curve_support;
+
+/* What a curve shows. The first branch is the approach, or the retraction where there is no approach. */
+typedef struct nt_curve_reading {
+    nt_curve_branch approach, retract;
+    double contact_points[NT_CURVE_METHODS]; /* z of the first branch [m]; NaN: the method cannot say */
+    nt_curve_measured contact_point;         /* their median [m]; their spread is in its sigma */
+    nt_curve_support support;
+    /* Depth of the retraction's lowest point if the tail is free, and if all of its offset is a tether that held to the
+     * end [N]: the two cannot be told apart. retract.dip.sigma contains the distance as that of a rectangular error. */
+    double pull_off_least, pull_off_most; /* what it grows by from the last point before a rupture to the next is in */
+    double pull_off_sigma;                /* standard uncertainty of both ends [N] */
+    double offset;       /* of the tail below the approach [N]; NaN where there is no tail or no approach */
+    double offset_sigma; /* [N] */
+    nt_curve_rupture rupture[NT_CURVE_RUPTURES]; /* from the sample outwards */
+    int ruptures;                                /* how many */
+} nt_curve_reading;
+
+/* Reads a curve of which at least one branch has NT_CURVE_FEWEST points, else NT_E_RANGE. Arrays of *reading lie in
+ * work. Errors of nt_curve_segment_check and nt_curve_fit_baseline. */
+NT_API nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, double *work,
+                               nt_curve_reading *reading, nt_problem *problem);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
