@@ -26,7 +26,7 @@ static py::array_t<Value> parameters_of(const std::vector<nt_fit_outcome> &outco
 }
 
 static void add_measured(py::dict *out, const std::vector<nt_fit_outcome> &outcomes, const char *name,
-                         nt_fit_measured nt_fit_reading::*quantity)
+                         nt_curve_measured nt_fit_reading::*quantity)
 {
     const std::string sigma = std::string(name) + "_sigma";
     (*out)[name] = column_of(outcomes, [=](const nt_fit_outcome &o) { return (o.reading.*quantity).value; });
@@ -66,6 +66,11 @@ static py::dict columns_of(const std::vector<nt_fit_outcome> &outcomes)
     add_measured(&out, outcomes, "pull_off_force", &nt_fit_reading::pull_off_force);
     add_measured(&out, outcomes, "adhesion_work", &nt_fit_reading::adhesion_work);
     add_measured(&out, outcomes, "contact_slope", &nt_fit_reading::contact_slope);
+    add_measured(&out, outcomes, "branch_offset", &nt_fit_reading::offset);
+    out["rating"] = column_of(outcomes, [](const nt_fit_outcome &o) { return o.rating; });
+    out["pull_off_least"] = column_of(outcomes, [](const nt_fit_outcome &o) { return o.reading.pull_off_least; });
+    out["pull_off_most"] = column_of(outcomes, [](const nt_fit_outcome &o) { return o.reading.pull_off_most; });
+    out["ruptures"] = column_of(outcomes, [](const nt_fit_outcome &o) { return double(o.reading.ruptures); });
     out["reason"] = reasons_of(outcomes);
     return out;
 }
@@ -85,11 +90,11 @@ static py::dict batch(const nt_fit_recipe &recipe, const Array &z, const Array &
         if (edge[i] < (i ? edge[i - 1] : 0) || edge[i] > z.size())
             throw py::value_error("edges must grow and stay within z");
     const auto segment = [&](py::ssize_t i) {
-        return nt_fit_segment{z.data() + edge[i], force.data() + edge[i], static_cast<long>(edge[i + 1] - edge[i])};
+        return nt_curve_segment{z.data() + edge[i], force.data() + edge[i], static_cast<long>(edge[i + 1] - edge[i])};
     };
-    std::vector<nt_fit_curve> curves;
+    std::vector<nt_curve> curves;
     for (py::ssize_t i = 0; i < count; ++i)
-        curves.push_back({segment(2 * i), segment(2 * i + 1), spring_constant.data()[i]});
+        curves.push_back({segment(2 * i), segment(2 * i + 1), spring_constant.data()[i], 0.0, 0.0});
     std::vector<nt_fit_outcome> outcomes(curves.size());
     const nt_fit_curves all{curves.data(), static_cast<long>(count), threads};
     nt_status status;
@@ -99,6 +104,14 @@ static py::dict batch(const nt_fit_recipe &recipe, const Array &z, const Array &
     }
     raise_on(status, "batch");
     return columns_of(outcomes);
+}
+
+static double rating(const Array &indentation, const Array &force, const Array &fitted, double noise)
+{
+    if (indentation.ndim() != 1 || force.size() != indentation.size() || fitted.size() != indentation.size())
+        throw py::value_error("indentation, force and fitted must have one dimension and the same length");
+    const nt_fit_rated rated{indentation.data(), force.data(), fitted.data(), static_cast<long>(force.size()), noise};
+    return nt_fit_rating(&rated);
 }
 
 static nt_fit_recipe recipe_of(const Options &options)
@@ -144,8 +157,8 @@ void bind_batch(py::module_ &module)
             "loss_scale", [](const nt_fit_recipe &r) { return r.options.loss_scale; },
             [](nt_fit_recipe &r, double scale) { r.options.loss_scale = scale; })
         .def_property(
-            "waves", [](const nt_fit_recipe &r) { return r.waves != 0; },
-            [](nt_fit_recipe &r, bool waves) { r.waves = waves; })
+            "baseline", [](const nt_fit_recipe &r) { return int(r.baseline.kind); }, // of baseline_kinds
+            [](nt_fit_recipe &r, int kind) { r.baseline.kind = static_cast<nt_curve_baseline_kind>(kind); })
         .def_property(
             "fit_offset", [](const nt_fit_recipe &r) { return r.fit_offset != 0; },
             [](nt_fit_recipe &r, bool fit_offset) { r.fit_offset = fit_offset; })
@@ -158,6 +171,8 @@ void bind_batch(py::module_ &module)
         .def_readwrite("lowest_force", &nt_fit_recipe::lowest_force)
         .def_readwrite("highest_force", &nt_fit_recipe::highest_force)
         .def_readwrite("sensitivity_uncertainty", &nt_fit_recipe::sensitivity_uncertainty);
+    module.attr("good_rating") = NT_FIT_GOOD;
+    module.def("rating", &rating, py::arg("indentation"), py::arg("force"), py::arg("fitted"), py::arg("noise"));
     module.def("batch", &batch, py::arg("recipe"), py::arg("z"), py::arg("force"), py::arg("edges"),
                py::arg("spring_constant"), py::arg("threads"));
 }

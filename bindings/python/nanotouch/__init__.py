@@ -27,11 +27,12 @@ _HOMES = {
     "Session": "session",
     "Supervisor": "supervisor",
     "Surface": "surface",
+    "SurfaceFile": "surface_file",
 }
 _MODULES = (
     "batch", "commands", "contact", "curves", "errors", "faults", "fit", "forces", "frames", "geometry", "hal",
     "images", "interaction", "maps", "margins", "materials", "operator", "plan", "plots", "presets", "record",
-    "reference", "scene", "session", "surface", "units", "view",
+    "reference", "rig_file", "scene", "session", "surface", "surface_file", "units", "view",
 )  # fmt: skip
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]

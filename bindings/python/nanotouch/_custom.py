@@ -12,7 +12,7 @@ from typing import Any
 
 from nanotouch import _core
 from nanotouch.errors import Error, InvalidValue
-from nanotouch.units import key_spellings, to_si
+from nanotouch.units import UNITS, key_spellings, to_si
 
 Law = Callable[..., float]
 LONGEST_NAME = 31
@@ -136,6 +136,9 @@ def register(
     lacking = set(parameters or {}) ^ set(units or {})
     if lacking:
         raise InvalidValue(f"{name}: {min(lacking)!r} must be in both parameters and units")
+    for parameter, unit in (units or {}).items():
+        if unit not in UNITS:
+            raise InvalidValue(f"{name}: unit {unit!r} of {parameter!r}; known are {', '.join(filter(None, UNITS))}")
     if "version" in (parameters or {}):
         raise InvalidValue(f"{name}: no parameter may be called version")
     _known[name] = CustomTerm(name, energy, force, stiffness, bound, dict(parameters or {}), dict(units or {}), version)

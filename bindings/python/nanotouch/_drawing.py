@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import functools
+import io
 import os
 import warnings
 from pathlib import Path
@@ -18,8 +20,29 @@ BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = "#0072B2", "#D55E00", "#009E73", "
 
 
 def new_figure(width: float, height: float) -> Any:
-    """An empty ``matplotlib.figure.Figure`` of this size [inch]."""
-    return require("matplotlib.figure", "app").Figure(figsize=(width, height), layout="constrained")
+    """An empty ``matplotlib.figure.Figure`` of this size [inch]; a notebook shows it without a magic line."""
+    return _shown(require("matplotlib.figure", "app").Figure)(figsize=(width, height), layout="constrained")
+
+
+@functools.cache
+def _shown(figure: Any) -> Any:
+    return type("Figure", (figure,), {"_repr_png_": _as_png, "__reduce__": _reduced, "__module__": __name__})
+
+
+def _as_png(figure: Any) -> bytes:
+    with io.BytesIO() as file:
+        figure.savefig(file, format="png", dpi=100)
+        return file.getvalue()
+
+
+def _reduced(figure: Any) -> Any:
+    """Pickled by its state: the class is made when it is needed."""
+    return _empty, (), figure.__getstate__()
+
+
+def _empty() -> Any:
+    made = _shown(require("matplotlib.figure", "app").Figure)
+    return made.__new__(made)
 
 
 def plain(text: str) -> str:

@@ -47,7 +47,7 @@ def tear_position(options: Options, value: Sequence[float]) -> float: ...
 
 class Recipe:
     approach: bool
-    waves: bool
+    baseline: int
     fit_offset: bool
     loss_scale: float
     lowest_force: float
@@ -57,6 +57,9 @@ class Recipe:
     def check(self) -> None: ...
     def hold(self, place: int, /) -> None: ...
 
+good_rating: float
+
+def rating(indentation: Floats, force: Floats, fitted: Floats, noise: float) -> float: ...
 def batch(
     recipe: Recipe, z: Floats, force: Floats, edges: NDArray[int64], spring_constant: Floats, threads: int
 ) -> dict[str, Any]: ...

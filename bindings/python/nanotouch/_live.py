@@ -9,13 +9,12 @@ import itertools
 import os
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
-from nanotouch.errors import Error, MissingExtra
+from nanotouch.errors import Error, missing
+from nanotouch.scratch import Scratch
 
 WINDOW = "nanotouch_app.live.window"
 _numbers = itertools.count(1)
@@ -25,6 +24,7 @@ class Watched(Protocol):
     """What is needed of a session."""
 
     surface: Any
+    _name: str
 
     @property
     def path(self) -> Any:
@@ -41,16 +41,17 @@ def watch(session: Watched) -> subprocess.Popen[str]:
     the session runs in its own thread.
     """
     if importlib.util.find_spec("vtkmodules") is None:
-        raise MissingExtra("vtk is not installed: pip install 'nanotouch[view]'")
-    name = f"session-{os.getpid()}-{next(_numbers)}"
-    session.publish(name)
-    folder = tempfile.TemporaryDirectory(prefix="nanotouch-live-")
-    atexit.register(folder.cleanup)
-    surface = Path(folder.name) / "surface.npz"
+        raise missing("vtk", "view")
+    if not session._name:  # a second window watches beside the first one
+        session.publish(f"session-{os.getpid()}-{next(_numbers)}")
+    name = session._name
+    folder = Scratch()
+    atexit.register(folder.close)
+    surface = folder.path / "surface.npz"
     heights, pixel_size = _surface_of(session)
     np.savez(surface, heights=heights, pixel_size=np.asarray(pixel_size))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    said = Path(folder.name) / "said.txt"
+    said = folder.path / "said.txt"
     with open(said, "wb") as errors:
         window = subprocess.Popen(
             [sys.executable, "-m", WINDOW, str(surface), "--watch", name], stdin=subprocess.PIPE,

@@ -6,11 +6,14 @@ from __future__ import annotations
 import json
 import math
 import re
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
 from nanotouch import _core
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import DeviceError, InvalidValue
 from nanotouch.options import PACES, Pace, Progress
+from nanotouch.scene import Rig, Scene, Settings
+
+Described = TypeVar("Described", Scene, Settings)
 
 CHANGES = {
     "scene": "session.change('scene', field, value)",
@@ -18,6 +21,18 @@ CHANGES = {
     "mode": "session.set_mode(mode)",
 }
 LONGEST = 1e9  # run at one go [s]
+TOLD = ("mode", "rescale", "setting", "scene")  # events that change what a session says of itself
+
+
+def as_now(told: Described, now: Any, words: str) -> Described:
+    """The description that was told last, with what has changed since, frozen with these words."""
+    changed = {name: now.get(name) for name in told.fields if now.get(name) != told[name]}
+    if not changed:
+        return told
+    made = told.copy()
+    for name, value in changed.items():
+        made[name] = value
+    return made.frozen(words)
 
 
 class Frozen:
@@ -50,9 +65,16 @@ class Runs:
 
     core: _core.Session
     rate: float
+    rig: Rig
+    _begun: _core.Snapshot | None
+    _is_published, _name = False, ""
 
     def metadata(self) -> dict[str, Any]:
         """What a recording has to be read with."""
+        raise NotImplementedError
+
+    def _now(self) -> dict[str, Any]:
+        """What of it has changed since it was opened."""
         raise NotImplementedError
 
     def _ticks(self, duration: float) -> int:
@@ -105,4 +127,26 @@ class Runs:
         if not re.fullmatch(r"[A-Za-z0-9._-]{0,64}", name):
             raise InvalidValue(f"publish: name {name!r}: valid are up to 64 letters, digits, '.', '-' and '_'")
         self.core.publish(name)
-        self.core.describe(json.dumps(self.metadata()))
+        self._is_published, self._name = True, name
+        self.describe()
+
+    def describe(self) -> None:
+        """Renew what observers read of this session: how it is now. Its changes do so by themselves; what an observer
+        has changed is told at the next :meth:`read`, or by this."""
+        if self._is_published:
+            about = {name: value for name, value in self.metadata().items() if name != "events"} | self._now()
+            self.core.describe(json.dumps(about))
+
+    def snapshot(self) -> _core.Snapshot:
+        """All that a simulated session needs to go on from here."""
+        return self.core.snapshot()
+
+    def restore(self, snapshot: _core.Snapshot) -> None:
+        """Back to where a snapshot was taken."""
+        self.core.restore(snapshot)
+
+    def reset(self) -> None:
+        """Back to where it was opened; of a session whose halves are simulated."""
+        if self._begun is None:
+            raise DeviceError("a session with a half of one's own cannot go back")
+        self.core.restore(self._begun)

@@ -65,8 +65,8 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
 def _yielding(facts: dict[str, Any]) -> list[str]:
     """How far the sample gives to forces before contact, where that is felt."""
     size = f"elastic number {in_words(facts['elastic_number'], '', 2)}"
-    infinite = math.isinf(facts["rigid_error"])
-    error = "would jump" if infinite else f"could err by {_percent(facts['rigid_error'])}"
+    rigid = max(facts["rigid_error"], facts["around_error"])
+    error = "would jump" if math.isinf(rigid) else f"could err by {_percent(rigid)}"
     if facts["yields"]:
         return [f"sample: yields to all forces together, {size}; laws that add on the undeformed gap {error}"]
     if facts["rigid_error"] == 0.0 or facts["adhesion_source"] != "none":
@@ -145,6 +145,8 @@ def _folds(facts: dict[str, Any]) -> str:
     if without or not _terms(facts)[0].included:
         return "no folds"
     text = "folds in place" if shift < _IN_PLACE else f"folds within {in_words(shift, 'm', 2)}"
+    if math.isinf(shift):
+        return "where the folds are is not known"
     if facts["quantity"] == "folds":
         return text
     return f"{text}, bound from {in_words(facts['fold_distance'], 'm', 2)} beside them on"

@@ -14,7 +14,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
 from io import BytesIO
@@ -37,8 +37,17 @@ CHUNK_SIZE = 1  # [bytes]: every block is a chunk of its own, and on its way to 
 CHUNKS_KEPT = 100  # a writer of the library remembers all its chunks: after so many another one goes on
 INCOMPLETE = "incomplete"
 """key of the metadata with the reason"""
+REWINDS_BEFORE = "rewinds_before"
+"""key of the metadata: how many of the events are rewinds that came before the first row; none where it is missing"""
+ROWS = "rows"
+"""key of the metadata of a recording that is whole: how many rows it has"""
 KILLED = "the program that recorded it was killed"
 REASON_SIZE = 400  # [bytes]
+
+
+def rewinds(events: Sequence[Sequence[Any]]) -> int:
+    """How many of them are."""
+    return sum(name == "rewind" for _, name, _ in events)
 
 
 class Metadata(dict[str, Any]):
@@ -68,8 +77,11 @@ class Writer:
     def __init__(self, path: str | os.PathLike[str], metadata: Mapping[str, Any] | None = None) -> None:
         require("mcap.writer", "record")
         texts = _texts(metadata or {})
+        if isinstance(metadata, Metadata) and rewinds(metadata["events"]):
+            texts |= _texts({REWINDS_BEFORE: rewinds(metadata["events"])})
         self._asked = metadata.events if isinstance(metadata, Metadata) else None
         self._told = len(metadata["events"]) if isinstance(metadata, Metadata) else 0
+        self._rate = metadata["loop_rate"] if isinstance(metadata, Metadata) else 0.0
         self.path = Path(path)
         self.rows = 0
         self._names: tuple[str, ...] = ()
@@ -116,6 +128,13 @@ class Writer:
             self._told = len(events)
             self.update({"events": events})
 
+    def _holds_all(self) -> bool:
+        """The rows go as far as what was asked; one who closes while the session runs on may have left some unread."""
+        end = round(self._last * self._rate) + 1 if self.rows else 0
+        asked = self._asked() if self._asked is not None else []
+        since = max((number for number, event in enumerate(asked) if event[1] == "rewind"), default=-1)
+        return all(tick <= end for tick, _, _ in asked[since + 1 :])
+
     def update(self, metadata: Mapping[str, Any]) -> None:
         """Write metadata, new or anew: what is known only later, such as the requests of a session."""
         self._check_open()
@@ -140,6 +159,8 @@ class Writer:
             return
         if not self._names:
             self.append({name: np.empty(0) for name in COLUMNS})
+        if self._asked is not None and self._holds_all():
+            self.update({ROWS: self.rows})
         with self._keeping():
             self._mcap.finish()
             self._file.truncate()

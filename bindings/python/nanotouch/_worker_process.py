@@ -19,10 +19,12 @@ from typing import Any
 from . import _transfer, curves, images
 from ._readers import _registered
 from .errors import Error
+from .images.values import plane_of
 
 _READERS = ("cv2", "h5py", "scipy.io", "tifffile", "igor2.binarywave", "SurfaceTopography.IO", "afmformats")
 _JOBS: dict[str, Callable[..., Any]] = {
     "images.read": images.read,
+    "images.plane": plane_of,
     "images.channels": images.channels,
     "curves.read": curves.read,
 }

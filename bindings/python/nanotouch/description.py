@@ -14,9 +14,10 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from nanotouch import _html
 from nanotouch._words import told
 from nanotouch.errors import InvalidValue
-from nanotouch.units import from_si, key_spellings, to_si
+from nanotouch.units import engineering, from_si, key_spellings, to_si
 
 
 class Field(NamedTuple):
@@ -259,7 +260,29 @@ class Description(Mapping[str, float]):
         return _restore, (type(self), dict(self))
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(repr(getattr(self, name)) for name in self.sections())})"
+        """What differs from the default, as it would be written in a program."""
+        usual, differing = type(self)(), dict[str, dict[str, float | str]]()
+        for name, value in self.items():
+            if value != usual[name]:
+                section, key = name.split(".")
+                differing.setdefault(section, {})[key] = self.plain(name)
+        return f"{type(self).__name__}({', '.join(f'{name}={values!r}' for name, values in differing.items())})"
+
+    def _repr_html_(self) -> str:
+        """Every field with its value in engineering units; what differs from the default is marked by a star."""
+        usual = type(self)()
+        rows = [
+            (name + (" *" if value != usual[name] else ""), _told(value, self.fields[name].unit), self.fields[name].doc)
+            for name, value in self.items()
+        ]
+        return _html.table(f"{type(self).__name__} (*: not the default)", ("field", "value", "meaning"), rows)
+
+
+def _told(value: float | str, unit: str) -> str:
+    if isinstance(value, str) or unit in ("", "-") or not math.isfinite(value):
+        return _shown(value)
+    prefixed, factor = engineering(unit, [value])
+    return f"{value * factor:.4g} {prefixed}"
 
 
 def _shown(value: float | str) -> str:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import importlib
 from types import ModuleType
 
+from nanotouch.extras import ADDS, advice
+
 
 class Error(Exception):
     """Base of all nanotouch errors."""
@@ -50,4 +52,9 @@ def require(module: str, extra: str) -> ModuleType:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise MissingExtra(f"{module} is not installed: pip install 'nanotouch[{extra}]'") from error
+        raise missing(module, extra) from error
+
+
+def missing(module: str, extra: str) -> MissingExtra:
+    """The error of a module that is not there, naming what installs it."""
+    return MissingExtra(f"{module} is not installed (extra {extra}, {ADDS[extra]}): {advice(extra)}")

@@ -188,7 +188,7 @@ class Validity(NamedTuple):
     slope: Any
     """of the tip's surface at the edge of the contact [-]"""
     strain: Any
-    """representative strain [-]: 0.2 slope (0.2 a/R for spheres), punch 0.3 |delta|/a"""
+    """representative strain [-]: 0.2 slope (0.2 a/R for spheres), punch ``0.3 |delta|/a``"""
     thickness_ratio: Any
     """a/t [-]"""
     outside: Any

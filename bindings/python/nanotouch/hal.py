@@ -71,6 +71,45 @@ class Capabilities(NamedTuple):
     channels: Sequence[Channel] = ()
 
 
+class Half(NamedTuple):
+    """A half of an open session, simulated or not, as it describes itself."""
+
+    axes: int
+    period: float
+    """between its own measurements; 0: a new one in every period of the loop [s]"""
+    feels: bool
+    pushes: bool
+    servos: bool
+    leads: bool
+    """the clock: its readings are the ticks"""
+    real: bool
+    """an actuator can move something"""
+    event_driven: bool
+    slow: bool
+    """its calls are not real-time safe"""
+    channels: tuple[Channel, ...]
+
+    def channel(self, name: str) -> Channel:
+        """The one of this name."""
+        for row in self.channels:
+            if row.name == name:
+                return row
+        raise InvalidValue(f"channel {name!r}: valid are {', '.join(row.name for row in self.channels)}")
+
+
+class Halves(NamedTuple):
+    """Both halves of a session."""
+
+    master: Half
+    slave: Half
+
+
+def halves_of(core: _core.Session) -> Halves:
+    """What both say of themselves."""
+    found = [core.half(half) for half in range(2)]
+    return Halves(*(Half(**(one | {"channels": tuple(Channel(*row) for row in one["channels"])})) for one in found))
+
+
 class Configuration(NamedTuple):
     """What a half is told before it is armed."""
 

@@ -8,21 +8,26 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from nanotouch import _core
-from nanotouch._arrays import as_floats, check_between
+from nanotouch._arrays import check_between
+from nanotouch._calm import CLEARLY_FELT, RINGING_MOST, Calm, calm
 from nanotouch._path import Mode, core_mode
+from nanotouch._response import Response, passive_up_to, response
 from nanotouch.errors import InvalidValue
 from nanotouch.plan import Plan
 from nanotouch.record import Recording
 from nanotouch.scene import Rig, Settings
 
+__all__ = [
+    "CLEARLY_FELT", "HAND_BAND", "MINIMUM", "RINGING_MOST", "SEEN", "UNKNOWN", "Calm", "Felt", "ForceRange", "Margins",
+    "Resolution", "Response", "Width", "calm", "compute", "felt_alpha_f", "force_range", "heuristic_alpha_f",
+    "of_own_law", "of_recording", "resolution", "response", "z_width",
+]  # fmt: skip
 Floats = NDArray[np.float64]
 MINIMUM = 1.5
 """a loop closer to its limit than this is refused, unless told otherwise"""
-CLEARLY_FELT = 0.3
-"""a force at the hand that nobody misses [N]: well above the 0.02 N that the paper's gauge resolves"""
 SEEN = 0.93
 """of a plan's pull-off that a loop shows at least: the tear lies between two of its steps"""
 HAND_BAND = 33.0
@@ -40,7 +45,7 @@ class Margins(NamedTuple):
     loop_delay: float
     """D: two hops of hold and dead time, and the stage's lag [s]"""
     stability_limit: float
-    """R1: kappa up to which the loop is passive, b_m/D less what the stage's integral costs [N/m]"""
+    """R1, a rule of thumb that knows no hand: kappa up to b_m/D, less what the stage's integral costs [N/m]"""
     margin: float
     """R1: limit over stiffness"""
     pad_limit: float
@@ -63,6 +68,9 @@ class Margins(NamedTuple):
     """integral gain at which the stage's own loop oscillates, whoever holds the master [1/s]"""
     bandwidth: float
     """up to here the hand feels the contact's stiffness within 3 dB [Hz]"""
+    passive_up_to: float
+    """above this frequency the loop can give energy to the hand, Re Z < 0 at the contact: the low-pass of f_m and the
+    delays; half the rate if nowhere [Hz]"""
     least: float
     """the smallest margin of those that count in this mode; 1 is the limit"""
     rule: str
@@ -109,6 +117,7 @@ def compute(rig: Rig, settings: Settings, contact_stiffness: float, mode: Mode =
     band = np.geomspace(0.1, 1.0, 30) * min(HAND_BAND, 0.5 * settings.gains.rate)
     return Margins(
         **found,
+        passive_up_to=passive_up_to(rig, settings, contact_stiffness),
         llewellyn=float(np.min(response(rig, settings, contact_stiffness, band).llewellyn)),
         free_damping=damping / gain,
         free_mass=rig.master.mass / gain,
@@ -126,28 +135,6 @@ def of_own_law(rig: Rig, settings: Settings, amounts: Settings | None, contact_s
         return UNKNOWN
     other = compute(rig, settings, contact_stiffness, mode)
     return UNKNOWN._replace(height_margin=other.height_margin, least=other.least, rule=other.rule)
-
-
-class Response(NamedTuple):
-    """The loop over frequency, each shape (n,)."""
-
-    frequency: Floats
-    """[Hz]"""
-    path: NDArray[np.complex128]
-    """C: from x_m over stage and contact to the force at the motor, 1 at rest"""
-    impedance: NDArray[np.complex128]
-    """Z = f_m/x_m' as the hand feels it in contact [N s/m]"""
-    llewellyn: Floats
-    """Llewellyn's number; the two-port is absolutely stable where it is 1 or more"""
-
-
-def response(rig: Rig, settings: Settings, contact_stiffness: float, frequency: ArrayLike) -> Response:
-    """The loop at frequencies [Hz] above 0, up to half the rate."""
-    f = np.atleast_1d(as_floats(frequency, "frequency"))
-    check_between("the lowest frequency", float(f.min()), "Hz", above=0.0, up_to=0.5 * settings.gains.rate)
-    check_between("the highest frequency", float(f.max()), "Hz", above=0.0, up_to=0.5 * settings.gains.rate)
-    rows = _core.loop_response(rig.core, settings.core, contact_stiffness, f)
-    return Response(f, rows[:, 0] + 1j * rows[:, 1], rows[:, 2] + 1j * rows[:, 3], rows[:, 4])
 
 
 class Resolution(NamedTuple):

@@ -17,6 +17,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
 from nanotouch.hal import Master, SharedObject, Slave
 from nanotouch.margins import ForceRange
+from nanotouch.rig_file import Converters
 from nanotouch.scene import Rig, Settings
 
 INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
@@ -62,9 +63,9 @@ class Options(TypedDict, total=False):
     20 000 of them in a period [rad]"""
     faults: Faults
     """what fails in the simulated halves, and when"""
-    master: Master | SharedObject
+    master: Master | SharedObject | Converters
     """one's own half instead of the simulated hand and master (:mod:`nanotouch.hal`, docs/hal.md)"""
-    slave: Slave | SharedObject
+    slave: Slave | SharedObject | Converters
     """one's own half instead of the simulated stage, probe and sample"""
     recorded: bool
     """False: no records are kept; for :meth:`Session.step`"""
@@ -83,6 +84,9 @@ class Progress(NamedTuple):
     """hard pace: of a wake-up [s]"""
     runs: bool
     paused: bool
+    """asked for"""
+    stands: bool
+    """paused, no tick runs any more, and no granted step is left"""
     status: str
     """why it has ended by itself"""
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch import _core
+from nanotouch import _core, _html
 from nanotouch._arrays import Law, as_floats, as_law, plain
 from nanotouch._plan_terms import ROWS as ROWS
 from nanotouch._plan_terms import Pressure as Pressure
@@ -197,6 +197,9 @@ class Plan:
     def __str__(self) -> str:
         return text_of(self._facts)
 
+    def _repr_html_(self) -> str:
+        return _html.text("Plan", str(self))
+
     def __repr__(self) -> str:
         forms = ", ".join(f"{term.name}: {term.form}" for term in self.terms)
         return f"Plan({forms}; bound {self.bound:.2g}, cost {self.cost:.3g})"
@@ -250,6 +253,14 @@ class Reach(NamedTuple):
     """bound of the effective radius of the contact [m]"""
     largest_radius: float
     """[m]"""
+    least_modulus: float
+    """bound of E of the sample [Pa]; 0: the scene's everywhere"""
+    largest_modulus: float
+    """[Pa]"""
+    least_work: float
+    """bound of w [J/m^2]; 0: the scene's everywhere"""
+    largest_work: float
+    """[J/m^2]"""
 
     @classmethod
     def along(cls, terrain: _core.Terrain, path: Sequence[tuple[float, float]]) -> Reach:

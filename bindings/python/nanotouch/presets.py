@@ -32,8 +32,8 @@ FELT: dict[str, str] = {
         "strongest pull of the hard samples."
     ),
     "silicone_rubber": (
-        "Soft and sticky: the ball takes hold at the touch, sinks in by 144 nm under 1.2 uN at 18 N/m, "
-        "and lets go only when 0.75 uN pull."
+        "Soft and sticky: the ball takes hold at the touch, sinks in by 144 nm under 1.2 µN at 18 N/m, "
+        "and lets go only when 0.75 µN pull."
     ),
     "inas_dots": (
         "Hills as hard as a wall of 359 N/m: the hand follows their heights, not their give, and the "

@@ -19,6 +19,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from nanotouch import _html
 from nanotouch._control import Law
 from nanotouch._files import checked_path
 from nanotouch._recorder import ENCODING, INCOMPLETE, recovered_name
@@ -86,6 +87,35 @@ class Recording:
         span = f"{self.time[0]:.6g} s to {self.time[-1]:.6g} s" if len(self) else "empty"
         return f"Recording({len(self)} rows, {span}, columns: {', '.join(self.columns)})"
 
+    def _repr_html_(self) -> str:
+        rows = [(name, COLUMNS[name].unit, *_ends(values), COLUMNS[name].doc) for name, values in self.columns.items()]
+        title = f"Recording of {len(self)} rows" + (f", incomplete: {self.incomplete}" if self.incomplete else "")
+        return _html.table(title, ("column", "unit", "least", "largest", "meaning"), rows)
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame``: a column for each column, in SI units, with ``time`` [s] as its index. Units are in
+        ``frame.attrs["units"]``."""
+        frame = require("pandas", "notebook").DataFrame(self.columns).set_index("time")
+        frame.attrs["units"] = {name: COLUMNS[name].unit for name in self.columns}
+        return frame
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` over the dimension ``time`` [s]; each variable has ``units`` and ``long_name``, the
+        dataset the metadata as JSON."""
+        xarray = require("xarray", "notebook")
+        named = {
+            name: ("time", values, {"units": COLUMNS[name].unit, "long_name": COLUMNS[name].doc})
+            for name, values in self.columns.items()
+        }
+        about = {key: json.dumps(value) for key, value in self.metadata.items()}
+        return xarray.Dataset(named, attrs=about).set_coords("time")
+
+    def plot(self, save: str | os.PathLike[str] | None = None) -> Any:
+        """Positions and forces over time (:func:`nanotouch.plots.time`), a ``Figure`` that a notebook shows."""
+        from nanotouch import plots  # a method for convenience, of a later layer
+
+        return plots.time(self, save)
+
     def parameter(self, name: str) -> float:
         """A number of the metadata that the recording cannot be read without, such as ``alpha_f``."""
         if self.metadata.get(name) is None:  # null: what is not known, such as the start height of a real stage
@@ -118,6 +148,8 @@ class Recording:
     def replay(self, control: Law | None = None) -> Recording:
         """Feed what was measured to the touch step again: the same commands to the last bit, on the same machine.
 
+        Of a session that went back, what was not taken back: :meth:`without_rewinds`.
+
         Parameters
         ----------
         control : callable, optional
@@ -126,6 +158,12 @@ class Recording:
         from nanotouch.replay import replay  # the next layer, which needs this one: a method for convenience
 
         return replay(self, control)
+
+    def without_rewinds(self) -> Recording:
+        """The rows and events that a session went on from. Itself where the session never went back."""
+        from nanotouch.replay import without_rewinds  # as above
+
+        return without_rewinds(self)
 
     def curve(self) -> ForceCurve:
         """The force-distance curve of a recording in mode ``"curve"``, for :mod:`nanotouch.curves`."""
@@ -223,6 +261,12 @@ def recover(path: str | os.PathLike[str], out: str | os.PathLike[str] | None = N
         raise Error(f"cannot write {target}: it exists already; name another file")
     write(target, recording)
     return target, recording
+
+
+def _ends(values: NDArray[Any]) -> tuple[str, str]:
+    """The least and the largest number, "" where there is none."""
+    numbers = values[np.isfinite(values)]
+    return (f"{numbers.min():.4g}", f"{numbers.max():.4g}") if len(numbers) else ("", "")
 
 
 def _heading(name: str) -> str:

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nanotouch import _core
 from nanotouch._control import CONTROLS, Law
 from nanotouch._path import MODES, core_mode
+from nanotouch._recorder import REWINDS_BEFORE, ROWS, rewinds
 from nanotouch.columns import SIDEWAYS
 from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
@@ -20,8 +22,12 @@ from nanotouch.scene import Rig, Settings
 MEASURED = (
     "age", "lateness", "master_position", "operator_force", "stage_position", "deflection", "x", "y", "flags",
 )  # fmt: skip
-REQUESTS = {"aim": 3, "arm": 1, "mode": 1, "clutch": 1, "rescale": 2, "setting": 2, "scene": 2, "stop": 1}
-"""that a session may be asked for between two ticks, and how many numbers each has"""
+REQUESTS = {
+    "aim": 3, "arm": 1, "mode": 1, "clutch": 1, "rescale": 2, "setting": 2, "scene": 2, "stop": 1, "index": 1,
+}  # fmt: skip
+"""what is done between two ticks, and how many numbers each has"""
+Event = tuple[int, str, list[Any]]
+"""tick, name, numbers"""
 NAMED = ("mode", "setting", "scene")
 """whose first one is a name"""
 
@@ -33,6 +39,9 @@ def replay(recording: Recording, control: Law | None = None) -> Recording:
     range of a column, until a limit is met at another tick.
     """
     metadata = recording.metadata
+    if "events" in metadata:
+        recording = without_rewinds(recording)
+        metadata = recording.metadata
     missing = [name for name in MEASURED if name not in recording]
     missing += [
         name for name in ("settings", "rig", "control", "events", "master_start", "path") if name not in metadata
@@ -42,6 +51,7 @@ def replay(recording: Recording, control: Law | None = None) -> Recording:
     settings, rig = Settings(**metadata["settings"]), Rig(**metadata["rig"])
     _check_ticks(recording, settings.gains.rate)
     start, name = _start(metadata), metadata["control"]
+    _check_whole(recording, start["events"])
     if (name == "own") is not callable(control):
         law_is = "a law of one's own: give it as control" if name == "own" else f"control {name!r}: give no other law"
         raise InvalidValue(f"the recording was made with {law_is}")
@@ -66,6 +76,95 @@ def _check_ticks(recording: Recording, rate: float) -> None:
         )
 
 
+def without_rewinds(recording: Recording) -> Recording:
+    """The rows and events that a session went on from, however often it went back."""
+    try:
+        events = [(int(tick), str(name), list(numbers)) for tick, name, numbers in recording.metadata["events"]]
+        before = int(recording.metadata.get(REWINDS_BEFORE, 0))
+    except (TypeError, ValueError, LookupError) as error:
+        raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
+    if not rewinds(events):
+        return recording
+    ticks = np.rint(recording.time * recording.parameter("loop_rate"))
+    rows, line = _line(events, ticks, before)
+    found = recording[rows]
+    found.metadata = {name: value for name, value in found.metadata.items() if name not in (REWINDS_BEFORE, ROWS)}
+    found.metadata["events"] = [list(events[number]) for number in line]
+    if recording.metadata.get(ROWS) == len(recording):
+        found.metadata[ROWS] = len(found)
+    return found
+
+
+class _Moment(NamedTuple):
+    """Of the tape, after some of its events."""
+
+    line: tuple[int, ...]
+    """events that hold, by number"""
+    rows: NDArray[np.int64]
+    """that hold, up to the last rewind"""
+    begin: int
+    """the row after that"""
+    tick: int | None
+    """of it; None: it is not on the tape"""
+
+
+def _line(events: list[Event], ticks: NDArray[np.float64], before: int) -> tuple[NDArray[np.int64], tuple[int, ...]]:
+    """Rows and events that hold, by number; so many of the rewinds came before the first row."""
+    nothing = np.empty(0, dtype=np.int64)
+    first = int(ticks[0]) if len(ticks) else 0
+    moment = _Moment((), nothing, 0, None if before else first)
+    kept_at = {int(numbers[1]) for _, name, numbers in events if name == "rewind" and _is_moment(numbers)}
+    moments: dict[int, _Moment] = {}
+    for number, (tick, name, numbers) in enumerate(events):
+        if number in kept_at:
+            moments[number] = moment
+        if name != "rewind":
+            moment = moment._replace(line=(*moment.line, number))
+            continue
+        back, kept = _checked_rewind(number, tick, numbers)
+        old = moments[kept]
+        rows = nothing if old.tick is None else np.concatenate([old.rows, _rows(old, back, ticks)])
+        end = 0 if moment.tick is None else min(moment.begin + max(0, tick - moment.tick), len(ticks))
+        before -= 1
+        moment = _Moment(old.line, rows, end, None if before > 0 else back)
+    return np.concatenate([moment.rows, np.arange(moment.begin, len(ticks))]), moment.line
+
+
+def _rows(moment: _Moment, tick: int, ticks: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Those from a moment up to a tick."""
+    assert moment.tick is not None
+    return np.arange(moment.begin, min(moment.begin + max(0, tick - moment.tick), len(ticks)))
+
+
+def _is_moment(numbers: list[Any]) -> bool:
+    return len(numbers) == 2 and all(isinstance(number, int | float) and number >= 0 for number in numbers)
+
+
+def _checked_rewind(number: int, tick: int, numbers: list[Any]) -> tuple[int, int]:
+    """The tick that was gone back to, and how many events had been kept there."""
+    if len(numbers) == 1:
+        raise InvalidValue("the recording was rewound by an older version, which did not keep what held then: it "
+                           "cannot be replayed")  # fmt: skip
+    if len(numbers) == 2 and numbers[1] == -1:
+        raise InvalidValue("the recording goes on from a snapshot of another session, whose past it does not hold: it "
+                           "cannot be replayed")  # fmt: skip
+    if not _is_moment(numbers) or numbers[1] > number:
+        raise InvalidValue(f"the recording's metadata holds a rewind at tick {tick} to {numbers}: valid are a tick and "
+                           f"a number of events, 0 .. {number}")  # fmt: skip
+    return int(numbers[0]), int(numbers[1])
+
+
+def _check_whole(recording: Recording, events: list[Any]) -> None:
+    """A part of a recording may hold requests that come later; one that calls itself whole may not."""
+    end, rows = len(recording), recording.metadata.get(ROWS)
+    for tick, name, _ in events:
+        if rows == end and tick > end:
+            raise InvalidValue(
+                f"the recording says that it is whole, with {end} rows, and holds a request ({name}) at tick {tick}, "
+                "beyond its end: rows are missing"
+            )
+
+
 def _start(metadata: dict[str, Any]) -> dict[str, Any]:
     """Where the touch step begins, and what was asked of it."""
     try:
@@ -75,13 +174,12 @@ def _start(metadata: dict[str, Any]) -> dict[str, Any]:
             for tick, name, numbers in metadata["events"]
         ]
         start = {"mode": core_mode(metadata["mode"]), "master": float(metadata["master_start"]), "x": x, "y": y}
+        start["size"] = _size(metadata.get("surface_size", []))
     except (TypeError, ValueError, LookupError) as error:
         raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
     for tick, name, numbers in events:
         if tick < 0:
             raise InvalidValue(f"the recording's metadata holds a request at tick {tick}: valid is 0 or more")
-        if name == "rewind":
-            raise InvalidValue("the recording was rewound: it cannot be replayed")
         if name not in REQUESTS or len(numbers) != REQUESTS[name]:
             raise InvalidValue(f"the recording's metadata holds a request {name!r} with {len(numbers)} numbers")
         if name == "mode" and numbers[0] not in {core_mode(mode) for mode in MODES}:
@@ -90,6 +188,14 @@ def _start(metadata: dict[str, Any]) -> dict[str, Any]:
         if metadata[key] not in valid:
             raise InvalidValue(f"the recording's metadata: {key} {metadata[key]!r}: valid are {', '.join(valid)}")
     return start | {"events": events}
+
+
+def _size(of_surface: Any) -> list[float]:
+    """Width and height [m]; none where there was no surface."""
+    size = [float(length) for length in of_surface]
+    if len(size) not in (0, 2):
+        raise ValueError(f"surface_size {of_surface}: valid are two lengths [m]")
+    return size
 
 
 def _resolved(name: str, rig: Rig) -> str:

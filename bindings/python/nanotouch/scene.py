@@ -34,7 +34,7 @@ class Scene(Description, core_type=_core.Scene):
     ``Scene(terms={"gel": {"strength": 1e-3}})``, in a file ``[terms.gel]``.
     """
 
-    beside = ("terms",)
+    beside = ("terms", "surface")  # the second one is read by nanotouch.surface_file
     _terms: dict[str, tuple[CustomTerm, dict[str, float | str]]]
 
     def __init__(self, *, terms: Mapping[str, Mapping[str, Any]] | None = None, **sections: Any) -> None:
@@ -133,8 +133,10 @@ class Scene(Description, core_type=_core.Scene):
         return _restore, (self.to_dict(),)
 
     def __repr__(self) -> str:
-        own = f", terms={self.terms!r})" if self._terms else ")"
-        return super().__repr__().removesuffix(")") + own
+        shown = super().__repr__()
+        if not self._terms:
+            return shown
+        return f"{shown.removesuffix(')')}{'' if shown.endswith('()') else ', '}terms={self.terms!r})"
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Self:

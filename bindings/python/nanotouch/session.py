@@ -5,20 +5,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, TypeVar, Unpack
+from typing import Any, Literal, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nanotouch import _core, _live, margins
+from nanotouch import _core, _live, _told, margins
 from nanotouch._control import CONTROLS, Law, choose_control
-from nanotouch._open import Frozen, Runs
+from nanotouch._open import TOLD, Frozen, Runs, as_now
 from nanotouch._path import MODES, Mode, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
+from nanotouch._recorder import REWINDS_BEFORE, ROWS, rewinds
 from nanotouch.columns import STATES
-from nanotouch.errors import DeviceError, InvalidValue
+from nanotouch.errors import InvalidValue
 from nanotouch.faults import Faults
-from nanotouch.margins import Margins
+from nanotouch.hal import Halves, halves_of
+from nanotouch.margins import Calm, Margins
 from nanotouch.operator import Hold, Input, core_input, script_for, stretched
 from nanotouch.options import INDENTATION_RANGE as INDENTATION_RANGE
 from nanotouch.options import Options, Pace, Progress, check_options, checked_seed, settings_with
@@ -30,14 +32,14 @@ from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
 __all__ = [
-    "CONTROLS", "MODES", "REASONS", "Columns", "Law", "Margins", "Mode", "Options", "Pace", "ProbeModel", "Progress",
-    "Session", "choose_control", "settings_for_path",
+    "CONTROLS", "MODES", "REASONS", "Calm", "Columns", "Law", "Margins", "Mode", "Options", "Pace", "ProbeModel",
+    "Progress", "Session", "choose_control", "settings_for_path",
 ]  # fmt: skip
 
 BLOCK_TICKS = 500  # rows that a killed process may lose
 RING_CAPACITY = 65536
+CLOCKS = ("virtual: ticks times period", "monotonic, of this machine: a tick for each of its periods")
 Columns = dict[str, NDArray[Any]]
-Described = TypeVar("Described", Scene, Settings)
 FROZEN = "an open session is changed by session.change({!r}, field, value), which is recorded"
 
 
@@ -86,6 +88,7 @@ class Session(Runs, Frozen):
         self._mode: Mode = mode  # that it was opened in, or was asked for last
         self.seed = checked_seed(options.get("seed", 1))
         self.minimum_margin = float(options.get("minimum_margin", 1.5))
+        self.rtol = float(options.get("rtol", 0.01))
         self.clearance = options.get("clearance", 0.1e-6)
         self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
@@ -105,7 +108,7 @@ class Session(Runs, Frozen):
                     **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
-                    "minimum_margin": self.minimum_margin, "relative_accuracy": options.get("rtol", 0.01),
+                    "minimum_margin": self.minimum_margin, "relative_accuracy": self.rtol,
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
                     "master": options.get("master"), "slave": options.get("slave"),
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
@@ -124,6 +127,11 @@ class Session(Runs, Frozen):
         self._freeze()
 
     @property
+    def halves(self) -> Halves:
+        """What master and slave say of themselves: capabilities, and a row for each channel."""
+        return halves_of(self.core)
+
+    @property
     def plan(self) -> Plan:
         """What is computed, and why."""
         return Plan(self.core.plan)
@@ -131,13 +139,13 @@ class Session(Runs, Frozen):
     @property
     def scene(self) -> Scene:
         """As it is touched now; frozen."""
-        self._scene = _as_now(self._scene, self.core.scene, "scene")
+        self._scene = as_now(self._scene, self.core.scene, FROZEN.format("scene"))
         return self._scene
 
     @property
     def settings(self) -> Settings:
         """As they hold now, with the scales that were asked for last; frozen."""
-        self._settings = _as_now(self._settings, self.core.settings, "settings")
+        self._settings = as_now(self._settings, self.core.settings, FROZEN.format("settings"))
         return self._settings
 
     @property
@@ -156,6 +164,14 @@ class Session(Runs, Frozen):
         if self.control == "own":
             amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
         return margins.of_own_law(self.rig, settings, amounts, self.plan.maximum_stiffness, self.mode)
+
+    def calm(self) -> Calm:
+        """What is felt of the loop itself in touch, at these scales and the stiffest contact of the plan; of a law of
+        one's own as of the default law that it amounts to, NaN where that is not known."""
+        settings = self.settings
+        if self.control == "own" and self.core.amounts is not None:
+            settings = Settings.from_core(self.core.amounts)
+        return margins.calm(self.rig, settings, self.plan.maximum_stiffness)
 
     @property
     def stability_margin(self) -> float:
@@ -206,7 +222,10 @@ class Session(Runs, Frozen):
     def read(self, rows: int = BLOCK_TICKS) -> Columns:
         """Up to so many rows of what was recorded and not read yet, as columns."""
         columns: Columns = self.core.read(rows)
-        self._events += self.core.read_events()
+        asked = self.core.read_events()
+        self._events += asked
+        if any(name in TOLD for _, name, _ in asked):  # by an observer, too
+            self.describe()
         return columns
 
     def aim(self, input: Input | Hold) -> None:
@@ -237,6 +256,7 @@ class Session(Runs, Frozen):
         keep : bool
             False: the rows go to the writer alone, so that memory does not grow; the Recording has the last block.
         """
+        begun = rewinds(self._asked())
         script = stretched(operator if operator is not None else script_for(self), duration)
         for step in script:
             self.core.check(core_input(step))
@@ -259,31 +279,22 @@ class Session(Runs, Frozen):
                     writer.append(block)
                 if progress is not None:
                     progress(done / sum(ticks))
-        recording = Recording(_joined(blocks) if blocks else self.advance(0.0), self.metadata())
+        columns = _joined(blocks) if blocks else self.advance(0.0)
+        metadata = self.metadata()
         if writer is not None:
-            writer.update(recording.metadata)
-        return recording
+            writer.update(metadata)
+        own = {REWINDS_BEFORE: begun} if begun else {}
+        return Recording(columns, metadata | own | ({ROWS: len(columns["time"])} if keep else {}))
 
     live = _live.watch
-
-    def snapshot(self) -> _core.Snapshot:
-        """All that a simulated session needs to go on from here."""
-        return self.core.snapshot()
-
-    def reset(self) -> None:
-        """Back to where it was opened; of a session whose halves are simulated."""
-        if self._begun is None:
-            raise DeviceError("a session with a half of one's own cannot go back")
-        self.core.restore(self._begun)
 
     @property
     def state(self) -> str:
         """RUN, HOLD, RETRACT or LATCHED after the last tick."""
         return STATES[self.core.state]
 
-    def restore(self, snapshot: _core.Snapshot) -> None:
-        """Back to where a snapshot was taken. A recording that was rewound cannot be replayed."""
-        self.core.restore(snapshot)
+    __repr__ = _told.in_a_line
+    _repr_html_ = _told.as_html
 
     def metadata(self) -> dict[str, Any]:
         """What a recording of this session has to be read with; JSON-able, SI. Scene, rig and settings are those it was
@@ -295,6 +306,7 @@ class Session(Runs, Frozen):
             "start_height": None if math.isnan(self.core.start_height) else self.core.start_height,
             "master_start": self.core.master_start,
             "control": self.control,
+            "relative_accuracy": self.rtol,
             "amounts": self._amounts,
             "tare": list(self.core.tare),
             "events": self._asked(),
@@ -303,12 +315,24 @@ class Session(Runs, Frozen):
             "probe_model": self.probe_model,
             "faults": list(self._faults),
             "loop_rate": self.rate,
-            "clock": "virtual: ticks times period",
+            "clock": CLOCKS[any(half.real for half in self.halves)],
             **self._opened_with,
             "plan": str(self.plan).splitlines(),
             "version": _core.version,
         }
+        if self.surface is not None:
+            entries["surface_size"] = list(self.surface.size)
+            if self.surface.origin is not None:
+                entries["surface"] = self.surface.origin
         return Metadata(entries, self._asked)
+
+    def _now(self) -> dict[str, Any]:
+        margin = self.stability_margin
+        return {
+            "scene": self.scene.to_dict(), "settings": self.settings.to_dict(), "mode": self.mode,
+            "stability_margin": margin if math.isfinite(margin) else None, "plan": str(self.plan).splitlines(),
+            "guaranteed_force": self.guarantee().force,
+        }  # fmt: skip
 
     def _asked(self) -> list[list[Any]]:
         """What was asked of it so far, as JSON keeps it."""
@@ -325,6 +349,7 @@ class Session(Runs, Frozen):
             raise InvalidValue(f"mode {mode!r}: valid are {', '.join(MODES)}")
         self.core.set_mode(core_mode(mode))
         self._mode = mode
+        self.describe()
 
     def rescale(self, alpha_p: float | None = None, alpha_f: float | None = None) -> None:
         """Change the scales [m/m], [N/N] while running: without a bump, and as far as it is passive (docs/control.md).
@@ -333,6 +358,7 @@ class Session(Runs, Frozen):
         """
         now = self.settings.gains
         self.core.rescale(now.alpha_p if alpha_p is None else alpha_p, now.alpha_f if alpha_f is None else alpha_f)
+        self.describe()
 
     def change(self, what: Literal["scene", "settings"], field: str, value: float | str) -> None:
         """Change a field of the open session's scene or settings, such as ``("scene", "sample.youngs_modulus", 1e9)``.
@@ -347,6 +373,7 @@ class Session(Runs, Frozen):
             raise InvalidValue(f"change: {what} has no field {field!r}; it has {', '.join(asked.fields)}")
         asked[field] = value
         self.core.change(what == "scene", field, asked[field])
+        self.describe()
 
     def clutch(self, open: bool = True) -> None:
         """Let go of the stage, to move the master alone; ``open=False`` couples them again from where they stand."""
@@ -367,17 +394,6 @@ class Session(Runs, Frozen):
     def emergency_stop(self, pressed: bool = True) -> None:
         """Press or release the simulated emergency stop; from any thread, also during :meth:`advance`."""
         self.core.emergency_stop(pressed)
-
-
-def _as_now(told: Described, now: Any, what: str) -> Described:
-    """The description that was told last, with what has changed since."""
-    changed = {name: now.get(name) for name in told.fields if now.get(name) != told[name]}
-    if not changed:
-        return told
-    made = told.copy()
-    for name, value in changed.items():
-        made[name] = value
-    return made.frozen(FROZEN.format(what))
 
 
 def _joined(blocks: Sequence[Columns]) -> Columns:

@@ -38,7 +38,9 @@ class Guarantee(NamedTuple):
     ringing: float
     """the stage's resonance, excited by its own commands [N]"""
     snap_in: float
-    """the tip arrives with the energy of its jump [N]"""
+    """what is left of the swing of a jump when the force is there [N]"""
+    arrival: float
+    """a snap-in alone presses with this, limit or not [N]"""
     noise: float
     """of the reading [N]"""
     force: float
@@ -66,22 +68,28 @@ class Guarantee(NamedTuple):
     @property
     def warning(self) -> str | None:
         """What of it makes little sense for the sample, or None."""
-        if self.snap_in <= self.limit:
+        if self.arrival <= self.limit:
             return None
         return (
-            f"the tip may snap in with {self.snap_in * 1e9:.3g} nN where the limit is {self.limit * 1e9:.3g} nN: that "
+            f"the tip may snap in with {self.arrival * 1e9:.3g} nN where the limit is {self.limit * 1e9:.3g} nN: that "
             "limit does not protect the sample; take a stiffer or better damped lever, less attraction, or approach "
             "more slowly"
         )
 
     def __str__(self) -> str:
         terms = self.force - self.limit
-        worst = max(self.failures, key=lambda name: self.failures[name])
+        bounded = {name: most for name, most in self.failures.items() if math.isfinite(most)}
+        unseen = [name for name in self.failures if name not in bounded]
+        worst = max(bounded, key=lambda name: bounded[name])
         failing = (
-            f"at most {self.with_failure * 1e9:.4g} nN if one thing fails while the tip stands sideways ({worst})"
-            if math.isfinite(self.with_failure)
-            else f"no bound if one thing fails: nothing would show it ({worst})"
+            f"at most {(self.force + bounded[worst]) * 1e9:.4g} nN if one thing fails while the tip stands sideways "
+            f"({worst})"
         )
+        next_worst = max(most for name, most in bounded.items() if name != worst)
+        if bounded[worst] > 3.0 * next_worst:
+            failing += f", {(self.force + next_worst) * 1e9:.4g} nN if anything else does"
+        if unseen:
+            failing += f", but without bound for {' or '.join(unseen)}: nothing would show it"
         lines = [
             f"force on the sample at most {self.force * 1e9:.4g} nN, which is the limit of {self.limit * 1e9:.4g} nN "
             f"and {terms * 1e9:.4g} nN before a stop shows (calibration {self.calibration * 1e9:.3g}, motion "

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch import _core
+from nanotouch import _core, _properties
 from nanotouch._arrays import Floats, as_floats, check_between, plain
+from nanotouch._properties import on_pixels
 from nanotouch.errors import InvalidValue
-from nanotouch.images import Topography
+from nanotouch.images import Topography, ValueMap
+from nanotouch.units import in_words
 
 if TYPE_CHECKING:
     from nanotouch.scene import Scene
@@ -23,26 +25,29 @@ class Surface:
 
     Parameters
     ----------
-    topography : Topography
-        Heights (ny, nx) [m], row 0 at y = 0.
+    topography : Topography or ndarray (ny, nx)
+        Heights [m], row 0 at y = 0; of an array ``pixel_size`` [m] has to be given, too: one length, or (dy, dx).
     tip_radius : float, optional
         R of the tip [m]; with ``tip_half_angle`` [rad] the heights are dilated by the tip (sphere into cone). Without
         it the heights are taken as they are.
-    youngs_modulus, work_of_adhesion : ndarray (ny, nx), optional
+    youngs_modulus, work_of_adhesion : ndarray (ny, nx) or images.ValueMap, optional
         E of the sample [Pa] and w [J/m^2] at each pixel, in place of the scene's, from a force map
-        (:func:`nanotouch.maps.to_surface`) or drawn. Between the pixels they are as smooth as the heights and never
+        (:func:`nanotouch.maps.to_surface`), a channel of an image (:func:`nanotouch.images.read_values`) or drawn.
+        Between the pixels they are as smooth as the heights and never
         outside their range; w is nowhere below a thousandth of its largest value.
     """
 
     def __init__(
         self,
-        topography: Topography,
+        topography: Topography | ArrayLike,
         tip_radius: float | None = None,
         tip_half_angle: float = 0.3,
         *,
-        youngs_modulus: ArrayLike | None = None,
-        work_of_adhesion: ArrayLike | None = None,
+        pixel_size: float | tuple[float, float] | None = None,
+        youngs_modulus: ArrayLike | ValueMap | None = None,
+        work_of_adhesion: ArrayLike | ValueMap | None = None,
     ) -> None:
+        topography = as_topography(topography, pixel_size)
         dy, dx = topography.pixel_size
         heights = _wider(topography.heights)
         if tip_radius is not None:
@@ -51,21 +56,57 @@ class Surface:
         self.tip_radius = tip_radius
         self.tip_half_angle = tip_half_angle
         self.core = _core.Surface(heights, dy, dx, overwrite=True)  # `heights` is nobody else's
-        self.youngs_modulus = _property("youngs_modulus", "Pa", youngs_modulus, topography)
-        self.work_of_adhesion = _property("work_of_adhesion", "J/m^2", work_of_adhesion, topography)
+        self.youngs_modulus = (
+            None if youngs_modulus is None else on_pixels("youngs_modulus", youngs_modulus, topography)
+        )
+        self.work_of_adhesion = (
+            None if work_of_adhesion is None else on_pixels("work_of_adhesion", work_of_adhesion, topography)
+        )
+        self.origin: dict[str, Any] | None = None
+        """what files it was read from, by :class:`nanotouch.surface_file.SurfaceFile`"""
+        self.notes: tuple[str, ...] = ()
+        """what reading its properties found"""
         given = [None if one is None else _wider(one) for one in (self.youngs_modulus, self.work_of_adhesion)]
         is_made = any(one is not None for one in given)
         self._properties = _core.Properties(self.core, *given) if is_made else None
 
     @classmethod
-    def touched_by(cls, scene: Scene, topography: Topography, **properties: ArrayLike) -> Surface:
-        """Dilated by the tip of a scene, as a session or a plan of that scene needs it; ``properties`` as of a
-        Surface."""
-        return cls(topography, scene.tip.radius, scene.tip.half_angle, **properties)
+    def touched_by(
+        cls,
+        scene: Scene,
+        topography: Topography | ArrayLike,
+        is_dilated: bool = False,
+        *,
+        pixel_size: float | tuple[float, float] | None = None,
+        **properties: Any,
+    ) -> Surface:
+        """Dilated by the tip of a scene, as a session or a plan of that scene needs it, unless it has been dilated.
+
+        ``properties`` are arrays (ny, nx) or :class:`~nanotouch.images.ValueMap`: ``youngs_modulus`` or
+        ``effective_modulus`` [Pa], ``work_of_adhesion`` [J/m^2] or ``pull_off_force`` [N], which becomes the w with
+        which the scene pulls off with it.
+        """
+        unknown = set(properties) - set(_properties.UNITS)
+        if unknown:
+            raise TypeError(f"a surface has no {min(unknown)!r}; it has {', '.join(_properties.UNITS)}")
+        topography = as_topography(topography, pixel_size)
+        made_of = _properties.for_scene(scene, topography, properties, _pull_off_of)
+        tip = () if is_dilated else (scene.tip.radius, scene.tip.half_angle)
+        return cls(topography, *tip, **made_of)  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        (ny, nx), (width, height) = self.topography.shape, self.size
+        tip = "as it is" if self.tip_radius is None else f"dilated by a tip of {in_words(self.tip_radius, 'm', 3)}"
+        own = [name for name in ("youngs_modulus", "work_of_adhesion") if getattr(self, name) is not None]
+        places = "".join(f", {name} of each place" for name in own)
+        return (
+            f"Surface({nx} x {ny} pixels, {in_words(width, 'm', 4)} x {in_words(height, 'm', 4)}, heights over "
+            f"{in_words(self.topography.height_range, 'm', 3)}, {tip}{places})"
+        )
 
     def __reduce__(self) -> Any:
         made_of = self.topography, self.tip_radius, self.tip_half_angle, self.youngs_modulus, self.work_of_adhesion
-        return _again, made_of
+        return _again, (*made_of, self.origin, self.notes)
 
     @property
     def parts(self) -> tuple[_core.Surface, _core.RadiusMap | None, _core.Properties | None]:
@@ -182,28 +223,25 @@ def flat(size: float = 6e-6, pixels: int = 64) -> Topography:
     return Topography(heights=np.zeros((pixels, pixels)), pixel_size=(pixel, pixel), name="flat")
 
 
+def as_topography(heights: Topography | ArrayLike, pixel_size: float | tuple[float, float] | None) -> Topography:
+    """A Topography as it is, or an array (ny, nx) [m] with the size of its pixels [m]: one length, or (dy, dx)."""
+    if isinstance(heights, Topography):
+        if pixel_size is not None:
+            raise InvalidValue(f"pixel_size = {pixel_size}: a Topography has its own, {heights.pixel_size} m")
+        return heights
+    if pixel_size is None:
+        raise InvalidValue(
+            "pixel_size: an array of heights [m] needs the size of its pixels [m]: a length, or (dy, dx)"
+        )
+    size = np.atleast_1d(as_floats(pixel_size, "pixel_size"))
+    if size.shape not in ((1,), (2,)):
+        raise InvalidValue(f"pixel_size = {pixel_size}: valid is one length [m], or two, (dy, dx)")
+    return Topography(as_floats(heights, "heights"), (float(size[0]), float(size[-1])))
+
+
 def _wider(pixels: Floats) -> Floats:
     """With the last row and column once more: the extent is N pixels."""
     return np.pad(pixels, ((0, 1), (0, 1)), mode="edge")
-
-
-def _property(name: str, unit: str, given: ArrayLike | None, topography: Topography) -> Floats | None:
-    """One number for each height, read-only; numbers that are none are refused with their place."""
-    if given is None:
-        return None
-    values = as_floats(given, name)
-    if values.shape != topography.shape:
-        raise InvalidValue(f"{name}: shape {values.shape}, expected that of the heights, {topography.shape}")
-    wrong = ~(values > 0.0) | ~np.isfinite(values)
-    if wrong.any():
-        row, column = (int(i) for i in np.argwhere(wrong)[0])
-        raise InvalidValue(
-            f"{name}[{row}, {column}] = {values[row, column]:g} {unit}: it must be above 0 at each place "
-            f"({int(wrong.sum())} of {wrong.size} are not)"
-        )
-    values = values.copy()
-    values.flags.writeable = False
-    return values
 
 
 def _again(
@@ -212,10 +250,27 @@ def _again(
     tip_half_angle: float,
     youngs_modulus: Floats | None,
     work_of_adhesion: Floats | None,
+    origin: dict[str, Any] | None,
+    notes: tuple[str, ...],
 ) -> Surface:
-    return Surface(
+    made = Surface(
         topography, tip_radius, tip_half_angle, youngs_modulus=youngs_modulus, work_of_adhesion=work_of_adhesion
     )
+    made.origin, made.notes = origin, notes
+    return made
+
+
+def _pull_off_of(scene: Scene) -> _properties.PullOff:
+    """Of plans over a level surface of one w and E."""
+    level = Topography(np.zeros((4, 4)), (1e-9, 1e-9))
+
+    def pull_off(work: float, modulus: float | None) -> float:
+        made_of = {"work_of_adhesion": work, "youngs_modulus": modulus}
+        given = {name: np.full((4, 4), value) for name, value in made_of.items() if value is not None}
+        surface = Surface(level, **given)  # type: ignore[arg-type]
+        return scene.plan(0.0, surface=surface).pull_off_force
+
+    return pull_off
 
 
 def _pixel(size: float, pixels: int) -> float:

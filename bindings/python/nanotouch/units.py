@@ -43,6 +43,7 @@ UNITS: dict[str, dict[str, float]] = {
     "J/m^2": _scaled("J", "mu", "/m2"),
     "m/V": _scaled("m", "un", "/V"),
     "m/s": _scaled("m", "mun", "/s"),
+    "N/V": _scaled("N", "munp", "/V"),
     "N/s": _scaled("N", "mk", "/s"),
     "1/s": {"/s": 1.0},
     "N s/m": {"Ns/m": 1.0},

@@ -31,6 +31,7 @@ void bind_session(py::module_ &module);
 void bind_frames(py::module_ &module);
 void bind_commands(py::module_ &module);
 void bind_view(py::module_ &module);
+void bind_curves(py::module_ &module);
 void bind_linux(py::module_ &module);
 
 // Raises the Python exception of a status, with this message.

@@ -135,6 +135,7 @@ struct Replay {
     nt_rig rig;
     nt_settings settings;
     nt_mode mode;
+    std::vector<double> size; // of the surface, which the tip does not leave [m]; empty: it has no ends
     nt_touch touch;
     nt_touch_state state;
 
@@ -142,6 +143,10 @@ struct Replay {
     {
         nt_problem problem{};
         raise_on(nt_touch_make(&touch, &rig, &settings, mode, &problem), problem, "replay");
+        for (size_t i = 0; i < size.size(); ++i) {
+            touch.borders[i][0] = 0.0;
+            touch.borders[i][1] = size[i];
+        }
     }
 };
 
@@ -178,6 +183,10 @@ static nt_status request(Replay &replay, const std::string &name, const py::list
     }
     if (name == "scene" || name == "stop")
         return NT_OK;
+    if (name == "index") {
+        nt_touch_index(&state, number(0));
+        return NT_OK;
+    }
     const nt_scaling scaling = {number(0), number(1)};
     if (name == "rescale") { // a change of settings that comes later is made with these scales
         replay.settings.gains.alpha_p = scaling.alpha_p;
@@ -186,22 +195,26 @@ static nt_status request(Replay &replay, const std::string &name, const py::list
     return name == "rescale" ? nt_touch_rescale(&state, &scaling) : NT_E_ARGUMENT;
 }
 
-// Those of this tick, the path last: a session takes it from its mailbox when the tick begins.
+// Those of this tick, in the order in which they were done.
 static void replay_requests(Replay &replay, const py::list &events, py::ssize_t tick)
 {
-    for (const bool aims : {false, true})
-        for (const py::handle item : events) {
-            const auto event = item.cast<py::tuple>();
-            const auto name = event[1].cast<std::string>();
-            if (event[0].cast<py::ssize_t>() == tick && (name == "aim") == aims)
-                raise_on(request(replay, name, event[2].cast<py::list>()), "replay: " + name);
-        }
+    for (const py::handle item : events) {
+        const auto event = item.cast<py::tuple>();
+        const auto name = event[1].cast<std::string>();
+        if (event[0].cast<py::ssize_t>() == tick)
+            raise_on(request(replay, name, event[2].cast<py::list>()), "replay: " + name);
+    }
 }
 
 static py::dict replay(const Described<nt_rig> &rig, const Described<nt_settings> &settings, const py::object &control,
                        const py::dict &start, const py::dict &columns)
 {
-    Replay run{rig.value, settings.value, mode_of(start["mode"].cast<std::string>()), {}, {}};
+    Replay run{rig.value,
+               settings.value,
+               mode_of(start["mode"].cast<std::string>()),
+               start["size"].cast<std::vector<double>>(),
+               {},
+               {}};
     OwnLaw law{control, nullptr};
     if (py::isinstance<py::str>(control))
         set_control(run.settings, control.cast<std::string>());

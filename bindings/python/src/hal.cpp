@@ -161,6 +161,16 @@ static nt_status arm_python(void *context)
     return guarded(context, [](PythonHalf &half) { half.self.attr("arm")(); });
 }
 
+// A number of a reading, or what it must be in words.
+template <typename Number> static Number number_of(const py::object &given, const std::string &name, const char *valid)
+{
+    try {
+        return given.cast<Number>();
+    } catch (const py::cast_error &) {
+        throw py::type_error("read: " + name + " = " + py::repr(given).cast<std::string>() + ": valid are " + valid);
+    }
+}
+
 // Three numbers, NaN where one is not measured; returns their valid bits.
 static uint32_t numbers_of(const py::object &reading, const char *name, double (&numbers)[NT_AXES])
 {
@@ -170,7 +180,7 @@ static uint32_t numbers_of(const py::object &reading, const char *name, double (
                              py::repr(given).cast<std::string>());
     uint32_t valid = 0;
     for (int i = 0; i < NT_AXES; ++i) {
-        numbers[i] = given[py::int_(i)].cast<double>();
+        numbers[i] = number_of<double>(given[py::int_(i)], name, "numbers, NaN where nothing is measured");
         valid |= std::isnan(numbers[i]) ? 0u : 1u << i;
     }
     return valid;
@@ -203,13 +213,15 @@ static void fill(PythonHalf &half, const py::object &found, nt_reading &reading)
     made.valid = numbers_of(found, "position", made.position) << NT_READS_POSITION;
     made.valid |= numbers_of(found, "felt", made.felt) << NT_READS_FELT;
     made.flags = flags_of(found.attr("flags"));
-    made.buttons = found.attr("buttons").cast<uint32_t>();
+    made.buttons = number_of<uint32_t>(found.attr("buttons"), "buttons", "whole numbers, 0 .. 2^32 - 1");
     const py::object number = found.attr("sequence"), time = found.attr("time");
     if (!number.is_none() && (!PyLong_Check(number.ptr()) || number < py::int_(0)))
         throw py::value_error("read: sequence = " + py::repr(number).cast<std::string>() +
                               ": valid are whole numbers from 0 up");
-    made.sequence = half.sequence = number.is_none() ? half.sequence + 1u : number.cast<uint64_t>();
-    made.time = time.is_none() ? half.host->get().now(half.host->host) : time.cast<int64_t>();
+    made.sequence = half.sequence =
+        number.is_none() ? half.sequence + 1u : number_of<uint64_t>(number, "sequence", "whole numbers, 0 .. 2^64 - 1");
+    made.time = time.is_none() ? half.host->get().now(half.host->host)
+                               : number_of<int64_t>(time, "time", "whole nanoseconds, -2^63 .. 2^63 - 1");
     reading = made;
 }
 
@@ -261,6 +273,8 @@ std::shared_ptr<Half> half_of(const py::object &given, nt_half half)
         return nullptr;
     if (py::isinstance(given, hal_name("SharedObject")))
         return std::make_shared<ModuleHalf>(given, half);
+    if (py::isinstance(given, py::module_::import("nanotouch.rig_file").attr("Converters")))
+        return converter_half_of(given, half);
     if (py::isinstance(given, hal_name(half == NT_HALF_MASTER ? "Master" : "Slave")))
         return std::make_shared<PythonHalf>(given, half);
     throw py::type_error(std::string(names[half]) + ": " + py::repr(given).cast<std::string>() +
@@ -340,6 +354,7 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
 
 void bind_hal(py::module_ &module)
 {
+    bind_converters(module);
     py::class_<Host, std::shared_ptr<Host>>(module, "Host")
         .def("now", [](const Host &self) { return self.get().now(&self.get()); })
         .def("say", [](const Host &self, const std::string &text) { self.get().say(&self.get(), text.c_str()); });

@@ -25,3 +25,7 @@ py::str text_of(const char *text);
 // given: None (a null pointer: simulated), nanotouch.hal.SharedObject, or an object of a class derived from
 // nanotouch.hal.Master or Slave; raises if it is none of them, is the other half, or cannot be loaded.
 std::shared_ptr<Half> half_of(const py::object &given, nt_half half);
+
+// A nanotouch.rig_file.Converters; opens its buses and lines.
+std::shared_ptr<Half> converter_half_of(const py::object &given, nt_half half);
+void bind_converters(py::module_ &module);

@@ -33,6 +33,21 @@ static py::dict margins(const Rig &rig, const Settings &settings, double stiffne
     return out;
 }
 
+static py::dict calm(const Rig &rig, const Settings &settings, double stiffness)
+{
+    const nt_calm found = nt_margins_calm(&rig.value, &settings.value, stiffness);
+    const std::vector<double> parts(found.parts, found.parts + NT_RIPPLE_SOURCES);
+    py::dict out;
+    out["ripple"] = found.ripple;
+    out["parts"] = py::tuple(py::cast(parts));
+    out["felt"] = found.felt;
+    out["ringing"] = found.ringing;
+    out["slewing"] = found.slewing;
+    out["least"] = found.margin;
+    out["rule"] = found.rule;
+    return out;
+}
+
 // path (real, imaginary), impedance (real, imaginary) and Llewellyn's number at every frequency, one row each.
 static py::array_t<double> response(const Rig &rig, const Settings &settings, double stiffness,
                                     const Array &frequencies)
@@ -71,6 +86,9 @@ static py::dict resolution(const Rig &rig, const Settings &settings, double slav
 void bind_margins(py::module_ &module)
 {
     module.def("margins", &margins);
+    module.def("calm", &calm);
+    module.attr("CLEARLY_FELT") = NT_CLEARLY_FELT;
+    module.attr("RINGING_MOST") = NT_RINGING_MOST;
     module.def("loop_response", &response);
     module.def("resolution", &resolution);
     module.def("jury_limit",

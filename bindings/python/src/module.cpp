@@ -20,6 +20,7 @@ PYBIND11_MODULE(_core, module)
     bind_terrain(module);
     bind_interaction(module);
     bind_view(module);
+    bind_curves(module);
     bind_control(module);
     bind_faults(module);
     bind_hal(module);

@@ -135,6 +135,7 @@ static py::dict guarantee_of(const Session &self)
     out["motion"] = guarantee.motion;
     out["ringing"] = guarantee.ringing;
     out["snap_in"] = guarantee.snap_in;
+    out["arrival"] = guarantee.arrival;
     out["noise"] = guarantee.noise;
     out["force"] = guarantee.force;
     out["zero_drift"] = guarantee.zero_drift;

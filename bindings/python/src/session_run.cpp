@@ -118,7 +118,9 @@ static py::tuple tuple_of(const nt_event &event)
         numbers.append(n[0]);
         return as(event.kind == NT_EVENT_SCENE ? "scene" : "setting", numbers);
     case NT_EVENT_REWIND:
-        return as("rewind", take(1));
+        return as("rewind", take(2));
+    case NT_EVENT_INDEX:
+        return as("index", take(1));
     case NT_EVENT_KINDS:
         break;
     }
@@ -170,6 +172,12 @@ static void start(Session &self, int pace, uint64_t ticks)
 {
     const nt_status status =
         alone(self, [=](nt_session *handle) { return nt_session_start(handle, static_cast<nt_pace>(pace), ticks); });
+    const uint32_t can = nt_session_capabilities(self.handle, NT_HALF_MASTER)->can |
+                         nt_session_capabilities(self.handle, NT_HALF_SLAVE)->can;
+    if (status == NT_E_UNSUPPORTED && pace == NT_PACE_HARD && can & NT_IS_SLOW)
+        raise(status, "start: pace 'hard': a half that is written in Python runs at 'free' and 'wall' only");
+    if (status == NT_E_UNSUPPORTED && pace != NT_PACE_HARD && can & NT_IS_REAL)
+        raise(status, "start: a half that is real, whether it leads the clock or not, runs at pace 'hard' only");
     raise_on(status, "start");
 }
 
@@ -190,6 +198,7 @@ static py::dict progress_of(const Session &self)
     out["worst_delay"] = found.worst_delay;
     out["runs"] = found.runs != 0;
     out["paused"] = found.paused != 0;
+    out["stands"] = found.stands != 0;
     out["status"] = nt_status_message(found.status);
     return out;
 }
@@ -248,6 +257,24 @@ static void bind_thread(py::class_<Session> &type)
         .def_property_readonly("progress", &progress_of);
 }
 
+// What a half says of itself.
+static py::dict described_half(const Session &self, int half)
+{
+    const nt_capabilities *found = nt_session_capabilities(self.handle, static_cast<nt_half>(half));
+    const auto can = [found](uint32_t bit) { return (found->can & bit) != 0; };
+    py::list channels;
+    for (int i = 0; i < found->rows; ++i) {
+        const nt_channel_row &row = found->channels[i];
+        channels.append(py::make_tuple(row.name, row.unit, row.driven != 0, row.axis, row.minimum, row.maximum,
+                                       row.step, row.noise, row.latency, row.safe));
+    }
+    return py::dict(py::arg("axes") = found->axes, py::arg("period") = found->period,
+                    py::arg("feels") = can(NT_CAN_FEEL), py::arg("pushes") = can(NT_CAN_PUSH),
+                    py::arg("servos") = can(NT_CAN_SERVO), py::arg("leads") = can(NT_LEADS_CLOCK),
+                    py::arg("real") = can(NT_IS_REAL), py::arg("event_driven") = can(NT_IS_EVENT_DRIVEN),
+                    py::arg("slow") = can(NT_IS_SLOW), py::arg("channels") = channels);
+}
+
 void bind_session_run(py::module_ &module, py::class_<Session> &type)
 {
     bind_frame(module);
@@ -257,6 +284,7 @@ void bind_session_run(py::module_ &module, py::class_<Session> &type)
         .def("step", &step_session, py::arg("input").none(true))
         .def("read", &read_records)
         .def("read_events", &read_events)
+        .def("half", &described_half)
         .def("publish",
              [](Session &self, const std::string &name) {
                  const char *given = name.empty() ? nullptr : name.c_str();

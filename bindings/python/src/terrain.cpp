@@ -39,10 +39,11 @@ static std::unique_ptr<nt_plan> plan_of(const Terrain &self)
     return copy;
 }
 
-// {rise, relief, slope, least radius, largest radius}
+// in the order of nt_reach
 static py::tuple tuple_of(const nt_reach &reach)
 {
-    return py::make_tuple(reach.rise, reach.relief, reach.slope, reach.least_radius, reach.largest_radius);
+    return py::make_tuple(reach.rise, reach.relief, reach.slope, reach.least_radius, reach.largest_radius,
+                          reach.least_modulus, reach.largest_modulus, reach.least_work, reach.largest_work);
 }
 
 static py::tuple reach_path(const Terrain &self, const Array &points)

@@ -7,7 +7,9 @@
 A killed or repeated run goes on from what is in the journal beside the results: docs/maps.md.
 """
 
-from .files import Summary, files_of, fit_files
+from .files import WITHOUT, Summary, files_of, fit_files
+from .groups import FOLDER, Spread, spreads
+from .report import write_report
 from .sidecar import Sidecar
 
-__all__ = ["Sidecar", "Summary", "files_of", "fit_files"]
+__all__ = ["FOLDER", "WITHOUT", "Sidecar", "Spread", "Summary", "files_of", "fit_files", "spreads", "write_report"]

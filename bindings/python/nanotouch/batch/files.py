@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import csv
 import glob
 import json
 import os
@@ -19,21 +18,18 @@ import nanotouch
 from .._digest import file_digest
 from .._words import counted, printable
 from .._writing import replacing
-from ..contact import Model
 from ..curves import CalibrationTable, read
 from ..errors import Error, InvalidValue
 from ..fit import FitResult, TipLike, fit_curve
+from .groups import Spread, label_by, spreads
 from .journal import Journal
-from .sidecar import Decision, Sidecar
+from .sidecar import Sidecar
+from .table import Row, by_hand, row_of, row_without
+from .table import write as write_table
 
+STATUSES = ("ok", "undetermined", "misfit", "not converged", "excluded", "failed")
+WITHOUT = ("excluded", "failed")
 SHOWN = 120  # points of a curve that are kept for its small picture
-_PLAIN = {
-    "pull_off_force": "N", "residual_rms": "N", "misfit": "", "contact_radius": "m", "contact_stiffness": "N/m",
-    "radius": "m", "spring_constant": "N/m",
-}  # fmt: skip
-_READ_OFF = {"pull_off_force": "N", "snap_in_force": "N", "adhesion_work": "J", "contact_slope": "N/m"}
-
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -43,7 +39,8 @@ class Summary:
     Attributes
     ----------
     rows : list of dict
-        As in the CSV file; ``row["status"]`` is ``"ok"``, ``"excluded"`` or ``"failed"``.
+        All columns; ``row["status"]`` is that of the fit (``"ok"``, ``"undetermined"``, ``"misfit"``, ``"not
+        converged"``), ``"excluded"`` or ``"failed"``.
     pictures : list of dict
         For each fitted curve its name and some of its points, for :func:`nanotouch.batch.sheet.draw`.
     reused : int
@@ -57,12 +54,23 @@ class Summary:
     reused: int
     unused: list[str]
 
+    @property
+    def spreads(self) -> list[Spread]:
+        """What the values of each group come to."""
+        return spreads(self.rows)
+
+    @property
+    def fitted(self) -> int:
+        """Curves that have a fit."""
+        return sum(row["status"] not in WITHOUT for row in self.rows)
+
     def count(self, status: str) -> int:
         """Rows of a status."""
         return sum(row["status"] == status for row in self.rows)
 
     def __str__(self) -> str:
-        counts = ", ".join(f"{self.count(status)} {status}" for status in ("ok", "excluded", "failed"))
+        found = {status: self.count(status) for status in STATUSES}
+        counts = ", ".join(f"{number} {status}" for status, number in found.items() if number or status == "ok")
         reused = f"; {counted(self.reused, 'file')} from an earlier run" if self.reused else ""
         return f"{counted(len(self.rows), 'curve')}: {counts}{reused}"
 
@@ -83,12 +91,14 @@ def files_of(names: Iterable[str | os.PathLike[str]]) -> list[Path]:
 def fit_files(
     names: Iterable[str | os.PathLike[str]],
     out: str | os.PathLike[str],
-    model: Model = "maugis",
+    model: str = "auto",
     *,
     tip: TipLike | None = None,
     sidecar: str | os.PathLike[str] | None = None,
     reading: Mapping[str, Any] | None = None,
     progress: Callable[[float], None] | None = None,
+    groups: str | os.PathLike[str] | None = None,
+    long: bool = False,
     **settings: Any,
 ) -> Summary:
     """Fit every curve of every file, and write one row for each.
@@ -109,10 +119,15 @@ def fit_files(
         Arguments of :func:`nanotouch.curves.read`: ``spring_constant``, ``sensitivity``, ``calibration``, ...
     progress : callable, optional
         Called with the fraction done.
+    groups : "folder" or path, optional
+        Which curves belong together: those of a folder, or a CSV table ``file,group`` of patterns.
+    long : bool
+        All columns, in place of the fifteen that answer (:data:`nanotouch.batch.table.SHORT`).
     """
+    label = label_by(groups)
     reading = dict(reading or {})
     out = Path(out)
-    files = _without(files_of(names), (*_own(out), *_given(sidecar, reading)))
+    files = _without(files_of(names), (*_own(out), *_given(sidecar, groups, reading)))
     if isinstance(reading.get("calibration"), str | os.PathLike):
         reading["calibration"] = CalibrationTable.from_csv(reading["calibration"])
     decided = Sidecar() if sidecar is None else Sidecar.from_toml(sidecar)
@@ -134,8 +149,12 @@ def fit_files(
         if progress:
             progress((number + 1) / len(files))
     entries = [journal.entries[str(file)] for file in files]
-    rows = [row | {"sha256": entry["sha256"]} for entry in entries for row in entry["rows"]]
-    _write_csv(out, rows)
+    rows = [
+        row | {"group": label(Path(row["file"])), "sha256": entry["sha256"]}
+        for entry in entries
+        for row in entry["rows"]
+    ]
+    write_table(out, rows, long=long)
     _write_json(_beside(out, "json"), made_of | {
         "numpy": np.__version__,
         "sidecar": {name: asdict(decision) for name, decision in decided.decisions.items()},
@@ -164,9 +183,11 @@ def _own(out: Path) -> tuple[Path, ...]:
     return (out, _beside(out, "json"), _beside(out, "journal"), *sheets)
 
 
-def _given(sidecar: str | os.PathLike[str] | None, reading: Mapping[str, Any]) -> list[Path]:
+def _given(
+    sidecar: str | os.PathLike[str] | None, groups: str | os.PathLike[str] | None, reading: Mapping[str, Any]
+) -> list[Path]:
     """Tables that a run is given, which may lie among the curves."""
-    return [Path(file) for file in (sidecar, reading.get("calibration")) if isinstance(file, str | os.PathLike)]
+    return [Path(file) for file in (sidecar, groups, reading.get("calibration")) if isinstance(file, str | os.PathLike)]
 
 
 def _unused(reading: Mapping[str, Any], files: list[Path]) -> list[str]:
@@ -204,23 +225,23 @@ def _fitted(
     """Rows and small pictures of the curves of a file; a file or curve that fails is a row that says why."""
     whole = decided.of(file, -1)
     if whole.exclude:
-        return [_row_without(file, None, "excluded", whole.exclude)], []
+        return [row_without(file, None, "excluded", whole.exclude)], []
     try:
         curves = read(file, **reading)
     except Exception as error:
-        return [_row_without(file, None, "failed", _said(error))], []
+        return [row_without(file, None, "failed", _said(error))], []
     rows, pictures, name = [], [], printable(file.name)
     for index, curve in enumerate(curves):
         decision = decided.of(file, index)
         if decision.exclude:
-            rows.append(_row_without(file, index, "excluded", decision.exclude))
+            rows.append(row_without(file, index, "excluded", decision.exclude))
             continue
         try:
-            result = fit_curve(curve, **(dict(settings) | _by_hand(decision)))
+            result = fit_curve(curve, **(dict(settings) | by_hand(decision)))
         except Exception as error:
-            rows.append(_row_without(file, index, "failed", _said(error)))
+            rows.append(row_without(file, index, "failed", _said(error)))
             continue
-        rows.append(_row(file, index, result, decision))
+        rows.append(row_of(file, index, result, decision))
         pictures.append(_picture(name if len(curves) == 1 else f"{name}#{index}", result))
     return rows, pictures
 
@@ -230,53 +251,12 @@ def _said(error: Exception) -> str:
     return str(error) if isinstance(error, Error) else f"{type(error).__name__}: {error}"
 
 
-def _by_hand(decision: Decision) -> dict[str, Any]:
-    given = {"contact_point": decision.contact_point, "baseline": decision.baseline}
-    return {key: value for key, value in given.items() if value is not None}
-
-
-def _row_without(file: Path, index: int | None, status: str, reason: str) -> Row:
-    return {"file": str(file), "curve": "" if index is None else index, "status": status, "reason": reason}
-
-
-def _row(file: Path, index: int, result: FitResult, decision: Decision) -> Row:
-    row: Row = {"file": str(file), "curve": index, "status": "ok", "reason": ""}
-    row |= {"model": result.model, "branch": result.branch, "points": int(result.z.size)}
-    for name, value in result.values.items():
-        unit = result.units[name]
-        row |= {_headed(name, unit): value, _headed(f"{name} sigma", unit): result.sigma[name]}
-        row[_headed(f"{name} sigma statistical", unit)] = result.sigma_statistical[name]
-        row[_headed(f"{name} sigma calibration", unit)] = result.sigma_calibration[name]
-        if name in result.identifiable:
-            row[f"{name} determined"] = int(result.identifiable[name])
-    for name, unit in _READ_OFF.items():
-        row[_headed(f"measured {name}", unit)] = getattr(result.report, name)
-        row[_headed(f"measured {name} sigma", unit)] = result.report.sigma[name]
-    row |= {_headed(name, unit): getattr(result, name) for name, unit in _PLAIN.items()}
-    row |= {"noise [N]": result.report.noise, "converged": int(result.converged)}
-    by_hand = ", ".join(sorted(_by_hand(decision)))
-    return row | {"by hand": by_hand, "notes": "; ".join(result.notes), "assumptions": "; ".join(result.assumptions)}
-
-
-def _headed(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit else name
-
-
 def _picture(name: str, result: FitResult) -> dict[str, Any]:
     part = np.unique(np.linspace(0, result.z.size - 1, SHOWN).astype(int))
     columns = {"z": result.z, "force": result.force, "fitted": result.fitted}
     shown = {key: [float(f"{value:.5g}") for value in values[part]] for key, values in columns.items()}
     good = all(result.identifiable.values())
     return {"name": name, "text": result.show("effective_modulus"), "good": good, **shown}
-
-
-def _write_csv(path: Path, rows: list[Row]) -> None:
-    names = list(dict.fromkeys(key for row in rows for key in row))
-    # file names may hold bytes that are no UTF-8
-    with replacing(path) as part, part.open("w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
-        writer = csv.DictWriter(stream, names, restval="")
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 def _write_json(path: Path, data: Mapping[str, Any]) -> None:

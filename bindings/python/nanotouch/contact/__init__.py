@@ -2,8 +2,9 @@
 """Contact mechanics: the force between an elastic tip and a half-space at a given indentation.
 
 Models: ``"hertz"``, ``"dmt"``, ``"jkr"``, ``"maugis"`` (Maugis-Dugdale, every case between DMT and JKR). Adhesive
-models have branches: ``"stable"`` is what retraction from contact meets under grips, ``"approach"`` what approach from
-far away meets, ``"unstable"`` the equilibrium between the folds that no grip can hold (NaN where there is none).
+models have branches. ``"stable"`` is what retraction from contact meets under grips. ``"approach"`` is what approach
+from far away meets. ``"unstable"`` is the equilibrium between the folds that no grip can hold (NaN where there is
+none).
 """
 
 from __future__ import annotations

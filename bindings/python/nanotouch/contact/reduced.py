@@ -11,8 +11,8 @@ there.
 attracted non-contact branch down to its fold, then zero. ``"approach"`` is what approach from far away meets,
 ``"unstable"`` the equilibrium that no grip holds.
 
-``tier`` trades accuracy for speed: ``"table"`` (error below 1.5e-6 of the larger of force and pull-off force, about
-1 ns), ``"polished"`` (rounding, away from the folds), ``"exact"`` (rounding). No tier is ever worse than that: where a
+``tier`` trades accuracy for speed: ``"table"`` (error below 1.5e-6 of the larger of force and pull-off force, about 1
+ns), ``"polished"`` (rounding, away from the folds), ``"exact"`` (rounding). No tier is ever worse than that. Where a
 table would cost more than it saves, or none exists (few points of one ``lam``, the unstable branch, given loads and
 radii, folds), the exact solver answers in every tier.
 """

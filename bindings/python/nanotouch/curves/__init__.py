@@ -6,28 +6,34 @@
 >>> report = nt.curves.analyse(curve)                                       # doctest: +SKIP
 """
 
+from .adhesion import Adhesion, adhesion_of
 from .analysis import analyse, force_gap, sensitivity
 from .baseline import Baseline, Wave
 from .calibration import Calibration, CalibrationTable
 from .curve import ForceCurve, Segment
+from .events import Rupture
 from .reading import Stream, read, stream
 from .report import CurveReport
 from .sader import hydrodynamic_function, sader
 from .synthesis import synthesise
 from .thermal import ThermalTune, thermal_tune
 from .thermal_file import ThermalSpectrum, thermal_spectrum
+from .writing import write
 
 __all__ = [
+    "Adhesion",
     "Baseline",
     "Calibration",
     "CalibrationTable",
     "CurveReport",
     "ForceCurve",
+    "Rupture",
     "Segment",
     "Stream",
     "ThermalSpectrum",
     "ThermalTune",
     "Wave",
+    "adhesion_of",
     "analyse",
     "force_gap",
     "hydrodynamic_function",
@@ -38,4 +44,5 @@ __all__ = [
     "synthesise",
     "thermal_spectrum",
     "thermal_tune",
+    "write",
 ]

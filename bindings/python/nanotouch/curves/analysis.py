@@ -3,21 +3,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..errors import InvalidValue
-from . import contact_point as methods
-from .baseline import Kind, fit_baseline
+from .baseline import Kind, choice_of, fit_baseline
 from .curve import ForceCurve, Segment
-from .events import Branch
+from .events import Branch, Rupture, arrays_of
 from .report import CurveReport
 
 _FEWEST = 16  # points of a branch
+_NONE = np.empty(0), np.empty(0)
+_UNKNOWN = (np.nan, np.nan, np.nan)
+_DRAG = 15e-6  # N s/m: the most that the drag of a lever in water makes at its speed
+_GAUSSIAN = 1.96
+_BOUND = 3  # nt_curve_support: nothing of the retraction is free
 _DOUBTFUL = 0.2  # part of the pull-off by which a constant baseline would change it
 
 
-def analyse(curve: ForceCurve, *, baseline: Kind = "auto") -> CurveReport:
+def analyse(curve: ForceCurve, *, baseline: Kind = "auto", drag: tuple[float, float] | None = None) -> CurveReport:
     """Find baseline, contact point, snap-in and pull-off of a curve.
 
     Parameters
@@ -28,29 +36,40 @@ def analyse(curve: ForceCurve, *, baseline: Kind = "auto") -> CurveReport:
         What the free cantilever shows: a line, with a wave of interference where there is very strong evidence for
         one. ``"constant"`` takes the median of the far half and leaves the tilt in, as many published values do.
 
+    drag : (float, float), optional
+        Least and largest force by which drag puts the free retraction below the free approach [N]: 2 D of a lever that
+        moves with +-v, from lever and medium or from curves at two speeds (value -+ two sigma). Two free branches alone
+        cannot tell it from a tether that holds to the end. Default: 0 to 30 pN for each um/s, above what levers show
+        in water (1.2 .. 8 pN each way); unknown where the file records no time.
+
     Raises
     ------
     InvalidValue
         If it has no force (no spring constant), or neither approach nor retraction of at least 16 points.
     """
-    branches = {}
-    for role, segment in (("approach", curve.approach), ("retract", curve.retract)):
-        if segment is not None and len(segment) >= _FEWEST:
-            branches[role] = Branch.of(segment, baseline, curve.name)
-    if not branches:
+    segments = {
+        role: segment
+        for role, segment in (("approach", curve.approach), ("retract", curve.retract))
+        if segment is not None and len(segment) >= _FEWEST
+    }
+    if not segments:
         raise InvalidValue(f"{curve.name}: neither an approach nor a retraction of at least {_FEWEST} points")
-    nothing = (np.nan, np.nan, np.nan)
-    approach, retract = branches.get("approach"), branches.get("retract")
-    snap_in, snap_in_z, snap_in_sigma = approach.dip() if approach else nothing
-    pull_off, pull_off_z, pull_off_sigma = retract.dip() if retract else nothing
-    first = next(iter(branches.values()))
+    arrays = [arrays_of(segments[role], curve.name) if role in segments else _NONE for role in ("approach", "retract")]
     stiffness = curve.spring_constant
-    contacts, contact_sigma = _contact_points(first, stiffness)
-    slope, slope_sigma = first.contact_slope()
+    read = _core.read_curve(
+        *arrays, np.nan if stiffness is None else stiffness, drag or _drag_of(curve), choice_of(baseline)
+    )
+    branches = {role: Branch.found(read[role]) for role in segments}
+    approach, retract = branches.get("approach"), branches.get("retract")
+    snap_in, snap_in_z, snap_in_sigma = approach.dip if approach else _UNKNOWN
+    pull_off, pull_off_z, pull_off_sigma = retract.dip if retract else _UNKNOWN
+    first = next(iter(branches.values()))
+    contact_point, contact_sigma = read["contact_point"]
+    slope, slope_sigma = first.contact_slope
     softening = 1.0 - slope / stiffness if stiffness is not None and slope < stiffness else np.nan
-    work, work_sigma = retract.adhesion_work() if retract else (np.nan, np.nan)
+    work, work_sigma = retract.adhesion_work if retract else _UNKNOWN[:2]
     return CurveReport(
-        contact_point=float(np.median(list(contacts.values()))) if contacts else np.nan,
+        contact_point=contact_point,
         snap_in_force=snap_in,
         snap_in_z=snap_in_z,
         pull_off_force=pull_off,
@@ -69,8 +88,10 @@ def analyse(curve: ForceCurve, *, baseline: Kind = "auto") -> CurveReport:
             "contact_stiffness": slope_sigma / softening**2,
             "adhesion_work": work_sigma,
         },
-        contact_points=contacts,
-        notes=_notes(curve, retract),
+        contact_points=read["contact_points"],
+        pull_off_interval=_interval(*read["pull_off"]),
+        ruptures=tuple(Rupture(*row) for row in read["ruptures"]),
+        notes=(*_notes(curve, retract), *_tether_notes(read)),
     )
 
 
@@ -94,7 +115,7 @@ def sensitivity(curve: ForceCurve) -> tuple[float, float]:
     slopes = []
     for segment in (curve.approach, curve.retract):
         if segment is not None and len(segment) >= _FEWEST:
-            slopes.append(Branch.of(segment, "auto", curve.name).contact_slope())
+            slopes.append(Branch.of(segment, "auto", curve.name).contact_slope)
     slopes = [(slope, sigma) for slope, sigma in slopes if slope > 0.0]
     if not slopes:
         raise InvalidValue(f"{curve.name}: shows no contact whose slope could be taken")
@@ -126,27 +147,36 @@ def force_gap(
     return segment.z + force / stiffness - report.contact_point, force
 
 
-def _contact_points(branch: Branch, stiffness: float | None) -> tuple[dict[str, float], float]:
-    """Coming out of the strongest contact, where the force is down to the baseline, and the uncertainty [m].
+def _drag_of(curve: ForceCurve) -> tuple[float, float]:
+    """Bounds of twice the drag, by the speed of the retraction [N]; the second 0 where that is unknown."""
+    segment = curve.retract
+    if segment is None or len(segment) < _FEWEST:
+        return 0.0, 0.0
+    duration = float(np.ptp(segment.time))
+    return 0.0, 2.0 * _DRAG * float(np.ptp(segment.z)) / duration if duration > 0.0 else 0.0
 
-    Without adhesion the force leaves the baseline gradually: then it is the last point above what is visible.
-    """
-    z, force, adhesive = branch.z, branch.force, branch.dips
-    peak = int(np.argmax(force))
-    level = 0.0 if adhesive else branch.visible
-    below = np.flatnonzero(force[peak:] <= level)
-    if force[peak] <= branch.visible or below.size == 0:
-        return {}, np.nan
-    after = peak + int(below[0])
-    before = after - 1
-    crossing = float(z[before] + (z[after] - z[before]) * (force[before] - level) / (force[before] - force[after]))
-    reach = max(5, z.size // 100)
-    near = slice(max(peak, after - reach), min(after + reach, z.size))
-    steepness = abs(float(np.polyfit(z[near] - crossing, force[near], 1)[0]))
-    outward = methods.Outward(z[peak:], force[peak:], after - peak, branch.visible, stiffness, adhesive)
-    found = {"crossing" if adhesive else "deviation": crossing} | methods.others(outward)
-    statistical = branch.sigma(crossing) / steepness if steepness > 0 else np.nan
-    return found, float(np.hypot(statistical, np.std(list(found.values()))))
+
+def _interval(least: float, most: float, sigma: float) -> tuple[float, float]:
+    """95 %, of all depths between the least and the most [N]."""
+    return max(least - _GAUSSIAN * sigma, 0.0), most + _GAUSSIAN * sigma
+
+
+def _tether_notes(read: Mapping[str, Any]) -> list[str]:
+    """Why the pull-off is an interval, where it is a wide one."""
+    least, most, _ = read["pull_off"]
+    offset, sigma = read["offset"]
+    between = f"the pull-off is {least * 1e9:.3g} to {most * 1e9:.3g} nN"
+    if read["support"] == _BOUND:
+        return [
+            f"the retraction ends {offset * 1e9:.3g} nN below the approach, more than drag explains: nothing of it is "
+            f"free; below the approach {between}"
+        ]
+    if most - least > 5.0 * sigma and most > 1.2 * least:
+        return [
+            f"the retraction ends {offset * 1e9:.3g} nN below the approach: a tether that holds to the end and drag or "
+            f"an offset look the same, so {between}"
+        ]
+    return []
 
 
 def _notes(curve: ForceCurve, retract: Branch | None) -> tuple[str, ...]:
@@ -172,7 +202,7 @@ def _baseline_notes(retract: Branch, segment: Segment | None) -> list[str]:
         return notes
     constant = fit_baseline(segment.z, segment.force, "constant")
     other = float(np.max(constant.at(segment.z) - segment.force))
-    depth, _, sigma = retract.dip()
+    depth, _, sigma = retract.dip
     if other > 5.0 * retract.noise and abs(other - depth) > max(3.0 * sigma, _DOUBTFUL * depth):
         notes.append(
             f"the baseline is not level: over it the pull-off is {depth * 1e9:.3g} nN, over the constant level of its "

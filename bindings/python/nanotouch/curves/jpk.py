@@ -8,8 +8,8 @@ What many segments share stands once in ``shared-data/header.properties``: ``cha
 everything under ``lcd-info.0.``. Segments of other styles than extend, pause and retract (modulation, ...) are left
 out, and named in ``meta["notes"]``.
 
-afmformats reads these files too, and is what this reader is tested against; but it searches all names of the archive
-again for every curve, so that its time grows as the square of a map's, and it does not keep a segment's style.
+afmformats reads these files too, and this reader is tested against it. But afmformats searches all names of the archive
+again for every curve, so its time grows as the square of a map's. It does not keep a segment's style either.
 """
 
 from __future__ import annotations

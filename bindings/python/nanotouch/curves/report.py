@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .baseline import Baseline
-from .events import Branch
+from .events import Branch, Rupture
 
 
 @dataclass(frozen=True)
@@ -20,13 +21,20 @@ class CurveReport:
         z of the base [m] on the approach, coming out of contact: the median of `contact_points`. Its sigma contains
         their standard deviation.
     contact_points : mapping
-        By each of the methods of :mod:`nanotouch.curves.contact_point` that can say [m]; the first is where the force
-        crosses the baseline (``"crossing"``, after a snap-in) or can no longer be told from it (``"deviation"``).
+        By each method that can say [m]: where the force crosses the baseline (``"crossing"``, after a snap-in) or can
+        no longer be told from it (``"deviation"``); ``"hertz"``, the foot of F^(2/3) over the indentation;
+        ``"two_lines"``, where baseline and a line through the lower half of the load meet; ``"gradient"`` (without a
+        snap-in), where the slope leaves that of the baseline.
     snap_in_force, pull_off_force : float
-        Depth below the baseline on the approach and on the retraction [N], positive; 0 where no dip is deeper than five
+        Depth below the baseline on the approach and on the retraction [N], positive. 0 where no dip is deeper than five
         times the noise and three times the scatter of the baseline.
     snap_in_z, pull_off_z : float
         z of the base there [m]; NaN where there is none.
+    pull_off_interval : (float, float)
+        95 % interval of `pull_off_force` [N]. A tether that holds to the end of the curve and an offset between the
+        branches look the same: it spans both where they cannot be told apart (`notes` says why).
+    ruptures : tuple of Rupture
+        What tears off on the retraction, from the sample outwards.
     contact_slope : float
         -dF/dz in hard contact (upper half of the load) [N/m]: at most the spring constant, and equal to it on a sample
         that does not yield.
@@ -61,6 +69,8 @@ class CurveReport:
     branches: Mapping[str, Branch]
     sigma: Mapping[str, float]
     contact_points: Mapping[str, float]
+    pull_off_interval: tuple[float, float] = (math.nan, math.nan)
+    ruptures: tuple[Rupture, ...] = ()
     notes: tuple[str, ...] = ()
 
     @property

@@ -42,8 +42,8 @@ def synthesise(
     """What an instrument would record over a known contact.
 
     The base moves evenly, slowly enough for equilibrium. On the approach the tip is free until the undeformed bodies
-    would touch and then on the stable branch of the law; on the retraction it follows that branch through its lowest
-    force until the cantilever of finite stiffness tears it off, where dF/d(delta) = -k_c or at the law's own fold.
+    would touch, and then on the stable branch of the law. On the retraction it follows that branch through its lowest
+    force, until the cantilever tears it off: where dF/d(delta) = -k_c, or at the law's own fold.
 
     Parameters
     ----------

@@ -6,28 +6,33 @@
 >>> result = nt.fit.fit_curve(curve, model="maugis", radius=20e-9, poisson_ratio=0.3)      # doctest: +SKIP
 >>> result.values["effective_modulus"], result.sigma["effective_modulus"], result.identifiable   # doctest: +SKIP
 
-The force is fitted over the position of the cantilever's base, with the bending of the cantilever inside the model: so
-the noise of the force does not enter the abscissa, and a curve whose slope is that of its cantilever shows itself as
-one that does not determine the modulus. How and why: docs/fit.md.
+The force is fitted over the position of the cantilever's base, with the bending of the cantilever inside the model. So
+the noise of the force does not enter the abscissa. A curve whose slope is that of its cantilever shows itself as one
+that does not determine the modulus. How and why: docs/fit.md.
 """
 
 from .arrays import PointsFit, fit_points
 from .choice import PARABOLOIDS, Candidate, Choice, choose_model
 from .fitting import TipLike, fit_curve
-from .models import Model, Parameter, models, register
+from .models import Model, Parameter, add_named, models, register
 from .picture import draw
 from .result import FitResult
+from .sokolov import SOKOLOV, SeriesBias, series_bias
 from .stability import Stability, stability
 from .uncertainties import Uncertainties
 
+add_named(SOKOLOV)
+
 __all__ = [
     "PARABOLOIDS",
+    "SOKOLOV",
     "Candidate",
     "Choice",
     "FitResult",
     "Model",
     "Parameter",
     "PointsFit",
+    "SeriesBias",
     "Stability",
     "TipLike",
     "Uncertainties",
@@ -37,5 +42,6 @@ __all__ = [
     "fit_points",
     "models",
     "register",
+    "series_bias",
     "stability",
 ]

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nanotouch._arrays import Floats
+
 from .contact_part import Contact, contact_of
 from .fitting import ASSUMED_HALF_ANGLE
 from .models import Model, extension, find
@@ -19,6 +21,9 @@ from .solving import Setup, solve, steep_width
 from .uncertainties import Uncertainties
 
 _MISFIT = 1.6  # residual over the noise stated, where the fit itself has taken the larger one
+_LEAST, _PART = 50, 4  # points of a way, and of its parts in which it is compared with the other one
+_SURELY = 6.0  # standard errors between them
+_EXACT = 1e-6  # of all forces: two computed curves that are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +39,10 @@ class PointsFit:
     converged : bool
     torn : bool
         Whether the arrays hold a tear: the force jumps from below back to its straight end.
-    status : {"ok", "misfit", "not converged"}
-        ``"misfit"``: the residuals are not noise, so the model does not describe these points and sigma is too small.
+    status : {"ok", "undetermined", "misfit", "not converged"}
+        ``"misfit"``: the residuals are not noise, or the way there and the way back differ, so the model does not
+        describe these points and sigma is too small. ``"undetermined"``: `identifiable` holds a parameter that the
+        points do not determine, as w of an adhesion that drowns in the noise.
     """
 
     values: Mapping[str, float]
@@ -114,7 +121,25 @@ def fit_points(
         for name in ["force_offset"] * fit_offset + ["force_tilt"] * fit_tilt:
             options.free(name)
         found = compiled.run(options, X, F)
+    found["residuals_are_noise"] &= X.ndim != 1 or not _ways_differ(X, F)
     return _result(found, options, contact is not None and contact.torn)
+
+
+def _ways_differ(position: Floats, force: Floats) -> bool:
+    """Whether arrays that go there and come back hold two curves: somewhere surely, by more than their noise."""
+    turn = int(np.argmax(np.abs(position - position[0])))
+    ways = [(position[: turn + 1], force[: turn + 1]), (position[turn:], force[turn:])]
+    if any(len(x) < _LEAST or abs(np.mean(np.sign(np.diff(x)))) < 0.5 for x, _ in ways):
+        return False
+    (x, there), (back, f) = ((x[np.argsort(x)], f[np.argsort(x)]) for x, f in ways)
+    common = (x >= back[0]) & (x <= back[-1])
+    apart = there[common] - np.interp(x[common], back, f)
+    noise = 1.4826 * float(np.median(np.abs(np.diff(force, 2)))) / np.sqrt(6.0)
+    least = max(noise, _EXACT * float(np.ptp(force)))
+    return any(
+        abs(part.mean()) > max(least, _SURELY * noise * np.sqrt(2.0 / part.size))
+        for part in np.array_split(apart, max(1, apart.size // _PART)) if part.size > 1
+    )  # fmt: skip
 
 
 def _run_contact(compiled: ModuleType, setup: Setup, contact: Contact) -> tuple[dict[str, Any], Any]:
@@ -137,13 +162,19 @@ def _run_contact(compiled: ModuleType, setup: Setup, contact: Contact) -> tuple[
 
 def _result(found: dict[str, Any], options: Any, torn: bool) -> PointsFit:
     present = [(i, parameter[0]) for i, parameter in enumerate(options.parameters) if parameter is not None]
+    identifiable = {name: bool(found["identifiable"][i]) for i, name in present if options.is_free(name)}
+    status: Status = "ok" if all(identifiable.values()) else "undetermined"
+    if not found["converged"]:
+        status = "not converged"
+    elif not found["residuals_are_noise"]:
+        status = "misfit"
     return PointsFit(
         values={name: float(found["value"][i]) for i, name in present},
         sigma={name: float(found["sigma"][i]) for i, name in present},
-        identifiable={name: bool(found["identifiable"][i]) for i, name in present if options.is_free(name)},
+        identifiable=identifiable,
         residual_rms=found["residual_rms"],
         residual_noise=found["residual_noise"],
         converged=found["converged"],
         torn=torn,
-        status="not converged" if not found["converged"] else "ok" if found["residuals_are_noise"] else "misfit",
+        status=status,
     )

@@ -10,13 +10,13 @@ import numpy as np
 
 from nanotouch._words import times
 from nanotouch.curves import ForceCurve, analyse
+from nanotouch.curves.flicker import residual_correlation
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.scene import Scene
 
 from .fitting import ASSUMED_RANGE, fit_curve
 from .models import find
 from .result import FitResult
-from .solving import correlation_of
 
 PARABOLOIDS = ("hertz", "dmt", "jkr", "maugis")
 _BACKGROUND = ("force_offset", "force_tilt", "sensitivity")  # the same in all models, and known beforehand
@@ -147,7 +147,7 @@ def choose_model(
         raise SolverError(f"{curve.name}: none of {', '.join(models)} comes near the curve")
     closest = min(found.values(), key=lambda result: result.residual_rms)
     noise = max(report.noise, closest.residual_rms)
-    correlation = correlation_of(closest.residuals)
+    correlation = residual_correlation(closest.residuals)
     candidates = _weighed(fits, noise, correlation)
     best = candidates[0]
     alike = [c for c in candidates if c.bic - best.bic < _DECISIVE]

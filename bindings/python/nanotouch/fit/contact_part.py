@@ -10,8 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nanotouch.curves.baseline import point_noise
-from nanotouch.curves.flicker import Noise
+from nanotouch.curves.flicker import Noise, point_noise
 
 from .models import Floats
 from .points import Points
@@ -21,6 +20,7 @@ _OF_FEW = 15.0  # more of them where few points tell the noise: over the square 
 _FREE = 5  # points beyond the tear, at least
 _RETURN = 0.75  # part of its depth that the force makes up within two points
 _FLAT, _FLAT_PART = 3.0, 0.1  # scatter of the free part, over the noise and over the jump
+_SURE = 2.0  # standard deviations of a slope
 _SPREAD_OF_STEP = 12.0**-0.5  # standard deviation of what is equally likely anywhere in a step of 1
 _DIGITS = 1e-9  # of the largest force: a computed curve has no less noise than this
 
@@ -81,8 +81,24 @@ def _end(force: Floats, noise: float) -> tuple[int, float, bool] | None:
         jumps = float(force[last + 1 : last + 3].max()) - force[lowest] > _RETURN * (level - force[lowest])
         return (last, torn, True) if jumps else None
     below = np.flatnonzero(force <= level)
-    free = None if below.size == 0 else _straight(force[below[0] :], noise, float(np.ptp(force)))
-    return None if free is None or below[0] == 0 else (int(below[0]) - 1, free, False)
+    if below.size == 0 or below[0] == 0 or not _levels_off(force, int(below[0])):
+        return None
+    free = _straight(force[below[0] :], noise, float(np.ptp(force)))
+    return None if free is None else (int(below[0]) - 1, free, False)
+
+
+def _levels_off(force: Floats, first: int) -> bool:
+    """Whether the end from a point on is surely flatter than as many points before it: else contact just goes on."""
+    count = min(first, force.size - first)
+    if count < 2:
+        return False
+    x = np.linspace(-1.0, 1.0, count)
+    rises, errors = [], []
+    for part in (force[first - count : first], force[first : first + count]):
+        line = np.polynomial.Polynomial.fit(x, part, 1)
+        rises.append(2.0 * float(line.convert().coef[-1]) if line.degree() else 0.0)
+        errors.append(float(point_noise(part)) * (12.0 / count) ** 0.5)
+    return bool(abs(rises[1]) + _SURE * errors[1] < 0.5 * abs(rises[0]))
 
 
 def _straight(force: Floats, noise: float, depth: float) -> float | None:

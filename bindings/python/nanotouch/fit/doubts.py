@@ -29,8 +29,9 @@ _SHARP = ("cone", "pyramid")
 
 def doubts(
     extension: ModuleType, setup: Setup, points: Points, solution: Solution, uncertainties: Uncertainties
-) -> tuple[dict[str, bool], list[str]]:
-    """Which fitted parameters the curve determines, by name, and why it does not determine the others.
+) -> tuple[dict[str, bool], list[str], str]:
+    """Which fitted parameters the curve determines, by name; why it does not determine the others, as notes; and in a
+    few words, where that is another reason than that it says too little (then no bounds follow either).
 
     Not those of baseline and calibration, which are known beforehand.
     """
@@ -43,6 +44,7 @@ def doubts(
     }
     misfit = solution.rms / points.noise if points.noise > 0.0 else np.inf
     notes = _doubt_calibration(extension, points, solution, uncertainties, misfit, identifiable)
+    reason = "the curve disagrees with its calibration" if notes else ""
     notes += _doubt_contact(model, found, options, identifiable)
     tear_unused = points.tear is not None and "work_of_adhesion" in identifiable and options.tear_sigma == 0.0
     if tear_unused and not solution.exact:
@@ -51,16 +53,20 @@ def doubts(
             "wrong): where it happened is not used"
         )
     if misfit > MISFIT and np.isfinite(misfit):
+        rating = extension.rating(solution.indentation, points.force, solution.fitted, points.noise)
+        share = 100.0 * solution.rms / float(np.max(np.abs(points.force)))
         notes.append(
-            f"the residuals are {times(misfit)} the noise: this model does not describe the curve, and sigma covers "
-            "only part of that"
+            f"the residuals are {times(misfit)} the noise and {share:.2g} % of the load: "
+            + ("this model does not describe the curve" if rating < extension.good_rating else "the model is near")
+            + ", and sigma covers only part of that"
         )
         if tear_unused or solution.rms > _WRONG * float(np.ptp(points.force)):
             identifiable = dict.fromkeys(identifiable, False)
+            reason = "the model does not describe the curve"
             notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
     if not found["converged"]:
         notes.append("the fit stopped before it converged")
-    return identifiable, notes
+    return identifiable, notes, reason
 
 
 def _doubt_calibration(

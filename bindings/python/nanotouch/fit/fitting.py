@@ -12,9 +12,10 @@ from nanotouch.curves import CurveReport, ForceCurve, analyse
 from nanotouch.curves.baseline import Kind
 from nanotouch.errors import InvalidValue
 
+from .first import AUTO, first_choice
 from .models import Model, extension, find
 from .points import Branch, Points, Window, points_of
-from .reporting import Sample, make_result
+from .reporting import Sample, Tip, make_result
 from .result import FitResult
 from .solving import Setup, Solution, solve, steep_part
 from .uncertainties import Uncertainties
@@ -65,7 +66,8 @@ def fit_curve(
     curve : ForceCurve
         With forces and a spring constant.
     model : str or Model
-        A name of :func:`nanotouch.fit.models`: ``"maugis"``, ``"jkr"``, ``"dmt"`` (the retraction from the deepest
+        ``"auto"``: by what the curve shows (``result.choice`` says why). Or a name of
+        :func:`nanotouch.fit.models`: ``"maugis"``, ``"jkr"``, ``"dmt"`` (the retraction from the deepest
         point to where the tip is torn off), ``"hertz"``, ``"cone"``, ``"pyramid"`` (the approach, where it repels), or
         one of your own.
     tip : object with ``radius``, optional
@@ -107,15 +109,21 @@ def fit_curve(
         If an argument or the curve cannot be used; SolverError if no law of this kind comes near the curve;
         MissingExtra if the package was built without Ceres.
     """
-    compiled, chosen = extension(), find(model)
-    uncertainties = uncertainties or Uncertainties()
+    compiled, uncertainties = extension(), uncertainties or Uncertainties()
     _check_choice("loss", loss, LOSSES)
     _check_choice("window_of", window_of, ("force", "indentation"))
-    branch = branch or ("retract" if chosen.adhesive else "approach")
-    _check_choice("branch", branch, ("approach", "retract"))
+    _check_choice("branch", branch or "approach", ("approach", "retract"))
     if curve.spring_constant is None:
         raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read")
     report = report or analyse(curve, baseline=baseline)
+    choice = ""
+    if model == AUTO:
+        size, reach = _size(tip, radius), cohesive_range if isinstance(cohesive_range, float) else ASSUMED_RANGE
+        model, branch, choice = first_choice(
+            report, curve.spring_constant, size, reach, sharp=half_angle is not None, branch=branch
+        )
+    chosen = find(model)
+    branch = branch or ("retract" if chosen.adhesive else "approach")
     points = points_of(report, branch, chosen, window if window_of == "force" else None, curve.name)
     assumptions: list[str] = []
     held = {name: _position(name, value) for name, value in (fixed or {}).items()}
@@ -145,8 +153,12 @@ def fit_curve(
     if window is not None and window_of == "indentation":
         points, solution = _inside(window, points, solution, curve.name)
         solution = solve(compiled, setup, points, uncertainties)
-    sample = Sample(poisson_ratio, tip)
-    return make_result(compiled, curve, setup, points, solution, uncertainties, report, branch, sample, assumptions)
+    sharp, given = chosen.name in _SHARP, tip is not None or radius is not None
+    told = Tip(choice, given, half_angle is None if sharp else not given)
+    return make_result(
+        compiled, curve, setup, points, solution, uncertainties, report, branch, Sample(poisson_ratio, tip),
+        assumptions, told,
+    )  # fmt: skip
 
 
 def _inside(window: Window, points: Points, solution: Solution, name: str) -> tuple[Points, Solution]:
@@ -184,6 +196,11 @@ def _radius(model: Model, tip: TipLike | None, radius: float | None, assumptions
     if model.name not in _SHARP:
         assumptions.append(f"tip radius {ASSUMED_RADIUS * 1e9:g} nm (not given; E* goes as 1/sqrt(R), w as 1/R)")
     return ASSUMED_RADIUS
+
+
+def _size(tip: TipLike | None, radius: float | None) -> float:
+    """Of the tip, for the choice of a law [m]."""
+    return float(tip.radius) if tip is not None else ASSUMED_RADIUS if radius is None else float(radius)
 
 
 def _half_angle(model: Model, half_angle: float | None, assumptions: list[str]) -> float:

@@ -75,6 +75,8 @@ class Model:
     valid: str = ""
     title: str = ""
     adhesive: bool = False
+    remark: Callable[[float, dict[str, float], float], str] | None = None
+    """of radius [m], values and largest force [N]: a note to each result"""
 
     def options(self, extension: ModuleType, radius: float) -> Any:
         """Options of the C library for this model."""
@@ -108,6 +110,14 @@ BUILT_IN = (
 )  # fmt: skip
 
 _known: dict[str, Model] = {model.name: model for model in BUILT_IN}
+_named = set(_known)  # those of the library
+
+
+def add_named(model: Model) -> None:
+    """One of the library that is written in Python; it cannot be replaced either."""
+    check(model)
+    _known[model.name] = model
+    _named.add(model.name)
 
 
 def models() -> tuple[str, ...]:
@@ -123,7 +133,7 @@ def register(model: Model) -> None:
     InvalidValue
         If its description is not complete.
     """
-    if model.name in {built_in.name for built_in in BUILT_IN}:
+    if model.name in _named:
         raise InvalidValue(f"model {model.name!r} is one of the library; give yours another name")
     check(model)
     _known[model.name] = model

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch.curves import CurveReport
-from nanotouch.curves.events import Branch as Measured
-from nanotouch.curves.flicker import Noise
+from nanotouch.curves.flicker import Noise, correlated_noise
 from nanotouch.errors import InvalidValue
 
 from .models import Floats, Model
@@ -20,7 +19,6 @@ Branch = Literal["approach", "retract"]
 Window = tuple[float, float]
 
 _FEWEST = 16
-_CORRELATED = 1.2  # variance of a mean over that of independent points; of white noise 1 +- 0.1 .. 0.2
 _SPREAD_OF_STEP = 12.0**-0.5  # standard deviation of what is equally likely anywhere in a step of 1
 
 
@@ -59,10 +57,7 @@ class Points:
 
         0 where the free cantilever does not show that they are not independent.
         """
-        white, flicker = self.free
-        if flicker == 0.0 and white < _CORRELATED * self.noise**2:
-            return 0.0
-        return float(np.sqrt(max(self.noise**2, white) + self.z.size * flicker))
+        return correlated_noise(self.noise, self.free, self.z.size)
 
     def kept(self, mask: NDArray[np.bool_], name: str) -> Points:
         """Some of them."""
@@ -89,7 +84,7 @@ def points_of(report: CurveReport, branch: Branch, model: Model, window: Window 
     elif measured.dips and model.adhesive:
         last = measured.lowest
     else:
-        last = _repulsive(measured) - 1
+        last = measured.repulsive - 1
     tear = None
     if torn is not None:
         step = float(z[torn + 1] - z[torn])
@@ -102,15 +97,3 @@ def points_of(report: CurveReport, branch: Branch, model: Model, window: Window 
         mask &= (force >= window[0]) & (force <= window[1])
         found = replace(found, tear=None)
     return found.kept(mask, name)
-
-
-def _repulsive(measured: Measured) -> int:
-    """Up to where attraction begins, which Hertz does not know; without attraction, a piece of the baseline as well."""
-    z, force = measured.z, measured.force
-    deepest = int(np.argmax(force))
-    below = np.flatnonzero(force[deepest:] <= 0.0)
-    zero = deepest + int(below[0]) if below.size else z.size
-    if measured.dips:
-        return zero
-    beyond = z[0] + 1.5 * (z[min(zero, z.size - 1)] - z[0])
-    return max(zero, int(np.searchsorted(z, beyond)))

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from nanotouch.curves import CurveReport, ForceCurve
 from nanotouch.errors import InvalidValue
 
+from .bound import bounds_of
 from .doubts import doubts
 from .models import Floats
 from .points import Branch, Points
@@ -23,6 +24,7 @@ _PLAIN = (
     "pull_off_force", "residual_rms", "contact_radius", "contact_stiffness", "transition_parameter",
     "converged", "iterations",
 )  # fmt: skip
+_BOUNDED = ("effective_modulus", "work_of_adhesion")
 _LOGARITHM = 300.0  # beyond, an exponent means "anything"
 
 
@@ -49,6 +51,14 @@ class Sample:
             notes.append("E* reaches that of the tip on a rigid sample: no modulus of the sample follows from it")
             return np.nan, np.inf, np.inf
         return (1.0 - ratio**2) / compliance, 1.0 / (modulus * compliance), -2.0 * ratio / compliance
+
+    def with_bounds(self, bounds: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+        """With those of E from those of E* [Pa]; infinite where the tip yields all."""
+        if "effective_modulus" not in bounds:
+            return bounds
+        ends = bounds["effective_modulus"]
+        low, high = (self.youngs_modulus(end, [], [])[0] if 0.0 < end < np.inf else end for end in ends)
+        return bounds | {"youngs_modulus": (0.0 if np.isnan(low) else low, np.inf if np.isnan(high) else high)}
 
 
 @dataclass
@@ -78,6 +88,35 @@ class Table:
         return made
 
 
+class Tip(NamedTuple):
+    """What was said of tip and law."""
+
+    choice: str
+    """why this law, where it was left open"""
+    radius_given: bool
+    assumed: bool
+    """its radius or half angle was not given and had to be assumed"""
+
+
+def _bounds(
+    identifiable: dict[str, bool],
+    extension: ModuleType,
+    setup: Setup,
+    points: Points,
+    solution: Solution,
+    uncertainties: Uncertainties,
+) -> dict[str, tuple[float, float]]:
+    """Of E* and w where the curve does not determine them: with an uncertain sensitivity only, as only that rules how
+    much of the slope is the cantilever's."""
+    if uncertainties.sensitivity <= 0.0 or solution.options.force_noise <= 0.0:
+        return {}
+    return {
+        name: bounds_of(name, extension, setup, points, solution, uncertainties)
+        for name in _BOUNDED
+        if not identifiable.get(name, True)
+    }
+
+
 def make_result(
     extension: ModuleType,
     curve: ForceCurve,
@@ -89,18 +128,21 @@ def make_result(
     branch: Branch,
     sample: Sample,
     assumptions: list[str],
+    tip: Tip,
 ) -> FitResult:
     """All that is known about a fit."""
-    found, options = solution.found, solution.options
-    places = [i for i, parameter in enumerate(options.parameters) if parameter is not None]
-    names = {i: options.parameters[i][0] for i in places}
-    free = [i for i in places if options.is_free(names[i])]
-    identifiable, notes = doubts(extension, setup, points, solution, uncertainties)
+    found, options, noise = solution.found, solution.options, points.noise
+    names = {i: parameter[0] for i, parameter in enumerate(options.parameters) if parameter is not None}
+    free = [i for i in names if options.is_free(names[i])]
+    identifiable, notes, reason = doubts(extension, setup, points, solution, uncertainties)
     shifts = calibration_shifts(extension, setup, points, solution, uncertainties)
     covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), np.zeros((1, 1)))
     table = _table(found, options, names, shifts)
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
         _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
+    bounds = {} if reason else _bounds(identifiable, extension, setup, points, solution, uncertainties)
+    if setup.model.remark is not None:
+        notes.append(setup.model.remark(setup.radius, table.values, float(points.force.max())))
     sign = np.where([names[i] == "contact_point" for i in free], -1.0, 1.0)
     return FitResult(
         model=setup.model.name,
@@ -119,7 +161,8 @@ def make_result(
         force=points.force,
         fitted=solution.fitted,
         indentation=solution.indentation,
-        misfit=solution.rms / points.noise if points.noise > 0.0 else np.inf,
+        misfit=solution.rms / noise if noise > 0.0 else np.inf,
+        rating=extension.rating(solution.indentation, points.force, solution.fitted, noise),
         measured_pull_off_force=report.pull_off_force,
         measured_snap_in_force=report.snap_in_force,
         radius=setup.radius,
@@ -129,7 +172,13 @@ def make_result(
         assumptions=tuple(assumptions),
         notes=tuple(list(report.notes) + notes),
         name=curve.name,
-        units={names[i]: options.parameters[i][1] for i in places} | {"youngs_modulus": "Pa"},
+        uncertainties=uncertainties,
+        bounds=sample.with_bounds(bounds) if "youngs_modulus" in table.values else bounds,
+        reason=reason,
+        choice=tip.choice,
+        radius_given=tip.radius_given,
+        assumed_tip=tip.assumed,
+        units={names[i]: options.parameters[i][1] for i in names} | {"youngs_modulus": "Pa"},
         **{key: found[key] for key in _PLAIN},
     )
 

@@ -14,15 +14,19 @@ from nanotouch.curves import CurveReport
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Scene
 
+from .answer import Answer, answer_of
 from .models import BUILT_IN, Floats
 from .points import Branch
-from .show import Page, Row, as_html, as_text, newton
+from .show import Page, Row, as_html, as_text, between, newton
 from .show import with_sigma as with_sigma
 from .touched import Law, scene_of
+from .uncertainties import Uncertainties
 
-Status = Literal["ok", "misfit", "not converged"]
+Status = Literal["ok", "undetermined", "misfit", "not converged"]
 
 MISFIT = 3.0  # residual over noise from where the model is said not to describe the curve
+GOOD = 4.5  # NT_FIT_GOOD
+REJECTED = 1.0  # rating below which nothing is left of a curve, noise or not
 _PLACES = ("contact_point", "force_offset", "force_tilt", "sensitivity")
 
 
@@ -66,6 +70,19 @@ class FitResult:
         Maugis' lambda; NaN for the other models.
     radius, half_angle, spring_constant : float
         What was used [m], [rad], [N/m].
+    uncertainties : Uncertainties
+        Of the calibration, as given.
+    bounds : mapping
+        (least, most) at 95 % of E*, w and E where the curve does not determine them; 0 and infinite where there is no
+        bound. Empty where `reason` stands against any.
+    reason : str
+        Why nothing follows for the sample, in a few words; empty where something does.
+    choice : str
+        Why this law was fitted, where it was left open (``model="auto"``).
+    rating : float
+        0 (reject) to 10, as people have rated such fits: by the largest residuals beside the load (docs/fit.md).
+    radius_given, assumed_tip : bool
+        Whether the radius was given; whether the size that this law needs was assumed.
     assumptions, notes : tuple of str
         What was not given and had to be assumed; what the reader should know before using the numbers.
     """
@@ -103,14 +120,25 @@ class FitResult:
     assumptions: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     name: str = ""
+    uncertainties: Uncertainties = field(default_factory=Uncertainties)
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    reason: str = ""
+    choice: str = ""
+    rating: float = np.nan
+    radius_given: bool = True
+    assumed_tip: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def status(self) -> Status:
-        """``"ok"``, ``"not converged"`` or ``"misfit"``: the residuals are not noise; the notes say what follows."""
+        """``"ok"``, ``"not converged"``, ``"misfit"`` (the residuals are no noise, and large beside the load: a
+        rating below 4.5; or any rating below 1) or ``"undetermined"`` (a parameter of the sample is not determined);
+        the notes say what follows."""
         if not self.converged:
             return "not converged"
-        return "misfit" if MISFIT < self.misfit < np.inf else "ok"
+        if self.rating < REJECTED or (MISFIT < self.misfit < np.inf and not self.rating >= GOOD):
+            return "misfit"
+        return "ok" if all(self.identifiable.values()) else "undetermined"
 
     @property
     def residuals(self) -> Floats:
@@ -143,7 +171,7 @@ class FitResult:
         if unknown:
             raise InvalidValue(f"{self.name}: the curve does not determine {' and '.join(unknown)}: no scene")
         if self.model not in {model.name for model in BUILT_IN}:
-            raise InvalidValue(f"model {self.model!r} is a law of one's own: a scene cannot have it as its contact")
+            raise InvalidValue(f"model {self.model!r} is none of contact alone: a scene cannot have it as its contact")
         law = Law(
             model=self.model,
             radius=self.radius,
@@ -156,11 +184,27 @@ class FitResult:
         return scene_of(law, poisson_ratio)
 
     def show(self, key: str) -> str:
-        """One parameter in words: ``"(15.3 +- 0.4) kPa"``, with a warning where the curve does not determine it."""
+        """One parameter in words: ``"(15.3 +- 0.4) kPa"``, or its bound where the curve does not determine it."""
         text = with_sigma(self.values[key], self.sigma[key], self.units[key])
         if self.determined(key) is False:
-            return f"{text}, NOT DETERMINED"
+            return self._undetermined(key)
         return f"{text} (held)" if self.sigma[key] == 0.0 else text
+
+    def _undetermined(self, key: str) -> str:
+        """What is known of a parameter that the curve does not determine."""
+        if self.reason:
+            return f"not determined: {self.reason}"
+        if key in self.bounds:
+            told = between(*self.bounds[key], self.units[key])
+            return "not determined, without a bound" if told == "unknown" else f"{told} (95 %), not determined"
+        if self.uncertainties.sensitivity == 0.0:
+            return "not determined; a bound needs the uncertainty of the sensitivity (--known-to sensitivity=3)"
+        return "not determined"
+
+    @property
+    def answer(self) -> Answer:
+        """What was asked, first: pull-off, work of adhesion where it follows, modulus or its bound."""
+        return answer_of(self)
 
     def __str__(self) -> str:
         return as_text(self._page())
@@ -177,12 +221,20 @@ class FitResult:
             rows=[Row(key, self.show(key), self._parts(key), self.determined(key)) for key in self.values],
             readings=self._readings(),
             remarks=remarks + [("note", text) for text in self.notes],
+            answer=self.answer.lines,
         )
 
     def _parts(self, key: str) -> str:
         """Statistical and calibration sigma of a property of the sample that both enter."""
         total, calibration, value = self.sigma[key], self.sigma_calibration[key], self.values[key]
-        if key in _PLACES or not np.isfinite(total) or calibration == 0.0 or value == 0.0 or total > 10.0 * abs(value):
+        if (
+            key in _PLACES
+            or self.determined(key) is False
+            or not np.isfinite(total)
+            or calibration == 0.0
+            or value == 0.0
+            or total > 10.0 * abs(value)
+        ):
             return ""
         scale = 100.0 / abs(value)
         return f"statistical {scale * self.sigma_statistical[key]:.2g} %, calibration {scale * calibration:.2g} %"
@@ -195,5 +247,6 @@ class FitResult:
         rows += [
             ("snap-in force", f"measured {newton(self.measured_snap_in_force)}"),
             ("residual", f"{newton(self.residual_rms)} RMS, {times(self.misfit)} the noise"),
+            ("rating", f"{self.rating:.1f} of 10"),
         ]
         return rows

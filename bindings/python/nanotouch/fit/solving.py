@@ -10,15 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch.curves.flicker import Noise
+from nanotouch.curves.flicker import Noise, residual_correlation
 
 from .models import Floats, Model
 from .points import Points
 from .uncertainties import Uncertainties
 
 _EXACT = 1e-9  # of the largest force: residuals of a computed curve, in which nothing is to be weighed
-_BLOCKS = 20  # of residuals, whose means show how they hang together
-_CORRELATED = 2.0  # of white noise this ratio is 1 +- 0.3
 _AS_GIVEN = 0.05  # relative difference of the scatter from the noise that changes nothing
 _TORN_ELSEWHERE = 2.5  # standard deviations of the tear's place
 _PLACES = 5  # of the model's own parameters and the contact point
@@ -80,13 +78,13 @@ class Solution:
 def solve(extension: ModuleType, setup: Setup, points: Points, uncertainties: Uncertainties) -> Solution:
     """Fit with the noise from point to point; then once more with the scatter that was found.
 
-    Where the model does not describe the curve its residuals are larger than the noise and hang together; taken as the
-    uncertainty of a point, they keep calibration and baseline from being bent to mend the model, and widen sigma.
+    Where the model does not describe the curve its residuals are larger than the noise and hang together. Taken as
+    the uncertainty of a point, they widen sigma, and keep calibration and baseline from being bent to mend the model.
     """
     options = setup.options(extension)
     noise = max(points.noise, points.correlated_noise)
     if noise > _EXACT * float(np.max(np.abs(points.force))):
-        _let_vary(options, setup, points, uncertainties, noise)
+        let_vary(options, setup, points, uncertainties, noise)
     solution = _run(extension, options, points)
     if not solution.exact and options.force_noise > 0.0 and abs(solution.scatter / noise - 1.0) > _AS_GIVEN:
         options.force_noise = solution.scatter
@@ -129,7 +127,7 @@ def steep_width(extension: ModuleType, solution: Solution) -> float:
     return float(distance[np.argmax(held)])
 
 
-def _let_vary(options: Any, setup: Setup, points: Points, uncertainties: Uncertainties, noise: float) -> None:
+def let_vary(options: Any, setup: Setup, points: Points, uncertainties: Uncertainties, noise: float) -> None:
     """What is known to some uncertainty becomes a datum: sensitivity, level and tilt of the baseline, the tear."""
     options.force_noise = noise
     if uncertainties.sensitivity > 0.0 and "sensitivity" not in setup.held:
@@ -156,19 +154,7 @@ def _run(extension: ModuleType, options: Any, points: Points) -> Solution:
 
 def scatter_of(residuals: Floats) -> float:
     """Standard deviation of one point such that N independent ones would scatter as the mean of these N does [N]."""
-    return float(np.sqrt(np.mean(residuals**2) * correlation_of(residuals)))
-
-
-def correlation_of(residuals: Floats) -> float:
-    """By how much the residuals' correlation raises the variance of their mean; 1 where it is not evident."""
-    square = float(np.mean(residuals**2))
-    blocks = max(2, min(_BLOCKS, residuals.size // 4))
-    size = residuals.size // blocks
-    if square == 0.0 or size < 2:
-        return 1.0
-    means = residuals[: size * blocks].reshape(blocks, size).mean(1)
-    ratio = float(means @ means) / blocks * size / square
-    return ratio if ratio > _CORRELATED else 1.0
+    return float(np.sqrt(np.mean(residuals**2) * residual_correlation(residuals)))
 
 
 def with_free_sensitivity(
@@ -223,7 +209,7 @@ def _refit(
         points.baseline_z, points.level_sigma * scale, points.tilt_sigma * scale,
     )  # fmt: skip
     if noise > 0.0:
-        _let_vary(options, setup, scaled, uncertainties, noise * scale)
+        let_vary(options, setup, scaled, uncertainties, noise * scale)
         options.tear_sigma = solution.options.tear_sigma
     for i, parameter in enumerate(options.parameters[:_PLACES]):
         if parameter is not None and options.is_free(parameter[0]):

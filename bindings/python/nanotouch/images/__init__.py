@@ -8,6 +8,7 @@
 from .blind import TipEstimate, estimate_tip
 from .channel import Channel, Plane
 from .despeckling import DespeckleReport, despeckle
+from .fields import planes, write_planes
 from .filling import fill
 from .filters import gaussian, median
 from .level_report import Candidate, LevelReport, LevelStep
@@ -22,6 +23,7 @@ from .statistics import Roughness, roughness
 from .terraces import Terrace
 from .tips import Paraboloid, RoundedCone, dilate, erode
 from .topography import Topography
+from .values import ValueMap, read_values
 from .writing import write
 
 __all__ = [
@@ -40,6 +42,7 @@ __all__ = [
     "Terrace",
     "TipEstimate",
     "Topography",
+    "ValueMap",
     "channels",
     "despeckle",
     "dilate",
@@ -55,9 +58,12 @@ __all__ = [
     "mask_image",
     "median",
     "mip_levels",
+    "planes",
     "prepare",
     "read",
+    "read_values",
     "repair_scars",
     "roughness",
     "write",
+    "write_planes",
 ]

@@ -46,9 +46,9 @@ class DespeckleReport:
 def despeckle(topography: Topography) -> tuple[Topography, DespeckleReport]:
     """Replace isolated wrong pixels by the median of their surroundings; edges, corners and lines stay.
 
-    A pixel is a speckle when it lies more than six robust standard deviations off the 3 x 3 median, on the same side of
-    every neighbour that is not itself off, and in a group of at most two such pixels. (At the corner of a terrace
-    the pixels inward agree with it, and a line is a larger group.)
+    A pixel is a speckle when it lies more than six robust standard deviations off the 3 x 3 median. It has to lie on
+    the same side of every neighbour that is not itself off, and in a group of at most two such pixels.
+    (At the corner of a terrace the pixels inward agree with it, and a line is a larger group.)
     """
     cv2 = require("cv2", "images")
     z = topography.heights

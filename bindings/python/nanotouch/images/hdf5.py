@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Images as HDF5: a picture any HDF5 program shows, and attributes from which it is read back without being told.
 
-``/height`` holds the picture as pictures are stored, its first row at the top, with the axes ``/y`` and ``/x`` (of the
-pixels' centres, y upwards) attached as dimension scales and ``units`` on each; ``/mask`` is 1 where a height was filled
-in. The root says ``format = "nanotouch image"``, ``version``, ``title``, ``name``, ``source``, ``pixel_size`` (dy, dx)
-[m] and ``offset`` (y, x) [m] of the lower left corner. Values carry check sums.
+``/height`` holds the picture as pictures are stored, its first row at the top. The axes ``/y`` and ``/x`` (of the
+pixels' centres, y upwards) are attached as dimension scales, with ``units`` on each. ``/mask`` is 1 where a height
+was filled in. The root says ``format = "nanotouch image"``, ``version``, ``title``, ``name``, ``source``,
+``pixel_size`` (dy, dx) [m] and ``offset`` (y, x) [m] of the lower left corner. Values carry check sums.
 """
 
 from __future__ import annotations

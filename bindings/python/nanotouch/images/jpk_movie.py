@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """JPK movies, ``.h5-jpk``: HDF5 with one column per frame.
 
-``Measurement_N/Channel_M`` holds integers of shape (pixels, frames), its first pixel the lower left one, and as
-attributes name, direction, and with ``net-encoder.scaling`` what brings them to the unit of its default calibration.
-The grid stands in the attributes of the measurement. Each frame is a channel: ``"Height (measured) trace frame 2"``.
+``Measurement_N/Channel_M`` holds integers of shape (pixels, frames), its first pixel the lower left one. Its
+attributes are name, direction, and with ``net-encoder.scaling`` what brings them to the unit of its default
+calibration. The grid stands in the attributes of the measurement. Each frame is a channel: ``"Height (measured) trace
+frame 2"``.
 """
 
 from __future__ import annotations

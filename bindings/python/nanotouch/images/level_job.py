@@ -16,6 +16,9 @@ from .level_report import LevelReport, LevelStep
 from .terraces import Terrace
 from .topography import Topography
 
+_ROUNDING = 1e-9
+"""Part of the height range that no converter resolves (24 bits: 6e-8) and that sums of doubles leave behind."""
+
 
 class Job:
     """An image while one method after the other is applied.
@@ -146,6 +149,8 @@ class Job:
 
     def _medians_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
         note = f"the median of every row, {found.lasting * 1e9:.4g} nm of it lasting along y"
+        if found.lasting < _ROUNDING * self.topography.height_range:
+            return note, ""
         if found.period is not None:
             what = f"a grating along the fast axis of {found.period:.3g} rows, {found.wave * 1e9:.4g} nm high"
         elif found.jumps and found.highest_jump > float(np.nanstd(self.strips)) and self._along.structure:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Make an image touchable without inventing or erasing structure: take out tilt, bow, drift and offsets of rows.
 
-Every method but one is aware of steps. Tilt and bow are what the flat pieces of the surface agree on (terraces.py);
-offsets of rows are what does not last and what both halves of the image agree on (rows.py); drift is what lasts and the
-surface does not show the other way (drift.py). Each says what it removed, and warns where it had to leave, or has
+Every method but one is aware of steps. Tilt and bow are what the flat pieces of the surface agree on (terraces.py).
+Offsets of rows are what does not last and what both halves of the image agree on (rows.py). Drift is what lasts and
+the surface does not show the other way (drift.py). Each says what it removed, and warns where it had to leave, or has
 taken, what may be a structure. The everyday method, "auto", chooses among them (level_choice.py).
 """
 

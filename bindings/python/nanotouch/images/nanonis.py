@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Nanonis scans, ``.sxm``: a text header of ``:KEY:`` lines and their values, then big-endian floats.
 
-The table ``DATA_INFO`` names channel, unit and direction; after ``:SCANIT_END:`` and the bytes 1A 04 each channel
-follows, its forward picture and, where the direction is ``both``, its backward one, whose lines are stored in the order
-of time, from right to left. ``SCAN_DIR`` says whether the first line is the lowest (``up``) or the top one (``down``).
-Lines that were not scanned are NaN.
+The table ``DATA_INFO`` names channel, unit and direction. After ``:SCANIT_END:`` and the bytes 1A 04 each channel
+follows with its forward picture. Where the direction is ``both`` its backward one follows, whose lines are stored in
+the order of time, from right to left. ``SCAN_DIR`` says whether the first line is the lowest (``up``) or the top one
+(``down``). Lines that were not scanned are NaN.
 """
 
 from __future__ import annotations

@@ -153,7 +153,7 @@ def grains(
     smallest : int
         Particles of fewer pixels are noise.
     split : bool
-        Part particles that touch: two peaks are two particles where the saddle between them lies lower than the lower
+        Part particles that touch. Two peaks are two particles where the saddle between them lies lower than the lower
         one by a fifth of its height, and by five standard deviations of the noise of a pixel.
     pits : bool
         Look for pits in place of particles.

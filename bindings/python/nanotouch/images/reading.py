@@ -40,7 +40,7 @@ def channels(path: str | PathLike[str], *, untrusted: bool = False) -> list[Chan
     file = checked_path(path)
     if untrusted:
         return _worker.ask("images.channels", file, {}, list[Channel])
-    name, reader = _reader(file)
+    name, reader = reader_of(file)
     with guarded(file, name):
         found: list[Channel] = reader.channels(file)
         return found
@@ -79,13 +79,13 @@ def read(
     Raises
     ------
     ReadError
-        If the file is missing, empty, damaged, not an image, has no height channel, has more than 90 % missing pixels,
-        states no unit, or if its size or height is not that of an AFM image.
+        If the file is missing, empty, damaged or not an image. If it has no height channel or no unit, or more than
+        90 % missing pixels. If its size or height is not that of an AFM image.
     InvalidValue
         If `pixel_size` or `z_unit` is not valid.
     """
     file = checked_path(path)
-    given_pixel = _checked_pixel_size(pixel_size)
+    given_pixel = checked_pixel_size(pixel_size)
     if z_unit is not None and z_unit not in LENGTHS:
         raise InvalidValue(f"z_unit: {z_unit!r}, expected one of {', '.join(LENGTHS)}")
     if untrusted:
@@ -94,14 +94,15 @@ def read(
         with guarded(file, topography.source):
             check_scale(topography, file)  # the worker is not believed
         return topography
-    name, reader = _reader(file)
+    name, reader = reader_of(file)
     with guarded(file, name):
         plane: Plane = reader.read(file, channel)
         with guarded(file, plane.source):
             return _checked(plane, file, given_pixel, z_unit)
 
 
-def _reader(file: Path) -> tuple[str, Any]:
+def reader_of(file: Path) -> tuple[str, Any]:
+    """The reader that takes a file, and its name."""
     head = head_of(file)
     refuse_traps(file, head)
     registered = registered_for(file, head, "images")
@@ -147,7 +148,8 @@ def _height_scale(plane: Plane, given: str | None, file: Path) -> float:
     return LENGTHS[given]
 
 
-def _checked_pixel_size(pixel_size: float | tuple[float, float] | None) -> tuple[float, float] | None:
+def checked_pixel_size(pixel_size: float | tuple[float, float] | None) -> tuple[float, float] | None:
+    """(dy, dx) [m] in its range."""
     if pixel_size is None:
         return None
     pair = np.atleast_1d(np.asarray(pixel_size, dtype=np.float64))

@@ -2,10 +2,10 @@
 """Offsets from row to row, told apart from structures that run along the rows.
 
 Aligning every row to the same median, a common default, erases a grating whose lines run along the fast axis. What is
-an offset is decided here on the profile of the rows, p: sums of the median differences from row to row, in which steps
-across the rows do not show. Kept of it is what lasts: a smoothing that follows slopes and stops at jumps (local lines,
-weighted by distance and by likeness of a running median, so a level of four rows or more stays). The rest is taken for
-offsets if
+an offset is decided here on the profile of the rows, p: sums of the median differences from row to row, in which
+steps across the rows do not show. Kept of it is what lasts: a smoothing that follows slopes and stops at jumps. It
+takes local lines, weighted by distance and by likeness of a running median, so a level of four rows or more stays.
+The rest is taken for offsets if
 
 * the left and the right half of the image agree on it, so that it is of the rows and not of what lies on them;
 * no frequency stands out of it (Fisher's test), else it is a fine grating.

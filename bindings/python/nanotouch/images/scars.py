@@ -65,10 +65,10 @@ class ScarReport:
 def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:
     """Replace streaks along the fast axis by what the rows above and below say.
 
-    A scar is one to three rows high and 17 pixels or longer, stands out on the same side of the row above it and of
-    that below by three standard deviations, and by more than those two differ from each other (so the edge of a step
-    is none). A streak across the whole image is never taken for a scar, and an image where more than 5 % look like
-    scars is returned as it is; both give a :class:`UserWarning`. The first and the last row are not repaired.
+    A scar is one to three rows high and 17 pixels or longer. It stands out on the same side of the row above it and of
+    that below, by three standard deviations. It stands out by more than those two differ from each other, so the edge
+    of a step is none. A streak across the whole image is never taken for a scar, and an image where more than 5 % look
+    like scars is returned as it is; both give a :class:`UserWarning`. The first and the last row are not repaired.
 
     Returns
     -------

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The reader of most image formats, SurfaceTopography, under the contract of :mod:`nanotouch._readers`.
 
-SurfaceTopography returns ``heights[x, y]`` with y counted from the top of the picture (shown right by
-``imshow(heights.T)``, as Gwyddion shows the file); ours is ``heights[y, x]`` with y counted from the bottom, hence
-``heights.T[::-1]``. Two kinds of file differ, see :func:`_upright`.
+SurfaceTopography returns ``heights[x, y]`` with y counted from the top of the picture; ``imshow(heights.T)`` shows it
+as Gwyddion does. Ours is ``heights[y, x]`` with y counted from the bottom, hence ``heights.T[::-1]``. Two kinds of
+file differ, see :func:`_upright`.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arrays import Floats
 from .._files import guarded
 from ..errors import ReadError, require
-from . import headers
+from . import gwyddion, headers, nanoscope_values
 from .channel import HEIGHT_NAMES, Channel, Plane, chosen, with_default
 from .checks import LENGTHS, check_shape
 
@@ -33,12 +34,14 @@ _CREDULOUS = ("hgt", "nms")
 def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
     with _opened(file) as reader:
-        return _listed(_images_in(reader, file), reader.format())
+        return [*_listed(_images_in(reader, file), reader.format()), *_left_out(reader, file)]
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     with _opened(file) as reader:
+        if channel is not None and channel.casefold() in {one.name.casefold() for one in _left_out(reader, file)}:
+            return gwyddion.read(file, channel)
         found = _images_in(reader, file)
         info = found[chosen(_listed(found, reader.format()), channel, file)]
         check_shape(file, info.nb_grid_pts)
@@ -48,13 +51,15 @@ def read(file: Path, channel: str | None) -> Plane:
         raw = np.ma.filled(np.ma.asarray(loaded.heights(), dtype=np.float64), np.nan)
         if raw.shape != tuple(info.nb_grid_pts):
             raise ReadError(f"{file}: {raw.shape} values, but its header states {tuple(info.nb_grid_pts)} pixels")
-        values = _upright(raw, reader.format())
+        values, kind = _upright(raw, reader.format()), _kind(info, reader.format())
+        if kind != "height":
+            values, vertical = _no_height(values, info, reader.format(), file)
         name, source = str(info.channel_id), f"{NAME}/{reader.format()}"
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
             no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
         notes: tuple[str, ...] = ()
-        if reader.format() == "ibw" and _kind(info, "ibw") == "height" and str(info.data_kind.value) != "height":
+        if reader.format() == "ibw" and kind == "height" and str(info.data_kind.value) != "height":
             vertical, notes = "m", (f"no unit of {name!r} is stated: taken as m, in which such files hold heights",)
         if unsized or lateral not in LENGTHS:
             return Plane(name, values, vertical, None, source, no_size, notes=notes)
@@ -85,6 +90,26 @@ def _images_in(reader: Any, file: Path) -> list[Any]:
     return found
 
 
+def _left_out(reader: Any, file: Path) -> list[Channel]:
+    """What SurfaceTopography does not list."""
+    return gwyddion.channels(file) if reader.format() == "gwy" else []
+
+
+def _no_height(values: Floats, info: Any, format_: str, file: Path) -> tuple[Floats, str | None]:
+    """Values and their unit, where the file states one: NanoScope's are counts, and Asylum's without a unit no
+    volts."""
+    if format_ == "di":
+        scale, unit = nanoscope_values.scale_of(file, info.info.get("raw_metadata") or {})
+        return values * scale, unit
+    return values, _stated_unit(info, format_)
+
+
+def _stated_unit(info: Any, format_: str) -> str | None:
+    """Of a channel that is no height. Asylum's without a unit are volts to SurfaceTopography, whatever they are."""
+    unit = _units(info.data_unit)[1]
+    return None if format_ == "ibw" and unit == "V" and "potential" not in str(info.name).casefold() else unit
+
+
 def _kind(info: Any, format_: str) -> str:
     """What a channel holds; SurfaceTopography calls a height what has no unit, or the unit of an amplitude.
 
@@ -92,19 +117,21 @@ def _kind(info: Any, format_: str) -> str:
     """
     kind, name = str(info.data_kind.value), str(info.name).casefold()
     other = next((part for part in _OTHER_NAMES if part in name), "")
+    if format_ == "di" and info.height_scale_factor is None:
+        return other or "other"
     if format_ == "ibw" and kind == "voltage" and not other and any(part in name for part in HEIGHT_NAMES):
         return "height"
     return other or kind if kind == "height" else kind
 
 
 def _listed(found: list[Any], format_: str) -> list[Channel]:
-    return with_default([_described(info, _kind(info, format_)) for info in found])
+    return with_default([_described(info, _kind(info, format_), format_) for info in found])
 
 
-def _described(info: Any, kind: str) -> Channel:
+def _described(info: Any, kind: str, format_: str) -> Channel:
     lateral, vertical = _units(info.unit)
     if kind != "height":
-        vertical = info.data_unit
+        vertical = _stated_unit(info, format_)
     size = None
     if info.physical_sizes is not None and lateral in LENGTHS:
         lx, ly = (float(s) * LENGTHS[lateral] for s in info.physical_sizes)

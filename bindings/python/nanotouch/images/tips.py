@@ -2,7 +2,7 @@
 """What the tip does to an image, and what can be undone of it (Villarrubia, J. Res. NIST 102, 425, 1997).
 
 An image is the surface dilated by the tip: ``i(x) = max_p s(p) - t(p - x)``, t the height of the tip above its apex.
-Eroding it, ``r(p) = min_x i(x) + t(p - x)``, gives the highest surface that would have given this image: the true one
+Eroding it, ``r(p) = min_x i(x) + t(p - x)``, gives the highest surface that would have given this image. The true one
 lies below, and is the same wherever the tip at some place touches this one point only.
 """
 

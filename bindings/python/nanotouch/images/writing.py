@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write an image so that others open it: Gwyddion's own format, or HDF5."""
+"""Write an image so that others open it: Gwyddion's own format, its Simple Field, or HDF5."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def write(
     title: str | None = None,
     offset: tuple[float, float] | None = None,
 ) -> Path:
-    """Write an image as ``.gwy`` (Gwyddion; SurfaceTopography reads it too) or ``.h5`` (:mod:`.hdf5`).
+    """Write an image as ``.gwy`` (Gwyddion; SurfaceTopography reads it too), ``.gsf`` or ``.h5`` (:mod:`.hdf5`).
 
-    Heights, size, unit, title, offset and the mask of filled pixels are kept; both read back with :func:`read`. The
-    file is whole or not there.
+    Heights, size, unit, title, offset and the mask of filled pixels are kept; all read back with :func:`read`. A
+    ``.gsf`` has no mask and 24 bits a height. The file is whole or not there.
 
     Parameters
     ----------
     path : str or path
-        Ends with ``.gwy``, ``.h5`` or ``.hdf5``; replaced if it exists.
+        Ends with ``.gwy``, ``.gsf``, ``.h5`` or ``.hdf5``; replaced if it exists.
     topography : Topography
         Heights (ny, nx) [m].
     title : str, optional
@@ -94,4 +94,18 @@ def _write_gwy(file: Path, topography: Topography, title: str, offset: Offset) -
         container.tofile(stream)
 
 
-_WRITERS: dict[str, Writer] = {".gwy": _write_gwy, ".h5": hdf5.write, ".hdf5": hdf5.write}
+def _write_gsf(file: Path, topography: Topography, title: str, offset: Offset) -> None:
+    """A header of text, 1 to 4 zeros up to a multiple of four bytes, little-endian floats; the first row is the top."""
+    (ny, nx), (height, width) = topography.shape, topography.size
+    facts = {"XRes": nx, "YRes": ny, "XReal": repr(width), "YReal": repr(height)}
+    if offset is not None:
+        facts |= {"XOffset": repr(offset[1]), "YOffset": repr(-(offset[0] + height))}
+    facts |= {"XYUnits": "m", "ZUnits": "m", "Title": " ".join(title.split())}
+    text = "Gwyddion Simple Field 1.0\n" + "".join(f"{key} = {value}\n" for key, value in facts.items())
+    header = text.encode("utf-8", "backslashreplace")
+    with file.open("wb") as stream:
+        stream.write(header + b"\0" * (4 - len(header) % 4))
+        stream.write(np.ascontiguousarray(topography.heights[::-1]).astype("<f4").tobytes())
+
+
+_WRITERS: dict[str, Writer] = {".gwy": _write_gwy, ".gsf": _write_gsf, ".h5": hdf5.write, ".hdf5": hdf5.write}

@@ -12,6 +12,7 @@ What is stored, how a killed run goes on, how a cluster is used: docs/maps.md.
 """
 
 from .dataset import determined, flag_counts, read, write
+from .fields import planes
 from .picture import draw
 from .run import fit
 from .synthesis import synthesise
@@ -19,6 +20,6 @@ from .touched import to_scene, to_surface
 from .volume import ArrayVolume, CurveVolume
 
 __all__ = [
-    "ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "read", "synthesise", "to_scene",
-    "to_surface", "write",
+    "ArrayVolume", "CurveVolume", "determined", "draw", "fit", "flag_counts", "planes", "read", "synthesise",
+    "to_scene", "to_surface", "write",
 ]  # fmt: skip

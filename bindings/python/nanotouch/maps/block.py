@@ -19,14 +19,21 @@ MEASURED = {
     "snap_in_force": ("N", "depth of the approach below its baseline, positive; 0 where no dip is visible"),
     "adhesion_work": ("J", "area of the retraction below its baseline"),
     "contact_slope": ("N/m", "-dF/dz over the upper half of the load"),
+    "branch_offset": ("N", "by which the retraction ends below the approach: drag, or what still holds"),
 }
 PLAIN = {
+    "pull_off_least": ("N", "lower end of the 95 % interval of the pull-off force"),
+    "pull_off_most": ("N", "upper end of the 95 % interval of the pull-off force"),
+    "ruptures": ("1", "how many tear off on the retraction"),
+    "rating": ("1", "0 (reject) to 10, by the largest residuals beside the load"),
     "noise": ("N", "standard deviation of the force from point to point"),
     "baseline_tilt": ("N/m", "slope of the baseline over z"),
     "residual_rms": ("N", "root mean square of force minus fit"),
     "contact_radius": ("m", "radius of the fitted contact at the deepest point"),
     "contact_stiffness": ("N/m", "stiffness of the fitted contact at the deepest point"),
 }
+PARABOLOIDS = ("hertz", "dmt", "jkr", "maugis")
+_GAUSSIAN = 1.959963984540054
 LOST = "LOST"  # status of a curve whose block killed the workers it was given to
 
 
@@ -63,9 +70,31 @@ def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Colu
             columns["flags"] |= np.where(unknown, undetermined_flag(place), 0).astype(np.uint32)
     if settings.poisson_ratio is not None:
         columns |= _sample_modulus(settings, columns)
+    if settings.model in PARABOLOIDS:
+        columns["effective_modulus_least"] = _least_modulus(settings, columns, found, block)
     for name in MEASURED:
         columns[name], columns[f"{name}_sigma"] = found[name], found[f"{name}_sigma"]
     return columns | {name: found[name] for name in PLAIN}
+
+
+def _least_modulus(settings: Settings, columns: Columns, found: dict[str, Any], block: Block) -> Floats:
+    """The 95 % lower bound of E* [Pa] where a stiff contact does not determine it; NaN elsewhere.
+
+    The compliance of the contact is that of the slope less the cantilever's, which is as uncertain as the sensitivity.
+    At one load k^3 goes as E*^2, so the bound follows from the fitted contact: E* (k_least/k)^(3/2).
+    """
+    known, flags = settings.uncertainties, extension().flags
+    if known.sensitivity == 0.0:
+        return np.full(len(block), np.nan)
+    against = flags["calibration"] | flags["wrong_model"] | flags["misfit"]
+    unknown = (columns["flags"] & undetermined_flag(0) != 0) & (columns["flags"] & against == 0)
+    slope, stiffness = found["contact_slope"], found["contact_stiffness"]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        spread = np.hypot(known.sensitivity, found["contact_slope_sigma"] / slope)
+        compliance = np.exp(_GAUSSIAN * spread) / slope - 1.0 / block.spring_constant
+        least = columns["effective_modulus"] * (1.0 / (compliance * stiffness)) ** 1.5
+        least *= np.exp(-_GAUSSIAN * np.hypot(known.spring_constant, 0.5 * known.radius))
+        return np.where(unknown & (slope > 0.0) & (compliance > 0.0), least, np.nan)
 
 
 def undetermined_flag(place: int) -> int:

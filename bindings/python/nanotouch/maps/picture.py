@@ -16,34 +16,36 @@ from .dataset import determined, doubtful, flag_counts
 
 Floats = NDArray[np.float64]
 
-PANELS = ("effective_modulus", "pull_off_force", "contact_point")
+PANELS = ("effective_modulus", "pull_off_force", "adhesion_work", "work_of_adhesion", "contact_point")
 _TITLES = {
     "effective_modulus": "effective modulus $E^*$",
     "youngs_modulus": "Young's modulus $E$",
     "work_of_adhesion": "work of adhesion $w$",
     "pull_off_force": "pull-off force",
+    "adhesion_work": "work of separation",
     "contact_point": "height at no force",
 }
 _DECADE = 10.0  # spread from where a modulus is drawn on a logarithmic scale
 _INNER = (2.0, 98.0)  # percentiles that the colours span, so that a few bad curves do not grey out the rest
 
 
-def draw(data: Any, names: tuple[str, ...] = PANELS, save: str | os.PathLike[str] | None = None) -> Any:
-    """Draw variables of a map and, last, the state of each curve.
+def draw(data: Any, names: tuple[str, ...] | None = None, save: str | os.PathLike[str] | None = None) -> Any:
+    """Draw variables of a map and, last, the state of each curve; by default modulus, adhesion and height.
 
-    A value that its curve does not determine is crossed and does not stretch the colours; without a result it is
-    grey.
+    A value that its curve does not determine is crossed and does not stretch the colours, or a bound with a triangle;
+    without a result it is grey.
 
     Returns
     -------
     matplotlib.figure.Figure
         Also written to `save`, whole or not at all.
     """
+    names = tuple(name for name in PANELS if name in data) if names is None else names
     unknown = [name for name in names if name not in data]
     if unknown:
         raise InvalidValue(f"{unknown[0]!r} is not in this map; it has {', '.join(data.data_vars)}")
     count = len(names) + 1
-    across = min(count, 2)
+    across = min(count, 2 if count <= 4 else 3)
     figure = new_figure(5.2 * across, 4.4 * -(-count // across))
     panels = figure.subplots(-(-count // across), across, squeeze=False).ravel()
     extent, labels = _extent(data)
@@ -66,6 +68,11 @@ def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]
         values = values - np.nanmin(values) if np.isfinite(values).any() else values
     unit, scale = engineering(data[name].attrs["units"], np.nan_to_num(values, posinf=0.0, neginf=0.0))
     good = determined(data, name)
+    least = (
+        np.asarray(data[f"{name}_least"].values, float) if f"{name}_least" in data else np.full(values.shape, np.nan)
+    )
+    bounded = ~good & np.isfinite(least)
+    values = np.where(bounded, least, values)
     spanned = values[good if good.any() else np.isfinite(values)] * scale
     low, high = np.percentile(spanned, _INNER) if spanned.size else (0.0, 1.0)
     if low == high:
@@ -75,12 +82,14 @@ def _quantity(figure: Any, panel: Any, data: Any, name: str, extent: list[float]
     panel.set_facecolor("0.7")
     image = panel.imshow(values * scale, origin="lower", extent=extent, norm=norm, cmap="viridis", interpolation="none")
     figure.colorbar(image, ax=panel, label=unit, extend="both")
-    doubtful = np.isfinite(values) & ~good
-    if doubtful.any():
-        y, x = np.nonzero(doubtful)
-        panel.scatter(*_centres(data, extent, y, x), s=6, marker="x", lw=0.6, color="white")
+    doubtful = np.isfinite(values) & ~good & ~bounded
+    for marked, marker in ((doubtful, "x"), (bounded, "^")):
+        if marked.any():
+            y, x = np.nonzero(marked)
+            panel.scatter(*_centres(data, extent, y, x), s=6, marker=marker, lw=0.6, color="white")
     without = int(np.count_nonzero(~np.isfinite(values)))
-    panel.set_title(f"{_TITLES.get(name, name.replace('_', ' '))}\n{int(doubtful.sum())} not determined (x), "
+    bounds = f"{int(bounded.sum())} above the colour (^), " if bounded.any() else ""
+    panel.set_title(f"{_TITLES.get(name, name.replace('_', ' '))}\n{int(doubtful.sum())} not determined (x), {bounds}"
                     f"{without} without (grey)", fontsize=9)  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from .._core import baseline_kinds
 from ..errors import InvalidValue
 from ..fit import TipLike, Uncertainties
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
@@ -112,7 +113,7 @@ class Settings:
         recipe = extension().Recipe(setup.options(extension()))
         for name in held:
             recipe.hold(places[name])
-        recipe.waves = self.baseline == "auto"
+        recipe.baseline = baseline_kinds[self.baseline]
         recipe.loss_scale = self.loss_scale or 0.0
         recipe.fit_offset = self.fit_offset
         if self.branch is not None:

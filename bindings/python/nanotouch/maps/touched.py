@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +14,11 @@ from ..errors import InvalidValue
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
 from ..fit.touched import Law, scene_of, youngs_modulus
 from ..images import Topography, fill
+from ..images.values import LEAST_SHARE, Fill
 from ..scene import Scene
 from ..surface import Surface
 from .dataset import determined
 from .settings import SHARP, Settings
-
-Fill = Literal["neighbours", "median"]
-#: w below this share of its largest value is none that a surface can carry
-_LEAST_SHARE = 1e-3
 
 
 def to_scene(data: Any, *, poisson_ratio: float = 0.3) -> Scene:
@@ -103,7 +100,7 @@ def to_surface(
         given["work_of_adhesion"] = np.exp(work)
     topography = Topography(
         heights - heights.mean(),
-        _pixel_size(data, pixel_size),
+        pixel_size_of(data, pixel_size),
         str(data.attrs.get("input_name", "")),
         "contact_point",
         "nanotouch.maps",
@@ -137,7 +134,7 @@ def _known(data: Any, name: str) -> NDArray[np.bool_]:
     here = determined(data, name)
     if name == "contact_point":
         return here
-    least = _LEAST_SHARE * np.max(values[here], initial=0.0) if name == "work_of_adhesion" else 0.0
+    least = LEAST_SHARE * np.max(values[here], initial=0.0) if name == "work_of_adhesion" else 0.0
     return np.asarray(here & (values > least))
 
 
@@ -151,7 +148,8 @@ def _filled(values: Floats, missing: NDArray[np.bool_], by: Fill | None, name: s
     return fill(np.where(missing, np.nan, values))[0]
 
 
-def _pixel_size(data: Any, given: float | tuple[float, float] | None) -> tuple[float, float]:
+def pixel_size_of(data: Any, given: float | tuple[float, float] | None = None) -> tuple[float, float]:
+    """(dy, dx) [m] of a map, by where its curves were taken."""
     if given is not None:
         pair = np.broadcast_to(np.asarray(given, dtype=np.float64), (2,))
         return float(pair[0]), float(pair[1])

@@ -11,7 +11,7 @@ from .._arrays import Floats
 from .._drawing import BLUE, VERMILION, StrPath, new_figure, saved
 from ..errors import InvalidValue
 from ..record import Recording
-from ..units import engineering
+from ..units import engineering, in_words
 from .events import phases, sideways
 from .panels import dress, signal
 
@@ -56,7 +56,24 @@ def line(
     upper.margins(x=0.01)
     dress(upper, "Felt line")
     dress(lower, "Force on the tip, + repulsive")
+    lower.text(0.005, 0.03, _band(part), transform=lower.transAxes, fontsize=8, color="0.35", va="bottom")
     return saved(figure, save)
+
+
+def _band(part: Recording) -> str:
+    """What the pale band is, and the forces that single steps of the rig make, where the recording says what rig."""
+    told = "line: mean; band: least to largest"
+    rig = part.metadata.get("rig")
+    if not (isinstance(rig, dict) and "alpha_p" in part.metadata):
+        return told
+    probe, lever = rig["probe"], float(rig["probe"]["spring_constant"])
+    steps = {
+        "the master's position": float(rig["master"]["resolution"]) * part.parameter("alpha_p"),
+        "the stage's command": float(rig["stage"]["command_resolution"]),
+        "the lever's signal": float(probe["resolution"]) * float(probe["sensitivity"]),
+    }
+    words = [f"{name} {in_words(step * lever, 'N', 3)}" for name, step in steps.items() if step > 0.0]
+    return f"{told}; one step: {', '.join(words)}" if words else told
 
 
 def _along(recording: Recording) -> tuple[slice, Floats]:

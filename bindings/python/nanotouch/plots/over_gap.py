@@ -12,30 +12,39 @@ from numpy.typing import NDArray
 from .._arrays import Floats
 from .._drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, StrPath, new_figure, saved
 from ..errors import InvalidValue
+from ..plan import History
 from ..record import Recording
+from ..scene import Scene
 from ..units import engineering
 from .events import Adhesion, adhesion, phases
 from .panels import dress, envelope
+
+BINS = 300  # steps of the stage over each way
+MAGNIFIED = 3  # adhesion has a panel of its own where the largest force is above so many times it
 
 
 def force_gap(recording: Recording, save: StrPath | None = None, seen: Adhesion | None = None) -> Any:
     """Slave force against the gap, approach and retraction apart, as the paper's Fig. 5; adhesion magnified beside it.
 
-    The gap is the simulator's truth where it was recorded, otherwise the tip's height from measured quantities.
+    Lines are medians over equal steps of the stage, dots are readings, and below them lies the planned law of a flat,
+    where scene and true gap were recorded. The gap is the simulator's truth where it was recorded, otherwise the tip's
+    height from measured quantities.
     `seen` is what to mark; by default what :func:`adhesion` finds.
     """
     seen = seen or adhesion(recording)
     gap, quantity = (recording.gap, "gap $h$") if "gap" in recording else (recording.tip_height, "tip height $z_t$")
     force = recording.slave_force
     deepest = float(np.nanmax([seen.snap_in_force, seen.pull_off_force, 0.0]))
-    magnified = 0 < 10 * deepest < float(np.nanmax(np.abs(force)))
+    magnified = 0 < MAGNIFIED * deepest < float(np.nanmax(np.abs(force)))
     figure = new_figure(11.0 if magnified else 7.5, 5.0)
     panels = list(np.atleast_1d(figure.subplots(1, 2 if magnified else 1)))
     windows = [np.ones(len(recording), bool)]
     if magnified:
         windows.append(_adhesion_window(recording, seen, gap))
     for panel, window, title in zip(panels, windows, ("Force on the tip", "Magnified"), strict=False):
-        _force_panel(panel, (gap, force), window, phases(recording))
+        if "gap" in recording:
+            _law(panel, recording, (gap[window], force[window]))
+        _force_panel(panel, (gap, force, recording.stage_position), window, phases(recording))
         panel.set_xlabel(f"{quantity} ({engineering('m', gap[window])[0]})")
         dress(panel, title)
     _mark_adhesion(panels[-1], (gap, force), windows[-1], seen)
@@ -72,8 +81,10 @@ def _adhesion_window(recording: Recording, seen: Adhesion, gap: Floats) -> NDArr
     return window
 
 
-def _force_panel(panel: Any, data: tuple[Floats, Floats], window: NDArray[np.bool_], split: tuple[int, int]) -> None:
-    gap, force = data
+def _force_panel(
+    panel: Any, data: tuple[Floats, Floats, Floats], window: NDArray[np.bool_], split: tuple[int, int]
+) -> None:
+    gap, force, stage = data
     wide = engineering("m", gap[window])[1]
     strong, scale = engineering("N", force[window])
     stop, start = split
@@ -86,11 +97,46 @@ def _force_panel(panel: Any, data: tuple[Floats, Floats], window: NDArray[np.boo
         inside = np.flatnonzero(window[rows])
         if inside.size:
             x, y = gap[rows][inside] * wide, force[rows][inside] * scale
-            y[:-1][np.diff(inside) > 1] = np.nan  # no line where the curve leaves the window
             kept = envelope(x, y)
-            panel.plot(x[kept], y[kept], color=colour, lw=0.7, alpha=0.8, label=label)
+            panel.plot(x[kept], y[kept], ".", color=colour, ms=1.0, alpha=0.3)
+            across, up = _binned(stage[rows], window[rows], (x, y))
+            panel.plot(across, up, color=colour, lw=1.4, label=label)
     panel.axhline(0, color="0.4", lw=0.8)
     panel.set_ylabel(f"slave force $f_s$, + repulsive ({strong})")
+
+
+def _binned(stage: Floats, window: NDArray[np.bool_], seen: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+    """Medians over equal steps of the stage, which moves on through a steep contact as through free air: no zigzag of
+    its steps, and a jump stays between two of them. NaN where all of a step lies outside of the window."""
+    if len(seen[0]) < 2 * BINS:
+        return seen
+    edges = np.linspace(float(stage.min()), float(stage.max()), BINS + 1)
+    number = np.clip(np.searchsorted(edges, stage, side="right") - 1, 0, BINS - 1)
+    steps, inside = np.unique(number), number[window]
+    medians = np.full((2, len(steps)), np.nan)
+    for place, step in enumerate(steps):
+        rows = inside == step
+        if rows.any():
+            medians[:, place] = np.median(seen[0][rows]), np.median(seen[1][rows])
+    return medians[0], medians[1]
+
+
+def _law(panel: Any, recording: Recording, shown: tuple[Floats, Floats]) -> None:
+    """The way in and the way out that were planned, within what is shown."""
+    scene = recording.metadata.get("scene")
+    gap, force = shown
+    if scene is None or not len(gap) or scene.get("terms"):
+        return
+    plan = Scene(**scene).plan()
+    wide, scale = engineering("m", gap)[1], engineering("N", force)[1]
+    low, high = float(force.min()), float(force.max())
+    gaps = np.linspace(float(np.nanmin(gap)), float(np.nanmax(gap)), 4000)
+    ways: tuple[tuple[History, str], ...] = (("approach", "-"), ("retract", "--"))
+    for history, style in ways:
+        law = plan.force(gaps, history)
+        seen = (law >= low - 0.1 * abs(low)) & (law <= 1.1 * high)
+        panel.plot(gaps * wide, np.where(seen, law * scale, np.nan), color="0.25", ls=style, lw=0.9,
+                   label="planned law" if history == "approach" else None, zorder=1)  # fmt: skip
 
 
 def _mark_adhesion(panel: Any, data: tuple[Floats, Floats], window: NDArray[np.bool_], seen: Adhesion) -> None:

@@ -25,7 +25,7 @@ from nanotouch.reference._lennard_jones import (
 )
 from nanotouch.reference._pressures import Pressure, brush, exponential, power, sum_of
 from nanotouch.reference._scene import SceneForces, force, forces
-from nanotouch.reference._soft_scene import yielded_force
+from nanotouch.reference._soft_scene import yielded, yielded_force
 from nanotouch.reference._yielding import Yielded, Yielding
 
 __all__ = [
@@ -51,6 +51,7 @@ __all__ = [
     "sum_of",
     "table_error",
     "tabor_mu",
+    "yielded",
     "yielded_force",
     "yielded_scene",
 ]

@@ -5,10 +5,14 @@ code with plans.
 
 Where the tail jumps before adhesion takes hold, contact has all of w and no tail. Where it does not, the force goes on
 into contact, as with rigid bodies: it stays there, and what the tail pulls is taken out of w (erratum E5b).
+
+Laws that are no tail, as a double layer, press on the sample around the contact, too: contact and laws are solved
+together (`_surrounded`), with all of w; it takes hold where the gap under the apex is that of adhesion, or in a jump.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +25,7 @@ from nanotouch._arrays import Floats, as_floats
 from nanotouch.reference._pressures import Pressure
 from nanotouch.reference._scene import History, _capture_gap, _contact, _less, _touch, _work
 from nanotouch.reference._soft_scene import _laws, _modulus
+from nanotouch.reference._surrounded import Surrounded
 from nanotouch.reference._yielding import Yielded, Yielding
 from nanotouch.scene import Scene
 
@@ -48,10 +53,17 @@ class YieldedScene:
     """of the gap to the poles of the tail [m]"""
     kept: float
     """force of the tail that stays in contact [N]"""
+    surrounded: Surrounded | None = None
+    """contact with the laws around it, where there are such"""
 
     def force(self, gap: ArrayLike, history: History = "approach") -> Floats:
         """On the tip [N], at gaps [m] in falling order, each reached from far away or from contact."""
         gaps = as_floats(gap, "gap")
+        if self.surrounded is not None and self.surrounded.release is not None:
+            edge = self.capture_gap if history == "approach" else self.surrounded.release.gap
+            return np.array(
+                [self.surrounded.at(g).force if g <= edge else self.apart.at(g + self.shift).force for g in gaps]
+            )
         held = _touch(self.scene, gaps, self.contact, self.capture_gap, history)
         attached = (gaps <= self.capture_gap) | (held != 0.0)
         return np.array([self._around(g, bool(on)) for g, on in zip(gaps, attached, strict=True)]) + held
@@ -75,6 +87,8 @@ def yielded_scene(scene: Scene, tolerance: float = 1e-6) -> YieldedScene:
     def apart() -> Yielding:
         return Yielding(law, scene.tip.radius, modulus, tolerance=tolerance)
 
+    if _beside(scene):
+        return _surrounded_scene(scene, whole, apart, shift)
     jump = _jump(apart(), shift, range_of_adhesion, scene)
     if jump is not None:
         return YieldedScene(scene, jump.gap - shift, True, whole, apart(), shift, 0.0)
@@ -82,6 +96,40 @@ def yielded_scene(scene: Scene, tolerance: float = 1e-6) -> YieldedScene:
     tail = kept - float(_others(scene, np.array([range_of_adhesion]))[0])
     left = _less(whole, -tail / (2.0 * np.pi * whole.radius))
     return YieldedScene(scene, range_of_adhesion, False, left, apart(), shift, tail)
+
+
+def _surrounded_scene(
+    scene: Scene, whole: contacts.Contact, apart: Callable[[], Yielding], shift: float
+) -> YieldedScene:
+    """Contact and the laws around it, as one."""
+    assert whole.cohesive_stress is not None
+    end_gap, per_area = whole.work_of_adhesion / whole.cohesive_stress, 2.0 * np.pi * scene.tip.radius
+    further, beside = scene.adhesion.equilibrium_distance - end_gap, _beside(scene)
+
+    def pressure(g: Floats) -> Floats:
+        return np.asarray(sum(law(np.maximum(g, end_gap) + further).k for law in beside) / per_area)
+
+    def energy(g: Floats) -> Floats:
+        return np.asarray(sum(law(np.maximum(g, end_gap) + further).F for law in beside) / per_area)
+
+    law, modulus = Pressure(pressure, energy), whole.effective_modulus
+    around = Surrounded(law, whole.radius, modulus, whole.work_of_adhesion, end_gap)
+    jkr = (4.5 * np.pi * whole.work_of_adhesion * whole.radius**2 / whole.effective_modulus) ** (1.0 / 3.0)  # no load
+    around.find_release(0.6 * jkr)
+    captured = _centre_capture(apart(), end_gap + shift)
+    return YieldedScene(scene, captured - shift, True, whole, apart(), shift, 0.0, around)
+
+
+def _centre_capture(sample: Yielding, end_gap: float) -> float:
+    """Coming from far away: where the gap of adhesion is left under the apex, or where the surface jumps before."""
+    last = _FAR * max(end_gap, 1e-9)
+    here = sample.at_centre(last)
+    while last > end_gap:
+        before, last = here, max(last * _CLOSER, end_gap)
+        here = sample.at_centre(last)
+        if here.gap > before.gap:
+            return sample.jump_in(last, last / _CLOSER**2).gap
+    return here.gap
 
 
 def _jump(sample: Yielding, shift: float, nearest: float, scene: Scene) -> Yielded | None:

@@ -36,7 +36,7 @@ _INDENTATION_PER_MU = (9.0 * math.pi**2 / 16.0) ** (1.0 / 3.0)
 class TableError(NamedTuple):
     """How far curves of the table are from computed ones, as the generator measured and wrote into the table.
 
-    Each is the largest distance of two curves in the plane of d and P/max(|P|, |P_pull-off|).
+    Each is the largest distance of two curves in the plane of d and ``P/max(|P|, |P_pull-off|)``.
     """
 
     every_second_mu_left_out: float
@@ -247,7 +247,7 @@ def model_error(
     mu : float
         Tabor's parameter, 0.05 to 5.
     quantity : str
-        ``"force"``: the largest |dF|/max(|F|, |F_pull-off|) at equal indentation (grips) on the stable branch.
+        ``"force"``: the largest ``|dF|/max(|F|, |F_pull-off|)`` at equal indentation (grips) on the stable branch.
         ``"pull_off"``: the relative difference of the pull-off loads.
     rezeroed : bool
         Count both indentations from where the load is 0, as one does with measured curves.

@@ -14,7 +14,7 @@ from nanotouch import forces as laws
 from nanotouch._arrays import Floats, Law, as_floats
 from nanotouch.reference._half_space import Layer
 from nanotouch.reference._pressures import Pressure
-from nanotouch.reference._yielding import Yielding
+from nanotouch.reference._yielding import Yielded, Yielding
 from nanotouch.scene import Scene
 
 _CLOSE = 1e-12
@@ -22,22 +22,31 @@ _CLOSE = 1e-12
 
 
 def yielded_force(scene: Scene, gap: ArrayLike) -> Floats:
-    """Force on the tip [N] at gaps [m] in falling order: van der Waals, double layer, hydration and brush, in contact
-    Hertz with them. Bodies touch at the interatomic distance; between there and gap 0 the force stays."""
-    hold = scene.adhesion.equilibrium_distance
-    law = _pressure(scene, hold)
+    """Force on the tip [N] at gaps [m] in falling order; see :func:`yielded`."""
+    return np.array([here.force for here in yielded(scene, gap)[0]])
+
+
+def yielded(scene: Scene, gap: ArrayLike) -> tuple[list[Yielded], float | None]:
+    """The equilibria at gaps [m] in falling order: van der Waals, double layer, hydration and brush, in contact Hertz
+    with them. Bodies touch at the interatomic distance; between there and gap 0 the force stays. And the gap at which
+    contact begins, if it was reached [m]."""
+    sample, hold = _sample(scene), scene.adhesion.equilibrium_distance
+    found = []
+    for here in as_floats(gap, "gap"):
+        last = sample.curve([here - hold])[0] if sample.touch is None else None
+        if sample.touch is not None:
+            last = sample.curve([here - hold if here - hold >= sample.touch else min(sample.touch, here)])[0]
+        assert last is not None
+        found.append(last)
+    return found, sample.touch
+
+
+def _sample(scene: Scene) -> Yielding:
+    law = _pressure(scene, scene.adhesion.equilibrium_distance)
     modulus, share = _modulus(scene)
     thickness = scene.sample.thickness
     layer = Layer(thickness, scene.sample.poisson_ratio, share) if thickness > 0.0 else None
-    sample = Yielding(law, scene.tip.radius, modulus, layer, tolerance=1e-6)
-    forces = []
-    for here in as_floats(gap, "gap"):
-        found = sample.curve([here - hold])[0] if sample.touch is None else None
-        if sample.touch is not None:
-            found = sample.curve([here - hold if here - hold >= sample.touch else min(sample.touch, here)])[0]
-        assert found is not None
-        forces.append(found.force)
-    return np.array(forces)
+    return Yielding(law, scene.tip.radius, modulus, layer, tolerance=1e-6)
 
 
 def _modulus(scene: Scene) -> tuple[float, float]:

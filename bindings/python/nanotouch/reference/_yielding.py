@@ -259,7 +259,10 @@ class Yielding:
             h = value
         A, b = np.empty((n + 1, n + 1)), np.empty(n + 1)
         for _ in range(60):
-            p, slope = self.law.pressure(g), self.law.slope(g)
+            with np.errstate(over="ignore", invalid="ignore"):  # of a trial too deep: shorter steps follow
+                p, slope = self.law.pressure(g), self.law.slope(g)
+            if not np.all(np.isfinite(slope)):
+                raise SolverError("Newton")
             inside, inside_slope = self._rim(mesh, h) if mesh.a > 0.0 else (0.0, 0.0)
             b[:n] = h + (mesh.a**2 + mesh.x) / (2.0 * self.R) + inside + mesh.K @ p - g
             A[:n, :n] = -mesh.K * slope

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a session says of itself: in a line, and in a notebook."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nanotouch import _html
+
+
+def in_a_line(session: Any) -> str:
+    """Mode, state, how far, what law, how stable."""
+    return (
+        f"Session(mode {session.mode!r}, {session.state}, {session.rate:g} Hz, {_time(session):.6g} s run, "
+        f"{session.plan.contact_law}, stability margin {session.stability_margin:.3g})"
+    )
+
+
+def as_html(session: Any) -> str:
+    """The same as a table, with the guarantee and the instrument."""
+    tip, probe = session.scene.tip, session.rig.probe
+    rows = [
+        ("state", session.state),
+        ("mode", session.mode),
+        ("run so far", f"{_time(session):.6g} s"),
+        ("rate", f"{session.rate:g} Hz"),
+        ("contact law", session.plan.contact_law),
+        ("bound of the plan", f"{100.0 * session.plan.bound:.2g} %"),
+        ("stability margin", f"{session.stability_margin:.3g} (1 is the limit)"),
+        ("force never above", f"{session.guarantee().force:.4g} N"),
+        ("tip", f"{tip.shape}, {tip.radius:.4g} m"),
+        ("spring constant", f"{probe.spring_constant:.4g} N/m"),
+    ]
+    return _html.table("Session", ("", ""), rows)
+
+
+def _time(session: Any) -> float:
+    return float(session.progress.ticks / session.rate)

@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A real half in a rig file: which chip's channel is which position, force or deflection, and what a volt means.
+
+::
+
+    file = nt.rig_file.read("rig.toml")
+    session = nt.Session(rig=nt.Rig.from_tables(file.rig), slave=file.slave)    # and session.start(pace="hard")
+
+Nothing of a calibration has a default: a key that is missing is refused by its name. docs/hardware.md has a whole file.
+"""
+
+from __future__ import annotations
+
+import datetime
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, NamedTuple
+
+from nanotouch import _core
+from nanotouch._files import toml_tables
+from nanotouch.errors import InvalidValue
+from nanotouch.units import key_spellings, to_si
+
+HALVES = ("master", "slave")
+BACKENDS = ("spidev", "simulated")
+AXES = ("x", "y", "z")
+MOST = 1000
+"""whole numbers of a rig file are small: axes, channels"""
+QUANTITIES = {
+    "master": {"position": "position", "force": "felt", "motor": "driven"},
+    "slave": {"position": "position", "deflection": "felt", "travel": "driven"},
+}
+"""tables of a half, with what the library calls them"""
+LINES = ("emergency_stop", "limit_switch", "laser_enable", "watchdog", "convert")
+
+
+@dataclass(frozen=True)
+class Converters:
+    """A half on converters, for ``master=`` or ``slave=`` of a session. Its buses are opened with the session."""
+
+    setup: Mapping[str, Any]
+    calibrated: Mapping[str, datetime.date]
+    """by table: when its volts were compared"""
+
+
+class RigFile(NamedTuple):
+    """A rig file: the description of the rig, and its real halves."""
+
+    rig: dict[str, Any]
+    """tables for :meth:`Rig.from_tables`"""
+    master: Converters | None
+    """None: simulated"""
+    slave: Converters | None
+
+
+class _Table:
+    """A table of the file; every key that is taken out is known, and what is left is not."""
+
+    def __init__(self, where: str, given: object) -> None:
+        if not isinstance(given, Mapping):
+            raise InvalidValue(f"[{where}] must be a table")
+        self.where, self.left = where, dict(given)
+
+    def word(self, key: str, kind: type | tuple[type, ...] = str, example: str = '"..."') -> Any:
+        if key not in self.left:
+            raise InvalidValue(f"[{self.where}] {key} is missing: write {key} = {example}")
+        value = self.left.pop(key)
+        is_large = isinstance(value, int) and not 0 <= value <= MOST
+        is_odd = isinstance(value, str) and not (value and value.isprintable())
+        if not isinstance(value, kind) or isinstance(value, bool) or is_large or is_odd:
+            raise InvalidValue(f"[{self.where}] {key} = {value!r}: write {key} = {example}")
+        return value
+
+    def number(self, name: str, unit: str, default: float | None = None) -> float:
+        keys = key_spellings(name, unit)
+        found = [key for key in keys if key in self.left]
+        if len(found) > 1:
+            raise InvalidValue(f"[{self.where}] has both {found[0]} and {found[1]}: give one")
+        if not found:
+            if default is not None:
+                return default
+            raise InvalidValue(f"[{self.where}] {name} is missing: write {' or '.join(keys)} = a number")
+        value = self.left.pop(found[0])
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise InvalidValue(f"[{self.where}] {found[0]} = {value!r}: it must be a finite number")
+        return to_si(float(value), keys[found[0]])
+
+    def table(self, key: str, example: str) -> _Table:
+        if key not in self.left:
+            raise InvalidValue(f"[{self.where}.{key}] is missing: {example}")
+        return _Table(f"{self.where}.{key}", self.left.pop(key))
+
+    def done(self) -> None:
+        if self.left:
+            raise InvalidValue(f"[{self.where}] has no key {next(iter(self.left))!r}")
+
+
+def _chip(table: _Table) -> dict[str, Any]:
+    chip = table.word("chip", example=f'"{_core.rigs.chips()[0]}"')
+    if chip not in _core.rigs.chips():
+        raise InvalidValue(f"[{table.where}] chip = {chip!r}: known are {', '.join(_core.rigs.chips())}")
+    made = {
+        "chip": chip,
+        "device": table.word("device", example='"/dev/spidev0.0"'),
+        "clock": table.number("clock", "Hz"),
+        "low": table.number("low", "V"),
+        "high": table.number("high", "V"),
+    }
+    table.done()
+    return made
+
+
+def _channel(table: _Table, chips: list[str], unit: str, calibrated: dict[str, datetime.date]) -> dict[str, Any]:
+    chip = table.word("chip", example=f'"{chips[0]}"')
+    if chip not in chips:
+        raise InvalidValue(f"[{table.where}] chip = {chip!r}: this half has {', '.join(chips)}")
+    made = {
+        "converter": chips.index(chip),
+        "channel": table.word("channel", int, "0"),
+        "gain": table.number("gain", f"{unit}/V"),
+        "offset": table.number("offset", unit),
+        "uncertainty": table.number("uncertainty", ""),
+        "minimum": table.number("minimum", unit),
+        "maximum": table.number("maximum", unit),
+        "noise": table.number("noise", unit, 0.0),
+        "latency": table.number("latency", "s", 0.0),
+    }
+    calibrated[table.where] = table.word("calibrated", datetime.date, "2026-11-20")
+    table.done()
+    return made
+
+
+def _lines(table: _Table) -> dict[str, Any]:
+    made: dict[str, Any] = {"emergency_stop": table.word("emergency_stop", example='"estop"')}
+    for name in LINES[1:]:
+        made[name] = table.word(name, example='"..."') if name in table.left else None
+    made["debounce"] = table.number("debounce", "s", 0.0)
+    table.done()
+    return made
+
+
+def _half(half: str, table: _Table) -> Converters:
+    axes = table.word("axes", int, "1")
+    named = table.table("chips", "a table for each chip")
+    chips = {name: _chip(named.table(name, "a chip")) for name in list(named.left)}
+    if not chips:
+        raise InvalidValue(f"[{half}.chips] is empty: it needs a table for each chip")
+    calibrated: dict[str, datetime.date] = {}
+    setup: dict[str, Any] = {"half": half, "axes": axes, "chips": list(chips.values())}
+    for word, name in QUANTITIES[half].items():
+        unit = "N" if half == "master" and word != "position" else "m"
+        setup[name] = [
+            _channel(table.table(f"{word}_{axis}", ""), list(chips), unit, calibrated)
+            if f"{word}_{axis}" in table.left
+            else None
+            for axis in AXES
+        ]
+    needed = ("position_z",) if half == "master" else ("position_z", "deflection_z", "travel_z")
+    for key in needed:
+        if f"{half}.{key}" not in calibrated:
+            raise InvalidValue(f"[{half}.{key}] is missing: a {half} needs it")
+    if half == "slave" or "lines" in table.left:
+        setup["lines"] = _lines(table.table("lines", "a slave that moves needs an emergency stop"))
+    else:
+        setup["lines"] = None
+    table.done()
+    _core.rigs.check_converters(setup)
+    return Converters(setup, calibrated)
+
+
+def _taken(half: str, tables: dict[str, Any]) -> Converters | None:
+    """The real half, its keys taken out of the tables; what describes the rig stays."""
+    given = tables.get(half)
+    if not isinstance(given, Mapping) or "backend" not in given:
+        return None
+    backend = given["backend"]
+    own = {"backend", "axes", "chips", "lines"} | {f"{word}_{axis}" for word in QUANTITIES[half] for axis in AXES}
+    rest = {key: value for key, value in given.items() if key not in own}
+    if half == "master":
+        tables[half] = rest | ({"axes": given["axes"]} if "axes" in given else {})
+    else:
+        del tables[half]
+        if rest:
+            raise InvalidValue(f"[{half}] has no key {next(iter(rest))!r}")
+    if backend not in BACKENDS:
+        raise InvalidValue(f"[{half}] backend = {backend!r}: valid are {', '.join(BACKENDS)}")
+    if backend == "simulated":
+        return None
+    return _half(half, _Table(half, {key: given[key] for key in given if key in own and key != "backend"}))
+
+
+def from_tables(tables: Mapping[str, Any]) -> RigFile:
+    """From the tables of a rig file; refused, with the key's name, if anything is missing or unknown."""
+    left = dict(tables)
+    found = {half: _taken(half, left) for half in HALVES}
+    return RigFile(left, found["master"], found["slave"])
+
+
+def read(path: str | PathLike[str]) -> RigFile:
+    """A rig file."""
+    return from_tables(toml_tables(path))
+
+
+class Latency(NamedTuple):
+    """How late a loop was woken up."""
+
+    period: float
+    """of the loop [s]"""
+    ticks: int
+    missed: int
+    """periods lost as a whole"""
+    quantiles: dict[float, float]
+    """by share: 0.5, 0.99, 0.999, 0.9999 [s]"""
+    longest: float
+    """[s]"""
+    edges: list[float]
+    """where the buckets of the histogram begin, those that hold something [s]"""
+    counts: list[int]
+    refused: str
+    """a line for each wish that the kernel did not grant"""
+
+
+class FrameTimes(NamedTuple):
+    """How long a frame of a chip takes."""
+
+    median: float
+    """[s]"""
+    late: float
+    """what 99.9 % of them do not exceed [s]"""
+
+
+def latency(period: float, duration: float, *, priority: int = 80, processor: int = -1) -> Latency:
+    """Run a loop that does nothing for ``duration`` seconds, and tell how late each wake-up was."""
+    if not 1e-6 <= period <= 0.999:
+        raise InvalidValue(f"period = {period} s: valid is 1e-06 .. 0.999 s")
+    if not period <= duration <= 86400.0:
+        raise InvalidValue(f"duration = {duration} s: valid is {period:g} .. 86400 s")
+    found = _core.rigs.latency(period, round(duration / period), priority, processor)
+    quantiles = {share: found[share] for share in (0.5, 0.99, 0.999, 0.9999)}
+    return Latency(
+        period, found["ticks"], found["missed"], quantiles, found["most"], found["edges"], found["counts"],
+        found["refused"],
+    )  # fmt: skip
+
+
+def frame_times(half: Converters, count: int = 2000) -> list[FrameTimes]:
+    """Open the buses of a half and time frames that change nothing, chip by chip."""
+    if not 1 <= count <= 10**6:
+        raise InvalidValue(f"count = {count}: valid is 1 .. 1000000")
+    found = []
+    for times in _core.rigs.time_frames(half.setup, count):
+        ordered = sorted(times)
+        found.append(FrameTimes(ordered[(count - 1) // 2], ordered[min(count - 1, math.ceil(0.999 * count) - 1)]))
+    return found

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// converters.h, hal_spi.h, timing.h, realtime.h: a half on converters from a rig file, and what this machine keeps
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "hal.h"
+#include "nanotouch/hal_spi.h"
+#include "nanotouch/realtime.h"
+#include "nanotouch/timing.h"
+#ifdef NANOTOUCH_HAS_LINUX
+#include "nanotouch/hal_linux.h"
+#endif
+
+// --- the tables of a rig file, whose numbers are SI by now ---
+
+static nt_converter converter_of(const py::dict &table)
+{
+    const auto name = table["chip"].cast<std::string>();
+    nt_converter made{};
+    made.chip = nt_chip_find(name.c_str());
+    if (!made.chip)
+        raise(NT_E_ARGUMENT, "chip = '" + name + "' is none that is known");
+    made.span = {table["low"].cast<double>(), table["high"].cast<double>()};
+    return made;
+}
+
+static nt_converter_channel channel_of(const py::handle &given)
+{
+    nt_converter_channel made{};
+    if (given.is_none())
+        return made;
+    const auto table = py::reinterpret_borrow<py::dict>(given);
+    const auto number = [&](const char *name) { return table[name].cast<double>(); };
+    made.is_used = 1;
+    made.converter = table["converter"].cast<int>();
+    made.channel = table["channel"].cast<int>();
+    made.gain = number("gain");
+    made.offset = number("offset");
+    made.uncertainty = number("uncertainty");
+    made.minimum = number("minimum");
+    made.maximum = number("maximum");
+    made.noise = number("noise");
+    made.latency = number("latency");
+    return made;
+}
+
+static void channels_of(const py::dict &setup, const char *name, nt_converter_channel to[NT_AXES])
+{
+    const auto list = setup[name].cast<py::list>();
+    for (int axis = 0; axis < NT_AXES; ++axis)
+        to[axis] = channel_of(list[static_cast<size_t>(axis)]);
+}
+
+static nt_converter_setup setup_of(const py::dict &given)
+{
+    nt_converter_setup made{};
+    const auto chips = given["chips"].cast<py::list>();
+    made.half = given["half"].cast<std::string>() == "master" ? NT_HALF_MASTER : NT_HALF_SLAVE;
+    made.axes = given["axes"].cast<int>();
+    if (chips.size() > NT_CONVERTERS)
+        raise(NT_E_RANGE, std::to_string(chips.size()) + " chips: valid are 1 .. " + std::to_string(NT_CONVERTERS));
+    made.converters = static_cast<int>(chips.size());
+    for (int i = 0; i < made.converters; ++i)
+        made.converter[i] = converter_of(chips[static_cast<size_t>(i)].cast<py::dict>());
+    channels_of(given, "position", made.position);
+    channels_of(given, "felt", made.felt);
+    channels_of(given, "driven", made.driven);
+    made.exchange = nt_spi_exchange;
+    return made;
+}
+
+// --- the half ---
+
+static void open_buses(nt_spi &spi, const py::dict &setup)
+{
+    std::vector<std::string> paths;
+    std::array<nt_spi_device, NT_CONVERTERS> devices{};
+    const auto chips = setup["chips"].cast<py::list>();
+    paths.reserve(chips.size());
+    for (size_t i = 0; i < chips.size() && i < devices.size(); ++i) {
+        const auto table = chips[i].cast<py::dict>();
+        paths.push_back(table["device"].cast<std::string>());
+        devices[i] = {paths.back().c_str(), converter_of(table).chip->spi_mode, table["clock"].cast<double>()};
+    }
+    char reason[NT_SPI_REASON] = "";
+    const nt_status status = nt_spi_open(&spi, devices.data(), static_cast<int>(chips.size()), nullptr, reason);
+    if (status != NT_OK)
+        raise(status, reason[0] ? reason : nt_status_message(status));
+}
+
+struct Buses {
+    nt_spi spi{};
+    explicit Buses(const py::dict &setup)
+    {
+        open_buses(spi, setup);
+    }
+    ~Buses()
+    {
+        nt_spi_close(&spi);
+    }
+};
+
+#ifdef NANOTOUCH_HAS_LINUX
+struct Lines {
+    nt_gpio *gpio = nullptr;
+    explicit Lines(const py::handle &given)
+    {
+        if (given.is_none())
+            return;
+        const auto table = py::reinterpret_borrow<py::dict>(given);
+        std::vector<std::string> names;
+        names.reserve(5);
+        const auto name = [&](const char *key) -> const char * {
+            if (table[key].is_none())
+                return nullptr;
+            names.push_back(table[key].cast<std::string>());
+            return names.back().c_str();
+        };
+        const nt_gpio_wiring wiring = {name("emergency_stop"), name("limit_switch"), name("laser_enable"),
+                                       name("watchdog"),       name("convert"),      table["debounce"].cast<double>()};
+        char reason[256] = "";
+        const nt_status status = nt_gpio_open(&wiring, reason, sizeof reason, &gpio);
+        if (status != NT_OK)
+            raise(status, reason);
+    }
+    ~Lines()
+    {
+        nt_gpio_close(gpio);
+    }
+    nt_converter_lines lines() const
+    {
+        return gpio ? nt_gpio_lines(gpio) : nt_converter_lines{};
+    }
+};
+#else
+struct Lines {
+    explicit Lines(const py::handle &given)
+    {
+        if (!given.is_none())
+            raise(NT_E_UNSUPPORTED, "built without libgpiod: the lines of the rig file cannot be used");
+    }
+    static nt_converter_lines lines()
+    {
+        return {};
+    }
+};
+#endif
+
+struct ConverterHalf : Half {
+    Buses buses;
+    Lines lines;
+    nt_converter_half half{};
+
+    ConverterHalf(const py::dict &given, nt_half which) : buses(given), lines(given["lines"])
+    {
+        nt_converter_setup setup = setup_of(given);
+        nt_problem problem{};
+        setup.bus = &buses.spi;
+        setup.lines = lines.lines();
+        raise_on(nt_converter_half_init(&half, &setup, &problem), problem, "rig");
+        choice = {nt_converter_half_backend(which), &half};
+    }
+};
+
+std::shared_ptr<Half> converter_half_of(const py::object &given, nt_half half)
+{
+    const auto setup = given.attr("setup").cast<py::dict>();
+    const bool is_master = setup["half"].cast<std::string>() == "master";
+    if (is_master != (half == NT_HALF_MASTER))
+        throw py::type_error(std::string("these converters are the rig's ") + (is_master ? "master" : "slave"));
+    return std::make_shared<ConverterHalf>(setup, half);
+}
+
+static void check_converters(const py::dict &given)
+{
+    const nt_converter_setup setup = setup_of(given);
+    nt_problem problem{};
+    raise_on(nt_converter_setup_check(&setup, &problem), problem, given["half"].cast<std::string>());
+}
+
+// Times of frames that change nothing, a list for each chip [s].
+static std::vector<std::vector<double>> time_frames(const py::dict &given, int count)
+{
+    using Clock = std::chrono::steady_clock;
+    const nt_converter_setup setup = setup_of(given);
+    Buses buses(given);
+    std::vector<std::vector<double>> found(static_cast<size_t>(setup.converters));
+    const py::gil_scoped_release release;
+    for (int i = 0; i < setup.converters; ++i) {
+        const nt_chip *chip = setup.converter[i].chip;
+        const nt_chip_frame frame = chip->is_dac ? nt_chip_nothing(chip) : nt_chip_poll(chip);
+        for (int k = 0; k < count; ++k) {
+            uint8_t in[NT_CHIP_FRAME_SIZE];
+            const nt_transfer transfer = {frame.bytes, in, frame.count};
+            const auto start = Clock::now();
+            const nt_status status = nt_spi_exchange(&buses.spi, i, &transfer, 1);
+            found[static_cast<size_t>(i)].push_back(std::chrono::duration<double>(Clock::now() - start).count());
+            if (status != NT_OK) {
+                const py::gil_scoped_acquire gil;
+                raise(NT_E_DEVICE,
+                      std::string(chip->name) + ": a frame failed: errno " + std::to_string(buses.spi.error));
+            }
+        }
+    }
+    return found;
+}
+
+// --- what this machine keeps ---
+
+static py::dict histogram_of(const nt_histogram &histogram)
+{
+    py::list edges, counts;
+    for (int i = 0; i < NT_HISTOGRAM_BUCKETS; ++i)
+        if (histogram.counts[i] > 0) {
+            edges.append(1e-9 * static_cast<double>(nt_histogram_edge(i)));
+            counts.append(histogram.counts[i]);
+        }
+    py::dict found;
+    found["edges"] = edges;
+    found["counts"] = counts;
+    for (const double share : {0.5, 0.99, 0.999, 0.9999})
+        found[py::float_(share)] = 1e-9 * static_cast<double>(nt_histogram_quantile(&histogram, share));
+    found["most"] = 1e-9 * static_cast<double>(histogram.most);
+    return found;
+}
+
+static int stop_when_asked(void *context, uint64_t, double)
+{
+    auto &due = *static_cast<std::chrono::steady_clock::time_point *>(context);
+    const auto now = std::chrono::steady_clock::now();
+    if (now < due)
+        return 0;
+    due = now + std::chrono::milliseconds(200);
+    const py::gil_scoped_acquire gil; // five times a second: Ctrl-C is heard
+    return PyErr_CheckSignals();
+}
+
+static py::dict latency(double period, uint64_t ticks, int priority, int processor)
+{
+    nt_realtime_wish wish = nt_realtime_wish_defaults();
+    wish.priority = priority;
+    wish.processor = processor;
+    wish.locks = wish.stays_awake = priority > 0;
+    nt_realtime realtime{};
+    auto timing = std::make_unique<nt_timing>();
+    auto due = std::chrono::steady_clock::now();
+    const nt_loop_phases phases = {stop_when_asked, nullptr, nullptr, &due};
+    nt_status granted, status = NT_OK;
+    {
+        const py::gil_scoped_release release;
+        granted = nt_realtime_begin(&realtime, &wish);
+        if (granted == NT_OK)
+            status = nt_loop_run_timed(period, ticks, &phases, timing.get());
+        nt_realtime_end(granted == NT_OK ? &realtime : nullptr);
+    }
+    if (PyErr_Occurred())
+        throw py::error_already_set();
+    raise_on(granted, "what a loop is granted");
+    raise_on(status, "loop");
+    py::dict found = histogram_of(timing->phases[NT_LOOP_WAKE]);
+    found["ticks"] = timing->ticks;
+    found["missed"] = timing->missed;
+    found["overrun"] = timing->overrun;
+    found["refused"] = std::string(realtime.refused);
+    return found;
+}
+
+void bind_converters(py::module_ &core)
+{
+    py::module_ module = core.def_submodule("rigs");
+    module.def("check_converters", check_converters);
+    module.def("time_frames", time_frames);
+    module.def("latency", latency);
+    module.def("chips", [] {
+        std::vector<std::string> names;
+        for (int i = 0; nt_chip_at(i); ++i)
+            names.emplace_back(nt_chip_at(i)->name);
+        return names;
+    });
+}
