@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A touch on a microcontroller: nanotouch::core, a DAC and an ADC, no operating system. */
+#ifndef APPS_MCU_TOUCH_H
+#define APPS_MCU_TOUCH_H
+
+#include "nanotouch/control.h"
+#include "nanotouch/converters.h"
+#include "nanotouch/hal.h"
+
+/* What the board gives: its SPI, its clock, and the end of a period. */
+typedef struct board {
+    nt_exchange exchange;
+    void *bus;
+    nt_host host;
+    void (*wait)(void *context); /* until the next period begins; a timer's interrupt on a real board */
+    void *context;
+} board;
+
+/* What came of it. */
+typedef struct outcome {
+    nt_status status;
+    uint32_t state; /* nt_state at the end */
+    long ticks;
+    double force;         /* at the end [N] */
+    double travel;        /* of the stage, at the end [m] */
+    double largest;       /* force on the way [N] */
+    uint64_t command_sum; /* over all commands: the same on each machine whose arithmetic is the same */
+} outcome;
+
+/* Comes down until the set-point is felt, holds it, and lifts: `ticks` periods of 0.1 ms. */
+outcome touch_run(const board *at, long ticks);
+
+#endif

@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The session of the page: the public C API, stepped by a worker (page.h). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "page.h"
+
+enum { KEPT = 26 };              /* snapshots */
+static const double EACH = 0.25; /* between two of them [s] */
+
+static struct {
+    nt_session *session;
+    page_update update;
+    nt_snapshot *kept[KEPT];
+    double kept_at[KEPT];
+    int newest; /* of kept; -1: none */
+    int touches;
+} page = {.newest = -1};
+
+static void forget(void)
+{
+    for (int i = 0; i < KEPT; ++i) {
+        nt_snapshot_close(page.kept[i]);
+        page.kept[i] = NULL;
+    }
+    page.newest = -1;
+}
+
+static void clear_update(void)
+{
+    page.update = (page_update){.version = PAGE_VERSION, .least = INFINITY, .largest = -INFINITY};
+}
+
+/* A session over ny rows of nx heights of a body [m] (freed by the caller), with scene, rig and settings as they are.
+ * The one before is closed once this one is open. */
+PAGE_API(page_open) int page_open(const double *heights, int nx, int ny, const page_opening *opening)
+{
+    page_world *world = page_the_world();
+    nt_session_setup setup = nt_session_defaults();
+    setup.scene = world->scene;
+    setup.rig = world->rig;
+    setup.settings = world->settings;
+    if (heights)
+        setup.map = (nt_height_map){heights, nx, ny, opening->dx, opening->dy};
+    setup.x = opening->x;
+    setup.y = opening->y;
+    setup.clearance = opening->clearance;
+    setup.rise = opening->rise;
+    setup.seed = (uint64_t)opening->seed;
+    setup.minimum_margin = opening->margin;
+    setup.ring_capacity = 0;
+    world->problem = (nt_problem){0};
+    nt_session *session = NULL;
+    const nt_status status = nt_session_open(&session, &setup, &world->problem);
+    if (status != NT_OK)
+        return (int)status;
+    forget();
+    nt_session_close(page.session);
+    page.session = session;
+    page.touches = 0;
+    clear_update();
+    return NT_OK;
+}
+
+PAGE_API(page_close) void page_close(void)
+{
+    forget();
+    nt_session_close(page.session);
+    page.session = NULL;
+}
+
+/* --- running --- */
+
+void page_sum_up(page_update *update, const nt_frame *frame)
+{
+    const float force = (float)frame->tip_force[NT_Z];
+    update->state = (uint8_t)frame->state;
+    update->phase = (uint8_t)frame->phase;
+    update->reasons = frame->reasons;
+    update->sequence = frame->sequence;
+    update->time = frame->time;
+    memcpy(update->tip, frame->tip_position, sizeof update->tip);
+    update->gap = frame->gap;
+    update->force = frame->tip_force[NT_Z];
+    update->side[0] = (float)frame->tip_force[NT_X];
+    update->side[1] = (float)frame->tip_force[NT_Y];
+    if (force < update->least)
+        update->least = force;
+    if (force > update->largest)
+        update->largest = force;
+    update->base = (float)frame->base_height;
+    update->deflection = (float)frame->deflection;
+    update->contact = (float)frame->contact_radius;
+    update->cohesive = (float)frame->cohesive_radius;
+    update->neck = (float)frame->neck_radius;
+    update->motor = (float)frame->motor_force[NT_Z];
+    for (int axis = 0; axis < NT_AXES; ++axis)
+        update->master[axis] = (float)frame->master_position[axis];
+    ++update->ticks;
+}
+
+static void keep_snapshot(double time)
+{
+    if (page.newest >= 0 && time < page.kept_at[page.newest] + EACH)
+        return;
+    const int next = (page.newest + 1) % KEPT;
+    nt_snapshot_close(page.kept[next]);
+    page.kept[next] = NULL;
+    if (nt_session_snapshot(page.session, &page.kept[next]) == NT_OK) {
+        page.kept_at[next] = time;
+        page.newest = next;
+    }
+}
+
+/* Runs so many ticks; the update grows by them. */
+PAGE_API(page_run) int page_run(int ticks)
+{
+    nt_frame frame;
+    for (int i = 0; i < ticks; ++i) {
+        const nt_status status = nt_session_step(page.session, NULL, &frame);
+        if (status != NT_OK)
+            return (int)status;
+        page_sum_up(&page.update, &frame);
+        const int touches = frame.contact_radius > 0.0;
+        if (touches != page.touches)
+            page.update.events |= touches ? PAGE_SNAP : PAGE_TEAR;
+        page.touches = touches;
+    }
+    if (ticks > 0)
+        keep_snapshot(page.update.time);
+    return NT_OK;
+}
+
+/* The update since page_taken. */
+PAGE_API(page_update_of) const page_update *page_update_of(void)
+{
+    return &page.update;
+}
+
+/* It was taken: the next one begins. */
+PAGE_API(page_taken) void page_taken(void)
+{
+    page.update.least = INFINITY;
+    page.update.largest = -INFINITY;
+    page.update.ticks = 0;
+    page.update.events = 0;
+}
+
+/* --- the hand and what is asked --- */
+
+/* The hand holds the master at a place and goes there within a time [s]. */
+PAGE_API(page_hold) int page_hold(double x, double y, double z, double duration)
+{
+    const nt_input input = {.holds = 1, .master_position = {x, y, z}, .x = NAN, .y = NAN, .duration = duration};
+    page_the_world()->problem = (nt_problem){0};
+    return (int)nt_session_aim(page.session, &input, &page_the_world()->problem);
+}
+
+/* The hand pushes, as in the reference session. */
+PAGE_API(page_push) int page_push(double force, double x, double y, double duration)
+{
+    const nt_input input = {.operator_force = {0.0, 0.0, force}, .x = x, .y = y, .duration = duration};
+    page_the_world()->problem = (nt_problem){0};
+    return (int)nt_session_aim(page.session, &input, &page_the_world()->problem);
+}
+
+PAGE_API(page_stop) void page_stop(void)
+{
+    nt_session_emergency_stop(page.session, 1);
+    nt_session_emergency_stop(page.session, 0);
+}
+
+PAGE_API(page_arm) int page_arm(void)
+{
+    return (int)nt_session_arm(page.session, 1);
+}
+
+/* A field of scene or settings of the open session; scales among them. */
+PAGE_API(page_change) int page_change(int kind, int number, double value)
+{
+    page_world *world = page_the_world();
+    world->problem = (nt_problem){0};
+    const char *name = (kind == PAGE_SCENE ? nt_scene_fields(NULL) : nt_settings_fields(NULL))[number].name;
+    nt_scaling scaling = {nt_session_setup_of(page.session)->settings.gains.alpha_p,
+                          nt_session_setup_of(page.session)->settings.gains.alpha_f};
+    nt_status status;
+    if (!strcmp(name, "gains.alpha_p") || !strcmp(name, "gains.alpha_f")) {
+        *(name[12] == 'p' ? &scaling.alpha_p : &scaling.alpha_f) = value;
+        status = nt_session_rescale(page.session, &scaling, &world->problem);
+    } else {
+        status = nt_session_change(page.session, kind == PAGE_SCENE ? NT_EVENT_SCENE : NT_EVENT_SETTING, name, value,
+                                   &world->problem);
+    }
+    if (status != NT_OK)
+        return (int)status;
+    forget(); /* a snapshot belongs to the world that it was taken in */
+    world->scene = nt_session_setup_of(page.session)->scene;
+    world->settings = nt_session_setup_of(page.session)->settings;
+    return NT_OK;
+}
+
+/* Back by a duration [s], to the nearest kept moment before that. */
+PAGE_API(page_rewind) int page_rewind(double duration)
+{
+    const double wanted = page.update.time - duration;
+    int best = -1;
+    for (int i = 0; i < KEPT; ++i)
+        if (page.kept[i] && page.kept_at[i] <= wanted && (best < 0 || page.kept_at[i] > page.kept_at[best]))
+            best = i;
+    page_the_world()->problem = (nt_problem){0};
+    if (best < 0)
+        return NT_E_NO_SOLUTION;
+    const nt_status status = nt_session_restore(page.session, page.kept[best], &page_the_world()->problem);
+    if (status != NT_OK)
+        return (int)status;
+    for (int i = 0; i < KEPT; ++i)
+        if (page.kept[i] && page.kept_at[i] > page.kept_at[best]) {
+            nt_snapshot_close(page.kept[i]);
+            page.kept[i] = NULL;
+        }
+    page.newest = best;
+    return page_run(1);
+}
+
+/* --- what the session says of itself --- */
+
+enum { OWN_MARGIN, OWN_FORCE, OWN_START, OWN_MASTER, OWN_ALPHA_P, OWN_BOUND, OWN_PULL, OWN_DEPTH };
+
+/* The least margin of those that count: 1 is the limit. */
+static double margin(void)
+{
+    const nt_session_setup *setup = nt_session_setup_of(page.session);
+    const double stiffness = nt_session_plan(page.session)->maximum_stiffness;
+    nt_margins margins;
+    return nt_margins_judge(&setup->rig, &setup->settings, stiffness, setup->mode, &margins).margin;
+}
+
+PAGE_API(page_own) double page_own(int what)
+{
+    switch (what) {
+    case OWN_MARGIN:
+        return margin();
+    case OWN_FORCE:
+        return nt_session_guarantee(page.session).force;
+    case OWN_START:
+        return nt_session_start_height(page.session);
+    case OWN_MASTER:
+        return nt_session_master_start(page.session);
+    case OWN_ALPHA_P:
+        return nt_session_setup_of(page.session)->settings.gains.alpha_p;
+    case OWN_BOUND:
+        return nt_session_plan(page.session)->bound.force_error;
+    case OWN_PULL:
+        return nt_session_plan(page.session)->pull_off_force;
+    case OWN_DEPTH:
+        return nt_session_plan(page.session)->largest_indentation;
+    default:
+        return (double)NAN;
+    }
+}
+
+/* Height [m] and effective radius [m] at a place of what is touched. */
+PAGE_API(page_place) void page_place(double x, double y, double found[2])
+{
+    const nt_place place = nt_interaction_place(nt_session_plan(page.session), x, y);
+    found[0] = place.surface.z;
+    found[1] = place.radius.radius;
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The contact, magnified: a section through tip and sample as they are deformed, at one scale in both directions
+// (live/contact.py). The section comes from C in the worker; the newest one is drawn.
+
+import { digits, stepUp } from "./units.js";
+
+const POINTS = 90, HEADING = 30, MENISCUS = 2, MORE = 1.4; // beyond the panel, which zooms meanwhile
+
+export class ContactPanel {
+  constructor(painter, draw) {
+    Object.assign(this, { painter, ask: draw, halfWidth: 0, section: null, asked: false });
+  }
+
+  forget() { Object.assign(this, { halfWidth: 0, section: null }); }
+
+  async #renew(seen) {
+    if (this.asked || !seen.now || !Number.isFinite(seen.now.gap)) return;
+    this.asked = true;
+    const r = Array.from({ length: POINTS }, (_, i) => (i / (POINTS - 1)) ** 1.5 * MORE * this.halfWidth);
+    const { gap, force } = seen.now, made = await this.ask({ draw: "section", gap, force, r });
+    this.asked = false;
+    if (!made.error) this.section = { ...made, gap, force };
+  }
+
+  // The zone of action fills a third of the panel; the gap is seen, too. Zoom by smooth factors of 2.
+  #zoom(seen, still) {
+    const { facts } = seen.law, zone = this.section ? Math.max(this.section.a, this.section.c) : 0;
+    const aspect = this.painter.width / (this.painter.height - HEADING);
+    const least = 1.5 * Math.sqrt(facts.radius * Math.max(facts.largest_indentation, 0.3e-9));
+    const wanted = Math.max(3 * zone, 1.1 * aspect * Math.max(seen.now.gap, 0), least);
+    const target = least * 2 ** Math.ceil(Math.log2(wanted / least) - 0.2);
+    this.halfWidth = this.halfWidth && !still ? this.halfWidth * (target / this.halfWidth) ** 0.15 : target;
+  }
+
+  draw(seen, palette, still) {
+    const { painter } = this;
+    if (!painter.begin(palette.panel) || !seen.now || !seen.law || !seen.world) return;
+    this.#zoom(seen, still);
+    this.#renew(seen);
+    if (!this.section) return;
+    const scale = painter.width / 2 / this.halfWidth, middle = painter.width / 2;
+    const level = painter.height - 0.42 * (painter.height - HEADING);
+    const top = HEADING, bottom = painter.height;
+    const y = (z) => Math.min(Math.max(level - scale * z, top), bottom);
+    this.#bodies(palette, { scale, middle, level, top, bottom, y });
+    this.#between(seen, palette, { scale, middle, y });
+    this.#words(seen, palette, scale, level);
+  }
+
+  #both(column, map) {
+    const { r, rows } = this.section, right = r.map((at, i) => map(at, rows[3 * i + column]));
+    const left = r.map((at, i) => map(-at, rows[3 * i + column])).reverse();
+    return [...left, ...right];
+  }
+
+  #bodies(palette, { scale, middle, level, top, bottom, y }) {
+    const { painter } = this, place = (r, z) => [middle + scale * r, y(z)];
+    const ground = this.#both(1, place), edge = this.#both(0, (r, z) => place(r, Number.isFinite(z) ? z : 1));
+    painter.area([[0, bottom], ...ground, [painter.width, bottom]], palette.sample);
+    painter.area([[0, top], ...edge, [painter.width, top]], palette.tip);
+    painter.line(ground, palette.ink);
+    painter.line(edge.filter(([, at]) => at > top), palette.ink);
+    painter.line([[0, level], [painter.width, level]], palette.quiet, 1, true);
+    const rigid = this.#both(2, place).filter(([, at]) => at > top);
+    painter.line(rigid, palette.panel, 1, true);
+  }
+
+  // What is between the bodies: neck of water, the zone that pulls, fur.
+  #between(seen, palette, { scale, middle, y }) {
+    const { a, c, r, rows } = this.section, { painter } = this, brush = seen.world.scene.medium.brush_thickness;
+    const zone = r.map((at, i) => [at, rows[3 * i + 1], rows[3 * i]]);
+    const strip = (part, sign, fill, opacity) => painter.area([...part.map(([at, low]) => [middle + sign * scale * at, y(low)]),
+      ...part.map(([at, , high]) => [middle + sign * scale * at, y(high)]).reverse()], fill, opacity);
+    for (const sign of [-1, 1]) {
+      if (brush > 0)
+        for (let share = 0.2; share <= 1; share += 0.2)
+          strip(zone.map(([at, low, high]) => [at, low, low + share * Math.max(Math.min(brush, high - low), 0)]), sign, palette.water, 0.16);
+      const held = zone.filter(([at]) => at >= a && at <= c);
+      if (!(c > a) || !held.length) continue;
+      if (seen.law.facts.source === MENISCUS) strip(held, sign, palette.water);
+      else for (const [at, low, high] of held.filter((_, i) => i % 3 === 0))
+        painter.line([[middle + sign * scale * at, y(low)], [middle + sign * (scale * at + 4), y(high)]], palette.attraction, 1);
+    }
+  }
+
+  #words(seen, palette, scale, level) {
+    const { painter, section } = this, { facts } = seen.law;
+    painter.text(12, 16, "The contact, magnified", palette.ink, { bold: true, size: 13 });
+    const length = stepUp(0.25 * this.halfWidth), right = painter.width - 16, left = right - length * scale;
+    painter.line([[left, 16], [right, 16]], palette.ink, 2);
+    for (const end of [left, right]) painter.line([[end, 12], [end, 20]], palette.ink, 2);
+    painter.text(left - 8, 16, digits(length, "m", 1), palette.ink, { align: "right" });
+    if (section.a > 0) {
+      const at = Math.min(level + 26, painter.height - 34), half = section.a * scale, middle = painter.width / 2;
+      painter.line([[middle - half, at], [middle + half, at]], palette.ink);
+      painter.text(middle, at + 12, `2a = ${digits(2 * section.a, "m")}`, palette.ink, { align: "center" });
+    }
+    const lambda = facts.lambda, none = !Number.isFinite(lambda) || facts.pull_off_force < 1e-3 * seen.load;
+    const kind = lambda < 0.1 ? "like DMT" : lambda > 5 ? "like JKR" : "between DMT and JKR";
+    painter.text(12, painter.height - 12, none ? "no adhesion: like Hertz" : `${kind}, lambda ${digits(lambda, "", 2)}`, palette.ink);
+    const state = section.a > 0 ? (seen.world.scene.medium.brush_thickness > 0 ? "pressed, the fur between" : "touching") : section.attached ? "held" : `apart by ${digits(section.gap, "m")}`;
+    painter.text(painter.width - 14, painter.height - 12, state, palette.ink, { align: "right" });
+  }
+}

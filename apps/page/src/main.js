@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page: what is seen and heard of a session in its worker, behind a socket or in a notebook's kernel.
+
+import { ForceGap, History } from "./charts.js";
+import { ContactPanel } from "./contact.js";
+import { Drop } from "./drop.js";
+import { Hands } from "./hands.js";
+import { Input } from "./input.js";
+import { Framed, Socketed, Worked } from "./link.js";
+import { Overlay } from "./overlay.js";
+import { Painter } from "./painter.js";
+import { fromFragment, toToml } from "./scenefile.js";
+import { Seen } from "./seen.js";
+import { Sliders } from "./sliders.js";
+import { Stage } from "./stage.js";
+import { byId, Words } from "./words.js";
+
+const FRAMED = "nanotouch-framed"; // the name of a frame in a notebook
+const table = JSON.parse(byId("table").textContent);
+const fragment = (() => {
+  try {
+    return fromFragment(location.hash);
+  } catch (error) {
+    return new URLSearchParams({ wrong: error.message });
+  }
+})();
+const framed = window.name === FRAMED && window.parent !== window, key = fragment.get("key");
+const state = { own: !framed && !key, fields: null, note: (text) => seen.note(text, true) };
+const counters = { draws: 0, updates: 0, bytes: 0, messages: 0, firstTouch: NaN };
+const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+let dirty = true, palette = null;
+
+// --- the parts ---
+
+const handed = { hear, take };
+const worked = new Worked(byId("worker").textContent, handed);
+const link = state.own ? worked : framed ? new Framed(handed) : new Socketed(key, handed);
+const seen = new Seen(table.constants, (message) => worked.draw(message));
+const stage = new Stage(byId("view").insertBefore(document.createElement("div"), byId("overlay")), table.constants);
+const painter = (id) => new Painter(byId(id));
+const overlay = new Overlay(painter("overlay"), table.constants);
+const contact = new ContactPanel(painter("contact"), (message) => worked.draw(message));
+const law = new ForceGap(painter("law")), chart = new History(painter("history"), table.constants);
+const words = new Words(table, ask), sliders = new Sliders(byId("sliders"), table, ask);
+const drop = new Drop(table, words, { ask, draw: (message) => worked.draw(message) }, state);
+const hands = new Hands(ask, (text) => seen.note(text, false));
+
+function ask(message) {
+  if (message.note) return seen.note(message.note, true);
+  if (message.do === "change") seen.waiting.add(message.field);
+  return link.ask(message);
+}
+
+function take(now, bytes) {
+  counters.updates += 1;
+  counters.bytes += bytes;
+  seen.take(now);
+  if (!(counters.firstTouch >= 0) && seen.world) counters.firstTouch = performance.now();
+  dirty = true;
+}
+
+function hear(message) {
+  counters.messages += 1;
+  if (message.tell === "ready") return begin(message);
+  seen.hear(message);
+  if (message.tell === "laid") {
+    state.given = false;
+    lay(message.surface);
+  }
+  if (message.tell === "world") {
+    if (state.fields) sliders.take(message, state.fields);
+    stage.mount(message.scene.tip);
+  }
+  if (message.tell === "granted" && !message.operates) seen.note("You watch: another one holds the hand.", false);
+  if (message.tell === "refused") {
+    sliders.refused(message.field);
+    if (state.given) ask({ do: "preset", name: "silicon_in_air" }); // what the link names cannot be opened
+    state.given = false;
+  }
+  dirty = true;
+  return undefined;
+}
+
+function lay(surface) {
+  stage.lay(surface);
+  contact.forget();
+  sliders.forget();
+}
+
+// The library is there: the first sample, or what the link says.
+function begin({ fields }) {
+  state.fields = fields;
+  if (seen.world) sliders.take(seen.world, fields);
+  if (!state.own) return;
+  const preset = fragment.get("preset") ?? "silicon_in_air", scene = fragment.get("scene"), task = fragment.get("task");
+  let laid = false;
+  try {
+    if (fragment.has("wrong")) throw new Error(fragment.get("wrong"));
+    if (scene) {
+      drop.scene(scene, "The scene of this link", preset);
+      laid = state.given = true;
+    }
+  } catch (error) {
+    seen.note(`the scene of this link is refused: ${error.message}`, true);
+  }
+  const known = table.presets.some((one) => one.name === preset);
+  if (!known) seen.note(`there is no sample ${preset.slice(0, 40)}: this is silicon in air`, true);
+  if (!laid) ask({ do: "preset", name: known ? preset : "silicon_in_air" });
+  if (task) ask({ do: "task", name: task, lay: true });
+}
+
+// --- light, keys ---
+
+function dress(name) {
+  palette = table.palettes[name];
+  for (const [part, colour] of Object.entries(palette))
+    if (part !== "heights") document.documentElement.style.setProperty(`--${part}`, `rgb(${colour.join(",")})`);
+  document.documentElement.style.colorScheme = name;
+  document.body.dataset.look = name;
+  stage.paint(palette);
+  dirty = true;
+}
+
+const OWN = {
+  c: () => words.cards(seen.world?.title, () => byId("file").click()),
+  t: () => words.tasks(),
+  h: () => words.help(),
+  l: () => dress(document.body.dataset.look === "light" ? "dark" : "light"),
+  m: () => hands.turnSound(),
+  g: () => hands.connectSpaceMouse().catch((error) => seen.note(error.message, true)),
+  s: savePicture,
+  n: () => byId("answer")?.focus(),
+  e: () => seen.world && words.scene(sceneText(), (text) => taken(text), copyLink),
+};
+
+function own(name, event) {
+  if (/^[0-5]$/.test(name)) stage.camera(name, seen.now && stage.apex(seen.now));
+  else if (/^F[1-7]$/.test(name) && seen.task.name) ask({ do: "choose", number: Number(name[1]) - 1 });
+  else if (OWN[name]) OWN[name](event);
+  else return false;
+  dirty = true;
+  return true;
+}
+
+function sceneText() {
+  const usual = table.presets.find((one) => one.title === seen.world.title) ?? table.presets[0];
+  const { scene, rig } = seen.world, written = { scene, rig: { ...rig } };
+  delete written.rig.master; // the hand of this page
+  return toToml(written, usual, state.fields, table.units);
+}
+
+function taken(text) {
+  try {
+    drop.scene(text, "Your scene", seen.world.preset);
+  } catch (error) {
+    seen.note(error.message, true);
+  }
+}
+
+async function copyLink(text) {
+  const parts = new URLSearchParams({ preset: seen.world.preset || "silicon_in_air" });
+  if (text.trim()) parts.set("scene", text);
+  location.hash = parts.toString();
+  try {
+    await navigator.clipboard.writeText(location.href);
+    seen.note("the link is copied; it holds the whole scene", false);
+  } catch {
+    seen.note("the link stands in the address line; it holds the whole scene", false);
+  }
+}
+
+async function savePicture() {
+  stage.render();
+  const made = document.createElement("canvas"), below = byId("view").querySelector("canvas"), above = byId("overlay");
+  Object.assign(made, { width: below.width, height: below.height });
+  const context = made.getContext("2d");
+  for (const canvas of [below, above]) context.drawImage(canvas, 0, 0, made.width, made.height);
+  Object.assign(document.createElement("a"), { href: made.toDataURL("image/png"), download: "nanotouch.png" }).click();
+}
+
+const reach = (pixels) => (seen.now && stage.grid ? stage.dragged(stage.apex(seen.now), pixels) : [0, 0]);
+const turn = (dx, dy) => { stage.turn(dx, dy); dirty = true; };
+new Input(byId("view"), { ask: (message) => {
+  if (message.do === "stop" && words.close()) return;
+  ask(message);
+}, reach, turn, own });
+for (const button of document.querySelectorAll("[data-act]")) button.onclick = () => ask({ do: button.dataset.act });
+for (const button of document.querySelectorAll("[data-own]")) button.onclick = (event) => own(button.dataset.own, event);
+new ResizeObserver(() => { stage.resize(); dirty = true; }).observe(byId("view"));
+
+// --- drawing: only what is new ---
+
+let worded = 0;
+function draw(now) {
+  requestAnimationFrame(draw);
+  hands.turn(seen.world?.size?.[0] ?? 0, seen.feel(), now);
+  if (now - worded > 200) {
+    worded = now;
+    words.draw(seen);
+    words.task(seen);
+  }
+  if (!dirty || document.hidden) return;
+  dirty = false;
+  const { hides } = seen;
+  if (seen.now && seen.world) stage.update(seen.now, seen);
+  stage.lights(!hides.has("surface"));
+  byId("lights").hidden = !hides.has("surface");
+  for (const [name, id] of [["contact", "contact"], ["law", "law"], ["sliders", "sliders"]])
+    byId(id).style.visibility = hides.has(name) ? "hidden" : "visible";
+  if (stage.grid) stage.render();
+  overlay.draw(seen, stage, palette);
+  contact.draw(seen, palette, still);
+  law.draw(seen, palette);
+  chart.draw(seen, palette);
+  counters.draws += 1;
+}
+
+// --- begin ---
+
+dress(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+const wasm = Uint8Array.from(atob(byId("wasm").textContent), (letter) => letter.charCodeAt(0));
+worked.begin({ wasm, own: state.own, table: { ...table, palettes: null, help: null } });
+window.nanotouch = { seen, counters, stage }; // to look at, as the tests do
+requestAnimationFrame(draw);

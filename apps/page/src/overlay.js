@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Over the scene: the ring of the hand and the band to the tip, the scale bar, the bars of force.
+
+import { digits, stepUp } from "./units.js";
+
+const BAND = 0.15, RING = 13; // of the picture's height: the band under the largest planned force; [pixels]
+const squeezed = (share) => Math.sign(share) * Math.sqrt(Math.min(Math.abs(share), 1));
+
+export class Overlay {
+  constructor(painter, constants) { Object.assign(this, { painter, constants }); }
+
+  draw(seen, stage, palette) {
+    const { painter } = this;
+    if (!painter.begin() || !seen.now || !seen.world || !stage.grid) return;
+    this.#proxy(seen, stage, palette);
+    this.#scales(stage, palette);
+    this.#bars(seen, palette);
+  }
+
+  #proxy(seen, stage, palette) {
+    const [x, y] = stage.pixel(stage.apex(seen.now)), { painter } = this;
+    const share = Math.min(Math.max(seen.force / Math.max(seen.load, 1e-15), -1.5), 1.5);
+    const end = y + BAND * painter.height * share, colour = share >= 0 ? palette.repulsion : palette.attraction;
+    if (Math.abs(end - y) > 1) painter.line([[x, y], [x, end]], colour, 3);
+    painter.dot(x, end, RING, null, seen.stale ? palette.quiet : palette.ink);
+  }
+
+  #scales(stage, palette) {
+    const { painter } = this, { grid } = stage, length = stepUp(0.12 * grid.width * grid.unit);
+    const a = stage.pixel([0.02, 0, 0]), b = stage.pixel([0.02 + length / grid.unit, 0, 0]);
+    const pixels = Math.hypot(b[0] - a[0], b[1] - a[1]), y = painter.height - 22;
+    painter.line([[18, y], [18 + pixels, y]], palette.ink, 3);
+    painter.text(28 + pixels, y, digits(length, "m", 1), palette.ink);
+    if (!(grid.relief > 0)) return;
+    const table = palette.heights;
+    for (let part = 0; part < 24; ++part) {
+      const place = (part / 24) * (table.length - 1), i = Math.floor(place), share = place - i;
+      const colour = table[i].map((low, k) => Math.round((1 - share) * low + share * table[Math.min(i + 1, table.length - 1)][k]));
+      painter.area([[18 + 5 * part, y - 31], [24 + 5 * part, y - 31], [24 + 5 * part, y - 21], [18 + 5 * part, y - 21]], colour);
+    }
+    const drawn = grid.factor === 1 ? "" : `, drawn ${grid.factor} times as high`;
+    painter.text(148, y - 26, `heights 0 to ${digits(grid.relief, "m")}${drawn}`, palette.ink);
+  }
+
+  // Force at the tip and at the hand, signed, with ticks at what can just be told apart.
+  #bars(seen, palette) {
+    const { painter, constants } = this, { probe } = seen.world.rig, width = Math.min(220, 0.4 * painter.width);
+    const noise = (probe.spring_constant * probe.sensitivity * probe.noise) / 6, scale = seen.world.settings.gains.alpha_f;
+    const full = Math.max(seen.load, 1.2 * seen.pullOff), left = painter.width - width - 12, low = painter.height - 136;
+    painter.area([[left, low], [left + width, low], [left + width, low + 124], [left, low + 124]], palette.panel, 0.86);
+    const told = seen.reading && !seen.stale ? seen.reading.force : 0;
+    const rows = [["at the tip", 1, constants.TIP_STEP * noise], ["at the hand", scale, constants.HAND_STEPS[1]]];
+    rows.forEach(([name, factor, step], number) => {
+      const y = low + 20 + 58 * number, a = left + 12, b = left + width - 12, middle = 0.5 * (a + b), half = 0.5 * (b - a);
+      painter.text(a, y, name, palette.quiet);
+      const shown = Math.abs(told * factor) > 0.01 * step ? digits(told * factor, "N") : "0 N";
+      painter.text(b, y, shown, palette.ink, { align: "right", bold: true, size: 13 });
+      const share = squeezed(seen.force / full), at = y + 20;
+      painter.line([[a, at], [b, at]], palette.line, 10);
+      painter.line([[middle, at], [middle + half * share, at]], share >= 0 ? palette.repulsion : palette.attraction, 10);
+      painter.line([[middle, at - 8], [middle, at + 8]], palette.ink);
+      for (const sign of [-1, 1]) {
+        const tick = middle + sign * half * squeezed(Math.min(step / factor / full, 1));
+        painter.line([[tick, at - 7], [tick, at + 7]], palette.quiet, 1);
+      }
+    });
+  }
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes: points, cells and normals as plain arrays.
+
+// Cells of vtk.js: the number of corners before each.
+function quads(rows, columns) {
+  const cells = new Uint32Array(5 * (rows - 1) * (columns - 1));
+  let at = 0;
+  for (let j = 0; j < rows - 1; ++j)
+    for (let i = 0; i < columns - 1; ++i, at += 5) {
+      const corner = j * columns + i;
+      cells.set([4, corner, corner + 1, corner + columns + 1, corner + columns], at);
+    }
+  return cells;
+}
+
+function exaggeration(relief, most) {
+  if (!(relief > 0 && relief < most)) return 1;
+  const power = 10 ** Math.floor(Math.log10(most / relief));
+  return Math.max(...[1, 1.5, 2, 3, 5, 7].map((step) => step * power).filter((step) => step <= (most / relief) * (1 + 1e-12)));
+}
+
+// The drawn surface: mean heights over squares of pixels, at most `most` to a side; in units of the longer side.
+export function grid({ heights, rows, columns, dx, dy }, most, relief) {
+  const size = Math.ceil(Math.max(rows, columns) / most);
+  const ny = Math.floor(rows / size), nx = Math.floor(columns / size), mean = new Float32Array(nx * ny);
+  for (let j = 0; j < ny * size; ++j)
+    for (let i = 0; i < nx * size; ++i)
+      mean[Math.floor(j / size) * nx + Math.floor(i / size)] += heights[j * columns + i] / (size * size);
+  const unit = Math.max(rows * dy, columns * dx);
+  let low = Infinity, high = -Infinity;
+  for (const value of mean) {
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  const factor = exaggeration((high - low) / unit, relief);
+  const made = { heights: mean, rows: ny, columns: nx, unit, low, dx: (size * dx) / unit, dy: (size * dy) / unit, factor,
+    scale: factor / unit, ends: [low, Math.max(high, low + 1e-12)], relief: high - low };
+  made.width = nx * made.dx;
+  made.height = ny * made.dy;
+  // height of the drawn surface [m], linear between its points
+  made.at = (x, y) => {
+    const column = Math.min(Math.max(x / unit / made.dx - 0.5, 0), nx - 1.001);
+    const row = Math.min(Math.max(y / unit / made.dy - 0.5, 0), ny - 1.001);
+    const i = Math.floor(column), j = Math.floor(row), u = column - i, v = row - j, at = j * nx + i;
+    return (1 - v) * ((1 - u) * mean[at] + u * mean[at + 1]) + v * ((1 - u) * mean[at + nx] + u * mean[at + nx + 1]);
+  };
+  return made;
+}
+
+export function tile(map, row, column, size) {
+  const rows = Math.min(size, map.rows - row), columns = Math.min(size, map.columns - column), count = rows * columns;
+  const points = new Float32Array(3 * count), normals = new Float32Array(3 * count), heights = new Float32Array(count);
+  const height = (j, i) => map.heights[j * map.columns + i];
+  for (let j = 0, at = 0; j < rows; ++j)
+    for (let i = 0; i < columns; ++i, ++at) {
+      const y = row + j, x = column + i, left = Math.max(x - 1, 0), right = Math.min(x + 1, map.columns - 1);
+      const below = Math.max(y - 1, 0), above = Math.min(y + 1, map.rows - 1);
+      heights[at] = height(y, x);
+      points.set([(x + 0.5) * map.dx, (y + 0.5) * map.dy, (heights[at] - map.low) * map.scale], 3 * at);
+      const slopeX = ((height(y, right) - height(y, left)) * map.scale) / ((right - left) * map.dx);
+      const slopeY = ((height(above, x) - height(below, x)) * map.scale) / ((above - below) * map.dy);
+      const length = Math.hypot(slopeX, slopeY, 1);
+      normals.set([-slopeX / length, -slopeY / length, 1 / length], 3 * at);
+    }
+  return { points, normals, heights, cells: quads(rows, columns) };
+}
+
+// A tip: a sphere that goes over into a cone, or a ball on a stem; its apex at 0.
+export function turned(radius, halfAngle, ball, tall) {
+  const last = ball ? 0.9 * Math.PI : Math.PI / 2 - halfAngle, profile = [];
+  for (let i = 0; i < 28; ++i) {
+    const angle = (last * i) / 27;
+    profile.push([radius * Math.sin(angle), radius * (1 - Math.cos(angle)), Math.sin(angle), -Math.cos(angle)]);
+  }
+  const end = profile.at(-1);
+  if (end[1] < tall) {
+    const widening = last < Math.PI / 2 ? Math.tan(halfAngle) : 0;
+    profile.push([end[0] + (tall - end[1]) * widening, tall, Math.cos(halfAngle), -Math.sin(halfAngle)]);
+  }
+  const around = 41, points = [], normals = [];
+  for (const [r, h, nr, nz] of profile)
+    for (let k = 0; k < around; ++k) {
+      const turn = (2 * Math.PI * k) / (around - 1), [c, s] = [Math.cos(turn), Math.sin(turn)];
+      points.push(r * c, r * s, h);
+      normals.push(nr * c, nr * s, nz);
+    }
+  return { points: Float32Array.from(points), normals: Float32Array.from(normals), cells: quads(profile.length, around) };
+}
+
+// The lever: a beam that is clamped behind, w = zeta (3 s^2 - s^3)/2.
+export function ribbon(at, bend, { LEVER, LEVER_POINTS: count, TIP_HEIGHT }) {
+  const [length, width] = LEVER, points = new Float32Array(6 * count);
+  for (const [row, side] of [[0, -1], [1, 1]])
+    for (let i = 0; i < count; ++i) {
+      const s = i / (count - 1);
+      const z = at[2] + TIP_HEIGHT - bend * (1 - 0.5 * (3 * s * s - s ** 3)) + 0.03 * (1 - s);
+      points.set([at[0] + (side * width) / 2, at[1] - 0.05 + length * (1 - s), z], 3 * (row * count + i));
+    }
+  return { points, cells: quads(2, count) };
+}
+
+// A disc that lies on the surface, as it rises and falls there.
+export function laidOn(map, middle, size, lifted, rings = 6, round = 33) {
+  const points = new Float32Array(3 * rings * round);
+  for (let ring = 0, at = 0; ring < rings; ++ring)
+    for (let k = 0; k < round; ++k, at += 3) {
+      const turn = (2 * Math.PI * k) / (round - 1), r = (size * ring) / (rings - 1);
+      const x = Math.min(Math.max(middle[0] + r * Math.cos(turn), 0), map.width);
+      const y = Math.min(Math.max(middle[1] + r * Math.sin(turn), 0), map.height);
+      points.set([x, y, (map.at(x * map.unit, y * map.unit) - map.low) * map.scale + lifted], at);
+    }
+  return { points, cells: quads(rings, round) };
+}

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Surface, tip, lever, shadow and trace, by vtk.js, as nanotouch_app/live/stage.py. The surface is made once, in tiles:
+// that the tip moves changes no byte of it. One scene unit is the longer side of the surface.
+
+import "@kitware/vtk.js/Rendering/Profiles/Geometry";
+import vtkActor from "@kitware/vtk.js/Rendering/Core/Actor";
+import vtkColorTransferFunction from "@kitware/vtk.js/Rendering/Core/ColorTransferFunction";
+import vtkDataArray from "@kitware/vtk.js/Common/Core/DataArray";
+import vtkLight from "@kitware/vtk.js/Rendering/Core/Light";
+import vtkMapper from "@kitware/vtk.js/Rendering/Core/Mapper";
+import vtkOpenGLRenderWindow from "@kitware/vtk.js/Rendering/OpenGL/RenderWindow";
+import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
+import vtkRenderWindow from "@kitware/vtk.js/Rendering/Core/RenderWindow";
+import vtkRenderer from "@kitware/vtk.js/Rendering/Core/Renderer";
+import { grid, laidOn, ribbon, tile, turned } from "./shapes.js";
+
+const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
+const unit = (colour) => colour.map((part) => part / 255);
+const radians = (degrees) => (degrees * Math.PI) / 180;
+
+export class Stage {
+  constructor(place, constants) {
+    Object.assign(this, { place, constants, tiles: [], shape: "", visible: true, rebuilt: 0 });
+    this.renderer = vtkRenderer.newInstance();
+    this.window = vtkRenderWindow.newInstance();
+    this.window.addRenderer(this.renderer);
+    this.api = vtkOpenGLRenderWindow.newInstance();
+    this.api.setContainer(place);
+    this.window.addView(this.api);
+    this.renderer.setTwoSidedLighting(true);
+    this.#light();
+    this.resize();
+  }
+
+  #light() {
+    this.renderer.removeAllLights();
+    this.renderer.setAutomaticLightCreation(false);
+    for (const [place, strength] of [[[-1.3, -0.9, 2.1], 0.85], [[1.2, 1.6, 1.2], 0.3]]) {
+      const light = vtkLight.newInstance({ positional: false, intensity: strength });
+      light.setLightTypeToSceneLight();
+      light.setPosition(...place.map((part, axis) => part + [0.5, 0.5, 0][axis]));
+      light.setFocalPoint(0.5, 0.5, 0);
+      this.renderer.addLight(light);
+    }
+  }
+
+  resize() {
+    const { width, height } = this.place.getBoundingClientRect(), scale = Math.min(window.devicePixelRatio || 1, 2);
+    this.pixels = [Math.max(width, 1), Math.max(height, 1)];
+    this.api.setSize(Math.floor(Math.max(width, 1) * scale), Math.floor(Math.max(height, 1) * scale));
+  }
+
+  #actor(data, lit = true) {
+    const mapper = vtkMapper.newInstance(), actor = vtkActor.newInstance();
+    mapper.setInputData(data);
+    actor.setMapper(mapper);
+    const look = actor.getProperty();
+    look.setLighting(lit);
+    this.renderer.addActor(actor);
+    return actor;
+  }
+
+  // --- made once for a surface ---
+
+  lay(surface) {
+    for (const actor of [...this.tiles, ...(this.others ?? [])]) this.renderer.removeActor(actor);
+    this.grid = grid(surface, MOST, this.constants.RELIEF);
+    this.colours = vtkColorTransferFunction.newInstance();
+    this.tiles = [];
+    for (let row = 0; row < this.grid.rows - 1; row += TILE - 1)
+      for (let column = 0; column < this.grid.columns - 1; column += TILE - 1)
+        this.tiles.push(this.#tile(row, column));
+    this.rebuilt += this.grid.heights.byteLength;
+    this.shadowData = [1, 0.7, 0.4].map(() => vtkPolyData.newInstance());
+    this.shadows = this.shadowData.map((data) => {
+      const actor = this.#actor(data, false);
+      actor.getProperty().setColor(0, 0, 0);
+      actor.getProperty().setOpacity(0.14);
+      return actor;
+    });
+    this.traceData = vtkPolyData.newInstance();
+    this.trace = this.#actor(this.traceData, false);
+    this.trace.getProperty().setLineWidth(3);
+    this.shape = "";
+    this.others = [...this.shadows, this.trace];
+    this.camera("0");
+    if (this.palette) this.paint(this.palette);
+  }
+
+  #tile(row, column) {
+    const made = tile(this.grid, row, column, TILE), data = vtkPolyData.newInstance();
+    data.getPoints().setData(made.points, 3);
+    data.getPolys().setData(made.cells);
+    data.getPointData().setScalars(vtkDataArray.newInstance({ name: "height", values: made.heights }));
+    data.getPointData().setNormals(
+      vtkDataArray.newInstance({ name: "normals", values: made.normals, numberOfComponents: 3 }));
+    const actor = this.#actor(data), mapper = actor.getMapper();
+    mapper.setLookupTable(this.colours);
+    mapper.setUseLookupTableScalarRange(true);
+    mapper.setInterpolateScalarsBeforeMapping(true);
+    actor.getProperty().setAmbient(0.28);
+    actor.getProperty().setDiffuse(0.8);
+    actor.getProperty().setSpecular(0.12);
+    return actor;
+  }
+
+  paint(palette) {
+    this.palette = palette;
+    this.renderer.setBackground(...unit(palette.panel), 1);
+    if (!this.grid) return;
+    const [low, high] = this.grid.ends, table = palette.heights;
+    this.colours.removeAllPoints();
+    table.forEach((colour, i) => this.colours.addRGBPoint(low + ((high - low) * i) / (table.length - 1), ...unit(colour)));
+    this.colours.setMappingRange(low, high);
+    for (const actor of [this.tip, this.lever]) actor?.getProperty().setColor(...unit(palette.tip));
+  }
+
+  lights(on) {
+    if (on === this.visible) return;
+    this.visible = on;
+    for (const actor of [...this.tiles, ...this.shadows, this.trace]) actor.setVisibility(on);
+  }
+
+  // --- the instrument: made anew when another tip is mounted ---
+
+  mount({ radius, half_angle: halfAngle, shape }) {
+    const key = `${radius} ${halfAngle} ${shape}`;
+    if (key === this.shape || !this.grid) return;
+    this.shape = key;
+    for (const actor of [this.tip, this.lever]) if (actor) this.renderer.removeActor(actor);
+    const ball = shape === "sphere" || radius > this.constants.BALL;
+    const made = turned(radius / this.grid.unit, halfAngle, ball, this.constants.TIP_HEIGHT), data = vtkPolyData.newInstance();
+    data.getPoints().setData(made.points, 3);
+    data.getPolys().setData(made.cells);
+    data.getPointData().setNormals(
+      vtkDataArray.newInstance({ name: "normals", values: made.normals, numberOfComponents: 3 }));
+    this.tip = this.#actor(data);
+    this.tip.getProperty().setSpecular(0.35);
+    this.tip.getProperty().setSpecularPower(25);
+    this.tip.getProperty().setAmbient(0.3);
+    this.leverData = vtkPolyData.newInstance();
+    this.lever = this.#actor(this.leverData);
+    this.others = [...this.shadows, this.trace, this.tip, this.lever];
+    this.paint(this.palette);
+  }
+
+  // --- what moves ---
+
+  // Where the tip is drawn: over the drawn surface, at the gap that is true.
+  apex(now) {
+    const { grid: map, constants } = this, [x, y, z] = now.tip, ground = map.at(x, y);
+    const above = (Number.isFinite(now.gap) ? now.gap : z - ground) * map.scale;
+    const drawn = above > 0 ? constants.FAR * Math.tanh(above / constants.FAR) : above;
+    return [x / map.unit, y / map.unit, (ground - map.low) * map.scale + drawn];
+  }
+
+  update(now, seen) {
+    if (!this.tip) return;
+    const at = this.apex(now), { grid: map, constants } = this;
+    this.tip.setPosition(...at);
+    const bend = seen.load > 0 ? constants.BEND * Math.min(Math.max(seen.force / seen.load, -1.5), 1.5) : 0;
+    this.#set(this.leverData, ribbon(at, bend, constants));
+    const above = Math.max(at[2] - (map.at(now.tip[0], now.tip[1]) - map.low) * map.scale, 0);
+    [1, 0.7, 0.4].forEach((share, i) => {
+      const size = constants.SHADOW * share * (1 + 3 * above);
+      this.#set(this.shadowData[i], laidOn(map, [at[0] + 0.6 * above, at[1] - 0.3 * above], size, constants.LIFTED));
+    });
+    this.#drawTrace(seen);
+  }
+
+  #set(data, { points, cells }) {
+    data.getPoints().setData(points, 3);
+    if (data.getPolys().getNumberOfValues() !== cells.length) data.getPolys().setData(cells);
+    data.getPoints().modified();
+    data.modified();
+  }
+
+  #drawTrace(seen) {
+    const rows = seen.trace, { grid: map, palette } = this;
+    if (rows.length < 2 || rows.at(-1) === this.lastTraced) return;
+    this.lastTraced = rows.at(-1);
+    const points = new Float32Array(3 * rows.length), colours = new Uint8Array(4 * rows.length);
+    const cells = Uint32Array.from({ length: rows.length + 1 }, (_, i) => (i ? i - 1 : rows.length));
+    const now = rows.at(-1).time;
+    rows.forEach((row, i) => {
+      points.set([row.x / map.unit, row.y / map.unit,
+        (map.at(row.x, row.y) - map.low) * map.scale + this.constants.LIFTED], 3 * i);
+      const pushed = Math.min(Math.max((3 * row.force) / seen.load, 0), 1);
+      const pulled = Math.min(Math.max(-row.force / Math.max(seen.pullOff, 1e-15), 0), 1), share = Math.max(pushed, pulled);
+      const end = pushed > 0 ? palette.repulsion : palette.attraction;
+      const fade = 255 * Math.max(1 - (now - row.time) / this.constants.TRACE, 0) * (share > 0.01 ? 1 : 0);
+      colours.set([...end.map((part, k) => share * part + (1 - share) * palette.paper[k]), fade], 4 * i);
+    });
+    this.traceData.getPoints().setData(points, 3);
+    this.traceData.getLines().setData(cells);
+    this.traceData.getPointData().setScalars(
+      vtkDataArray.newInstance({ name: "colours", values: colours, numberOfComponents: 4 }));
+    this.traceData.modified();
+  }
+
+  forgetTrace() { this.traceData?.initialize(); }
+
+  // --- the camera ---
+
+  camera(view, at) {
+    const [turn, height, distance] = this.constants.VIEWS[view];
+    const middle = at && view === "4" ? at : [0.5 * this.grid.width, 0.5 * this.grid.height, 0];
+    const focus = [middle[0], middle[1], middle[2] + 0.12];
+    const camera = this.renderer.getActiveCamera();
+    camera.setViewAngle(36);
+    camera.setFocalPoint(...focus);
+    const [a, b] = [radians(turn), radians(height)];
+    camera.setPosition(focus[0] + distance * Math.sin(a) * Math.cos(b), focus[1] - distance * Math.cos(a) * Math.cos(b),
+      focus[2] + distance * Math.sin(b));
+    camera.setViewUp(0, view === "2" ? 1 : 0, view === "2" ? 0 : 1);
+  }
+
+  turn(dx, dy) {
+    const camera = this.renderer.getActiveCamera();
+    camera.azimuth(-0.4 * dx);
+    camera.elevation(0.4 * dy);
+    camera.orthogonalizeViewUp();
+  }
+
+  // Where a place in scene units is in the panel [CSS pixels, y down].
+  pixel(place) {
+    const [width, height] = this.pixels, matrix = this.renderer.getActiveCamera()
+      .getCompositeProjectionMatrix(width / height, -1, 1);
+    const part = (row) => matrix[4 * row] * place[0] + matrix[4 * row + 1] * place[1] + matrix[4 * row + 2] * place[2] +
+      matrix[4 * row + 3];
+    const w = part(3);
+    return [(0.5 + (0.5 * part(0)) / w) * width, (0.5 - (0.5 * part(1)) / w) * height];
+  }
+
+  // The way in x and y [m] that a drag by so many pixels means at this place.
+  dragged(place, [dx, dy]) {
+    const step = 1e-3, here = this.pixel(place);
+    const [right, up] = [[step, 0], [0, step]].map(([x, y]) => {
+      const there = this.pixel([place[0] + x, place[1] + y, place[2]]);
+      return [(there[0] - here[0]) / step, (there[1] - here[1]) / step];
+    });
+    const area = right[0] * up[1] - right[1] * up[0];
+    if (Math.abs(area) < 1e-3 * Math.hypot(...right) * Math.hypot(...up)) return [0, 0];
+    return [((dx * up[1] - dy * up[0]) / area) * this.grid.unit, ((right[0] * dy - right[1] * dx) / area) * this.grid.unit];
+  }
+
+  render() {
+    this.renderer.resetCameraClippingRange();
+    this.window.render();
+  }
+}
