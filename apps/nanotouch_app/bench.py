@@ -62,9 +62,10 @@ def run(args: argparse.Namespace) -> int:
     runs = QUICK_RUNS if args.quick else RUNS
     with output.progress_bar("timing") as progress:
         costs = measure(runs, progress)
+    args.answer = as_dict(costs, runs)
     print(table(costs))
     if args.out:
-        output.write_json(args.out, as_dict(costs, runs))
+        output.write_json(args.out, args.answer)
         print(f"\nwritten to {args.out}")
     return 0
 

@@ -15,7 +15,7 @@ from nanotouch import plots
 from nanotouch.contact import MODELS, Contact, evaluate, pull_off_force
 from nanotouch.record import write_csv
 
-from nanotouch_app import output
+from nanotouch_app import output, scenes
 
 TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale"}
 POINTS = 2001
@@ -27,13 +27,15 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "curve", help="compute a force-distance curve", description=__doc__
     )
-    parser.add_argument("--scene", metavar="FILE", help="TOML file with the scene (default: silicon in humid air)")
+    parser.add_argument(
+        "--scene", metavar="SCENE", help=scenes.HELP.format(what="the scene") + " (default: silicon in humid air)"
+    )
     output.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    scene = nt.Scene.from_toml(args.scene) if args.scene else nt.Scene()
+    scene = scenes.read(args.scene).scene
     print(scene.plan())
     alone = scene.copy()
     alone.adhesion.hamaker_constant = 0.0  # without a tail, contact has all of w
@@ -43,12 +45,14 @@ def run(args: argparse.Namespace) -> int:
     )
     gap = _gaps(contact, facts)
     curves = {TITLES[model]: (gap, evaluate(model, -gap, contact).F) for model in MODELS}
+    pulls = {model: pull_off_force(model, contact) for model in MODELS}
     for model in MODELS:
-        print(f"{TITLES[model]:15} pull-off {pull_off_force(model, contact) * 1e9:.3f} nN")
+        print(f"{TITLES[model]:15} pull-off {pulls[model] * 1e9:.3f} nN")
     with output.folder(args, FILES) as out:
         columns = {"gap [m]": gap} | {f"{model} force [N]": curves[TITLES[model]][1] for model in MODELS}
         write_csv(out / "curve.csv", columns, {"scene": str(scene)})
         plots.force_curves(curves, save=out / "curve.png")
+        args.answer = {"pull_off_force_N": pulls, "folder": str(out), "files": list(FILES)}
         print(f"written to {out}/: curve.csv, curve.png")
     return 0
 

@@ -8,6 +8,7 @@ import importlib
 import importlib.util
 import os
 import platform
+import shutil
 import sys
 from importlib import metadata
 from typing import Any
@@ -15,32 +16,14 @@ from typing import Any
 import nanotouch
 from nanotouch import hal
 from nanotouch.errors import Error
+from nanotouch.extras import ADDS, EXTRAS, advice
 
 from nanotouch_app import view
-from nanotouch_app.live import display
+from nanotouch_app.live import display, hands
 
-# extra -> {distribution: module}; a test compares it with pyproject.toml
-EXTRAS = {
-    "images": {
-        "opencv-python-headless": "cv2",
-        "scipy": "scipy",
-        "SurfaceTopography": "SurfaceTopography",
-        "h5py": "h5py",
-        "gwyfile": "gwyfile",
-    },
-    "curves": {"afmformats": "afmformats"},
-    "record": {"mcap": "mcap", "h5py": "h5py"},
-    "view": {"vtk": "vtkmodules", "trame": "trame"},
-    "app": {"tqdm": "tqdm", "matplotlib": "matplotlib"},
-    "maps": {
-        "dask": "dask",
-        "distributed": "distributed",
-        "xarray": "xarray",
-        "h5py": "h5py",
-        "h5netcdf": "h5netcdf",
-    },
-}
 OK, MISSING = "ok", "--"
+Row = tuple[str, str, str]
+"""name, OK or MISSING, and what is there or what to install"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -55,34 +38,60 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the findings; status 0 whatever they are."""
-    print("\n".join(findings()))
+    found = sections()
+    args.answer = {
+        "version": nanotouch.__version__, "python": platform.python_version(), "prefix": sys.prefix,
+        "findings": {
+            title: {name: {"ok": mark == OK, "says": says} for name, mark, says in rows}
+            for title, rows in found.items()
+        },
+    }  # fmt: skip
+    print("\n".join(findings(found)))
     return 0
 
 
-def findings() -> list[str]:
+def findings(found: dict[str, list[Row]] | None = None) -> list[str]:
     """One line per finding; what is missing says what to install."""
+    found = sections() if found is None else found
     lines = [
         f"nanotouch {nanotouch.__version__}, Python {platform.python_version()}, numpy {metadata.version('numpy')}, "
         f"{platform.system()} {platform.machine()}",
         f"  {sys.prefix}",
     ]
-    sections = {
-        "extras": [_extra(name, packages) for name, packages in EXTRAS.items()],
-        "compiled parts": [("core", OK, f"nanotouch._core {nanotouch.__version__}"), _fit()],
-        "backends": [("simulated", OK, "always there"), _gpio()],
-        "view": [_display(), _vtk(), _live()],
-    }
-    for title, rows in sections.items():
+    for title, rows in found.items():
         lines += ["", title]
         lines += [f"  {mark:3}{name:11}{text}" for name, mark, text in rows]
     return lines
 
 
+def sections() -> dict[str, list[Row]]:
+    """All findings."""
+    return {
+        "extras": [_extra(name, packages) for name, packages in EXTRAS.items()],
+        "compiled parts": [("core", OK, f"nanotouch._core {nanotouch.__version__}"), _fit()],
+        "backends": [_simulated(), _gpio()],
+        "view": [_display(), _vtk()],
+        "nanotouch live": [_live(), _film(), _pace(), *_hands()],
+    }
+
+
 def _extra(name: str, packages: dict[str, str]) -> tuple[str, str, str]:
     missing = [package for package, module in packages.items() if not _found(module)]
     if missing:
-        return name, MISSING, f"{', '.join(missing)} missing: pip install 'nanotouch[{name}]'"
-    return name, OK, ", ".join(f"{package} {_version(package)}" for package in packages)
+        return name, MISSING, f"{', '.join(missing)} missing, for {ADDS[name]}: {advice(name, missing)}"
+    broken = [said for said in map(_broken, packages.values()) if said]
+    if broken:
+        return name, MISSING, f"does not load: {'; '.join(broken)}"
+    return name, OK, f"{ADDS[name]}: " + ", ".join(f"{package} {_version(package)}" for package in packages)
+
+
+def _broken(module: str) -> str:
+    """Why the module does not load; empty if it does."""
+    try:
+        importlib.import_module(module)
+    except Exception as error:  # whatever a damaged installation raises
+        return f"{module} ({type(error).__name__}: {error})"
+    return ""
 
 
 def _found(module: str) -> bool:
@@ -110,6 +119,15 @@ def _fit() -> tuple[str, str, str]:
     return "fit", OK, "nanotouch._fit, on Ceres"
 
 
+def _simulated() -> Row:
+    """A hundredth of a second of a touch, tried out."""
+    try:
+        ran = nanotouch.Session().advance(0.01)
+    except Error as error:
+        return "simulated", MISSING, str(error)
+    return "simulated", OK, f"the simulated rig ran {len(ran['time'])} ticks"
+
+
 def _gpio() -> tuple[str, str, str]:
     try:
         found = hal.gpio_lines()
@@ -131,11 +149,42 @@ def _display() -> tuple[str, str, str]:
 
 def _live() -> tuple[str, str, str]:
     """Whether a window can be opened for a hand, tried out."""
+    if not _found("vtkmodules"):
+        return "window", MISSING, f"vtk is missing: {advice('view')}"
     try:
         display.check()
     except Error as error:
-        return "live", MISSING, str(error)
-    return "live", OK, "a window can be opened: nanotouch live"
+        return "window", MISSING, str(error)
+    return "window", OK, "a window can be opened: nanotouch live"
+
+
+def _film() -> tuple[str, str, str]:
+    """Without a display."""
+    missing = [extra for extra, module in (("view", "vtkmodules"), ("app", "PIL")) if not _found(module)]
+    if missing:
+        return "film", MISSING, " and ".join(advice(extra) for extra in missing)
+    if shutil.which("ffmpeg") is None:
+        return "film", OK, "--film FILE: .gif and .png; .mp4 needs ffmpeg: apt-get install ffmpeg"
+    return "film", OK, "--film FILE: .gif, .mp4 and .png"
+
+
+def _pace() -> tuple[str, str, str]:
+    """A session at the pace of a clock needs threads and shared memory."""
+    if sys.platform != "linux":
+        return "wall pace", MISSING, "threads and frames in shared memory need Linux"
+    return "wall pace", OK, "a simulated slave; a real one runs at hard pace in a program of your own (docs/session.md)"
+
+
+def _hands() -> list[tuple[str, str, str]]:
+    """Gamepad and SpaceMouse, tried out."""
+    rows = []
+    for name, kind in hands.KINDS.items():
+        try:
+            kind.first().close()
+            rows.append((name, OK, f"connected: nanotouch live --hand {name}"))
+        except Error as error:
+            rows.append((name, MISSING, str(error)))
+    return rows
 
 
 def _vtk() -> tuple[str, str, str]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch export FILE --out TABLE``: a recording or a force curve as CSV or HDF5, with the units in the headers."""
+"""``nanotouch export FILE --out OTHER``: recordings, curves, images and maps in formats that others open."""
 
 from __future__ import annotations
 
@@ -12,12 +12,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from nanotouch import curves, record
-from nanotouch.errors import InvalidValue, require
+from nanotouch import curves, images, maps, record
+from nanotouch.errors import InvalidValue
 
 from nanotouch_app import output
+from nanotouch_app.quantity import parse_quantity, whole_number
 
 HDF5_ENDINGS = (".h5", ".hdf5")
+IMAGE_ENDINGS = (".gwy", ".gsf")
+ENDINGS = (".csv", *HDF5_ENDINGS, ".tab", *IMAGE_ENDINGS)
 CHANNELS = {"time": "s", "z": "m", "deflection": "m", "force": "N"}
 
 
@@ -25,14 +28,27 @@ def add_parser(subparsers: Any) -> None:
     """Add ``export`` to the command's sub-commands."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "export",
-        help="a recording or a force curve as CSV or HDF5, with units",
-        description="Write a recording or a force curve as CSV or HDF5, with the units in the headers.",
+        help="a recording, curves, an image or a map in formats that others open",
+        description="Write a recording as CSV or HDF5; curves as CSV, or as afmformats' HDF5 or text; an image or a "
+        "map.nc as .gwy with all its channels; an image as .gsf.",
     )
-    parser.add_argument("file", type=Path, metavar="RECORDING|CURVE", help="recording.mcap, or a force curve file")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="table to write: .csv, .h5 or .hdf5")
+    parser.add_argument(
+        "file", type=Path, metavar="FILE", help="recording.mcap, a force curve file, an AFM image, a map.nc"
+    )
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="FILE",
+        help="what to write: .csv, .h5, .hdf5, .tab (one curve), .gwy or .gsf",
+    )  # fmt: skip
+    parser.add_argument(
+        "--index", type=whole_number(0, 10**9), metavar="N", help="one curve of a map (default: all of them)"
+    )
+    parser.add_argument("--spring-constant", metavar="STIFFNESS", help="of curves, in place of the file's, as 8N/m")
+    parser.add_argument("--sensitivity", metavar="SENSITIVITY", help="of curves, in place of the file's, as 40nm/V")
+    parser.add_argument("--channel", metavar="NAME", help="channel of an image, for .gsf")
+    parser.add_argument("--pixel-size", metavar="LENGTH", help="of an image that does not state it, for .gsf, as 10nm")
     output.add_overwrite(parser)
     parser.add_argument(
-        "--untrusted", action="store_true", help="open CURVE in a worker with limits on memory, time and open files"
+        "--untrusted", action="store_true", help="open FILE in a worker with limits on memory, time and open files"
     )
     parser.set_defaults(run=run)
 
@@ -40,17 +56,61 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write ``args.out``; its ending says which kind of table."""
     ending = args.out.suffix.lower()
-    if ending not in (".csv", *HDF5_ENDINGS):
-        raise InvalidValue(f"--out {args.out}: the ending must be .csv, .h5 or .hdf5")
+    if ending not in ENDINGS:
+        raise InvalidValue(f"--out {args.out}: the ending must be {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
     output.check_free(args.out, args)
+    if ending in IMAGE_ENDINGS:
+        what = _export_image(args, ending)
+        args.answer = {"file": str(args.out), "holds": what}
+        print(f"{args.out}: {what}")
+        return 0
     with output.progress_bar("exporting") as progress:
-        if record.is_recording(args.file):
+        if record.is_recording(args.file) and ending != ".tab":
             what = _export_recording(args.file, args.out, ending == ".csv", progress)
         else:
-            found = curves.read(args.file, untrusted=args.untrusted)
-            what = _export_curves(found, args.out, ending == ".csv", progress)
+            if ending == ".tab" and record.is_recording(args.file):
+                raise InvalidValue(f"--out {args.out}: a recording is written as .csv, .h5 or .hdf5")
+            found = curves.read(args.file, untrusted=args.untrusted, **_calibration(args))
+            what = _export_curves(_picked(found, args), args.out, ending == ".csv", progress)
+    args.answer = {"file": str(args.out), "holds": what}
     print(f"{args.out}: {what}")
     return 0
+
+
+def _calibration(args: argparse.Namespace) -> dict[str, Any]:
+    """What is given in place of the file's own."""
+    units = {"spring_constant": "N/m", "sensitivity": "m/V"}
+    given = {name: getattr(args, name) for name in units}
+    return {name: parse_quantity(text, units[name]) for name, text in given.items() if text is not None}
+
+
+def _picked(found: Sequence[curves.ForceCurve], args: argparse.Namespace) -> Sequence[curves.ForceCurve]:
+    if args.index is None:
+        return found
+    if args.index >= len(found):
+        raise InvalidValue(f"--index {args.index}: {args.file} holds the curves 0 .. {len(found) - 1}")
+    return [found[args.index]]
+
+
+def _export_image(args: argparse.Namespace, ending: str) -> str:
+    """All channels of an image or a map as .gwy, one as .gsf."""
+    if ending == ".gsf":
+        size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
+        topography = images.read(args.file, args.channel, pixel_size=size, untrusted=args.untrusted)
+        images.write(args.out, topography)
+        ny, nx = topography.shape
+        return f"{topography.channel or 'heights'}, {nx} x {ny} pixels"
+    if args.untrusted:
+        raise InvalidValue("--untrusted: all channels of a file are read in this process; export one as .gsf")
+    left_out: list[str] = []
+    if args.file.suffix == ".nc":
+        found = maps.planes(maps.read(args.file))
+    else:
+        found, left_out = images.planes(args.file)
+    images.write_planes(args.out, found)
+    for text in left_out:
+        print(f"nanotouch export: left out {text}", file=sys.stderr)
+    return f"{len(found)} channel{'s' if len(found) > 1 else ''}: {', '.join(plane.name for plane in found)}"
 
 
 def _export_recording(file: Path, out: Path, as_csv: bool, progress: Callable[[float], None]) -> str:
@@ -72,7 +132,7 @@ def _export_curves(
     if as_csv:
         _write_csv(out, found, progress)
     else:
-        _write_hdf5(out, found, progress)
+        curves.write(out, found, progress)
     points = sum(len(segment) for curve in found for segment in curve.segments)
     return f"{len(found)} force curve{'s' if len(found) > 1 else ''}, {points} points"
 
@@ -104,20 +164,3 @@ def _write_csv(out: Path, found: Sequence[curves.ForceCurve], progress: Callable
     comments = {"file": found[0].name, "z": ", ".join(sorted({segment.z_channel for *_, segment in segments}))}
     comments |= {key: json.dumps(value, default=str) for key, value in found[0].meta.items() if len(found) == 1}
     record.write_csv(out, table, comments, progress)
-
-
-def _write_hdf5(out: Path, found: Sequence[curves.ForceCurve], progress: Callable[[float], None]) -> None:
-    """One group per curve, in it one per segment, in it one dataset per channel with its unit."""
-    h5py = require("h5py", "record")
-    with record.replacing(out) as part, h5py.File(part, "w") as file:
-        for number, curve in enumerate(found):
-            group = file.create_group(f"curve {number}")
-            group.attrs["name"] = curve.name
-            group.attrs.update({key: json.dumps(value, default=str) for key, value in curve.meta.items()})
-            for position, segment in enumerate(curve.segments):
-                inner = group.create_group(f"segment {position}")
-                inner.attrs["role"], inner.attrs["z channel"] = segment.role, segment.z_channel
-                for name, values in _channels(segment).items():
-                    dataset = inner.create_dataset(name, data=values, **record.HDF5_STORAGE)
-                    dataset.attrs["unit"] = CHANNELS[name]
-            progress((number + 1) / len(found))

@@ -12,7 +12,7 @@ from nanotouch import curves
 from nanotouch import fit as fitting
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app import fit_many, output
+from nanotouch_app import fit_many, output, scenes
 from nanotouch_app.quantity import number, parse_quantity, whole_number
 
 FILES = ("fit.json", "fit.png", "stability.png")
@@ -27,7 +27,7 @@ def add_parser(subparsers: Any) -> None:
         metavar="CURVE",
         help="force curve file (JPK, Asylum .ibw, ...); or files, folders, patterns",
     )
-    add_knowledge(parser)
+    add_knowledge(parser, auto=True)
     parser.add_argument(
         "--compare",
         action="store_true",
@@ -43,15 +43,32 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="which curve of a map (default: %(default)s)",
     )
-    parser.add_argument(
-        "--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand, for a table"
-    )
+    add_table(parser)
     output.add_options(parser, "DIR|FILE.csv", "folder for the results, or a table with a row for each curve")
 
 
-def add_knowledge(parser: argparse.ArgumentParser) -> None:
-    """What is known of tip, sample and cantilever, and the law: the options of all that fits."""
-    parser.add_argument("--model", choices=fitting.models(), default="maugis", help="default: %(default)s")
+def add_table(parser: argparse.ArgumentParser) -> None:
+    """The options of all that makes a table of many curves."""
+    parser.add_argument(
+        "--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand, for a table"
+    )
+    parser.add_argument(
+        "--groups", metavar="folder|FILE.csv", help="groups of a table: by folder, or by a CSV table: file,group"
+    )
+    parser.add_argument("--long", action="store_true", help="every column in the table, in place of 15")
+
+
+def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
+    """What is known of tip, sample and cantilever, and the law: the options of all that fits.
+
+    `auto`: the law may be left to what the curve shows.
+    """
+    if auto:
+        parser.add_argument(
+            "--model", choices=("auto", *fitting.models()), default="auto", help="default: by what the curve shows"
+        )
+    else:
+        parser.add_argument("--model", choices=fitting.models(), default="maugis", help="default: %(default)s")
     parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract for adhesive models")
     parser.add_argument("--radius", metavar="LENGTH", help="tip radius, as 20nm")
     parser.add_argument("--half-angle", metavar="ANGLE", help="of cone (flank) and pyramid (face), as 20deg")
@@ -72,7 +89,7 @@ def add_knowledge(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--poisson-ratio", type=number(-0.99, 0.5), metavar="NU", help="of the sample: also gives its Young's modulus"
     )
-    parser.add_argument("--scene", metavar="FILE", help="TOML file with tip, sample and adhesion")
+    parser.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what="tip, sample and adhesion"))
 
 
 def run(args: argparse.Namespace) -> int:
@@ -81,25 +98,29 @@ def run(args: argparse.Namespace) -> int:
         if args.compare or args.stability:
             raise InvalidValue("--compare and --stability look at one curve: name one file")
         return fit_many.run(args, reading(args), knowledge(args))
-    if args.sidecar is not None:
-        raise InvalidValue("--sidecar goes with a table: --out results.csv")
+    for name in ("sidecar", "groups", "long"):
+        if getattr(args, name):
+            raise InvalidValue(f"--{name} goes with a table: --out results.csv")
     file = args.curve[0]
-    found = curves.read(file, **reading(args))
+    with output.busy("reading"):
+        found = curves.read(file, **reading(args))
     if not 0 <= args.index < len(found):
         raise InvalidValue(f"--index {args.index}: {file} holds the curves 0 .. {len(found) - 1}")
     curve = found[args.index]
     known = knowledge(args)
-    result = fitting.fit_curve(curve, args.model, branch=args.branch, **known)
+    with output.busy("fitting"):
+        result = fitting.fit_curve(curve, args.model, branch=args.branch, **known)
     with output.folder(args, FILES) as out:
-        output.write_json(out / "fit.json", as_json(result))
+        args.answer = as_json(result)
+        output.write_json(out / "fit.json", args.answer)
         fitting.draw(curve, result, save=out / "fit.png")
         if args.stability:
-            fitting.stability(curve, args.model, branch=args.branch, **known).draw(save=out / "stability.png")
+            fitting.stability(curve, result.model, branch=result.branch, **known).draw(save=out / "stability.png")
         if len(found) > 1:
             print(f"curve {args.index} of {len(found)}; --index N picks another")
         print(result)
         if args.compare:
-            print(fitting.choose_model(curve, _rivals(args.model), branch=result.branch, **known))
+            print(fitting.choose_model(curve, _rivals(result.model), branch=result.branch, **known))
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0
 
@@ -132,6 +153,7 @@ def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
     """The numbers of a fit, SI; null for what is infinite or not a number."""
     return {
         "curve": result.name,
+        "answer": result.answer.as_json(),
         "model": result.model,
         "branch": result.branch,
         "points": int(result.z.size),
@@ -142,6 +164,7 @@ def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
         "interval_95": {key: [_finite(low), _finite(high)] for key, (low, high) in result.interval.items()},
         "units": {key: result.units[key] for key in result.values},
         "identifiable": dict(result.identifiable),
+        "bounds_95": {key: [_finite(low), _finite(high)] for key, (low, high) in result.bounds.items()},
         "covariance": {
             "parameters": list(result.free),
             "matrix": [[_finite(value) for value in row] for row in result.covariance.tolist()],
@@ -176,14 +199,14 @@ def knowledge(args: argparse.Namespace) -> dict[str, Any]:
         tools["half_angle"] = parse_quantity(args.half_angle, "rad")
     if args.scene is None:
         return tools | {"radius": radius, "poisson_ratio": args.poisson_ratio}
-    scene = nt.Scene.from_toml(args.scene)
+    scene = scenes.read(args.scene).scene
     if radius is not None:
         scene.tip.radius = radius
     facts = scene.plan().explain()
     known = tools | {"tip": scene.tip, "poisson_ratio": scene.sample.poisson_ratio}
     if args.poisson_ratio is not None:
         known["poisson_ratio"] = args.poisson_ratio
-    if args.model == "maugis" and facts["cohesive_stress"] > 0.0:
+    if args.model in ("auto", "maugis") and facts["cohesive_stress"] > 0.0:
         known["cohesive_range"] = facts["work_of_adhesion"] / facts["cohesive_stress"]
     return known
 

@@ -39,10 +39,13 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
         with output.progress_bar("fit") as progress:
             summary = batch.fit_files(
                 args.curve, out, args.model, sidecar=args.sidecar, reading=reading, progress=progress,
-                branch=args.branch, **knowledge,
+                branch=args.branch, groups=args.groups, long=args.long, **knowledge,
             )  # fmt: skip
         sheets = sheet.draw(summary.pictures, folder, out.stem)
+    args.answer = {"table": str(out), "fitted": summary.count("ok"), "curves": summary.rows}
     print(summary)
+    for found in summary.spreads:
+        print(f"  {found}")
     _tell_without(summary.rows)
     for name in summary.unused:
         print(f"  note: {name!r} of the sidecar or the calibration table is none of these files")
@@ -50,12 +53,12 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     if drawn < len(summary.pictures):
         print(f"  note: the sheets show the first {drawn} of {len(summary.pictures)} fits")
     print(f"written to {folder}/: {', '.join([out.name, f'{out.name}.json', *(path.name for path in sheets)])}")
-    return 0 if summary.count("ok") else 1
+    return 0 if summary.fitted else 1
 
 
 def _tell_without(rows: list[dict[str, Any]], most: int = 20) -> None:
     """The curves without a result, and why."""
-    without = [row for row in rows if row["status"] != "ok"]
+    without = [row for row in rows if row["status"] in batch.WITHOUT]
     for row in without[:most]:
         number = "" if row["curve"] == "" else f"#{row['curve']}"
         print(f"  {row['status']}: {row['file']}{number}: {row['reason'].removeprefix(row['file'] + ': ')}")

@@ -19,10 +19,6 @@ from nanotouch_app.quantity import parse_quantity
 
 FILES = ("image.json", "image.png", "image.gwy", "grains.csv", "tip.csv")
 LISTED = 10  # particles printed; the table holds all
-EPILOG = """examples:
-  nanotouch image scan.ibw                                level, roughness
-  nanotouch image dots.tiff --scars --grains              quantum dots: a table of them in grains.csv
-  nanotouch image grating.gwy --level poly2+rows --tip 10nm,0.3rad"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -31,8 +27,6 @@ def add_parser(subparsers: Any) -> None:
         "image",
         help="level, repair and measure an AFM image",
         description=__doc__,
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     what = parser.add_argument_group("what is read")
     what.add_argument("image", metavar="FILE", help="AFM image")
@@ -72,9 +66,10 @@ def run(args: argparse.Namespace) -> int:
     smooth = None if args.smooth is None else parse_quantity(args.smooth, "m")
     tip = _tip(args.tip)
     threshold = args.grains if args.grains in (None, "auto", "flat", "otsu") else parse_quantity(args.grains, "m")
-    raw = _read(args)
+    with output.busy("reading"):
+        raw = _read(args)
     print(_described(raw))
-    with output.folder(args, FILES) as out:
+    with output.folder(args, FILES) as out, output.busy("preparing the image"):
         facts: dict[str, Any] = {"file": str(args.image), "channel": raw.channel, "reader": raw.source}
         mask = _mask(raw, args, facts)
         clean = _repaired(raw, args, facts, mask)
@@ -92,6 +87,7 @@ def run(args: argparse.Namespace) -> int:
         output.write_json(out / "image.json", facts)
         images.write(out / "image.gwy", clean)
         images.draw({"as read": raw, "processed": clean}, grains=table, save=out / "image.png")
+        args.answer = facts | {"folder": str(out), "files": [name for name in FILES if (out / name).exists()]}
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0
 

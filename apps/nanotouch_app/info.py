@@ -11,6 +11,8 @@ from typing import Any
 from nanotouch import curves, images, record
 from nanotouch.errors import MissingExtra, ReadError
 
+from nanotouch_app import output
+
 _META = (("instrument", ""), ("date", ""), ("spring constant", "N/m"), ("sensitivity", "m/V"), ("setpoint", "N"))
 _LISTED = 20  # curves of a map that are listed one by one
 
@@ -31,7 +33,10 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is none of them."""
-    print("\n".join(describe(args.file, args.untrusted)))
+    with output.busy("reading"):
+        lines = describe(args.file, args.untrusted)
+    args.answer = {"file": str(args.file), "lines": lines}
+    print("\n".join(lines))
     return 0
 
 

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# PYTHON_ARGCOMPLETE_OK
 """The ``nanotouch`` command: one file per sub-command. Errors end with one line and exit status 2."""
 
 from __future__ import annotations
@@ -6,23 +7,40 @@ from __future__ import annotations
 import argparse
 import importlib
 import io
+import json
+import os
 import re
 import sys
 from collections.abc import Sequence
+from contextlib import redirect_stdout, suppress
 from typing import Any, NoReturn
 
 import nanotouch as nt
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app import stop
+from nanotouch_app import examples, stop
 from nanotouch_app.guard import REFUSED, guarded, one_line
+from nanotouch_app.output import as_json
 
 COMMANDS = (
-    "touch", "live", "margins", "info", "plan", "curve", "image", "fit", "map", "export", "recover", "reproduce",
-    "tradeoff", "bench", "doctor",
+    "touch", "live", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "export",
+    "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
 )  # fmt: skip
-EPILOG = """exit status: 0 done; 1 done, and the answer is no, or nobody read it; 2 refused, with the reason; 70 a bug
-of nanotouch, whose traceback NANOTOUCH_DEBUG=1 shows; 130 stopped by Ctrl-C"""
+EPILOG = """exit status:
+  0    done
+  1    done, and the answer is no (margins: refused; fit: no curve), or nobody read it
+  2    refused, with the reason
+  70   a bug of nanotouch; NANOTOUCH_DEBUG=1 shows its traceback
+  130  stopped by Ctrl-C (128 and the number of the signal)
+
+tab completion, with the package argcomplete: eval "$(register-python-argcomplete nanotouch)\""""
+
+
+class Formatter(argparse.HelpFormatter):
+    """Keeps the lines of examples as they are."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return text if text.startswith("examples:") else super()._fill_text(text, width, indent)
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,18 +58,32 @@ class Parser(argparse.ArgumentParser):
         self.exit(REFUSED, one_line(f"{self.prog}: error: {message} ({self.prog} --help tells more)") + "\n")
 
 
-def build_parser() -> Parser:
-    """The parser with every sub-command."""
+def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:
+    """The parser with these sub-commands; each of them has to be loaded."""
     parser = Parser(
         prog="nanotouch",
         description="Touch nanoscale surfaces: feel, model and measure the forces at an AFM tip.",
-        epilog=EPILOG,
+        epilog=f"examples:\n{examples.table(examples.FIRST)}\n\n{EPILOG}",
+        formatter_class=Formatter,
     )
     parser.add_argument("--version", action="version", version=f"nanotouch {nt.__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in COMMANDS:
+    for command in commands:
         importlib.import_module(f"nanotouch_app.{command}").add_parser(subparsers)
+        _complete(subparsers.choices[command], command)
     return parser
+
+
+def _complete(parser: argparse.ArgumentParser, command: str) -> None:
+    """What all commands have: examples, and results as data."""
+    if not (parser.epilog or "").startswith("examples:"):
+        told = f"\n\n{parser.epilog}" if parser.epilog else ""
+        parser.epilog = f"examples:\n{examples.table(examples.EXAMPLES[command])}{told}"
+    parser.formatter_class = Formatter
+    jobs = [job for action in parser._actions if isinstance(action, argparse._SubParsersAction)
+            for job in action.choices.values()]  # fmt: skip
+    for one in jobs or [parser] * (command != "live"):  # a window has no results
+        one.add_argument("--json", action="store_true", help="print the results as JSON, SI; null: not known")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -65,12 +97,31 @@ def _run(arguments: list[str]) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # names of files may hold what the terminal's coding lacks
-    args = build_parser().parse_args(arguments)
+    if not arguments and "_ARGCOMPLETE" not in os.environ:
+        print(f"Touch nanoscale surfaces. Try:\n{examples.table(examples.FIRST)}")
+        return 0
+    args = _parsed(arguments)
     for name, value in vars(args).items():
         if "" in (value if isinstance(value, list) else [value]):
             raise InvalidValue(f"{name.replace('_', '-')} is empty: is it a variable of the shell that is not set?")
+    work = importlib.import_module(f"nanotouch_app.{args.command}").run
     with stop.on_signals():
-        return int(importlib.import_module(f"nanotouch_app.{args.command}").run(args))
+        if not getattr(args, "json", False):
+            return int(work(args))
+        with redirect_stdout(io.StringIO()):
+            status = int(work(args))
+        print(json.dumps(as_json(args.answer), indent=2, allow_nan=False))
+        return status
+
+
+def _parsed(arguments: list[str]) -> argparse.Namespace:
+    """The arguments; for a shell that asks what may come next, the answer instead."""
+    asked = os.environ.get("COMP_LINE", "").split()[1:2] if "_ARGCOMPLETE" in os.environ else arguments[:1]
+    parser = build_parser(asked if asked and asked[0] in COMMANDS else COMMANDS)
+    if "_ARGCOMPLETE" in os.environ:
+        with suppress(ImportError):
+            importlib.import_module("argcomplete").autocomplete(parser)
+    return parser.parse_args(arguments)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,7 @@ def run(args: argparse.Namespace) -> int:
         maps.draw(data, save=out / "map.png")
         summary = summarise(data)
         output.write_json(out / "map.json", summary)
+        args.answer = summary | {"folder": str(out), "files": list(FILES)}
         _remove(blocks)
         print(_text(data, summary))
         print(f"written to {out}/: map.nc, map.png, map.json")

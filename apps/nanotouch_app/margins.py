@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far a loop is from its stability limit, before anything moves: rules R1 to R5, the exact limit, Llewellyn's
-number, Z-width, the resolution budget, the verdict, and a stability map with theory and simulation together. Of a
-recording: the same at the stiffness that it met, its energy and its Z-width."""
+"""How far a loop is from its stability limit, before anything moves. Told are the rules R1 to R5, the exact limit,
+Llewellyn's number, Z-width, the resolution budget and the verdict. The stability map shows theory and simulation. Of
+a recording: the same at the stiffness that it met, its energy and its Z-width."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ from nanotouch.errors import InvalidValue, require
 from nanotouch.margins import Margins, Resolution
 from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION, new_figure, saved
 from nanotouch.record import write_csv
-from nanotouch.scene import read_tables
 from nanotouch.session import INDENTATION_RANGE, MODES, settings_for_path
 
-from nanotouch_app import loop, output, stability
+from nanotouch_app import loop, output, scenes, stability
 from nanotouch_app.quantity import parse_quantity
 from nanotouch_app.stability import Floats, Limit
 
@@ -39,8 +38,8 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "margins", help="how far a loop is from its stability limit", description=__doc__
     )
-    parser.add_argument("scene", nargs="?", metavar="FILE", help="TOML file with scene, rig and gains (default: "
-                        "the paper's), or the recording.mcap of a session")  # fmt: skip
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help=scenes.HELP.format(what="scene, rig and gains")
+                        + "; or the recording.mcap of a session (default: the paper's)")  # fmt: skip
     loop.add_options(parser)
     parser.add_argument("--mode", choices=MODES, default="point", help="(default: %(default)s)")
     parser.add_argument("--path", metavar="LENGTH", help="of the stage, as 0.4um, for the resolution budget")
@@ -52,8 +51,7 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command: 0 if a session would be armed, 1 if it would be refused."""
     if args.scene and Path(args.scene).suffix == ".mcap":
         return _recorded(args)
-    tables = read_tables(args.scene) if args.scene else {}
-    scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
+    scene, rig, tables = scenes.read(args.scene)
     settings = settings_for_path(rig, clearance=CLEARANCE, load=scene.range.maximum_load)
     plan = scene.plan()
     settings.gains.alpha_f = loop.felt(tables, args.force_range, scene, rig).get("alpha_f", settings.gains.alpha_f)
@@ -63,12 +61,28 @@ def run(args: argparse.Namespace) -> int:
     path = CLEARANCE + INDENTATION_RANGE if args.path is None else parse_quantity(args.path, "m")
     stiffness = plan.maximum_stiffness
     found, budget = margins.compute(rig, settings, stiffness, args.mode), margins.resolution(rig, settings, path)
+    calm = margins.calm(rig, settings, stiffness)
     if not args.no_map:
         require("matplotlib", "app")
     with output.folder(args, FILES) as out:
-        print("\n".join([*(f"warning: {warning}" for warning in plan.warnings), words(found, budget, settings, rig)]))
-        facts = {"contact_stiffness": stiffness, **found._asdict(), "refusal": found.refusal, **budget._asdict()}
-        output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
+        print(
+            "\n".join(
+                [
+                    *(f"warning: {warning}" for warning in plan.warnings),
+                    words(found, budget, settings, rig),
+                    f"felt: {calm}",
+                ]
+            )
+        )
+        facts = {
+            "contact_stiffness": stiffness,
+            **found._asdict(),
+            "refusal": found.refusal,
+            **budget._asdict(),
+            "calm": {name: _plain(value) for name, value in calm.facts().items()},
+        }
+        args.answer = {name: _plain(value) for name, value in facts.items()}
+        output.write_json(out / "margins.json", args.answer)
         if not args.no_map:
             _map(rig, settings, out)
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
@@ -89,7 +103,8 @@ def _recorded(args: argparse.Namespace) -> int:
             "drag": felt.free_damping, "energy": float(felt.energy[-1]), "dissipated": float(felt.dissipated[-1]),
             "is_passive": felt.is_passive, **felt.margins._asdict(),
         }  # fmt: skip
-        output.write_json(out / "margins.json", {name: _plain(value) for name, value in facts.items()})
+        args.answer = {name: _plain(value) for name, value in facts.items()}
+        output.write_json(out / "margins.json", args.answer)
         if not args.no_map:
             plots.z_width(recording, save=out / "z_width.png")
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
@@ -115,8 +130,8 @@ def words(found: Margins, budget: Resolution, settings: nt.Settings, rig: nt.Rig
     """All numbers for a reader, one rule a line."""
     gains = settings.gains
     rows = [
-        ("R1 contact", f"kappa {found.loop_stiffness:.3g} N/m, passive up to {found.stability_limit:.3g} N/m "
-         f"(b_m over a delay of {found.loop_delay * 1e3:.3g} ms): margin {found.margin:.3g}"),
+        ("R1 contact", f"kappa {found.loop_stiffness:.3g} N/m, stable by rule of thumb to {found.stability_limit:.3g} "
+         f"N/m (b_m over a delay of {found.loop_delay * 1e3:.3g} ms): margin {found.margin:.3g}{_decides(found)}"),
         ("exact limit", _exact(found)),
         ("R2 finger pad", f"K_f {gains.force_gain:g} of {_limit(found.pad_limit)}"),
         ("R3 finger mass", f"K_f {gains.force_gain:g} of {_limit(found.mass_limit)}"),
@@ -128,13 +143,31 @@ def words(found: Margins, budget: Resolution, settings: nt.Settings, rig: nt.Rig
         ("Llewellyn", f"{found.llewellyn:.3g} at the least below {margins.HAND_BAND:g} Hz; 1 would be stable against "
          "any surface, a sampled loop never is"),
         ("Z-width", f"from {found.free_damping:.3g} N s/m and {found.free_mass * 1e3:.3g} g in air to "
-         f"{found.passive_stiffness:.3g} N/m passive, {found.stable_stiffness:.3g} N/m stable, at the hand"),
+         f"{found.passive_stiffness:.3g} N/m by R1, {found.stable_stiffness:.3g} N/m stable, at the hand"),
         ("bandwidth", f"the contact's stiffness is felt within 3 dB up to {found.bandwidth:.3g} Hz"),
+        ("passivity", _passive(found, settings)),
     ]  # fmt: skip
     lines = [f"{name:14s} {text}" for name, text in rows]
     lines += ["resolution:", *(f"  {line}" for line in str(budget).splitlines())]
     verdict = "armed" if found.refusal is None else f"REFUSED, {found.refusal}"
     return "\n".join([*lines, f"verdict: {verdict}; least margin {found.verdict}"])
+
+
+def _decides(found: Margins) -> str:
+    """R1 knows no hand: a spring or mass on the gauge can leave less."""
+    if not 0.0 < found.exact_limit < found.stability_limit:
+        return ""
+    return f"; TOO MUCH by a factor of {found.stability_limit / found.exact_limit:.3g}, the exact limit decides"
+
+
+def _passive(found: Margins, settings: nt.Settings) -> str:
+    """Up to where the hand is given no energy."""
+    if found.passive_up_to >= 0.5 * settings.gains.rate:
+        return "the loop gives the hand no energy at any frequency"
+    return (
+        f"above {found.passive_up_to:.3g} Hz the loop can give the hand energy (Re Z < 0: low-pass of f_m and delays); "
+        "which hand that stirs the exact limit tells"
+    )
 
 
 def _exact(found: Margins) -> str:

@@ -4,15 +4,18 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
 from typing import Any
 
-from nanotouch.errors import Error, require
+from nanotouch.errors import Error, MissingExtra, require
 
 try:
     import fcntl
@@ -29,15 +32,15 @@ def add_options(group: Any, metavar: str = "DIR", what: str = "folder for the re
     add_overwrite(group)
 
 
-def add_overwrite(group: Any) -> None:
+def add_overwrite(group: Any, option: str = "--out") -> None:
     """The option without which nothing is replaced."""
-    group.add_argument("--overwrite", action="store_true", help="replace the results that --out holds already")
+    group.add_argument("--overwrite", action="store_true", help=f"replace the results that {option} holds already")
 
 
-def check_free(file: Path, args: Any) -> None:
-    """Refuse to replace a file, unless ``--overwrite`` asks for it."""
+def check_free(file: Path, args: Any, option: str = "--out") -> None:
+    """Refuse to replace a file that ``option`` names, unless ``--overwrite`` asks for it."""
     if os.path.lexists(file) and not args.overwrite:
-        raise Error(f"{file} exists already: name another --out, or add --overwrite")
+        raise Error(f"{file} exists already: name another {option}, or add --overwrite")
 
 
 @contextmanager
@@ -131,10 +134,53 @@ def write_json(path: Path, data: Mapping[str, Any]) -> None:
         raise Error(f"cannot write {path}: {error.strerror}") from error
 
 
+def as_json(value: Any) -> Any:
+    """What JSON has a spelling for: NaN (not known) is null, infinities are the strings ``"inf"`` and ``"-inf"``."""
+    if isinstance(value, Mapping):
+        return {key: as_json(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else str(value)
+    return value
+
+
+@contextmanager
+def busy(title: str, after: float = 2.0) -> Iterator[None]:
+    """Seconds on the terminal, for what takes longer than ``after`` [s] and cannot tell how far it is."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    done, start = threading.Event(), time.monotonic()
+
+    def show() -> None:
+        wait = after
+        while not done.wait(wait):
+            wait = 0.5
+            sys.stderr.write(f"\r{title} ... {time.monotonic() - start:.0f} s ")
+            sys.stderr.flush()
+
+    shower = threading.Thread(target=show, daemon=True)
+    shower.start()
+    try:
+        yield
+    finally:
+        done.set()
+        shower.join()
+        if time.monotonic() - start > after:
+            sys.stderr.write(f"\r{' ' * (len(title) + 16)}\r")
+
+
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[[float], None]]:
-    """A bar on the terminal, for what takes longer than a second; called with the fraction done. None in a log."""
-    tqdm = require("tqdm", "app").tqdm
+    """A bar on the terminal, for what takes longer than a second; called with the fraction done. None in a log, and
+    none where tqdm is missing."""
+    try:
+        tqdm = require("tqdm", "app").tqdm
+    except MissingExtra:
+        with busy(title):
+            yield lambda _: None
+        return
     layout = "{l_bar}{bar}| {elapsed}<{remaining}"
     options = {"desc": title, "delay": 1.0, "bar_format": layout, "leave": False, "file": sys.stderr}
     with tqdm(total=1.0, disable=not sys.stderr.isatty(), **options) as bar:

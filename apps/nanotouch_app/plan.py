@@ -8,9 +8,6 @@ replaces it.
 from __future__ import annotations
 
 import argparse
-import difflib
-import json
-import math
 import os
 from typing import Any
 
@@ -21,13 +18,9 @@ from nanotouch.plan import hertz_nanoseconds
 from nanotouch.scene import Demand, Rig, Scene, Settings, read_tables
 from nanotouch.units import in_words
 
+from nanotouch_app import output, properties, scenes
 from nanotouch_app.quantity import number, parse_quantity
-
-PRESETS = tuple(presets.FELT)
-PAPER = (
-    "paper_silicon", "paper_gold", "paper_mica", "paper_polyester", "paper_silicone_rubber", "paper_inas",
-)  # fmt: skip
-"""the scenes of the paper as they stand there, up to the largest load of its rig"""
+from nanotouch_app.scenes import PAPER, PRESETS
 
 OPTIONS = {"demand.relative_accuracy": "--rtol", "demand.budget": "--budget"}
 
@@ -51,15 +44,16 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--budget", type=number(1.0, 1e9), metavar="N", help="what an evaluation may cost, in Hertz evaluations"
     )
+    parser.add_argument("--image", metavar="IMAGE", help="plan over the surface of an AFM image or a map.nc")
+    properties.add_options(parser)
     parser.add_argument("--probe", action="store_true", help="tell what the rig's probe cannot resolve, too")
-    parser.add_argument(
-        "--json", action="store_true", help='print the plan as data, SI; what is not finite as null or "inf"'
-    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     scene, rig, demand = _descriptions(args.scene)
+    with output.busy("reading the surface"):
+        surface = _surface(args, scene)
     if args.rtol is not None:
         demand["demand.relative_accuracy"] = parse_quantity(args.rtol, "")
     if args.atol is not None:
@@ -69,45 +63,40 @@ def run(args: argparse.Namespace) -> int:
     if args.budget is not None:
         demand["demand.budget"] = args.budget
     try:
-        plan = nt.Plan.make(scene, demand, rig if args.probe else None)
+        with output.busy("planning"):
+            plan = nt.Plan.make(scene, demand, rig if args.probe else None, surface)
     except InvalidValue as refusal:
         sentence = str(refusal).removeprefix("plan: ")
         for field, option in OPTIONS.items():
             sentence = sentence.replace(f"{field} =", f"{field} ({option}) =")
         raise InvalidValue(sentence) from refusal
-    print(json.dumps(as_json(plan.explain()), indent=2, allow_nan=False) if args.json else plan)
-    if not args.json:
-        one = hertz_nanoseconds()
-        full = one * plan.explain()["full_cost"]
-        print(
-            f"on this machine a Hertz evaluation takes {in_words(one * 1e-9, 's', 3)}, this plan "
-            f"{in_words(one * plan.cost * 1e-9, 's', 3)}, everything exact {in_words(full * 1e-9, 's', 3)}"
-        )
-    if args.scene in PRESETS and not args.json:
+    args.answer = plan.explain()
+    if args.json:  # the measurement below takes its time
+        return 0
+    print(plan)
+    one = hertz_nanoseconds()
+    full = one * plan.explain()["full_cost"]
+    print(
+        f"on this machine a Hertz evaluation takes {in_words(one * 1e-9, 's', 3)}, this plan "
+        f"{in_words(one * plan.cost * 1e-9, 's', 3)}, everything exact {in_words(full * 1e-9, 's', 3)}"
+    )
+    if surface is not None:
+        print("\n".join(surface.notes))
+    if args.scene in PRESETS:
         print(f"felt: {presets.FELT[args.scene]}")
     return 0
 
 
-def as_json(value: Any) -> Any:
-    """What JSON has a spelling for: NaN (not known) is null, infinities are the strings ``"inf"`` and ``"-inf"``."""
-    if isinstance(value, dict):
-        return {key: as_json(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [as_json(entry) for entry in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else str(value)
-    return value
+def _surface(args: argparse.Namespace, scene: Scene) -> nt.Surface | None:
+    """Over which it is planned; None: a flat."""
+    tables = read_tables(args.scene) if os.path.isfile(args.scene) else {}
+    named = properties.surface_file(args, args.image, tables, args.scene)
+    surface: nt.Surface | None = None if named is None else named.touched_by(scene)
+    return surface
 
 
 def _descriptions(name: str) -> tuple[Scene, Rig, Demand]:
-    if name in PRESETS + PAPER:
-        return *getattr(presets, name)(), Demand()
-    if not name.endswith(".toml") and not os.path.isfile(name):
-        close = difflib.get_close_matches(name, PRESETS + PAPER, n=1)
-        hint = f"; did you mean {close[0]}" if close else ""
-        raise InvalidValue(f"{name!r} is neither a TOML file nor a preset{hint}; presets are {', '.join(PRESETS)}")
-    tables = read_tables(name)
-    scene, rig = Scene.from_tables(tables), Rig.from_tables(tables)
+    scene, rig, tables = scenes.read(name)
     if "limits" in tables:  # as a session does, up to its force limit
         settings = Settings.for_rig(rig)
         settings.update_from_tables(tables)

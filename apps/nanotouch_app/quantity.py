@@ -8,9 +8,9 @@ import math
 from collections.abc import Callable
 
 from nanotouch.errors import InvalidValue
-from nanotouch.units import parse_quantity
+from nanotouch.units import engineering, parse_quantity
 
-__all__ = ["number", "parse_point", "parse_points", "parse_quantity", "whole_number"]
+__all__ = ["digits", "number", "parse_point", "parse_points", "parse_quantity", "whole_number"]
 
 
 def number(minimum: float, maximum: float) -> Callable[[str], float]:
@@ -56,3 +56,15 @@ def parse_points(text: str, count: int) -> list[tuple[float, float]]:
 def parse_point(text: str) -> tuple[float, float]:
     """``"2.5um,3um"`` to (x, y) [m]."""
     return parse_points(text, 1)[0]
+
+
+def digits(value: float, unit_name: str, count: int = 3) -> str:
+    """A number of three digits with its unit, "-" where it is not known; never wider because a digit has come."""
+    if not math.isfinite(value):
+        return "-"
+    prefixed, factor = engineering(unit_name, [value]) if unit_name else ("", 1.0)
+    scaled = value * factor
+    if abs(scaled) < 1e-3:
+        return f"0 {unit_name}".strip()
+    decimals = max(0, count - 1 - math.floor(math.log10(abs(scaled))))
+    return f"{scaled:.{min(decimals, count)}f} {prefixed}".strip()

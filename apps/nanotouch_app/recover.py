@@ -22,5 +22,7 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     out, recording = record.recover(args.file, args.out)
+    args.answer = {"file": str(out), "rows": len(recording), "until_s": float(recording.time[-1]),
+                   "incomplete": recording.incomplete}  # fmt: skip
     print(f"{out}: {len(recording)} rows up to {recording.time[-1]:.6g} s, incomplete: {recording.incomplete}")
     return 0

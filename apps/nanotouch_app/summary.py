@@ -33,6 +33,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "hand_pull_off_force_N": None if pull_off is None else alpha_f * pull_off,
         "planned_pull_off_force_N": session.plan.pull_off_force,
         "largest_force_N": float(np.max(recording.tip_force)),
+        "touched": bool(np.any(recording.contact_radius > 0.0)),
         "position_tracking_rms_m": None if session.mode in SERVOED else _rms(_position_error(session, recording)),
         "force_tracking_rms_N": _rms(_force_error(session, recording)),
         "alpha_p": session.settings.gains.alpha_p,
@@ -45,6 +46,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "force_limit_N": session.settings.limits.force,
         "force_overshoot_N": session.force_overshoot,
         "stability": {name: _finite(value) for name, value in session.margins()._asdict().items()},
+        "calm": {name: _finite(value) for name, value in session.calm().facts().items()},
         "states": {name: int(np.count_nonzero(recording.state == code)) for code, name in enumerate(STATES)},
         "reasons": _reasons(recording),
         "seed": session.seed,
@@ -62,6 +64,7 @@ def before(session: nt.Session) -> str:
     lines = [
         f"loop:    {session.control} control at {session.rate / 1e3:g} kHz, {session.probe_model} probe; "
         f"stability margin {found.verdict}{verdict}",
+        *([f"felt:    {session.calm()}"] if session.mode in ("point", "scan") else []),
         *(f"limits:  {line}" for line in str(session.guarantee()).splitlines()),
         *(f"steps:   {line}" for line in str(budget).splitlines()),
     ]
@@ -77,8 +80,8 @@ def words(summary: dict[str, Any]) -> str:
     lines += [f"  {line}" for line in summary["models"]]
     lines += [
         f"  scaling           alpha_p {summary['alpha_p']:.3g}, alpha_f {summary['alpha_f']:.3g}",
-        f"  snap-in           {_force(summary, 'snap_in')}",
-        f"  pull-off          {_force(summary, 'pull_off')}",
+        f"  snap-in           {force(summary, 'snap_in')}",
+        f"  pull-off          {force(summary, 'pull_off')}",
         f"  largest force     {summary['largest_force_N'] * 1e9:.1f} nN",
         f"  position tracking {_position(summary['position_tracking_rms_m'])}",
         f"  force tracking    {_tracking(summary)}",
@@ -91,9 +94,15 @@ def words(summary: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _force(summary: dict[str, Any], name: str) -> str:
+def force(summary: dict[str, Any], name: str) -> str:
+    """Snap-in or pull-off, at the tip and at the hand."""
     tip, hand = summary[f"{name}_force_N"], summary[f"hand_{name}_force_N"]
-    return "none: never in contact" if tip is None else f"{tip * 1e9:.1f} nN at the tip, {hand:.3f} N at the hand"
+    if tip is not None:
+        return f"{tip * 1e9:.1f} nN at the tip, {hand:.3f} N at the hand"
+    return f"none: {_WITHOUT[name] if summary['touched'] else 'never in contact'}"
+
+
+_WITHOUT = {"snap_in": "no sudden pull on the way in", "pull_off": "no sudden release on the way out"}
 
 
 def _position(error: float | None) -> str:

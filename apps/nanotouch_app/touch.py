@@ -5,7 +5,6 @@ and drawn."""
 from __future__ import annotations
 
 import argparse
-import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -13,12 +12,11 @@ from typing import Any, get_args
 
 import nanotouch as nt
 from nanotouch import margins, plots, record
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import InvalidValue, MissingExtra
 from nanotouch.operator import script_for
-from nanotouch.scene import read_tables
 from nanotouch.session import MODES, ProbeModel
 
-from nanotouch_app import loop, output, stop, summary, view
+from nanotouch_app import loop, output, properties, scenes, stop, summary, told, view
 from nanotouch_app.quantity import number, parse_points, parse_quantity, whole_number
 
 SURFACES: dict[str, Callable[[], nt.Topography]] = {
@@ -30,11 +28,6 @@ FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.pn
 MOVING = ("scan", "topography")
 LONGEST = 600.0  # [s]
 MOST_STEPS = 6_000_000  # 1 GB of memory
-EPILOG = """examples:
-  nanotouch touch                                            press on a grating of 480 nm
-  nanotouch touch --surface dots --mode topography           feel quantum dots at constant force
-  nanotouch touch --force-range plan --control impedance     all of the hand's range, no force sensor
-  nanotouch touch image.ibw --mode scan --line 0um,2um,6um,2um --scene scene.toml --out result"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -43,8 +36,6 @@ def add_parser(subparsers: Any) -> None:
         "touch",
         help="touch a surface on the simulated rig",
         description=__doc__,
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     where = parser.add_argument_group("what is touched, and where")
     where.add_argument("image", nargs="?", metavar="IMAGE", help="AFM image; without it a built-in surface")
@@ -68,7 +59,9 @@ def add_parser(subparsers: Any) -> None:
     )
     how = parser.add_argument_group("how it is touched")
     how.add_argument(
-        "--scene", metavar="FILE", help="TOML file with scene, rig and gains (default: silicon in humid air)"
+        "--scene",
+        metavar="SCENE",
+        help=scenes.HELP.format(what="scene, rig and gains") + " (default: silicon in humid air)",
     )
     loop.add_options(how)
     how.add_argument("--probe-model", choices=get_args(ProbeModel), default="auto", help="how the cantilever is "
@@ -79,67 +72,77 @@ def add_parser(subparsers: Any) -> None:
     how.add_argument("--duration", metavar="TIME", help="stretch the operator's script to this, as 20s")
     how.add_argument("--seed", type=whole_number(0, 2**64 - 1, "2^64 - 1"), default=1, metavar="N",
                      help="of the sensors' noise (default: %(default)s)")  # fmt: skip
+    properties.add_options(parser)
     results = parser.add_argument_group("results")
     output.add_options(results)
+    results.add_argument("--verbose", action="store_true", help="tell models, error bounds and limits in full, too")
     results.add_argument("--no-window", action="store_true", help="do not open the 3-D view where there is a display")
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    topography = _topography(args)
-    session = _session(args, topography)
+    session = _session(args)
+    assert session.surface is not None
+    topography = session.surface.topography
     duration = None if args.duration is None else _duration(args.duration)
     _check_steps(session, duration)
     with output.folder(args, FILES) as out:
-        print(describe(topography))
-        print(summary.before(session))
+        _say_before(session, args)
         recording = _record(session, duration, out)
         facts = summary.summarise(session, recording)
         output.write_json(out / "summary.json", facts)
-        print(summary.words(facts))
-        _draw(session, topography, recording, out)
-        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+        with output.busy("drawing"):
+            missing = _draw(session, topography, recording, out)
+        written = [name for name in FILES if (out / name).exists()]
+        args.answer = facts | {"folder": str(out), "files": written}
+        print(summary.words(facts) if args.verbose else told.report(session, facts, describe(topography), args))
+        print("".join(f"picture left out: {reason}\n" for reason in missing), end="")
+        print(f"written to {out}/: {', '.join(written)}")
     if not args.no_window and view.has_display():
         view.open_window(topography, recording, session.scene.tip.radius)
     return 0
+
+
+def _say_before(session: nt.Session, args: argparse.Namespace) -> None:
+    """What is known before anything moves: notes of the image, and with ``--verbose`` margins and limits."""
+    surface = session.surface
+    assert surface is not None
+    print("".join(f"{note}\n" for note in surface.notes), end="")
+    if args.verbose:
+        print(f"surface: {describe(surface.topography)}\n{summary.before(session)}")
 
 
 def describe(topography: nt.Topography) -> str:
     """The surface in a line."""
     (ny, nx), (height, width) = topography.shape, topography.size
     return (
-        f"surface: {topography.name}, {width * 1e6:.4g} x {height * 1e6:.4g} um, {nx} x {ny} pixels, "
+        f"{topography.name}, {width * 1e6:.4g} x {height * 1e6:.4g} um, {nx} x {ny} pixels, "
         f"heights over {topography.height_range * 1e9:.4g} nm"
     )
 
 
-def _topography(args: argparse.Namespace) -> nt.Topography:
+def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) -> nt.Surface:
     if args.image is None:
         for option in ("channel", "pixel_size", "z_unit", "level", "untrusted"):
             if getattr(args, option) not in (None, False):
                 raise InvalidValue(f"--{option.replace('_', '-')} goes with an IMAGE")
-        return SURFACES[args.surface or "grating"]()
-    if args.surface is not None:
+    elif args.surface is not None:
         raise InvalidValue(f"give an IMAGE or --surface {args.surface}, not both")
-    pixel_size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
-    raw = nt.images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # the reports hold them
-        topography, reports = nt.images.prepare(raw, args.level or "auto")
-    if raw.masked_pixels:
-        print(f"{raw.masked_pixels} missing pixels filled from their neighbours")
-    for note in raw.notes:
-        print(f"note: {note}")
-    for report in reports:
-        print(report)
-    return topography
+    named = properties.surface_file(args, args.image, tables, args.scene)
+    if named is None:
+        return nt.Surface.touched_by(scene, SURFACES[args.surface or "grating"]())
+    if args.surface is not None:
+        raise InvalidValue(f"{args.scene} names a surface ([surface]): give it or --surface {args.surface}, not both")
+    surface: nt.Surface = named.touched_by(scene)
+    return surface
 
 
-def _session(args: argparse.Namespace, topography: nt.Topography) -> nt.Session:
-    tables = read_tables(args.scene) if args.scene else {}
-    scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
+def _session(args: argparse.Namespace) -> nt.Session:
+    scene, rig, tables = scenes.read(args.scene)
+    with output.busy("reading the surface"):
+        surface = _surface(args, scene, tables)
     what: dict[str, Any] = {
-        "surface": nt.Surface.touched_by(scene, topography), "mode": args.mode, "path": _path(args), "seed": args.seed,
+        "surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed,
         "control": args.control, "probe_model": args.probe_model,
     }  # fmt: skip
     session = nt.Session(
@@ -214,9 +217,19 @@ def _record(session: nt.Session, duration: float | None, out: Path) -> nt.Record
         raise stop.Stopped(stopped.number, writer.saved) from None
 
 
-def _draw(session: nt.Session, topography: nt.Topography, recording: nt.Recording, out: Path) -> None:
-    plots.time(recording, save=out / "time.png")
-    plots.force_gap(recording, save=out / "force_gap.png")
+def _draw(session: nt.Session, topography: nt.Topography, recording: nt.Recording, out: Path) -> list[str]:
+    """The pictures; what is missing for some of them is told, for the touch itself needs none."""
+    drawn: list[Callable[[], Any]] = [
+        lambda: plots.time(recording, save=out / "time.png"),
+        lambda: plots.force_gap(recording, save=out / "force_gap.png"),
+        lambda: view.render_png(topography, recording, out / "view.png", tip_radius=session.scene.tip.radius),
+    ]
     if session.mode in MOVING:
-        plots.line(recording, topography, save=out / "line.png")
-    view.render_png(topography, recording, out / "view.png", tip_radius=session.scene.tip.radius)
+        drawn.append(lambda: plots.line(recording, topography, save=out / "line.png"))
+    missing = []
+    for draw in drawn:
+        try:
+            draw()
+        except MissingExtra as error:
+            missing.append(str(error))
+    return list(dict.fromkeys(missing))

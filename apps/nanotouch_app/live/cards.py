@@ -13,7 +13,7 @@ from nanotouch_app.live.subject import PRESETS
 
 Frame = tuple[float, float, float, float]
 COLUMNS, GAP, HEAD = 2, 12.0, 44.0  # [pixels]
-LETTERS = 62  # of a line
+LETTER = 6.1  # width of one [pixels]
 
 
 def boxes(frame: Frame) -> dict[str, Frame]:
@@ -46,8 +46,12 @@ def draw(painter: Painter, palette: Palette, frame: Frame, opened: str) -> None:
         preset = PRESETS[name]
         painter.box(box, palette.paper, palette.accent if preset.title == opened else palette.line)
         left, top = box[0] + 12, box[1] + box[3]
+        letters = max(10, int((box[2] - 24) / LETTER))
         painter.text(left, top - 17, preset.title, palette.ink, bold=True)
-        lines = [(line, palette.quiet) for line in textwrap.wrap(presets.FELT[name], LETTERS)]
-        lines += [(line, palette.accent) for line in textwrap.wrap(preset.hint, LETTERS)]
-        for number, (line, colour) in enumerate(lines):
+        lines = [(line, palette.accent) for line in textwrap.wrap(preset.hint, letters)]
+        lines += [(line, palette.quiet) for line in textwrap.wrap(presets.FELT[preset.scene or name], letters)]
+        fits = int((box[3] - 44.0) / 16.0) + 1
+        if len(lines) > fits:
+            lines[fits - 1] = (f"{lines[fits - 1][0]} ...", lines[fits - 1][1])
+        for number, (line, colour) in enumerate(lines[:fits]):
             painter.text(left, top - 38 - 16 * number, line, colour, SMALL)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from nanotouch_app.live.axes import Axes
@@ -36,7 +38,7 @@ class ForceGap:
     """The law: stable branches solid, unstable ones dashed; the lever's line; the point that is now."""
 
     def __init__(self) -> None:
-        self.up, self.out = Follower(), Follower()
+        self.up, self.down, self.out = Follower(), Follower(), Follower()
 
     def draw(self, painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
         """Into x, y, width, height."""
@@ -45,19 +47,22 @@ class ForceGap:
             return
         now = float(seen.frame["time"])
         pull = seen.plan.pull_off_force
-        recent = max((abs(force) for _, _, force in seen.tail), default=0.0)
-        top = self.up.of(max(1.3 * pull, 1.15 * recent, 0.02 * seen.load), now)
-        gap = float(seen.frame["gap"])
+        recent = [force for _, _, force in seen.tail] or [0.0]
+        top = self.up.of(max(1.3 * pull, 1.15 * max(recent), 0.02 * seen.load), now)
+        gap = 0.0 if seen.is_blind else float(seen.frame["gap"])
         reach = self.out.of(max(seen.reach, 1.1 * min(gap, 3.9 * seen.reach)), now)
         deep = np.interp(top, seen.curve.attached[::-1, 1], -seen.curve.attached[::-1, 0]) if len(
             seen.curve.attached) else 0.0  # fmt: skip
         inner = -max(0.25 * reach, 1.2 * min(float(deep), 1.5 * seen.depth), -1.1 * gap)
-        low = -top if pull > 0.02 * top else -0.1 * top
+        low = -self.down.of(max(1.3 * pull, -1.15 * min(recent), 0.1 * top), now)
         axes = Axes(frame, (inner, reach), (low, top))
         axes.draw(painter, palette, ("gap", "force on the tip"), ("m", "N"))
         self._law(painter, palette, axes, seen)
-        self._lever(painter, palette, axes, seen)
-        self._now(painter, palette, axes, seen)
+        if seen.is_blind:  # somewhere on this level
+            painter.line(axes.at(axes.x, (seen.force, seen.force)), palette.repulsion, 1.5)
+        else:
+            self._lever(painter, palette, axes, seen)
+            self._now(painter, palette, axes, seen)
         x, y = frame[0] + frame[2] - 14, frame[1] + frame[3] - 16
         words = f"pull-off {digits(pull, 'N')}" if pull > 1e-3 * seen.load else "nothing pulls"
         painter.text(x, y, words, palette.ink, SMALL, "right")
@@ -90,9 +95,12 @@ class ForceGap:
     @staticmethod
     def _now(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:
         colour = palette.repulsion if seen.force >= 0.0 else palette.attraction
-        tail = np.array([(gap, force) for _, gap, force in seen.tail])
-        if len(tail) > 1:
-            painter.line(axes.at(tail[:, 0], tail[:, 1]), colour, 1.5)
+        tail = np.array([(gap, force) for _, gap, force in seen.tail]).reshape(-1, 2)
+        sides = np.flatnonzero(np.diff(tail[:, 1] >= 0.0)) + 1
+        for part in np.split(np.arange(len(tail)), sides):
+            rows = tail[part[0] : part[-1] + 2] if len(part) else tail[:0]  # up to the first of the other side
+            pushed = len(rows) > 0 and rows[0, 1] >= 0.0
+            painter.line(axes.at(rows[:, 0], rows[:, 1]), palette.repulsion if pushed else palette.attraction, 2.5)
         x, y = axes.at(float(seen.frame["gap"]), float(seen.frame["tip_force"][2]))
         painter.dot(float(x), float(y), 5.0, colour, palette.panel)
 
@@ -100,6 +108,27 @@ class ForceGap:
 def _mapped(axes: Axes, rows: np.ndarray) -> np.ndarray:
     kept = axes.inside(rows)
     return axes.at(kept[:, 0], kept[:, 1])
+
+
+def _alike(values: list[float]) -> list[float]:
+    """Parts of a sum, each to the third digit of the largest; 0 without a sign."""
+    largest = max(map(abs, values))
+    decimals = 2 - math.floor(math.log10(largest)) if largest > 0.0 else 0
+    return [round(value, decimals) + 0.0 for value in values]
+
+
+def _energies(seen: Seen) -> str:
+    """Where the work of the hand has gone in this touch; "" where the hand is not known."""
+    if seen.balance is None:
+        return ""
+    hand, stored, tip, heat = seen.balance.energies
+    unit, factor = ("fJ", 1e15) if max(abs(hand), abs(stored)) > 1e-15 else ("aJ", 1e18)
+    hand, stored, tip, heat = _alike([factor * value for value in (hand, stored, tip, heat)])
+    told = [f"{name} {value:.3g}" for name, value in (("spring", stored), ("tip", tip), ("heat", heat))]
+    return f"work of the hand {hand:.3g} {unit} = {' + '.join(told)}".replace("-0 ", "0 ").replace("+ -", "- ")
+
+
+TITLED, UNTITLED = 210.0, 130.0  # what the names of the axes take of the upper and the lower line [pixels]
 
 
 class History:
@@ -122,6 +151,7 @@ class History:
         low = self.low.of(1.1 * max(-float(rows[:, 1].min()), 0.05 * high / scale) * scale, now)
         axes = Axes(frame, (-HISTORY, 0.0), (-low, high))
         axes.draw(painter, palette, ("time", "force at the hand"), ("s", "N"))
+        self._balance(painter, palette, frame, _energies(seen))
         for sign, colour in ((1.0, palette.repulsion), (-1.0, palette.attraction)):
             least, largest = (np.clip(sign * rows[:, column], 0.0, None) * sign * scale for column in (1, 2))
             when = rows[:, 0] - now
@@ -129,3 +159,14 @@ class History:
             zero = axes.at(when, np.zeros(len(rows)))[:, 1]
             painter.area(np.stack([lower[:, 0], zero, 0.5 * (lower[:, 1] + upper[:, 1])], axis=1), colour, 60)
             painter.area(np.stack([lower[:, 0], lower[:, 1] - 0.8, upper[:, 1] + 0.8], axis=1), colour)
+
+    @staticmethod
+    def _balance(painter: Painter, palette: Palette, frame: Frame, words: str) -> None:
+        """Beside the upper title; below the chart where there is no room."""
+        x, y, width, height = frame
+        if painter.width_of(words, SMALL) <= width - TITLED:
+            painter.text(x + width - 14, y + height - 16, words, palette.ink, SMALL, "right")
+            return
+        room = width - UNTITLED
+        short = words if painter.width_of(words, SMALL) <= room else words.replace("work of the hand", "work")
+        painter.text(x + 14, y + 14, painter.fitted(short, room, SMALL), palette.ink, SMALL)

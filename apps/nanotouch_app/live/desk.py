@@ -10,15 +10,15 @@ import queue
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from nanotouch.errors import Error, MissingExtra
+from nanotouch.errors import Error, missing
 from nanotouch.images import Topography
+from nanotouch.scratch import Scratch
 
 START_TIME = 60.0  # until VTK has drawn its first picture on a loaded machine [s]
 TURN = 0.005  # of the host's loop [s]
@@ -28,14 +28,17 @@ CLOCK = 0.2  # between two reports of the clock [s]
 class Desk:
     """A window and the wires to it."""
 
-    def __init__(self, topography: Topography, dark: bool = False, recording: Path | None = None) -> None:
+    def __init__(
+        self, topography: Topography, dark: bool = False, recording: Path | None = None, hand: str = "none"
+    ) -> None:
         if importlib.util.find_spec("vtkmodules") is None:
-            raise MissingExtra("vtk is not installed: pip install 'nanotouch[view]'")
-        self.folder = tempfile.TemporaryDirectory(prefix="nanotouch-live-")
-        surface = Path(self.folder.name) / "surface.npz"
+            raise missing("vtk", "view")
+        self.folder = Scratch()
+        surface = self.folder.path / "surface.npz"
         np.savez(surface, heights=topography.heights, pixel_size=np.asarray(topography.pixel_size))
-        self.said = Path(self.folder.name) / "said.txt"
-        options = [*(["--dark"] if dark else []), *([] if recording is None else ["--recording", str(recording)])]
+        self.said = self.folder.path / "said.txt"
+        options = ["--hand", hand, *(["--dark"] if dark else [])]
+        options += [] if recording is None else ["--recording", str(recording)]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
         with open(self.said, "wb") as errors:
             self.process = subprocess.Popen(
@@ -72,14 +75,21 @@ class Desk:
             self.close()
             raise Error(f"the window did not open within {START_TIME:g} s") from None
         if first["do"] != "ready":
-            self.process.wait(5.0)
-            said = self.said.read_text(errors="replace").strip().splitlines() or ["VTK said nothing"]
+            status = self.process.wait(5.0)
+            said = self.said.read_text(errors="replace").strip().splitlines() or [f"it died of {_cause(status)}"]
             self.close()
             raise Error(f"the window could not be opened: {said[-1]}")
 
-    def serve(self, host: Any) -> None:
-        """Until the person leaves: what is asked, what happens by itself, the clock."""
+    def serve(self, host: Any, first: dict[str, Any] | None = None) -> None:
+        """Until the person leaves: what is asked, what happens by itself, the clock. ``first`` is asked at once."""
         self.tell(host.world())
+        properties = host.properties()
+        if properties:
+            path = self.folder.path / "properties.npz"
+            np.savez(path, **properties)
+            self.tell({"tell": "properties", "path": str(path)})
+        if first is not None:
+            host.answer(first)
         due = 0.0
         while True:
             try:
@@ -103,8 +113,9 @@ class Desk:
         except subprocess.TimeoutExpired:  # it still says goodbye
             return
         if status:
-            name = signal.Signals(-status).name if status < 0 else f"status {status}"
-            raise Error(f"the window died of {name}; the session has ended in order, and what was recorded is kept")
+            raise Error(
+                f"the window died of {_cause(status)}; the session has ended in order, and what was recorded is kept"
+            )
 
     def close(self) -> None:
         """End the window."""
@@ -120,4 +131,9 @@ class Desk:
         for wire in (self.process.stdin, self.process.stdout):
             if wire is not None:
                 wire.close()
-        self.folder.cleanup()
+        self.folder.close()
+
+
+def _cause(status: int) -> str:
+    """Of the end of a process: a signal's name, or its status."""
+    return signal.Signals(-status).name if status < 0 else f"status {status}"

@@ -12,6 +12,7 @@ from nanotouch.errors import Error
 
 PATIENCE = 3.0  # [s]
 GREETING = b"l\x00\x0b\x00\x00\x00\x00\x00\x00\x00\x00\x00"  # X11, little endian, version 11.0, no authorisation
+ANSWERS = (b"\x00", b"\x01", b"\x02")  # no; welcome; say who you are
 BASE_PORT = 6000
 HOW = "start it on a desktop, or under 'xvfb-run -a'; --film FILE.gif needs no display"
 
@@ -31,9 +32,10 @@ def check(patience: float = PATIENCE) -> None:
         with _connected(host, number, patience) as wire:
             wire.settimeout(patience)
             wire.sendall(GREETING)
-            if wire.recv(1):  # an answer, even if it is that we have to say who we are
+            said = wire.recv(1)
+            if said in ANSWERS:  # even if it is that we have to say who we are
                 return
-        reason = "it hung up"
+        reason = "what answers there is no X server" if said else "it hung up"
     except TimeoutError:
         reason = f"it did not answer within {patience:g} s"
     except OSError as error:

@@ -8,12 +8,13 @@ import warnings
 from pathlib import Path
 
 import nanotouch as nt
-from nanotouch import curves
+from nanotouch import curves, record
 from nanotouch import fit as fitting
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
 from nanotouch.units import in_words
 
+from nanotouch_app.live import measured
 from nanotouch_app.live.subject import PRESETS, Subject, of_preset, relief
 
 MOST_PIXELS = 1024  # of an image that is touched, to a side
@@ -22,31 +23,66 @@ ROUGHNESS = 0.01  # its height over the same
 CURVE_TIP = 20e-9  # [m]; assumed, and told, where nobody gives the radius
 
 
-def of(what: str, radius: float | None = None) -> Subject:
-    """A preset by its name, or what a file says; ``radius`` [m] of the tip of a measured curve."""
+def check_named(what: str) -> None:
+    """Refuse what is neither a file nor a preset."""
+    if what not in PRESETS and not Path(what).exists():
+        raise InvalidValue(f"{what}: neither a file nor a preset; presets are {', '.join(PRESETS)}")
+
+
+def of(what: str, radius: float | None = None, named: nt.SurfaceFile | None = None) -> Subject:
+    """A preset by its name, or what a file says; ``radius`` [m] of the tip of a measured curve; ``named`` where more is
+    said of an image."""
+    if named is not None:
+        return of_surface(named, *nt.presets.silicon_in_air(), Path(what).stem)
     if what in PRESETS:
         return of_preset(what)
     path = Path(what)
-    if not path.exists():
-        raise InvalidValue(f"{what}: neither a file nor a preset; presets are {', '.join(PRESETS)}")
+    check_named(what)
     if path.suffix.lower() == ".toml":
         return of_scene(path)
     if path.suffix.lower() == ".nc":
         return of_map(path)
+    if record.is_recording(path):
+        raise InvalidValue(f"{path.name} is a recording, and is played: nanotouch live {path.name}")
     try:
         return of_image(path)
     except Error as no_image:
         try:
             return of_curve(path, radius)
         except Error as no_curve:
-            raise Error(f"{what}: no image ({no_image}) and no force curve ({no_curve})") from no_curve
+            reasons = [_reason(error, path) for error in (no_image, no_curve)]
+            told = (
+                reasons[0] if reasons[0] == reasons[1] else f"no image ({reasons[0]}) and no force curve ({reasons[1]})"
+            )
+            raise Error(f"{what}: {told}") from no_curve
+
+
+def _reason(error: Error, path: Path) -> str:
+    """What was said without the file's name, which is told once."""
+    return str(error).removeprefix(f"{path}: ").removeprefix(f"{path.name}: ")
 
 
 def of_scene(path: Path) -> Subject:
     """The scene and rig of a TOML file, over a gentle relief."""
     tables = read_tables(path)
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
+    named = nt.SurfaceFile.from_tables(tables, path.parent)
+    if named is not None:
+        return of_surface(named, scene, rig, path.stem)
     return Subject(path.stem, path.stem, scene, rig, _made_for(scene, path.stem), "", "Scroll down until you feel it.")
+
+
+def of_surface(named: nt.SurfaceFile, scene: nt.Scene, rig: nt.Rig, name: str) -> Subject:
+    """A surface by its files, with what it is made of at each place."""
+
+    def surface(touching: nt.Scene) -> nt.Surface:
+        return named.touched_by(touching, MOST_PIXELS)
+
+    topography = surface(scene).topography
+    made_of = [quantity.replace("_", " ") for quantity in named.properties]
+    felt = f"The relief of {Path(named.image).name}, {in_words(topography.height_range, 'm', 3)} high"
+    felt += f"; {' and '.join(made_of)} of each place are those of the file." if made_of else "."
+    return Subject(name, topography.name or name, scene, rig, topography, felt, "Feel your own surface.", surface)
 
 
 def _made_for(scene: nt.Scene, name: str) -> nt.Topography:
@@ -82,7 +118,7 @@ def of_map(path: Path) -> Subject:
 
 
 def of_curve(path: Path, radius: float | None = None) -> Subject:
-    """A force curve: its fit by Maugis-Dugdale is the scene, its lever the lever."""
+    """A force curve, the first one of a map: its fit by Maugis-Dugdale is the scene, its lever the lever."""
     return of_fit(curves.read(path)[0], path.stem, radius)
 
 
@@ -90,10 +126,10 @@ def of_fit(curve: nt.ForceCurve, name: str, radius: float | None = None) -> Subj
     """The same of a curve that has been read; ``radius`` [m] of its tip."""
     tip = CURVE_TIP if radius is None else radius
     result = fitting.fit_curve(curve, "maugis", radius=tip)
-    scene, rig = result.to_scene(), nt.Rig()
+    (scene, felt), rig = measured.scene_of(result), nt.Rig()
     rig["probe.spring_constant"] = result.spring_constant
-    modulus, energy = result.values["effective_modulus"], result.values["work_of_adhesion"]
+    bent = float(scene.range.maximum_load) / result.spring_constant  # its sensor has seen that
+    rig["probe.sensitivity"] = max(float(rig.probe.sensitivity), measured.ROOM * bent / float(rig.probe.range))
     assumed = "" if radius is not None else f"; R = {in_words(tip, 'm', 3)} is assumed (--radius)"
-    felt = (f"Your curve: pull-off {in_words(result.measured_pull_off_force, 'N', 3)}, work of adhesion "
-            f"{in_words(energy, 'J/m^2', 3)}, E* {in_words(modulus, 'Pa', 3)}{assumed}.")  # fmt: skip
-    return Subject(name, name, scene, rig, _made_for(scene, name), felt, "Touch what you have measured.")
+    return Subject(name, name, scene, rig, _made_for(scene, name), f"{felt}{assumed}.",
+                   "Touch what you have measured.")  # fmt: skip

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from nanotouch.errors import Error, require
 
+from nanotouch_app.live import parts as vtk_parts
 from nanotouch_app.live.arrays import pixels
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import DARK, HEIGHT, LIGHT, WIDTH
@@ -33,7 +34,7 @@ class Studio:
     """A host without a clock, and a picture without a display."""
 
     def __init__(self, subject: Subject, dark: bool = False) -> None:
-        vtk = require("vtk", "view")
+        vtk = vtk_parts.load()
         self.vtk, self.window = vtk, vtk.vtkRenderWindow()
         self.window.SetOffScreenRendering(True)
         self.window.SetMultiSamples(0)
@@ -43,6 +44,7 @@ class Studio:
             self.picture.turn_light()
         self.host = Host(subject, self.picture.hear, stepped=True)
         self.picture.hear(self.host.world())
+        self.picture.stage.give(self.host.properties())
         self.look()
 
     def look(self) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from nanotouch.operator import Hold
 
 LATERAL_REACH = 1.5  # travel of the master over the size of the surface
+DOWN_REACH = 1.5  # and over what lies below where it starts
 COUPLING = 0.25  # spring between proxy and tip over the lever's
 SETTLING = 2e-3  # of the virtual tool [s], times the lever's spring over its own
 LOAD_SHARE = 0.8  # of the force limit: nearer to it the hand goes no further
@@ -24,11 +25,14 @@ STEPS = 80  # of the wheel from first touch to the largest load
 APPROACH = 12.0  # far from the surface a step of the wheel is at least this part of the gap
 
 
-def rig_of(rig: nt.Rig, settings: nt.Settings, extent: float) -> nt.Rig:
-    """The rig with a hand that has no motor, moves on three axes and reaches over a surface of this extent [m]."""
+def rig_of(rig: nt.Rig, settings: nt.Settings, extent: float, way_down: float) -> nt.Rig:
+    """The rig with a hand that has no motor, moves on three axes, and reaches over a surface of an extent [m] and down
+    from the clearance to the deepest place [m], with the springs between pressed to the force limit."""
+    soft = COUPLING / (1.0 + COUPLING) * rig.probe.spring_constant
+    reach = max(LATERAL_REACH * extent, DOWN_REACH * (way_down + settings.limits.force / soft))
     made = rig.copy()
     made["master.motor"], made["master.gauge"], made["master.axes"] = "no", "no", 3.0
-    made["master.travel"] = min(10.0, max(rig.master.travel, 2.0 * LATERAL_REACH * extent / settings.gains.alpha_p))
+    made["master.travel"] = min(10.0, max(rig.master.travel, 2.0 * reach / settings.gains.alpha_p))
     made["master.resolution"] = 1e-7
     return made
 
@@ -43,14 +47,27 @@ def settings_of(settings: nt.Settings, rig: nt.Rig) -> nt.Settings:
     return made
 
 
+def _ends(session: nt.Session) -> tuple[Any, Any]:
+    """Where the hand may be: within the master's travel, and over the surface."""
+    reach = 0.5 * session.rig.master.travel
+    low, high = np.full(3, -reach), np.full(3, reach)
+    if session.surface is not None:
+        for axis, (start, side) in enumerate(zip(session.path[0], session.surface.size, strict=True)):
+            low[axis] = max(low[axis], -start / session.settings.gains.alpha_p)
+            high[axis] = min(high[axis], (side - start) / session.settings.gains.alpha_p)
+    return low, high
+
+
 class Hand:
     """Where the hand is; ``height`` of the proxy in the tip's frame [m], ``place`` in the master's own lengths."""
 
     def __init__(self, session: nt.Session) -> None:
         self.session = session
-        self.reach = 0.5 * session.rig.master.travel
+        self.ends = _ends(session)
         self.place = np.array([0.0, 0.0, session.core.master_start])
         self.height = float(session.core.start_height)
+        self.zero = self.height + float(session.settings.gains.alpha_p) * float(session.core.master_start)
+        """where the proxy is when the master reads 0 [m]"""
         self.presses = False
         load = float(session.scene.range.maximum_load)
         self.step = (float(session.plan.explain()["largest_indentation"]) + load / self.stiffness) / STEPS
@@ -103,7 +120,7 @@ class Hand:
 
     def _shift(self, way: tuple[float, float, float]) -> None:
         scale = 1.0 / self.session.settings.gains.alpha_p
-        self.place = np.clip(self.place + scale * np.asarray(way), -self.reach, self.reach)
-        self.height -= way[2]
+        before, self.place = self.place, np.clip(self.place + scale * np.asarray(way), *self.ends)
+        self.height -= float(self.place[2] - before[2]) / scale  # no further than the hand has gone
         x, y, z = (float(part) for part in self.place)
         self.session.aim(Hold((x, y, z), math.nan, math.nan, GLIDE))

@@ -9,20 +9,29 @@ import itertools
 import os
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
-from nanotouch import record
+import numpy as np
+from nanotouch import margins, record
 from nanotouch.errors import Error
+from nanotouch.scratch import Scratch
 from nanotouch.session import settings_for_path
 
+from nanotouch_app.live import files, refusals
 from nanotouch_app.live.hand import Hand, rig_of, settings_of
+from nanotouch_app.live.look import PROPERTY_NAMES
+from nanotouch_app.live.remote import Lease
 from nanotouch_app.live.subject import Subject, of_preset
+from nanotouch_app.live.trainer import Trainer
+from nanotouch_app.training import named
 
 SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
-REWIND = 5.0  # [s]
+REWIND, PATIENCE = 5.0, 0.2  # [s]; until it shows
 STEP_TICKS = 10  # of a single step of a paused session: 1 ms
 INDENTATION_SHARE = 1.5  # limit of the indentation over that of the largest load
+FREE = {"stop", "ready", "pause", "step", "slower", "faster"}  # asked without the lease
 Message = dict[str, Any]
 _NUMBERS = itertools.count(1)  # of the sessions of this process
 
@@ -37,11 +46,15 @@ class Host:
         self.tell = tell
         self.scene, self.rig = subject.scene.copy(), subject.rig.copy()
         self.overrides: dict[str, float] = {}
+        self.files = Scratch()
         self.done: list[tuple[str, str, Any, Any]] = []
         self.undone: list[tuple[str, str, Any, Any]] = []
         self.speed, self.paused = 1.0, False
         self.out, self.stepped = out, stepped
         self.writer: Any = None
+        self.lease: Lease | None = None
+        self.trainer: Trainer | None = None
+        self.folder: Path | None = None  # of the results of tasks; None: they are not kept
         self.seen = time.monotonic()
         self._open()
 
@@ -50,21 +63,28 @@ class Host:
         surface = self.subject.touched(self.scene)
         load = float(self.scene.range.maximum_load)
         usual = settings_for_path(self.rig, self.subject.topography.height_range, load=load)
+        plan = self.scene.plan(rtol=self.subject.accuracy)
+        usual["gains.alpha_f"] = margins.felt_alpha_f(self.rig, usual, plan.pull_off_force, load)
         settings = settings_of(usual, self.rig)
-        deepest = float(self.scene.plan().explain()["largest_indentation"])
-        settings["limits.indentation"] = max(settings.limits.indentation, INDENTATION_SHARE * deepest)
+        deepest = INDENTATION_SHARE * float(plan.explain()["largest_indentation"])
+        way_down = self.subject.clearance() + self.subject.topography.height_range + deepest
+        settings["limits.indentation"] = max(settings.limits.indentation, deepest)
         for field, value in self.overrides.items():
             settings[field] = value
         width, height = surface.size
         middle = (0.5 * width, 0.5 * height)
         self.session = nt.Session(
-            self.scene, rig_of(self.rig, settings, extent), surface=surface, settings=settings, mode="scan",
+            self.scene, rig_of(self.rig, settings, extent, way_down), surface=surface, settings=settings, mode="scan",
             path=[middle, (0.6 * width, 0.5 * height)], clearance=self.subject.clearance(),
-            recorded=self.out is not None,
+            recorded=self.out is not None, rtol=self.subject.accuracy,
         )  # fmt: skip
         self.name = f"live-{os.getpid()}-{next(_NUMBERS)}"
         self.session.publish(self.name)
         self.observer = nt.frames.attach(self.name)
+        if self.lease is not None:
+            self.lease.close()
+        self.lease = Lease(self.name)
+        self.known = (self.session.scene, self.session.settings)
         self.hand = Hand(self.session)
         if self.out is not None and self.writer is None:
             self.writer = record.Writer(self.out, self.session.metadata())
@@ -75,12 +95,16 @@ class Host:
 
     def close(self) -> None:
         """End the session; what was recorded is written."""
+        self._end_task()
+        if self.lease is not None:
+            self.lease.close()
         self.observer.close()
         self.session.halt()
         self._drain()
         if self.writer is not None:
             self.writer.update(self.session.metadata())
             self.writer.close()
+        self.files.close()
 
     def _drain(self) -> None:
         while self.writer is not None:
@@ -98,6 +122,8 @@ class Host:
         if frame is not None and not self.paused:
             self.hand.follow(frame, min(now - self.seen, 0.1) * self.speed)
         self.seen = now
+        if self.trainer is not None:
+            self.trainer.look()
         self._drain()
 
     def advance(self, duration: float) -> None:
@@ -107,10 +133,13 @@ class Host:
             frame = self.observer.newest()
             if frame is not None:
                 self.hand.follow(frame, 0.01)
+            if self.trainer is not None:
+                self.trainer.look()
             self._drain()
 
     def world(self) -> Message:
         """All that changes only when something is changed."""
+        self.known = (self.session.scene, self.session.settings)
         session, plan = self.session, self.session.plan
         return {
             "tell": "world", "title": self.subject.title, "felt": self.subject.felt, "hint": self.subject.hint,
@@ -119,15 +148,36 @@ class Host:
             "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
             "force": session.guarantee().force, "undo": len(self.done), "redo": len(self.undone),
             "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
+            "rtol": session.rtol, "zero": self.hand.zero, "size": list(map(float, self.subject.topography.size)),
         }  # fmt: skip
 
     def clock(self) -> Message:
-        """How the session goes."""
+        """How the session goes; the world, too, if another program has changed it."""
+        if (self.session.scene, self.session.settings) != self.known:
+            self.session.describe()
+            self.tell(self.world())
         progress = self.session.progress
         return {
             "tell": "clock", "speed": self.speed, "paused": self.paused, "slowdown": progress.slowdown,
-            "recorded": self.writer is not None, "height": self.hand.height,
+            "recorded": self.writer is not None, "height": self.hand.height, "here": self.here(),
         }  # fmt: skip
+
+    def here(self) -> dict[str, float]:
+        """What the place under the tip has of its own: effective radius [m], and properties where they are given."""
+        surface, frame = self.session.surface, self.observer.newest()
+        if surface is None or frame is None:
+            return {}
+        x, y = (float(part) for part in frame["tip_position"][:2])
+        found = surface.properties(x, y)._asdict()
+        if surface.tip_radius is not None:
+            found["radius"] = surface.radius_map.radius(x, y).radius
+        return {name: float(value) for name, value in found.items() if value is not None}
+
+    def properties(self) -> dict[str, Any]:
+        """Of each place, for the picture; empty where the scene alone says them."""
+        surface = self.session.surface
+        given = {} if surface is None else {name: getattr(surface, name) for name in PROPERTY_NAMES}
+        return {name: values for name, values in given.items() if values is not None}
 
     # --- what is asked ---
 
@@ -137,12 +187,19 @@ class Host:
         if what == "leave":
             return False
         try:
+            if what not in FREE and self.lease is not None:
+                self.lease.take()
             getattr(self, f"_do_{what}")(message)
         except Error as error:
             self.tell({"tell": "refused", "why": str(error), "field": message.get("field")})
         return True
 
+    def _check_unlocked(self) -> None:
+        if self.trainer is not None and self.trainer.exercise.locked:
+            raise Error("first say what you expect; then you may touch")
+
     def _do_move(self, message: Message) -> None:
+        self._check_unlocked()
         frame = self.observer.newest()
         if frame is None:
             return
@@ -150,12 +207,15 @@ class Host:
             self.tell({"tell": "note", "text": "The hand stops here: the force limit is near."})
 
     def _do_wheel(self, message: Message) -> None:
+        self._check_unlocked()
         frame = self.observer.newest()
         if frame is not None:
             self.hand.presses = False
             self.hand.step_down(message["steps"], frame)
 
     def _do_press(self, message: Message) -> None:
+        if message["on"]:
+            self._check_unlocked()
         self.hand.presses = bool(message["on"])
         frame = self.observer.newest()
         if frame is not None and not self.hand.presses:  # release lifts
@@ -199,25 +259,85 @@ class Host:
         self.session.set_speed(self.speed)
 
     def _do_rewind(self, message: Message) -> None:
+        before = self.observer.newest()
         self.session.rewind(REWIND)
-        time.sleep(0.02)
-        frame = self.observer.newest()
+        if self.paused:
+            self.session.step_on(1)  # shows where it went back to
+        end = time.monotonic() + PATIENCE
+        frame: Any = self.observer.newest()
+        while before is not None and frame["time"] >= before["time"] and time.monotonic() < end:
+            time.sleep(0.002)
+            frame = self.observer.newest()
         if frame is not None:
             held = frame["master_position"]
             self.hand.place[:] = held
             self.hand.height = float(frame["tip_position"][2]) - float(frame["tip_force"][2]) / self.hand.stiffness
             self.hand.move((0.0, 0.0, 0.0), frame)
 
+    # --- tasks ---
+
+    def _do_task(self, message: Message) -> None:
+        """Begin a task, on the sample that it is meant for if "lay" says so; name "": end it."""
+        self._end_task()
+        if not message["name"]:
+            return
+        task = named(message["name"])
+        if message.get("lay") and (task.preset != self.subject.name or self.session.scene != self.subject.scene):
+            self._do_preset({"name": task.preset})
+        self.trainer = Trainer(
+            message["name"], self.world(), self._change_for_task, self.tell, self.folder, message.get("seed")
+        )
+
+    def _change_for_task(self, what: str, field: str, value: float) -> None:
+        """A task changes the world; that is no entry of the person's history."""
+        if what == "scaled":
+            what, value = "settings", value * float(self.session.settings[field])
+        self._change(what, field, value)
+        self.tell(self.world())
+
+    def _end_task(self) -> None:
+        if self.trainer is not None:
+            self.trainer.close()
+            self.trainer = None
+
+    def _do_choose(self, message: Message) -> None:
+        if self.trainer is None:
+            return
+        follows = self.trainer.exercise.follows
+        if self.trainer.result is not None and follows:
+            self._do_task({"name": follows, "lay": True})
+        else:
+            self.trainer.choose(message["number"])
+
+    def _do_say(self, message: Message) -> None:
+        if self.trainer is not None:
+            self.trainer.say(message["text"])
+
     def _do_preset(self, message: Message) -> None:
         """Another sample is laid under another tip: a session of its own."""
+        self._lay(of_preset(message["name"]))
+
+    def _do_open(self, message: Message) -> None:
+        """A file was dropped on the window: an image, a curve, a map, a scene."""
+        self._lay(files.of(message["path"]))
+
+    def _lay(self, subject: Subject) -> None:
         self._check_unrecorded("another sample")
-        before, self.subject = self.session, of_preset(message["name"])
+        self._end_task()
+        before, self.subject = self.session, subject
         self.scene, self.rig = self.subject.scene.copy(), self.subject.rig.copy()
         self.overrides, self.done, self.undone = {}, [], []
         self._open()
         before.halt()
-        self.tell({"tell": "preset", "name": message["name"]})
+        self.tell({"tell": "laid", "path": self._stored()})
         self.tell(self.world())
+
+    def _stored(self) -> str:
+        """What a picture needs of the surface, in a file."""
+        topography = self.subject.topography
+        path = self.files.path / f"{self.name}.npz"
+        np.savez(path, heights=topography.heights, pixel_size=np.asarray(topography.pixel_size), **self.properties())
+        return str(path)
 
     # --- changes, and their history ---
 
@@ -225,7 +345,10 @@ class Host:
         what, field, value = message["what"], message["field"], message["value"]
         old = getattr(self.session, what)[field]
         if value != old:
-            self._change(what, field, value)
+            try:
+                self._change(what, field, value)
+            except Error as error:
+                raise Error(refusals.in_words(self.session, what, field, value, error)) from error
             self.done.append((what, field, old, value))
             self.undone.clear()
         self.tell(self.world())
@@ -263,6 +386,8 @@ class Host:
     def _reopen(self, what: str, field: str, value: float) -> None:
         """Lever and tip are the instrument itself: another one is mounted, and the touch begins above the surface."""
         self._check_unrecorded("another tip or lever")
+        if self.trainer is not None:
+            raise Error("another tip or lever: not while a task runs")
         described = self.scene if what == "scene" else self.rig
         old = described[field]
         described[field] = value

@@ -6,11 +6,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from nanotouch.units import engineering
+from nanotouch_app.quantity import digits as digits
 
 Colour = tuple[int, int, int]
 
 WIDTH, HEIGHT = 1440, 900  # of the window [pixels]
+EDGES = 16, 64  # of a desktop around a window [pixels]
+LEAST = 640, 480  # [pixels]
 TEXT, SMALL, TITLE = 14, 12, 16  # [pixels]
 
 
@@ -51,21 +53,29 @@ DARK = Palette(
 )  # fmt: skip
 
 
+# of properties: matplotlib's viridis and magma, whose lightness rises evenly; the same in light and dark
+PROPERTY_COLOURS: dict[str, tuple[Colour, ...]] = {
+    "youngs_modulus": ((68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142), (31, 158, 137),
+                       (53, 183, 121), (109, 205, 89), (180, 222, 44), (253, 231, 37)),
+    "work_of_adhesion": ((0, 0, 4), (28, 16, 68), (79, 18, 123), (129, 37, 129), (181, 54, 122), (229, 80, 100),
+                         (251, 135, 97), (254, 194, 135), (252, 253, 191)),
+}  # fmt: skip
+PROPERTY_NAMES = {"youngs_modulus": ("modulus", "Pa"), "work_of_adhesion": ("work of adhesion", "J/m²")}
+
+
+def fitting(screen_width: int, screen_height: int) -> tuple[int, int]:
+    """The size of a window that is seen as a whole on a screen: as designed, or what the screen has without the edges
+    and bars of a desktop. Screens that do not say their size get it as designed."""
+    if min(screen_width, screen_height) <= 0:
+        return WIDTH, HEIGHT
+    width = WIDTH if screen_width >= WIDTH else screen_width - EDGES[0]
+    height = HEIGHT if screen_height >= HEIGHT else screen_height - EDGES[1]
+    return max(width, LEAST[0]), max(height, LEAST[1])
+
+
 def unit(colour: Colour) -> tuple[float, float, float]:
     """The colour as three numbers from 0 to 1."""
     return colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0
-
-
-def digits(value: float, unit_name: str, count: int = 3) -> str:
-    """A number of three digits with its unit, "-" where it is not known; never wider because a digit has come."""
-    if not math.isfinite(value):
-        return "-"
-    prefixed, factor = engineering(unit_name, [value]) if unit_name else ("", 1.0)
-    scaled = value * factor
-    if abs(scaled) < 1e-3:
-        return f"0 {unit_name}".strip()
-    decimals = max(0, count - 1 - math.floor(math.log10(abs(scaled))))
-    return f"{scaled:.{min(decimals, count)}f} {prefixed}".strip()
 
 
 def step_up(value: float) -> float:

@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike
 from nanotouch_app.live.arrays import to_vtk
 from nanotouch_app.live.look import TEXT, Colour
 
+MOST_WIDTHS = 2000
+_WIDTHS: dict[tuple[str, int, bool], float] = {}  # of texts that were measured [pixels]
+
 
 class Painter:
     """One context during one drawing."""
@@ -72,13 +75,30 @@ class Painter:
                              "right": "SetJustificationToRight"}[align])()  # fmt: skip
         self.context.DrawString(x, y, words)
 
-    def width_of(self, words: str, size: int = TEXT) -> float:
+    def width_of(self, words: str, size: int = TEXT, bold: bool = False) -> float:
         """Width of a text [pixels]."""
-        self.context.GetTextProp().SetFontSize(size)
-        bounds = self.vtk.vtkPoints2D()
-        bounds.SetNumberOfPoints(2)
-        self.context.ComputeStringBounds(words, bounds)
-        return float(bounds.GetPoint(1)[0])
+        key = (words, size, bold)
+        if key not in _WIDTHS:
+            if len(_WIDTHS) > MOST_WIDTHS:
+                _WIDTHS.clear()
+            properties = self.context.GetTextProp()
+            properties.SetFontSize(size)
+            properties.SetBold(bold)
+            properties.SetFontFamilyToArial()
+            bounds = self.vtk.vtkPoints2D()
+            bounds.SetNumberOfPoints(2)
+            self.context.ComputeStringBounds(words, bounds)
+            _WIDTHS[key] = float(bounds.GetPoint(1)[0])
+        return _WIDTHS[key]
+
+    def fitted(self, words: str, room: float, size: int = TEXT) -> str:
+        """The words, or as many of their letters as have room [pixels], with dots at the end."""
+        if self.width_of(words, size) <= room:
+            return words
+        kept = words[: max(0, int(len(words) * room / max(self.width_of(words, size), 1.0)))]
+        while kept and self.width_of(f"{kept.rstrip()} ...", size) > room:
+            kept = kept[:-1]
+        return f"{kept.rstrip()} ..." if kept else ""
 
     def _pen(self, colour: Colour | None, width: float, dashed: bool = False) -> None:
         pen = self.context.GetPen()

@@ -7,21 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch_app.live import cards, readings
+from nanotouch_app.live import board, cards, readings
 from nanotouch_app.live.charts import ForceGap, History
 from nanotouch_app.live.contact import ContactPanel
-from nanotouch_app.live.look import DARK, LIGHT, SMALL, Palette, digits, step_up, unit
+from nanotouch_app.live.entry import Entry
+from nanotouch_app.live.look import DARK, LIGHT, PROPERTY_NAMES, SMALL, Palette, digits, step_up, unit
 from nanotouch_app.live.painter import Painter
 from nanotouch_app.live.reel import Reel
 from nanotouch_app.live.seen import Seen
-from nanotouch_app.live.sliders import Sliders
+from nanotouch_app.live.sliders import Sliders, height_of
 from nanotouch_app.live.stage import Stage
-from nanotouch_app.live.subject import of_preset
 
 Frame = tuple[float, float, float, float]
-EDGE, TOP, STATUS, CONTROLS = 12.0, 40.0, 56.0, 122.0  # [pixels]
+EDGE, TOP, STATUS = 12.0, 40.0, 56.0  # [pixels]
 NARROW = 900.0  # below this width the right column goes away
 BAND = 0.15  # of the picture's height: the band under the largest planned force
+ROOMY = 760.0, 520.0  # for the cards [pixels]
 RING, MARGIN = 13.0, 16.0  # [pixels]
 
 
@@ -34,12 +35,16 @@ class Layout:
         left = width - 2 * EDGE - (column + EDGE if column else 0.0)
         self.top: Frame = (EDGE, height - TOP, width - 2 * EDGE, TOP)
         self.status: Frame = (EDGE, EDGE, width - 2 * EDGE, STATUS)
-        self.controls: Frame = (EDGE, 2 * EDGE + STATUS, left, CONTROLS)
-        floor = 3 * EDGE + STATUS + CONTROLS
+        controls = height_of(left)
+        self.controls: Frame = (EDGE, 2 * EDGE + STATUS, left, controls)
+        floor = 3 * EDGE + STATUS + controls
         self.view: Frame = (EDGE, floor, left, height - TOP - floor)
         self.bars: Frame = (EDGE + left - 232, floor + 12, 220, 124)
         self.cards: Frame = (EDGE + 12, floor + 8, left - 24, height - TOP - floor - 16)
-        self.help: Frame = (EDGE + 40, floor + 20, 520, 70 + 25 * len(readings.HELP))
+        if min(self.cards[2] / ROOMY[0], self.cards[3] / ROOMY[1]) < 1.0:  # over all but the status
+            self.cards = (EDGE, 2 * EDGE + STATUS, width - 2 * EDGE, height - TOP - STATUS - 3 * EDGE)
+        tall = min(readings.HELP_HEAD + readings.HELP_LINE * len(readings.HELP), height - TOP - 2 * EDGE)
+        self.help: Frame = (EDGE + 40, min(floor + 20, height - TOP - EDGE - tall), 520, tall)
         base, room = 2 * EDGE + STATUS, height - TOP - 2 * EDGE - STATUS
         shares = (0.36, 0.38, 0.26)
         heights = [share * (room - 2 * EDGE) for share in shares]
@@ -57,6 +62,8 @@ class Picture:
         self.vtk, self.window, self.seen = vtk, window, Seen()
         self.palette: Palette = LIGHT
         self.help = False
+        self.menu = False
+        self.entry: Entry | None = None
         self.reel: Reel | None = None
         self.drawings = 0
         self.layout = Layout(*window.GetSize())
@@ -98,11 +105,15 @@ class Picture:
     def hear(self, message: dict[str, Any]) -> None:
         """What the host tells."""
         self.seen.hear(message)
-        if message["tell"] == "preset":
-            topography = of_preset(message["name"]).topography
-            self.lay(topography.heights, topography.pixel_size)
+        if message["tell"] == "laid":
+            with np.load(message["path"]) as stored:
+                self.lay(stored["heights"], stored["pixel_size"])
+                self.stage.give({name: stored[name] for name in stored.files if name in PROPERTY_NAMES})
             self.contact, self.law, self.history = ContactPanel(), ForceGap(), History()
             self.dress(self.palette)
+        if message["tell"] == "properties":
+            with np.load(message["path"]) as stored:
+                self.stage.give({name: stored[name] for name in stored.files})
         if message["tell"] == "world":
             self.sliders.take(message)
             tip = message["scene"]["tip"]
@@ -118,6 +129,7 @@ class Picture:
         self.sliders.frame = self.layout.controls
         if self.seen.frame is not None and self.seen.world:
             self.stage.update(self.seen)
+            self.stage.lights("surface" not in self.seen.hides)
         self.scene.ResetCameraClippingRange()
         self.window.Render()
         self.drawings += 1
@@ -128,15 +140,39 @@ class Picture:
         """Behind the scene: the panels."""
         seen, palette, layout = self.seen, self.palette, self.layout
         readings.top(painter, palette, layout.top, seen)
-        if self.reel is None:
+        if self.reel is None and "sliders" in seen.hides:
+            self._hidden(painter, layout.controls, "the sliders: hidden during this task")
+        elif self.reel is None:
             self.sliders.draw(painter, palette, seen)
         else:
             self._time_line(painter, self.reel)
         readings.status(painter, palette, layout.status, seen, self._about())
         if layout.column:
-            self.contact.draw(painter, palette, layout.contact, seen)
-            self.law.draw(painter, palette, layout.law, seen)
+            for name, words, panel, frame in (("contact", "the section", self.contact, layout.contact),
+                                              ("law", "the law", self.law, layout.law)):  # fmt: skip
+                if name in seen.hides:
+                    self._hidden(painter, frame, f"{words}: hidden during this task")
+                elif name == "contact" and seen.is_blind:
+                    self._hidden(painter, frame, f"{words}: not known of a real slave, which measures a force alone")
+                else:
+                    panel.draw(painter, palette, frame, seen)
             self.history.draw(painter, palette, layout.history, seen)
+
+    def _hidden(self, painter: Painter, frame: Frame, words: str) -> None:
+        x, y, width, height = frame
+        painter.box(frame, self.palette.panel, self.palette.line)
+        painter.text(x + 0.5 * width, y + 0.5 * height, words, self.palette.quiet, SMALL, "centre")
+
+    @property
+    def board(self) -> dict[str, Any]:
+        """What stands on the board: the list of tasks, the task, or {} for nothing."""
+        return board.menu() if self.menu else self.seen.task
+
+    @property
+    def corner(self) -> tuple[float, float]:
+        """Of the board: its upper left."""
+        x, y, _, height = self.layout.view
+        return x + 8.0, y + height - 8.0
 
     def _time_line(self, painter: Painter, reel: Reel) -> None:
         """The whole recording: least and largest force of each pixel, and where we are."""
@@ -162,6 +198,9 @@ class Picture:
             self._proxy(painter)
             self._scales(painter)
         readings.bars(painter, self.palette, self.layout.bars, self.seen)
+        if self.board:
+            typed = self.entry.shown if self.entry is not None and self.entry.slider is None else ""
+            board.draw(painter, self.palette, self.board, self.corner, typed)
         if self.cards:
             cards.draw(painter, self.palette, self.layout.cards, str(self.seen.world.get("title", "")))
         if self.help:
@@ -189,26 +228,31 @@ class Picture:
         painter.line([[x, y], [x + pixels, y]], palette.ink, 3.0)
         painter.text(x + pixels + 10, y, digits(length, "m", 1), palette.ink, SMALL)
         relief = float(np.ptp(stage.heights))
-        if relief > 0.0:
-            self._heights(painter, x, y + 26, relief)
+        if relief > 0.0 or len(stage.maps) > 1:
+            self._heights(painter, x, y + 26, relief, pixels)
 
-    def _heights(self, painter: Painter, x: float, y: float, relief: float) -> None:
-        width, count = 120.0, len(self.palette.heights)
-        colours = np.array(self.palette.heights, dtype=float)
-        for part in range(24):
-            place = part / 23.0 * (count - 1)
-            low = min(int(place), count - 2)
-            colour = colours[low] + (place - low) * (colours[low + 1] - colours[low])
-            painter.box(
-                (x + part * width / 24, y - 5, width / 24 + 1, 10), (int(colour[0]), int(colour[1]), int(colour[2]))
-            )
-        drawn = "" if self.stage.factor == 1.0 else f", drawn {self.stage.factor:g} times as high"
-        painter.text(x + width + 10, y, f"heights 0 to {digits(relief, 'm')}{drawn}", self.palette.ink, SMALL)
+    def _heights(self, painter: Painter, x: float, y: float, relief: float, scale: float) -> None:
+        width, table = 120.0, np.array(self.stage.table, dtype=float)
+        for part, place in enumerate(np.linspace(0.0, len(table) - 1.0, 24)):
+            colour = [int(np.interp(place, np.arange(len(table)), table[:, one])) for one in range(3)]
+            painter.box((x + part * width / 24, y - 5, width / 24 + 1, 10), (colour[0], colour[1], colour[2]))
+        drawn = "" if self.stage.factor == 1.0 else f"drawn {self.stage.factor:g} times as high"
+        told = f"heights 0 to {digits(relief, 'm')}"
+        if painter.width_of(f"{told}, {drawn}", SMALL) <= self.layout.bars[0] - x - width - 20:
+            told, drawn = ", ".join(filter(None, (told, drawn))), ""
+        if self.stage.shown in PROPERTY_NAMES:
+            name, unit_name = PROPERTY_NAMES[self.stage.shown]
+            told = f"{name} {' to '.join(digits(end, unit_name) for end in self.stage.ends)}"
+        more = "   K: next" if len(self.stage.maps) > 1 else ""
+        painter.text(x + width + 10, y, told + more, self.palette.ink, SMALL)
+        painter.text(x + max(width, scale + 60) + 10, y - 26, drawn, self.palette.ink, SMALL)
 
     def _about(self) -> str:
-        """What a slider does, while the pointer is over it."""
+        """What is typed for a slider; what it does, while the pointer is over it."""
+        if self.entry is not None and self.entry.slider is not None:
+            return self.entry.shown
         slider = self.sliders.held or self.sliders.hovered
-        if slider is None:
+        if slider is None or self.reel is not None:
             return ""
         ends = " to ".join(slider.told(value) for value in (slider.low, slider.high))
         return f"{slider.about.doc} ({slider.field}): {ends}"

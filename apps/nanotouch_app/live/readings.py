@@ -9,12 +9,13 @@ import time
 from nanotouch.columns import STATES
 from nanotouch.supervisor import REASONS
 
-from nanotouch_app.live.look import SMALL, TITLE, Palette, digits
+from nanotouch_app.live.look import SMALL, TITLE, Colour, Palette, digits
 from nanotouch_app.live.painter import Painter
 from nanotouch_app.live.seen import Seen
 
 Frame = tuple[float, float, float, float]
-NOTED = 6.0  # a note stays for so long [s]
+NOTED = 9.0  # a note stays for so long [s]
+AGE, HELP_HEAD, HELP_LINE = 190.0, 70.0, 25.0  # for the age of a frame; of the help [pixels]
 TIP_STEP = 3.0  # forces at the tip are told apart from so many RMS noises of the lever on
 HAND_STEPS = (0.06, 0.01)  # just noticeable difference of a force at the hand: this share, at least this [N]
 HELP = (
@@ -23,14 +24,17 @@ HELP = (
     ("space held", "press with a steady force; release lifts"),
     ("arrows, page up, down", "the same by steps"),
     ("R", "retract"),
-    ("Enter", "go on after a stop"),
+    ("Escape, Enter", "emergency stop; go on after one"),
     ("P, .", "pause, one step of a millisecond"),
     ("[ ]", "slower, faster"),
     ("backspace", "rewind by 5 s"),
     ("Z, shift Z", "undo, redo a change"),
     ("1 .. 5, 0", "views; drag with the middle button turns"),
-    ("C", "other samples"),
-    ("L", "light and dark"),
+    ("C, T", "other samples; tasks and the lesson"),
+    ("F1 .. F7, N", "the choices of a task; type its number"),
+    ("click on a number", "type it with its unit"),
+    ("L, M", "light and dark; sound"),
+    ("K", "colour by height, modulus, adhesion"),
     ("S", "save a picture"),
     ("H", "this help"),
     ("Q", "leave"),
@@ -41,10 +45,6 @@ def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
     """Title at the left; clock and history at the right."""
     x, y, width, height = frame
     middle = y + 0.5 * height
-    painter.text(x + 4, middle, f"{seen.world.get('title', '')}", palette.ink, TITLE, bold=True)
-    start = x + 28 + 1.1 * painter.width_of(str(seen.world.get("title", "")), TITLE)
-    words = [seen.world.get("source", "simulated, wall pace"), seen.world.get("felt", "")]
-    painter.text(start, middle, "  ·  ".join(filter(None, words)), palette.quiet, SMALL)
     clock = seen.clock
     parts = [f"{clock['speed']:g}x"]
     if clock["slowdown"] > 1.05 and not clock["paused"]:
@@ -55,8 +55,15 @@ def top(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
         parts.insert(0, f"rec {int(seen.frame['time']) // 60:02d}:{int(seen.frame['time']) % 60:02d}")
     if seen.world.get("undo"):
         parts.append(f"Z: undo ({seen.world['undo']})")
-    parts.append("C: samples   H: help")
-    painter.text(x + width - 4, middle, "   ".join(parts), palette.ink, align="right")
+    parts.append("H: help" if "source" in seen.world else "C: samples   T: tasks   H: help")
+    clocks, title = "   ".join(parts), str(seen.world.get("title", ""))
+    painter.text(x + width - 4, middle, clocks, palette.ink, align="right")
+    room = width - painter.width_of(clocks) - 24
+    painter.text(x + 4, middle, painter.fitted(title, room, TITLE), palette.ink, TITLE, bold=True)
+    start = 28 + painter.width_of(title, TITLE, bold=True)
+    words = [seen.world.get("source", "simulated, wall pace"), seen.world.get("felt", "")]
+    told = painter.fitted("  ·  ".join(filter(None, words)), room - start, SMALL)
+    painter.text(x + start, middle, told, palette.quiet, SMALL)
 
 
 def bars(painter: Painter, palette: Palette, frame: Frame, seen: Seen) -> None:
@@ -103,32 +110,54 @@ def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: 
         return
     state = int(seen.frame["state"])
     colour = (palette.good, palette.hold, palette.bad, palette.bad)[state]
-    upper = y + height - 17
+    upper, room = y + height - 17, width - 44 - AGE
+    words, tint = _lower(palette, seen, about)
+    first, rest = _split(painter, words, width - 122, room)
     painter.dot(x + 18, upper, 6.0, colour)
     painter.text(x + 32, upper, STATES[state], colour, bold=True)
     if seen.stale:
         painter.text(x + 110, upper, f"no frame for {seen.age:.1f} s: nothing is felt", palette.bad)
     elif state:
         painter.text(x + 110, upper, f"{_reasons(int(seen.frame['reasons']))}. Enter: go on", colour)
+    elif first:
+        painter.text(x + 110, upper, first, tint, SMALL)
     else:
-        painter.text(x + 110, upper, _facts(seen), palette.ink)
-    note = next((entry for entry in reversed(seen.notes) if time.monotonic() - entry[0] < NOTED), None)
+        painter.text(x + 110, upper, painter.fitted(_facts(seen), width - 122), palette.ink)
     lower = y + 16
+    age = f"frame {1e3 * min(seen.age, 9.999):.0f} ms old, missed {seen.missed}"
+    painter.text(x + width - 12, lower, age, palette.quiet, SMALL, "right")
+    left = rest if first and not (seen.stale or state) else words
+    painter.text(x + 32, lower, painter.fitted(left, room, SMALL), tint, SMALL)
+
+
+def _split(painter: Painter, words: str, upper: float, lower: float) -> tuple[str, str]:
+    """What is too long for the lower line begins on the upper one; what goes there, and what remains."""
+    if painter.width_of(words, SMALL) <= lower:
+        return "", words
+    parts = words.split(" ")
+    most = next((n for n in range(len(parts), 0, -1) if painter.width_of(" ".join(parts[:n]), SMALL) <= upper), 1)
+    return " ".join(parts[:most]), " ".join(parts[most:])
+
+
+def _lower(palette: Palette, seen: Seen, about: str) -> tuple[str, Colour]:
+    """The second line: what a slider does, what was told last, or what to try."""
     if about:
-        painter.text(x + 32, lower, about, palette.accent, SMALL)
-    elif note is not None:
-        painter.text(x + 32, lower, _cut(note[1]), palette.bad if note[2] else palette.hold, SMALL)
-    else:
-        painter.text(x + 32, lower, f"{seen.world.get('hint', '')}", palette.quiet, SMALL)
-    painter.text(x + width - 12, lower, f"frame {1e3 * min(seen.age, 9.999):.0f} ms old, missed {seen.missed}",
-                 palette.quiet, SMALL, "right")  # fmt: skip
+        return about, palette.accent
+    note = next((entry for entry in reversed(seen.notes) if time.monotonic() - entry[0] < NOTED), None)
+    if note is not None:
+        return note[1], palette.bad if note[2] else palette.hold
+    return str(seen.world.get("hint", "")), palette.quiet
 
 
 def _facts(seen: Seen) -> str:
     radius = float(seen.reading["contact_radius"])
     gap = float(seen.reading["gap"])
-    touch = f"contact of {digits(radius, 'm')} radius" if radius > 0.0 else (
-        f"apart by {digits(gap, 'm')}" if gap > 0.0 else f"pressed in by {digits(-gap, 'm')}")  # fmt: skip
+    if seen.is_blind:
+        touch = "the gap is not known: a real slave"
+    elif radius > 0.0:
+        touch = f"contact of {digits(radius, 'm')} radius"
+    else:
+        touch = f"apart by {digits(gap, 'm')}" if gap > 0.0 else f"pressed in by {digits(-gap, 'm')}"
     bound = max(100.0 * float(seen.world["bound"]), 0.01)
     margin = float(seen.world["margin"])
     told = "no loop closes through this hand" if not math.isfinite(margin) else f"margin {margin:.3g}"
@@ -142,16 +171,13 @@ def _reasons(bits: int) -> str:
     return ", ".join(names) or "stopped"
 
 
-def _cut(words: str, most: int = 170) -> str:
-    return words if len(words) <= most else words[: most - 4] + " ..."
-
-
 def help_panel(painter: Painter, palette: Palette, frame: Frame) -> None:
     """All keys."""
     painter.box(frame, palette.panel, palette.accent)
     x, y, _, height = frame
+    pitch = (height - HELP_HEAD) / len(HELP)
     painter.text(x + 24, y + height - 28, "Mouse and keys", palette.ink, TITLE, bold=True)
     for number, (key, does) in enumerate(HELP):
-        level = y + height - 62 - 25 * number
+        level = y + height - 62 - pitch * number
         painter.text(x + 24, level, key, palette.accent)
         painter.text(x + 210, level, does, palette.ink)

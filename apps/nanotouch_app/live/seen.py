@@ -12,6 +12,8 @@ import numpy as np
 from nanotouch import view
 from numpy.typing import NDArray
 
+from nanotouch_app.live.energy import Balance
+from nanotouch_app.live.hands.device import Feel
 from nanotouch_app.live.reel import Reel
 
 Floats = NDArray[np.float64]
@@ -25,6 +27,18 @@ STALE = 0.1  # [s]: what is felt ends when the newest frame is older
 READINGS = 0.2  # numbers in words are renewed this often [s]
 
 
+PLACE = {"radius": "tip.radius", "youngs_modulus": "sample.youngs_modulus",
+         "work_of_adhesion": "adhesion.work_of_adhesion"}  # fmt: skip
+LAXER = 1.5  # than the session's plan: its surface, and each place, may err by a little more than a flat
+DIFFERS, REPLACED = 0.03, 0.5  # a place is another one from this relative difference on; looked at so often [s]
+
+
+def _differs(here: dict[str, float], before: dict[str, float], scene: nt.Scene) -> bool:
+    """Whether a place has another law than the one that is drawn."""
+    drawn = {name: before.get(name, float(scene[field])) for name, field in PLACE.items()}
+    return any(abs(value - drawn[name]) > DIFFERS * abs(drawn[name]) for name, value in here.items())
+
+
 class Seen:
     """Filled from an observer by :meth:`look`, from messages by :meth:`hear`."""
 
@@ -33,6 +47,10 @@ class Seen:
         self.clock: dict[str, Any] = {"speed": 1.0, "paused": False, "slowdown": 1.0, "recorded": False}
         self.notes: deque[tuple[float, str, bool]] = deque(maxlen=4)
         self.waiting: set[str] = set()
+        self.task: dict[str, Any] = {}
+        self.balance: Balance | None = None
+        self.place: dict[str, float] = {}
+        self.placed_at = 0.0
         self.frame: Any = None
         self.read_at = 0.0
         self.reading: Any = None
@@ -50,12 +68,15 @@ class Seen:
         match message["tell"]:
             case "world":
                 self._settle(message)
-            case "preset":
+            case "laid":
                 self.forget()
                 self.frame = self.reading = None
                 self.world = {}
             case "clock":
                 self.clock = message
+                self._stand(message.get("here", {}))
+            case "task":
+                self.task = message if message["name"] else {}
             case "refused":
                 self.waiting.discard(str(message.get("field")))
                 self.notes.append((time.monotonic(), str(message["why"]), True))
@@ -68,10 +89,27 @@ class Seen:
         fresh = {key: world[key] for key in ("scene", "rig")} != {key: self.world.get(key) for key in ("scene", "rig")}
         self.world = world
         self.waiting.clear()
+        self._weigh()
         if not fresh:
             return
-        self.scene = nt.Scene(**world["scene"])
-        self.plan = self.scene.plan()
+        self._plan_for(nt.Scene(**world["scene"]))
+        self.place = {}
+
+    def _stand(self, here: dict[str, float]) -> None:
+        """Law and section are those of the place under the tip: made anew where it differs, twice a second at most."""
+        now = time.monotonic()
+        if not self.world or now - self.placed_at < REPLACED or not _differs(here, self.place, self.scene):
+            return
+        self.placed_at, self.place = now, here
+        scene = nt.Scene(**self.world["scene"])
+        for name, field in PLACE.items():
+            if name in here and (name != "work_of_adhesion" or self.world["scene"]["adhesion"]["given"] == name):
+                scene[field] = here[name]
+        self._plan_for(scene)
+
+    def _plan_for(self, scene: nt.Scene) -> None:
+        self.scene = scene
+        self.plan = self.scene.plan(rtol=max(float(self.world["rtol"]), LAXER * float(self.world["bound"])))
         facts = self.plan.explain()
         self.facts = facts
         self.load = float(self.scene.range.maximum_load)
@@ -82,6 +120,16 @@ class Seen:
             self.reach = max(self.reach, min(self.plan.cutoff_gap(0.01 * self.load), 5.0 * self.depth))
         self.curve = view.curve(self.plan, -1.5 * self.depth, 11.0 * self.reach)
 
+    def _weigh(self) -> None:
+        """Where the work goes, of a hand whose place is known; anew when its spring has changed."""
+        about, gains = self.world, self.world["settings"]["gains"]
+        if about.get("zero") is None:
+            self.balance = None
+            return
+        key = (float(about["stiffness"]), float(about["zero"]), float(gains["alpha_p"]))
+        if self.balance is None or key != (self.balance.spring, self.balance.zero, self.balance.alpha_p):
+            self.balance = Balance(*key, float(about["scene"]["range"]["maximum_load"]))
+
     def look(self, observer: nt.frames.Observer | Reel) -> None:
         """Take the frames that have come since."""
         frames = observer.read()
@@ -91,17 +139,42 @@ class Seen:
         if not len(frames):
             return
         self.arrived = now
+        frames = self._measured(frames)
         if self.frame is not None and frames["time"][0] < float(self.frame["time"]):  # rewound
             self.forget()
         self._keep(frames)
+        if self.balance is not None:
+            self.balance.add(frames)
         self.frame = frames[-1]
         if now - self.read_at > READINGS:
             self.read_at, self.reading = now, self.frame
+
+    def _measured(self, frames: Any) -> Any:
+        """What a real slave does not say is what its lever and stage measure; gap and contact stay unknown."""
+        unknown = ~np.isfinite(frames["tip_force"][:, 2])
+        if not (self.world and unknown.any()):
+            return frames
+        made, rows = frames.copy(), np.flatnonzero(unknown)
+        lever = float(self.world["rig"]["probe"]["spring_constant"])
+        made["tip_force"][rows, 2] = lever * made["deflection"][rows]
+        stands = (*self.world.get("start", (0.0, 0.0)), 0.0)
+        heights = made["base_height"] + made["deflection"]
+        for axis in range(3):
+            lost = rows[~np.isfinite(made["tip_position"][rows, axis])]
+            made["tip_position"][lost, axis] = np.nan_to_num(heights[lost]) if axis == 2 else stands[axis]
+        return made
+
+    @property
+    def is_blind(self) -> bool:
+        """The gap is not known: the slave is a real one."""
+        return self.frame is not None and not np.isfinite(self.frame["gap"])
 
     def forget(self) -> None:
         """What came before belongs to another time."""
         for kept in (self.slices, self.tail, self.trace):
             kept.clear()
+        if self.balance is not None:
+            self.balance = Balance(self.balance.spring, self.balance.zero, self.balance.alpha_p, self.balance.load)
 
     def _keep(self, frames: Any) -> None:
         force = frames["tip_force"][:, 2]
@@ -118,7 +191,9 @@ class Seen:
                 old = self.slices.pop()
                 at, low, high = old[0], min(low, old[1]), max(high, old[2])
             self.slices.append((at, low, high))
-        touched = np.flatnonzero(np.diff(frames["contact_radius"] > 0.0))
+        contact = frames["contact_radius"] > 0.0
+        touched = np.flatnonzero(np.diff(contact))
+        self.snaps += [(float(when[row + 1]), "snap" if contact[row + 1] else "tear") for row in touched[-4:]]
         rows = np.unique(np.concatenate([np.arange(0, len(frames), max(1, len(frames) // 12)), touched, touched + 1]))
         for row in rows:
             self.tail.append((float(when[row]), float(frames["gap"][row]), float(force[row])))
@@ -129,6 +204,11 @@ class Seen:
             position = frames["tip_position"][-200:].mean(axis=0)
             x, y, z = (float(part) for part in position)
             self.trace.append((float(when[-1]), x, y, z, float(force[-1])))
+
+    @property
+    def hides(self) -> set[str]:
+        """What the task does not show: surface, law, contact, sliders."""
+        return set(self.task.get("hides", ()))
 
     @property
     def stale(self) -> bool:
@@ -142,6 +222,15 @@ class Seen:
             return 0.0
         force = float(self.frame["tip_force"][2])
         return force if np.isfinite(force) else 0.0
+
+    def feel(self) -> Feel:
+        """What a hand is to feel now; each snap and tear once. Nothing where the newest frame is too old."""
+        events = [kind for _, kind in self.snaps]
+        self.snaps.clear()
+        if self.stale or self.clock["paused"]:
+            return Feel()
+        level = min(abs(self.force) / max(self.load, 1e-15), 1.0) if self.world else 0.0
+        return Feel(level, events[-1] if events else "")
 
     def section(self, r: Floats) -> view.Section | None:
         """The section through the contact as it is now."""

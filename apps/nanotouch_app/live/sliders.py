@@ -25,8 +25,8 @@ OFFERED = (
     ("scene", "adhesion.sample_surface_energy", "surface energy", 0.1, 4.0),
     ("scene", "tip.radius", "tip radius", 0.5, 4.0),
     ("rig", "probe.spring_constant", "spring constant", 0.1, 10.0),
-    ("settings", "gains.coupling_stiffness", "spring to the hand", 0.1, 4.0),
-    ("settings", "gains.alpha_f", "scaling of forces", 0.1, 10.0),
+    ("settings", "gains.coupling_stiffness", "hand's spring", 0.1, 4.0),
+    ("settings", "gains.alpha_f", "force scaling", 0.1, 10.0),
     ("scene", "medium.ionic_strength", "salt", 0.05, 20.0),
     ("scene", "medium.brush_thickness", "fur", 0.3, 2.0),
 )  # fmt: skip
@@ -36,7 +36,8 @@ GIVEN = {
     "adhesion.sample_surface_energy": "surface_energies",
     "adhesion.tip_surface_energy": "surface_energies",
 }
-COLUMNS, MOST, ROW, HEAD = 4, 8, 52.0, 8.0
+MOST, ROW, HEAD, INSET = 8, 52.0, 8.0, 14.0
+WIDE, COLUMNS = 660.0, (3, 4)  # from this width on four to a row [pixels]
 
 
 @dataclass
@@ -78,7 +79,7 @@ class Slider:
         if self.field.endswith("humidity"):
             return f"{100.0 * value:.0f} %"
         if self.about.unit == "N/N":
-            return f"{value / 1e6:.3g} million"
+            return f"{value / 1e9:.3g} billion" if value >= 1e9 else f"{value / 1e6:.3g} million"
         return digits(value, self.about.unit).replace("^2", "²").replace("^3", "³")
 
     @property
@@ -106,8 +107,18 @@ def offered(world: dict[str, Any]) -> list[Slider]:
     return made[:MOST]
 
 
+def columns_of(width: float) -> int:
+    """How many lie side by side."""
+    return COLUMNS[width >= WIDE]
+
+
+def height_of(width: float) -> float:
+    """Of the panel of all [pixels]."""
+    return 2.0 * HEAD + ROW * -(-MOST // columns_of(width)) + 2.0
+
+
 class Sliders:
-    """Two rows of four."""
+    """Rows of sliders."""
 
     def __init__(self) -> None:
         self.sliders: list[Slider] = []
@@ -126,9 +137,9 @@ class Sliders:
 
     def _box(self, number: int) -> Frame:
         x, y, width, height = self.frame
-        row, column = divmod(number, COLUMNS)
-        across = width / COLUMNS
-        return x + column * across + 14, y + height - HEAD - (row + 1) * ROW, across - 28, ROW
+        row, column = divmod(number, columns_of(width))
+        across = width / columns_of(width)
+        return x + column * across + 0.5 * INSET, y + height - HEAD - (row + 1) * ROW, across - INSET, ROW
 
     def at(self, x: float, y: float) -> Slider | None:
         """The slider under a place of the window."""
@@ -137,6 +148,14 @@ class Sliders:
             if left - 8 <= x <= left + width + 8 and bottom <= y <= bottom + height:
                 return slider
         return None
+
+    def value_at(self, x: float, y: float) -> Slider | None:
+        """The slider whose number lies there: a click on it lets one be typed."""
+        slider = self.at(x, y)
+        if slider is None:
+            return None
+        left, bottom, width, _ = self._box(self.sliders.index(slider))
+        return slider if x > left + 0.5 * width and y > bottom + 26 else None
 
     def drag(self, x: float) -> None:
         """The held slider's wish follows the pointer."""
@@ -161,11 +180,12 @@ class Sliders:
             shown = Slider(slider.what, slider.field, slider.name, slider.low, slider.high, value)
             track = bottom + 14
             knob = left + width * shown.place
-            painter.text(left, bottom + 37, slider.name, palette.ink, SMALL)
-            words = slider.told(value)
             waits = slider.field in seen.waiting
-            painter.text(left + width, bottom + 37, ("… " if waits else "") + words,
-                         palette.accent if held or waits else palette.ink, SMALL, "right")  # fmt: skip
+            words = ("… " if waits else "") + slider.told(value)
+            room = width - painter.width_of(words, SMALL) - 4.0
+            painter.text(left, bottom + 37, painter.fitted(slider.name, room, SMALL), palette.ink, SMALL)
+            painter.text(left + width, bottom + 37, words, palette.accent if held or waits else palette.ink, SMALL,
+                         "right")  # fmt: skip
             painter.line([[left, track], [left + width, track]], palette.line, 4.0)
             painter.line([[left, track], [knob, track]], palette.accent, 4.0)
             painter.dot(knob, track, 8.0 if held else 7.0, palette.hold if waits else palette.accent, palette.panel)

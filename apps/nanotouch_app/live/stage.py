@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch_app.live.arrays import points, quads, to_vtk
-from nanotouch_app.live.look import LIGHT, Palette, unit
+from nanotouch_app.live.look import LIGHT, PROPERTY_COLOURS, Colour, Palette, unit
 from nanotouch_app.live.seen import TRACE, Seen
 
 Floats = NDArray[np.float64]
@@ -22,10 +22,12 @@ TIP_HEIGHT = 0.34  # of the drawn tip [scene units]
 LEVER = (0.55, 0.13)  # length and width of the drawn lever [scene units]
 LEVER_POINTS = 24
 BALL = 300e-9  # a blunter tip is a ball that is glued to a stem [m]
-FAR = 0.2  # no tip is drawn higher above the surface than this [scene units]
+FAR = 0.14  # no tip is drawn higher above the surface than this [scene units]
 BEND = 0.05  # of the lever under the largest load [scene units]
 SHADOW = 0.05  # radius of the soft shadow [scene units]
-VIEWS = {"0": (0.0, 32.0, 1.72), "1": (0.0, 32.0, 1.72), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.72),
+SHADOW_RINGS, SHADOW_ROUND = 6, 33  # of points that lie on the surface
+LIFTED = 0.004  # what is laid on the surface is drawn so much above it [scene units]
+VIEWS = {"0": (0.0, 32.0, 1.86), "1": (0.0, 32.0, 1.86), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.86),
          "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
 
 
@@ -59,6 +61,8 @@ class Stage:
         self.scale = np.array([1.0, 1.0, self.factor]) / self.unit
         self.lowest = float(self.heights.min())
         self.centre = np.array([0.5 * self.dx * self.heights.shape[1], 0.5 * self.dy * self.heights.shape[0], 0.0])
+        self.maps: dict[str, Floats] = {"height": self.heights}
+        self.shown = "height"
         self.surface, self.colours = self._surface()
         self.rebuilt = 0  # bytes of the surface that were made anew after the first time
         self.tip: Any = None
@@ -66,6 +70,7 @@ class Stage:
         self.ribbon: Any = None
         self.palette = LIGHT
         self.shape: tuple[Any, ...] = ()
+        self.shades: list[Any] = []
         self.shadows = [self._shadow(share) for share in (1.0, 0.7, 0.4)]
         self.trace, self.trace_data = self._line()
         self.camera("0")
@@ -103,16 +108,26 @@ class Stage:
         return actor
 
     def _shadow(self, share: float) -> Any:
-        disc = self.vtk.vtkDiskSource()
-        disc.SetInnerRadius(0.0)
-        disc.SetOuterRadius(SHADOW * share)
-        disc.SetCircumferentialResolution(32)
-        disc.Update()
-        actor = self._actor(disc.GetOutput())
+        data = self.vtk.vtkPolyData()
+        data.SetPolys(quads(self.vtk, SHADOW_RINGS, SHADOW_ROUND))
+        actor = self._actor(data)
         actor.GetProperty().SetColor(0.0, 0.0, 0.0)
         actor.GetProperty().SetOpacity(0.16)
         actor.GetProperty().LightingOff()
-        return actor
+        self.shades.append(actor)
+        return share, data
+
+    def _cast(self, middle: Floats, size: float) -> None:
+        """Lay the shadow around a place on the surface, as it rises and falls there."""
+        turn = np.linspace(0.0, 2.0 * math.pi, SHADOW_ROUND)
+        for share, data in self.shadows:
+            r = np.linspace(0.0, SHADOW * share * size, SHADOW_RINGS)
+            x, y = middle[0] + np.outer(r, np.cos(turn)), middle[1] + np.outer(r, np.sin(turn))
+            rim = self.centre * 2.0
+            x, y = np.clip(x, 0.0, rim[0]), np.clip(y, 0.0, rim[1])
+            z = (self._ground(x * self.unit, y * self.unit) - self.lowest) * self.scale[2] + LIFTED
+            data.SetPoints(points(self.vtk, np.stack([x, y, z], axis=-1)))
+            data.Modified()
 
     def _line(self) -> tuple[Any, Any]:
         data = self.vtk.vtkPolyData()
@@ -124,15 +139,45 @@ class Stage:
     def paint(self, palette: Palette) -> None:
         """Light or dark."""
         self.palette = palette
+        low, high = self.ends
         self.colours.RemoveAllPoints()
-        top = max(float(self.heights.max()), self.lowest + 1e-12)
-        for height, colour in zip(np.linspace(self.lowest, top, len(palette.heights)), palette.heights, strict=True):
-            self.colours.AddRGBPoint(float(height), *unit(colour))
-        self.surface.GetMapper().SetScalarRange(self.lowest, top)
+        table = self.table
+        for value, colour in zip(np.linspace(low, high, len(table)), table, strict=True):
+            self.colours.AddRGBPoint(float(value), *unit(colour))
+        self.surface.GetMapper().SetScalarRange(low, high)
         self.renderer.SetBackground(*unit(palette.panel))
         for actor in (self.tip, self.lever):
             if actor is not None:
                 actor.GetProperty().SetColor(*unit(palette.tip))
+
+    def lights(self, on: bool) -> None:
+        """Whether surface, shadow and trace are seen."""
+        for actor in (self.surface, self.trace, *self.shades):
+            actor.SetVisibility(on)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Of what is shown by colour [m], [Pa], [J/m^2]; never equal."""
+        shown = self.maps[self.shown]
+        low = float(shown.min())
+        return low, max(float(shown.max()), low + max(1e-12, 1e-9 * abs(low)))
+
+    @property
+    def table(self) -> tuple[Colour, ...]:
+        """Colours from low to high."""
+        return PROPERTY_COLOURS.get(self.shown, self.palette.heights)
+
+    def give(self, maps: dict[str, Floats]) -> None:
+        """Properties of each place, of the shape of the heights that were given; they may be shown by colour."""
+        self.maps |= {name: coarse(np.asarray(values, dtype=float))[0] for name, values in maps.items()}
+
+    def colour_by_next(self) -> str:
+        """Height, then each property there is; its name."""
+        names = list(self.maps)
+        self.shown = names[(names.index(self.shown) + 1) % len(names)]
+        self.mesh.GetPointData().SetScalars(to_vtk(self.maps[self.shown].ravel()))
+        self.paint(self.palette)
+        return self.shown
 
     # --- the instrument: made anew when another tip is mounted ---
 
@@ -179,21 +224,21 @@ class Stage:
         """Where the tip is drawn: over the drawn surface, at the gap that is true."""
         x, y, z = (float(part) for part in seen.frame["tip_position"])
         gap = float(seen.frame["gap"])
-        ground = self._ground(x, y)
-        above = (gap if math.isfinite(gap) else z - ground) * self.scale[2]
+        ground = float(self._ground(x, y))
+        above = (gap if math.isfinite(gap) else max(z - ground, 0.0)) * self.scale[2]
         drawn = FAR * math.tanh(above / FAR) if above > 0.0 else above  # a tip far away stays in the picture
         return np.array([x / self.unit, y / self.unit, (ground - self.lowest) * self.scale[2] + drawn])
 
-    def _ground(self, x: float, y: float) -> float:
+    def _ground(self, x: Any, y: Any) -> Any:
+        """Height of the drawn surface [m], linear between its points."""
         rows, columns = self.heights.shape
-        column = min(max(x / self.unit / self.dx - 0.5, 0.0), columns - 1.001)
-        row = min(max(y / self.unit / self.dy - 0.5, 0.0), rows - 1.001)
-        i, j = int(column), int(row)
+        column = np.clip(np.asarray(x) / self.unit / self.dx - 0.5, 0.0, columns - 1.001)
+        row = np.clip(np.asarray(y) / self.unit / self.dy - 0.5, 0.0, rows - 1.001)
+        i, j = column.astype(int), row.astype(int)
         u, v = column - i, row - j
-        patch = self.heights[j : j + 2, i : i + 2]
-        return float(
-            (1 - v) * ((1 - u) * patch[0, 0] + u * patch[0, 1]) + v * ((1 - u) * patch[1, 0] + u * patch[1, 1])
-        )
+        near = (1 - u) * self.heights[j, i] + u * self.heights[j, i + 1]
+        far = (1 - u) * self.heights[j + 1, i] + u * self.heights[j + 1, i + 1]
+        return (1 - v) * near + v * far
 
     def update(self, seen: Seen) -> None:
         """Move tip, lever, shadow and trace; never the surface."""
@@ -202,9 +247,7 @@ class Stage:
         self._bend(apex, seen)
         ground = (self._ground(*(float(part) for part in seen.frame["tip_position"][:2])) - self.lowest) * self.scale[2]
         above = float(apex[2] - ground)
-        for actor in self.shadows:
-            actor.SetPosition(apex[0] + 0.6 * above, apex[1] - 0.3 * above, ground + 0.004)
-            actor.SetScale(1.0 + 3.0 * max(above, 0.0))
+        self._cast(apex + [0.6 * above, -0.3 * above, 0.0], 1.0 + 3.0 * max(above, 0.0))  # noqa: RUF005  an array
         self._draw_trace(seen)
 
     def _bend(self, apex: Floats, seen: Seen) -> None:
@@ -224,8 +267,8 @@ class Stage:
             self.trace_data.Initialize()
             return
         now = rows[-1, 0]
-        ground = np.array([self._ground(x, y) for x, y in rows[:, 1:3]])
-        places = np.stack([rows[:, 1], rows[:, 2], ground - self.lowest], axis=1) * self.scale + [0.0, 0.0, 0.004]
+        ground = self._ground(rows[:, 1], rows[:, 2])
+        places = np.stack([rows[:, 1], rows[:, 2], ground - self.lowest], axis=1) * self.scale + [0.0, 0.0, LIFTED]
         cells = self.vtk.vtkCellArray()
         cells.InsertNextCell(len(rows), list(range(len(rows))))
         share = np.clip(rows[:, 4] / max(seen.load, 1e-15) * 3.0, -1.0, 1.0)
@@ -246,7 +289,7 @@ class Stage:
         """One of the views 0 .. 5; 4 looks at the tip."""
         turn, height, distance = VIEWS[view]
         middle = at if at is not None and view == "4" else self.centre
-        focus = middle + np.array([0.0, 0.0, 0.1])
+        focus = middle + np.array([0.0, 0.0, 0.12])
         turn, height = math.radians(turn), math.radians(height)
         away = distance * np.array([math.sin(turn) * math.cos(height), -math.cos(turn) * math.cos(height),
                                     math.sin(height)])  # fmt: skip

@@ -11,6 +11,8 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import presets
 
+from nanotouch_app.live import samples
+
 WAVES = 6  # of a gentle relief, each of another direction
 LEAST_CLEARANCE = 20e-9  # [m]
 
@@ -30,6 +32,8 @@ class Subject:
     """what to try first"""
     surface: Callable[[nt.Scene], nt.Surface] | None = None
     """what the tip touches; None: the topography, dilated by it"""
+    accuracy: float = 0.01
+    """what its forces are planned for"""
 
     def touched(self, scene: nt.Scene) -> nt.Surface:
         """The surface for the tip of a scene."""
@@ -37,7 +41,7 @@ class Subject:
 
     def clearance(self) -> float:
         """Where the tip begins above the surface [m]: where it feels next to nothing."""
-        plan = self.scene.plan()
+        plan = self.scene.plan(rtol=self.accuracy)
         facts = plan.explain()
         reach = plan.cutoff_gap(0.002 * max(float(self.scene.range.maximum_load), plan.pull_off_force))
         release = float(facts["release_gap"])
@@ -84,6 +88,10 @@ class Preset:
     title: str
     surface: Callable[[], nt.Topography]
     hint: str
+    scene: str = ""
+    """of :mod:`nanotouch.presets`; "": that of its own name"""
+    accuracy: float = 0.01
+    """of its forces: where a slider leads to what is less well known, a little less is asked"""
 
 
 PRESETS: dict[str, Preset] = {
@@ -98,6 +106,7 @@ PRESETS: dict[str, Preset] = {
     "mica_in_air": Preset(
         "Mica in dry air", lambda: terraces(600e-9, 1e-9, 2, "steps of mica", pixels=192),
         "The soft lever jumps in before it touches: go down by single steps and watch its line meet the curve.",
+        accuracy=0.03,
     ),
     "polyester": Preset(
         "Polyester", lambda: relief(20e-6, 60e-9, "polyester film", seed=3),
@@ -111,6 +120,21 @@ PRESETS: dict[str, Preset] = {
         "Quantum dots", lambda: nt.surface.dots(pixels=256),
         "Find a dot with the lightest touch that you can hold.",
     ),
+    "grating": Preset(
+        "Calibration grating", lambda: nt.surface.grating(size=12e-6, pixels=384, height=100e-9),
+        "Draw the tip along x: the walls are felt before they are seen.", "silicon_in_air",
+    ),
+    "spikes": Preset(
+        "Field of spikes", samples.spikes, "Go over a spike: what you feel is the shape of your own tip.",
+        "silicon_in_air",
+    ),
+    "dna": Preset(
+        "DNA on mica", samples.dna, "Find the strand and follow it with the lightest touch.", "mica_in_air",
+        accuracy=0.02,
+    ),
+    "rough": Preset(
+        "Rough film", samples.rough, "Pull off on a hill and in a hollow: the pull differs.", "silicon_in_air",
+    ),
     "cell_in_liquid": Preset(
         "A living cell", cell,
         "Nothing snaps: feel the fur first, then the cell. Press on the nucleus, then on the rim.",
@@ -121,5 +145,7 @@ PRESETS: dict[str, Preset] = {
 def of_preset(name: str) -> Subject:
     """A preset, its surface made."""
     known = PRESETS[name]
-    scene, rig = getattr(presets, name)()
-    return Subject(name, known.title, scene, rig, known.surface(), presets.FELT[name], known.hint)
+    of = known.scene or name
+    scene, rig = getattr(presets, of)()
+    return Subject(name, known.title, scene, rig, known.surface(), presets.FELT[of], known.hint,
+                   accuracy=known.accuracy)  # fmt: skip

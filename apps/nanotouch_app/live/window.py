@@ -18,12 +18,15 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import record
-from nanotouch.errors import DeviceError, Error, require
+from nanotouch.errors import DeviceError, Error, InvalidValue
 
-from nanotouch_app.live import cards
-from nanotouch_app.live.look import HEIGHT, WIDTH
+from nanotouch_app.live import board, cards, hands, parts
+from nanotouch_app.live.entry import Entry
+from nanotouch_app.live.held import Held
+from nanotouch_app.live.look import fitting
 from nanotouch_app.live.picture import MARGIN, Picture, save
 from nanotouch_app.live.reel import Reel, world_of
+from nanotouch_app.live.remote import Remote
 
 FASTEST = 1.0 / 60.0  # between two pictures [s]
 SHARE = 0.5  # of one processor at most that drawing takes
@@ -34,6 +37,7 @@ PLAIN_KEYS = {
 }  # fmt: skip
 ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
 ARROW_PIXELS = 4.0
+FUNCTION_KEYS = tuple(f"f{number}" for number in range(1, 10))
 REPEAT = 0.08  # a key that is let go for less than this [s] is held: X11 repeats it so
 
 
@@ -41,14 +45,15 @@ class Window:
     """VTK's window with mouse and keys."""
 
     def __init__(
-        self, surface: str, dark: bool = False, recording: str | None = None, watched: str | None = None
-    ) -> None:
-        self.vtk = require("vtk", "view")
+        self, surface: str, dark: bool = False, recording: str | None = None, watched: str | None = None,
+        hand: str = "none",
+    ) -> None:  # fmt: skip
+        self.vtk = parts.load()
         with np.load(surface) as stored:
             heights, pixel_size = stored["heights"], stored["pixel_size"]
         self.window = self.vtk.vtkRenderWindow()
         self.window.SetMultiSamples(0)
-        self.window.SetSize(WIDTH, HEIGHT)
+        self.window.SetSize(*fitting(*self.window.GetScreenSize()))
         self.window.SetWindowName("nanotouch live")
         self.picture = Picture(self.vtk, self.window, heights, pixel_size)
         if dark:
@@ -66,6 +71,7 @@ class Window:
             ("KeyReleaseEvent", self.key_up), ("ExitEvent", lambda *_: self.leave()),
         ):  # fmt: skip
             self.interactor.AddObserver(event, answer)
+        self.interactor.AddObserver("DropFilesEvent", self._dropper())
         self.told: queue.Queue[dict[str, Any]] = queue.Queue()
         self.observer: nt.frames.Observer | Reel | None = self.reel
         self.name = ""
@@ -73,11 +79,24 @@ class Window:
             self.picture.hear(world_of(record.read(recording).metadata, Path(recording).name, "recording"))
             self.picture.reel = self.reel
         self.leads = recording is None and watched is None
+        self.remote: Remote | None = None
         if watched is not None:
             self.watch(watched)
+        self.held, self.moved_at = Held(hands.opened(hand) if self.leads else []), time.monotonic()
         self.dragging, self.at = "", np.zeros(2)
         self.pressing, self.lift_at = False, math.inf
         self.open = True
+
+    def _dropper(self) -> Any:
+        """What VTK calls with the names of files that are dropped on the window: the first one is opened."""
+
+        def dropped(_: Any, __: str, names: Any) -> None:
+            if names.GetNumberOfValues():
+                self.picture.hear({"tell": "note", "text": f"opening {names.GetValue(0)} ..."})
+                self.ask("open", path=names.GetValue(0))
+
+        dropped.CallDataType = self.vtk.VTK_OBJECT  # type: ignore[attr-defined]
+        return dropped
 
     # --- the loop ---
 
@@ -86,12 +105,16 @@ class Window:
         threading.Thread(target=self._listen, daemon=True).start()
         self.interactor.Initialize()
         self.picture.render()
+        if sys.platform == "linux" and not str(self.window.GetClassName()).startswith("vtkX"):
+            raise Error("the display lets no window be opened: is this user allowed to (xauth list)?")
         self.ask("ready")
         due = 0.0
         while self.open:
             self.interactor.ProcessEvents()
             self._take()
             begun = time.monotonic()
+            self.held.move(begun - self.moved_at, self.picture.stage.unit, self.ask)
+            self.moved_at = begun
             if begun > self.lift_at:
                 self.lift_at, self.pressing = math.inf, False
                 self.ask("press", on=False)
@@ -102,9 +125,12 @@ class Window:
                 self.picture.hear(self.reel.clock())
             if self.observer is not None:
                 self.picture.seen.look(self.observer)
+            self._hear_remote()
+            self.held.feel(self.picture.seen.feel())
             self.picture.render()
             took = time.monotonic() - begun
             due = begun + max(FASTEST, took / SHARE)
+        self.held.close()
         self.ask("leave")
 
     def _listen(self) -> None:
@@ -129,9 +155,21 @@ class Window:
 
     def watch(self, name: str) -> None:
         """Look at a session that this window does not lead."""
-        observer = nt.frames.attach(name)
-        self.observer, self.name = observer, name
-        self.picture.hear(world_of(json.loads(observer.description), name, "watched: its program leads"))
+        self.observer, self.name = nt.frames.attach(name), name
+        self.remote = Remote(name, self.observer)
+        self._hear_remote()
+
+    def _hear_remote(self) -> None:
+        """What became of what was asked of a watched session, and what it says of itself."""
+        if self.remote is None:
+            return
+        for message, answer in self.remote.answers():
+            if answer.status:
+                why = f"refused: {answer.message}"
+                self.picture.hear({"tell": "refused", "why": why, "field": message.get("field")})
+        world = self.remote.news()
+        if world is not None:
+            self.picture.hear(world)
 
     def _attach(self, name: str) -> None:
         try:
@@ -144,6 +182,12 @@ class Window:
         message = {"do": what, **more} if isinstance(what, str) else what
         if self.reel is not None:
             self.reel.answer(message)
+        if self.remote is not None and message["do"] not in ("ready", "leave"):
+            try:
+                self.remote.ask(message)
+            except Error as error:
+                self.picture.hear({"tell": "refused", "why": str(error), "field": message.get("field")})
+            return
         if not self.leads and message["do"] != "ready":
             return  # nobody listens
         try:
@@ -176,6 +220,8 @@ class Window:
         """Take the tip, or a slider."""
         self.at = self._pointer()
         slider = self.picture.sliders.at(*self.at)
+        if self.picture.board and self._on_board(board.at(self.picture.board, *self.picture.corner, self.at)):
+            return
         if self.picture.cards:
             name, self.picture.cards = cards.at(self.picture.layout.cards, *self.at), False
             if name:
@@ -183,12 +229,38 @@ class Window:
         elif self.reel is not None and self._in(self.picture.layout.controls, self.at):
             self.dragging = "time"
             self._scrub()
+        elif slider is not None and self.picture.sliders.value_at(*self.at) is not None:
+            self.picture.entry = Entry(slider)
         elif slider is not None:
             self.dragging = "slider"
             self.picture.sliders.held = slider
             self.picture.sliders.drag(self.at[0])
         elif self._in(self.picture.layout.view, self.at):
             self.dragging = "tip"
+
+    def _on_board(self, number: int | None) -> bool:
+        """One of the choices of the board."""
+        if number is None or number >= len(self.picture.board["choices"]):
+            return False
+        if self.picture.menu:
+            self.picture.menu = False
+            self.ask("task", name=list(board.MENU)[number], lay=True)
+        else:
+            self.ask("choose", number=number)
+        return True
+
+    def _type(self, name: str) -> None:
+        """A key, while a number is typed."""
+        entry = self.picture.entry
+        assert entry is not None
+        state = entry.key(name, str(self.interactor.GetKeyCode()))
+        if state:
+            self.picture.entry = None
+        if state == "done":
+            try:
+                self.ask(entry.request())
+            except InvalidValue as error:
+                self.picture.hear({"tell": "refused", "why": str(error)})
 
     def right(self, *_: Any) -> None:
         """Take the height."""
@@ -242,7 +314,9 @@ class Window:
     def key(self, *_: Any) -> None:
         """The table of the help."""
         name = str(self.interactor.GetKeySym()).lower()
-        if name in PLAIN_KEYS:
+        if self.picture.entry is not None:
+            self._type(name)
+        elif name in PLAIN_KEYS:
             self.ask(PLAIN_KEYS[name])
         elif name in ARROWS:
             fine = FINE if self.interactor.GetShiftKey() else 1.0
@@ -268,6 +342,16 @@ class Window:
             self.picture.turn_light()
         elif name == "c":
             self.picture.cards = not self.picture.cards
+        elif name == "t":
+            self.picture.menu = not self.picture.menu
+        elif name == "n" and self.picture.seen.task.get("asked"):
+            self.picture.entry = Entry(None, "your answer")
+        elif name in FUNCTION_KEYS and self.picture.board:
+            self._on_board(FUNCTION_KEYS.index(name))
+        elif name == "k":
+            self.picture.stage.colour_by_next()
+        elif name == "m":
+            self._turn_sound()
         elif name == "h":
             self.picture.help = not self.picture.help
         elif name == "s":
@@ -276,6 +360,12 @@ class Window:
             self.picture.hear({"tell": "note", "text": f"saved {path}"})
         elif name == "q":
             self.leave()
+
+    def _turn_sound(self) -> None:
+        try:
+            self.held.turn_sound()
+        except Error as error:
+            self.picture.hear({"tell": "refused", "why": str(error)})
 
     def key_up(self, *_: Any) -> None:
         """The space bar is let go: the hand lifts, unless the key only repeats."""
@@ -290,9 +380,10 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--dark", action="store_true")
     parser.add_argument("--recording")
     parser.add_argument("--watch")
+    parser.add_argument("--hand", default="none")
     args = parser.parse_args(arguments)
     try:
-        Window(args.surface, args.dark, args.recording, args.watch).run()
+        Window(args.surface, args.dark, args.recording, args.watch, args.hand).run()
     except Error as error:
         print(error, file=sys.stderr)
         return 1

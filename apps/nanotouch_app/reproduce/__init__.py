@@ -36,7 +36,10 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    found = [reproduction(number) for number in _checked(args.figure)]
+    found = []
+    for number in _checked(args.figure):
+        with output.busy(f"figure {number}"):
+            found.append(reproduction(number))
     files = [*(f"fig{figure.number}.{kind}" for figure in found for kind in ("png", "csv")), "statements.json"]
     with output.folder(args, files) as out:
         for figure in found:
@@ -44,7 +47,8 @@ def run(args: argparse.Namespace) -> int:
             comments = {entry.name: f"{entry.value:g} {entry.unit}".rstrip() for entry in figure.parameters}
             write_csv(out / f"{name}.csv", figure.columns, {"figure": f"{figure.number}, {figure.title}", **comments})
             drawing.save(figure.draw, out / f"{name}.png")
-        output.write_json(out / "statements.json", {f"fig{figure.number}": figure.as_dict() for figure in found})
+        args.answer = {f"fig{figure.number}": figure.as_dict() for figure in found}
+        output.write_json(out / "statements.json", args.answer)
         print("\n\n".join(words(figure) for figure in found))
         print(f"\nwritten to {out}/: {', '.join(files)}")
     return 0

@@ -17,14 +17,15 @@ from nanotouch_app.reproduce.statement import Parameter, Reproduction, Statement
 LITERAL = Parameter("alpha_p, literal", 4e-3, "m/m", "Sec. VI-B, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 4.5e-5, "m/m", "Eq. 21: 0.6 + 0.3 um over 2 cm")
 ALPHA_F = Parameter("alpha_f", 2e6, "N/N", "Sec. VI-B")
-FELT = Parameter("alpha_f, felt", 1.8e7, "N/N", "ours: 0.3 N at the hand for 18 nN, the default of a first touch")
+FELT = Parameter("alpha_f, felt", 1.79e7, "N/N", "ours: 0.3 N at the hand for 18 nN, the default of a first touch")
+NEAR = Parameter("alpha_p, felt", 2e-5, "m/m", "ours: Eq. 21 for a first touch, 0.1 + 0.3 um over 2 cm")
 GAIN = Parameter("K_f", 2.0, "", "Sec. VI-B")
 HEIGHT = Parameter("initial tip height L", 0.6e-6, "m", "Sec. VI-B")
 FORCE = Parameter("largest hand force", 2.0, "N", "read off the scale of the figure's axis, -2 .. 3 N")
 PROPORTIONAL = Parameter("K_p", 10.0, "", "not in the text; x_s = K_p/(1 + K_p) of its target, 0.91")
 STEP = Parameter("step of the gauge", 0.02, "N", "Sec. IV-C")
 PARAMETERS = (
-    LITERAL, REPAIRED, ALPHA_F, FELT, GAIN, PROPORTIONAL, HEIGHT, FORCE, STEP, paper.TIP, paper.CANTILEVER,
+    LITERAL, REPAIRED, ALPHA_F, FELT, NEAR, GAIN, PROPORTIONAL, HEIGHT, FORCE, STEP, paper.TIP, paper.CANTILEVER,
     paper.HUMIDITY, paper.RESOLUTION, touching.RATE, touching.PAPER_RATE,
 )  # fmt: skip
 APPROACH, PULL = 0.05, -0.5
@@ -37,6 +38,8 @@ TRACKED = 0.05
 """an error below this share of the largest hand force counts as tracking"""
 
 
+FIRST = 0.1e-6
+"""height above the surface at which a first touch begins [m]"""
 FIGURE = (1.0, 2.0)
 """the attraction at the hand that the figure shows [N]"""
 WATER = 0.0728
@@ -44,15 +47,16 @@ WATER = 0.0728
 
 
 def session(
-    alpha_p: float, rate: float, control: str, minimum_margin: float = 1.5, alpha_f: float = ALPHA_F.value
-) -> nt.Session:
-    """The paper's silicon under the given scales, rate and law."""
+    alpha_p: float, rate: float, control: str, minimum_margin: float = 1.5, alpha_f: float = ALPHA_F.value,
+    height: float = HEIGHT.value,
+) -> nt.Session:  # fmt: skip
+    """The paper's silicon under the given scales, rate and law, from a height [m]."""
     scene, rig = presets.paper_silicon()
     chosen = touching.settings(
         rig, rate, alpha_p=alpha_p, alpha_f=alpha_f, force_gain=GAIN.value, stage_proportional=PROPORTIONAL.value
     )
     return nt.Session(
-        scene, rig, settings=chosen, control=control, clearance=HEIGHT.value, minimum_margin=minimum_margin, seed=1,
+        scene, rig, settings=chosen, control=control, clearance=height, minimum_margin=minimum_margin, seed=1,
         preflight=False, probe_model="quasi-static",
     )  # fmt: skip
 
@@ -62,19 +66,19 @@ def reproduce() -> Reproduction:
     literal = session(LITERAL.value, touching.PAPER_RATE.value, "paper", 0.0)
     refused = literal.margins()
     repaired = session(REPAIRED.value, touching.RATE.value, "default")
-    rescaled = session(REPAIRED.value, touching.RATE.value, "default", alpha_f=FELT.value)
+    rescaled = session(NEAR.value, touching.RATE.value, "default", alpha_f=FELT.value, height=FIRST)
     runs = {name: made.run(operator=SCRIPT) for name, made in
             {"literal": literal, "repaired": repaired, "felt": rescaled}.items()}  # fmt: skip
     found = touching.columns(runs, sum(step.duration for step in SCRIPT))
     felt = runs["repaired"]
     statements = (
         _refused(refused), _runs(runs["literal"]), _forces(felt), _positions(felt), _sticking(felt), _large(felt),
-        _implied(), _felt(runs["felt"], rescaled.margins()),
+        _implied(), _felt(runs["felt"], rescaled),
     )  # fmt: skip
     titles = {
         "literal": "literal, armed against the verdict:\n$\\alpha_p$ = 4e-3, 3 ms, Eq. 17",
         "repaired": "repaired:\n$\\alpha_p$ = 4.5e-5, 10 kHz",
-        "felt": "felt by the hand:\nthe same, $\\alpha_f$ = 1.8e7",
+        "felt": "felt by the hand:\n$\\alpha_p$ = 2e-5, $\\alpha_f$ = 1.8e7",
     }
     return Reproduction(
         17, "touching silicon with a silicon tip", PARAMETERS, found, statements,
@@ -137,7 +141,8 @@ def _sticking(recording: nt.Recording) -> Statement:
     return Statement(
         "sticking is small during the approach and very large when retracting", "VI-B, Fig. 17",
         holds(pull_off > 2.0 * snap_in), "pull-off over snap-in in the loop", pull_off / snap_in, "",
-        f"{quantity(snap_in, 'N')} and {quantity(pull_off, 'N')} at the tip.",
+        f"{quantity(snap_in, 'N')} and {quantity(pull_off, 'N')} at the tip. At the hand both are less than the "
+        f"{quantity(CLEARLY_FELT, 'N')} that are clearly felt.",
     )  # fmt: skip
 
 
@@ -166,11 +171,12 @@ def radius(attraction: float) -> float:
     return attraction / (4.0 * math.pi * WATER)
 
 
-def _felt(recording: nt.Recording, found: nt.margins.Margins) -> Statement:
-    felt = FELT.value * _attractions(recording)[1]
+def _felt(recording: nt.Recording, made: nt.Session) -> Statement:
+    felt, found, calm = FELT.value * _attractions(recording)[1], made.margins(), made.calm()
     return Statement(
         f"the sticking of this tip can be felt within the margins (alpha_f = {FELT.value:.3g})", "ours",
-        holds(felt > CLEARLY_FELT and found.refusal is None), "pull-off at the hand", felt, "N",
-        f"Least margin {found.least:.3g}, {found.rule}; the noise of the probe is "
-        f"{quantity(FELT.value * paper.RESOLUTION.value, 'N')} peak to peak.",
+        holds(felt > CLEARLY_FELT and found.refusal is None and calm.is_calm), "pull-off at the hand", felt, "N",
+        f"Least margin {found.least:.3g}, {found.rule}. The loop ripples by {quantity(calm.ripple, 'N')} peak to "
+        f"peak, noise of the probe and steps, less than the {quantity(calm.felt, 'N')} that are felt. With the alpha_p "
+        f"of the figure, {REPAIRED.value:.2g}, it would be more.",
     )  # fmt: skip

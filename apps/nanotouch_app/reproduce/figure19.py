@@ -82,9 +82,10 @@ def _smallest(recording: nt.Recording) -> Statement:
     truth, felt = heights(recording)
     noise = touching.rms((felt - truth)[np.abs(truth) < 0.1 * float(np.ptp(truth))])
     return Statement(
-        "quantum dots of 10 to 30 nm are felt along the line", "VI-C, Fig. 19", holds(SIZE.value > 5.0 * noise),
-        "RMS error of the height on the flat", noise, "m",
-        f"The tip of {quantity(paper.TIP.value, 'm')} widens them: the dilated dots are what the hand follows.",
+        "quantum dots of 10 to 30 nm are felt along the line", "VI-C, Fig. 19",
+        holds(float(np.ptp(truth)) > 5.0 * noise), "RMS error of the height on the flat", noise, "m",
+        f"10 to 30 nm is their diameter, {quantity(float(np.ptp(truth)), 'm')} their height. The tip of "
+        f"{quantity(paper.TIP.value, 'm')} widens them: the dilated dots are what the hand follows.",
     )  # fmt: skip
 
 

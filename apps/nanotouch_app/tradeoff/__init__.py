@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measure speed and accuracy on this machine: every contact model and tier over lambda and load; the plans of every
-preset over the accuracy demanded, by themselves and felt in the loop; the simulated rig over loop rate, probe model and
-sub-step."""
+"""Measure speed and accuracy on this machine. Measured are every contact model and tier over lambda and load; the
+plans of every preset over the accuracy demanded, alone and in the loop; and the simulated rig over loop rate, model
+and sub-step."""
 
 from __future__ import annotations
 
@@ -54,6 +54,7 @@ def run(args: argparse.Namespace) -> int:
         _write(out, "nanotouch tradeoff" + (" --quick" if args.quick else ""), maps, rows, planned, felt, ways, points)
         if args.doc:
             page.write(args.doc, maps, rows, planned, felt, ways, points)
+        args.answer = {"points": answer.columns(points), "folder": str(out), "files": list(FILES)}
         print(answer.sentences(points))
         print(page.summary(rows))
         print(plans.summary(planned))

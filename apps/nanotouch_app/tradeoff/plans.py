@@ -14,7 +14,7 @@ from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import new_figure
 from numpy.typing import NDArray
 
-from nanotouch_app.plan import PRESETS
+from nanotouch_app.scenes import PRESETS
 
 RTOLS = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
 """0.3 .. 1e-10"""

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from nanotouch.errors import Error, MissingExtra
+from nanotouch.errors import Error, missing
 from nanotouch.record import Recording, replacing
 
 from nanotouch_app.view.picture import Picture
@@ -78,7 +78,7 @@ def _draw(picture: Picture, arguments: Sequence[str], time: float | None) -> Non
 def _work(arguments: Sequence[str], time: float | None) -> str:
     """Run the worker; what it prints, or an :class:`Error` that says what to install."""
     if importlib.util.find_spec("vtkmodules") is None:
-        raise MissingExtra("vtk is not installed: pip install 'nanotouch[view]'")
+        raise missing("vtk", "view")
     command = [sys.executable, "-m", "nanotouch_app.view.worker", *arguments]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     try:

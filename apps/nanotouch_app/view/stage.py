@@ -21,6 +21,7 @@ PAPER: Colour = (1.0, 1.0, 1.0)
 GOLD: list[Colour] = [(0.25, 0.14, 0.08), (0.52, 0.30, 0.12), (0.82, 0.58, 0.26), (0.98, 0.90, 0.70)]  # low to high
 ATTRACTION, NEUTRAL, REPULSION = (0.0, 0.62, 1.0), (1.0, 1.0, 1.0), (0.55, 0.0, 0.65)
 TRACE_RADIUS = 0.004  # [scene units]
+RING = (0.035, 0.043)  # around a touch at a point, inner and outer radius [scene units]
 
 
 def build(picture: Picture, height: int, note: str = "") -> Any:
@@ -42,7 +43,10 @@ def build(picture: Picture, height: int, note: str = "") -> Any:
         unit, factor = engineering("N", forces.GetRange())
         bars.append(_scale(vtk, forces, f"force ({unit})", factor, 0.02))
     if len(picture.tip):
-        renderer.AddActor(_tip(vtk, picture.tip))
+        stands = not len(picture.trace) or bool(np.ptp(picture.trace[:, :2], axis=0).max() < 2.0 * RING[1])
+        renderer.AddActor(_tip(vtk, picture.tip, 0.25 if stands else 0.55))
+        if stands:
+            renderer.AddActor(_ring(vtk, picture.tip))
     for bar in bars:
         _plain(bar.GetTitleTextProperty(), letters)
         _plain(bar.GetLabelTextProperty(), letters)
@@ -101,7 +105,7 @@ def _trace(vtk: Any, picture: Picture) -> tuple[Any, Any]:
     return _actor(vtk, tube, colours), colours
 
 
-def _tip(vtk: Any, tip: Floats) -> Any:
+def _tip(vtk: Any, tip: Floats, opacity: float) -> Any:
     """Sphere that goes over into a cone: the profile of one side, turned around the z axis."""
     x, y, z, radius, half_angle = tip
     angle = np.linspace(0.0, np.pi / 2 - half_angle, 24)
@@ -121,7 +125,20 @@ def _tip(vtk: Any, tip: Floats) -> Any:
     actor = _actor(vtk, normals, None)
     actor.SetPosition(x, y, z)
     actor.GetProperty().SetColor(0.35, 0.42, 0.50)
-    actor.GetProperty().SetOpacity(0.55)
+    actor.GetProperty().SetOpacity(opacity)
+    return actor
+
+
+def _ring(vtk: Any, tip: Floats) -> Any:
+    """Around the place of a touch at a point, whose trace stands within the tip."""
+    disc = vtk.vtkDiskSource()
+    disc.SetInnerRadius(RING[0])
+    disc.SetOuterRadius(RING[1])
+    disc.SetCircumferentialResolution(60)
+    actor = _actor(vtk, disc, None)
+    actor.SetPosition(tip[0], tip[1], tip[2] + TRACE_RADIUS)
+    actor.GetProperty().SetColor(*REPULSION)
+    actor.GetProperty().LightingOff()
     return actor
 
 
@@ -157,8 +174,8 @@ def _look(renderer: Any, bounds: tuple[float, ...]) -> None:
     camera.SetPosition(middle[0] - 0.5, middle[1] - 1.4, middle[2] + 1.0)
     camera.SetViewUp(0.0, 0.0, 1.0)
     renderer.ResetCamera()
-    camera.Zoom(1.05)
-    camera.SetWindowCenter(0.04, -0.12)
+    camera.Zoom(1.12)
+    camera.SetWindowCenter(0.05, -0.18)
 
 
 def _scale(vtk: Any, colours: Any, title: str, factor: float, left: float) -> Any:

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who may look and who may touch. Two keys in the fragments of two links, which no browser sends to a server: one that
+operates, once; one that watches. Host and origin of each request are checked, against other pages and rebound names."""
+
+from __future__ import annotations
+
+import hmac
+import math
+import secrets
+from collections.abc import Callable
+from typing import Any
+from urllib.parse import urlsplit
+
+from nanotouch.errors import InvalidValue
+
+from nanotouch_app.live.subject import PRESETS
+from nanotouch_app.training import TASKS
+from nanotouch_app.training.lesson import LESSON
+
+LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
+LONGEST = 200  # letters of a text that is asked
+KEY_BYTES = 24
+Message = dict[str, Any]
+
+
+class Refused(Exception):
+    """In words for the page."""
+
+
+class Keys:
+    """The keys of one run."""
+
+    def __init__(self) -> None:
+        self.operate, self.watch = secrets.token_urlsafe(KEY_BYTES), secrets.token_urlsafe(KEY_BYTES)
+        self.token = ""
+        """of the page that operates, so that it may be loaded again"""
+
+    def grant(self, key: object, token: object) -> tuple[bool, str]:
+        """Whether this page operates, and its token; :class:`Refused` for a wrong or used key."""
+        if self.token and _same(token, self.token) and _same(key, self.operate):
+            return True, self.token
+        if _same(key, self.watch):
+            return False, ""
+        if not _same(key, self.operate):
+            raise Refused("wrong key: open the link that nanotouch has printed")
+        if self.token:
+            raise Refused("this link operates once, and has been used: ask for the one that watches")
+        self.token = secrets.token_urlsafe(KEY_BYTES)
+        return True, self.token
+
+
+def _same(given: object, wanted: str) -> bool:
+    return isinstance(given, str) and hmac.compare_digest(given.encode(), wanted.encode())
+
+
+def host_is_ours(host: str | None, allowed: frozenset[str] = LOOPBACK) -> bool:
+    """Whether a request names this machine, at any port (a tunnel has its own): a rebound name does not."""
+    try:
+        return bool(host) and urlsplit(f"//{host}").hostname in allowed
+    except ValueError:
+        return False
+
+
+def origin_is_ours(origin: str | None, host: str | None) -> bool:
+    """Whether a socket is opened by our own page: its origin is the host that it asks."""
+    if not origin or not host:
+        return False
+    parts = urlsplit(origin)
+    return parts.scheme in ("http", "https") and parts.netloc == host and not parts.path
+
+
+def _number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _way(value: object) -> bool:
+    return isinstance(value, list) and len(value) == 3 and all(_number(part) for part in value)
+
+
+def _text(value: object) -> bool:
+    return isinstance(value, str) and len(value) <= LONGEST
+
+
+def _task(value: object) -> bool:
+    return value in ("", "lesson", *TASKS, *(page.name for page in LESSON))
+
+
+# what may be asked over a socket: no file of this machine, no end
+ASKED: dict[str, dict[str, Callable[[object], bool]]] = {
+    "move": {"way": _way}, "wheel": {"steps": _number}, "press": {"on": lambda value: isinstance(value, bool)},
+    "retract": {}, "stop": {}, "arm": {}, "pause": {}, "step": {}, "slower": {}, "faster": {}, "rewind": {}, "undo": {},
+    "redo": {},
+    "preset": {"name": lambda value: value in PRESETS}, "task": {"name": _task}, "choose": {"number": _number},
+    "say": {"text": _text},
+    "change": {"what": lambda value: value in ("scene", "rig", "settings"), "field": _text, "value": _number},
+}  # fmt: skip
+
+
+def checked(message: object) -> Message:
+    """A message of a page, its known parts only; :class:`~nanotouch.errors.InvalidValue` for anything else."""
+    what = message.get("do") if isinstance(message, dict) else None
+    if not isinstance(message, dict) or not isinstance(what, str) or what not in ASKED:
+        raise InvalidValue(f"a page cannot ask for {str(what)[:40]!r}")
+    wanted = ASKED[what]
+    wrong = [name for name, is_good in wanted.items() if not is_good(message.get(name))]
+    if wrong:
+        raise InvalidValue(f"{what}: {wrong[0]} is not valid")
+    made = {"do": what, **{name: message[name] for name in wanted}}
+    if what == "choose":
+        made["number"] = int(made["number"])
+    return made | ({"lay": True} if what == "task" else {})

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Host and browsers together: the session stays in this process, pages come and go."""
+
+from __future__ import annotations
+
+import queue
+import time
+from typing import Any
+
+from nanotouch.images import Topography
+
+from nanotouch_app.browser.server import Server
+from nanotouch_app.browser.update import surface_bytes
+
+TURN, CLOCK = 0.005, 0.2  # of the host's loop; between two reports of the clock [s]
+
+
+class BrowserDesk:
+    """What a window's desk is, for pages."""
+
+    def __init__(self, topography: Topography, page: bytes, port: int = 0) -> None:
+        self.server = Server(page, port)
+        self.server.readers.surface = surface_bytes(topography.heights, topography.pixel_size)
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """To the pages."""
+        self.server.tell(message)
+
+    def links(self) -> str:
+        """In words, for the terminal."""
+        server, keys = self.server, self.server.keys
+        return (f"touch it (this link works once):\n  {server.link(keys.operate)}\n"
+                f"watch it (any number):\n  {server.link(keys.watch)}\n"
+                f"from another machine: ssh -L {server.port}:localhost:{server.port} THIS_MACHINE, "
+                "then the same links there\n"
+                "Ctrl-C ends the session.")  # fmt: skip
+
+    def serve(self, host: Any, first: dict[str, Any] | None = None, until: float | None = None) -> None:
+        """Until Ctrl-C, or a time of the monotonic clock: what is asked, what happens by itself, the clock."""
+        self.tell(host.world())
+        if first is not None:
+            host.answer(first)
+        due = 0.0
+        while until is None or time.monotonic() < until:
+            try:
+                message = self.server.asked.get(timeout=TURN)
+                while True:
+                    host.answer(message)
+                    message = self.server.asked.get_nowait()
+            except queue.Empty:
+                pass
+            host.tick()
+            if time.monotonic() > due:
+                due = time.monotonic() + CLOCK
+                self.tell(host.clock())
+
+    def close(self) -> None:
+        """End the server."""
+        self.server.close()

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The server: one page, one socket, in a thread of its own with its own observer of the session's frames."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import queue
+import threading
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import numpy as np
+from nanotouch.errors import Error
+from nanotouch.errors import missing as missing_extra
+
+from nanotouch_app.browser.access import LOOPBACK, Keys, Refused, checked, host_is_ours, origin_is_ours
+from nanotouch_app.browser.readers import Reader, Readers
+from nanotouch_app.browser.update import message_text, surface_bytes
+
+try:
+    from aiohttp import WSMsgType, web
+except ImportError as missing:
+    raise missing_extra("aiohttp", "browser") from missing
+
+TURN = 1.0 / 60.0  # between two looks at the frames [s]
+GREETING = 10.0  # within which a socket must say its key [s]
+LARGEST = 4096  # message of a page [byte]
+MOST = 100  # readers
+START = 10.0  # [s]
+WRONG_KEY, NO_ROOM = 4403, 4429  # why a socket is closed
+HEADERS = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY",
+           "Referrer-Policy": "no-referrer", "Cross-Origin-Resource-Policy": "same-origin"}  # fmt: skip
+Message = dict[str, Any]
+
+
+class Server:
+    """Serves one session; ``asked`` holds what the page that operates asks."""
+
+    def __init__(self, page: bytes, port: int = 0, address: str = "127.0.0.1") -> None:
+        self.page, self.address, self.port = page, address, port
+        self.keys, self.readers = Keys(), Readers()
+        self.asked: queue.Queue[Message] = queue.Queue()
+        self.loop = asyncio.new_event_loop()
+        self.operator: Reader | None = None
+        self._ready = threading.Event()
+        self._error: OSError | None = None
+        self._sent: set[asyncio.Task[Any]] = set()
+        self.thread = threading.Thread(target=self._run, name="nanotouch-browser", daemon=True)
+        self.thread.start()
+        if not self._ready.wait(START) or self._error is not None:
+            raise Error(f"port {port} of {address} cannot be served: {self._error or 'it takes too long'}")
+
+    # --- the thread ---
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self.loop)
+        try:
+            self.runner = self.loop.run_until_complete(self._open())
+        except OSError as error:
+            self._error = error
+            self._ready.set()
+            return
+        self._ready.set()
+        task = self.loop.create_task(self._look())
+        self.loop.run_forever()
+        task.cancel()
+        self.loop.run_until_complete(self.runner.cleanup())
+        self.readers.close()
+        self.loop.close()
+
+    async def _open(self) -> web.AppRunner:
+        app = web.Application(middlewares=[_guarded])
+        app.router.add_get("/", self._page)
+        app.router.add_get("/session", self._socket)
+        runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0)
+        await runner.setup()
+        site = web.TCPSite(runner, self.address, self.port)
+        await site.start()
+        self.port = runner.addresses[0][1]
+        return runner
+
+    async def _look(self) -> None:
+        while True:
+            await asyncio.sleep(TURN)
+            for reader, update in self.readers.look():
+                self._send(reader, update)
+
+    def _send(self, reader: Reader, data: bytes | str) -> None:
+        task = self.loop.create_task(_quietly(reader.send, data))
+        self._sent.add(task)
+        task.add_done_callback(self._sent.discard)
+
+    # --- requests ---
+
+    async def _page(self, request: web.Request) -> web.Response:
+        return web.Response(body=self.page, content_type="text/html", charset="utf-8", headers=HEADERS)
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        if not origin_is_ours(request.headers.get("Origin"), request.headers.get("Host")):
+            raise web.HTTPForbidden(text="another page may not open this socket")
+        socket = web.WebSocketResponse(max_msg_size=LARGEST, compress=False, heartbeat=30.0)
+        await socket.prepare(request)
+        try:
+            first = json.loads(await asyncio.wait_for(socket.receive_str(), GREETING))
+            operates, token = self.keys.grant(first.get("key"), first.get("token"))
+        except Refused as refused:
+            await socket.close(code=WRONG_KEY, message=str(refused).encode())
+            return socket
+        except (TimeoutError, ValueError, TypeError, AttributeError):
+            await socket.close(code=WRONG_KEY, message=b"no key was said")
+            return socket
+        if len(self.readers.all) >= MOST:
+            await socket.close(code=NO_ROOM, message=b"too many readers")
+            return socket
+        await self._attend(socket, operates, token)
+        return socket
+
+    async def _attend(self, socket: web.WebSocketResponse, operates: bool, token: str) -> None:
+        async def send(data: bytes | str) -> None:
+            await (socket.send_str(data) if isinstance(data, str) else socket.send_bytes(data))
+
+        reader = Reader(send, operates)
+        if operates:
+            if self.operator is not None:  # the same page, loaded again
+                self.operator.operates = False
+            self.operator = reader
+        self._send(reader, message_text({"tell": "granted", "operates": operates, "token": token}))
+        for greeting in self.readers.greeting():
+            await send(greeting)
+        self.readers.all.append(reader)
+        try:
+            async for message in socket:
+                if message.type is WSMsgType.TEXT:
+                    self._hear(reader, message.data)
+        finally:
+            self.readers.all.remove(reader)
+            if self.operator is reader:
+                self.operator = None
+                self.asked.put({"do": "press", "on": False})  # nobody holds the tip any more
+
+    def _hear(self, reader: Reader, text: str) -> None:
+        if text == "{}":  # the last update was taken
+            reader.free = True
+            return
+        try:
+            message = checked(json.loads(text))
+            if not reader.operates:
+                raise Error("this page watches: another one holds the hand")
+        except (Error, ValueError, RecursionError) as error:
+            self._send(reader, message_text({"tell": "refused", "why": str(error), "field": None}))
+            return
+        self.asked.put(message)
+
+    # --- from the host's thread ---
+
+    def tell(self, message: Message) -> None:
+        """To all readers, or to the one that operates; never waits."""
+        surface = b""
+        if message["tell"] == "laid":
+            with np.load(message["path"]) as stored:
+                surface = surface_bytes(stored["heights"], stored["pixel_size"])
+
+        def send() -> None:
+            for reader, data in self.readers.hear(message, surface):
+                self._send(reader, data)
+
+        self._call(send)
+
+    def _call(self, act: Callable[[], Any]) -> None:
+        try:
+            self.loop.call_soon_threadsafe(act)
+        except RuntimeError:  # it is closed
+            return
+
+    def link(self, key: str) -> str:
+        """An address that holds a key."""
+        host = f"[{self.address}]" if ":" in self.address else self.address
+        return f"http://{host}:{self.port}/#key={key}"
+
+    def close(self) -> None:
+        """End it."""
+        self._call(self.loop.stop)
+        self.thread.join(5.0)
+
+
+async def _quietly(send: Callable[[bytes | str], Awaitable[None] | None], data: bytes | str) -> None:
+    """A reader that is gone is no error."""
+    try:
+        sent = send(data)
+        if sent is not None:
+            await sent
+    except (ConnectionError, RuntimeError):
+        return
+
+
+@web.middleware
+async def _guarded(request: web.Request, handler: Any) -> web.StreamResponse:
+    """A name that was rebound to this machine is not ours."""
+    if not host_is_ours(request.headers.get("Host"), LOOPBACK):
+        raise web.HTTPForbidden(text="this server answers to localhost only")
+    answer: web.StreamResponse = await handler(request)
+    return answer

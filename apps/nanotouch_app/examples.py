@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The examples of every ``--help``. In the order of :data:`EXAMPLES` they work as written, in an empty folder."""
+
+from __future__ import annotations
+
+EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
+    "samples": (("nanotouch samples", "scan.gwy, curve.h5, map.h5, scene.toml, ...: for the other examples"),),
+    "touch": (
+        ("nanotouch touch", "press on a grating of 480 nm"),
+        ("nanotouch touch scan.gwy --mode scan --out result", "feel a line over an image"),
+        ("nanotouch touch --surface dots --mode topography", "feel only the height, at constant force"),
+        ("nanotouch touch --scene mica_in_air --surface flat", "another sample; presets as in nanotouch plan"),
+        ("nanotouch touch --force-range plan --control impedance", "all of the hand's range, no force sensor"),
+    ),
+    "live": (
+        ("nanotouch live --list", "all presets, with what to try"),
+        ("nanotouch live silicon_in_air --film touch.gif", "a film of a touch; needs no display"),
+    ),
+    "margins": (("nanotouch margins scene.toml --no-map", "is the loop of this scene stable? numbers only"),),
+    "info": (
+        ("nanotouch info scan.gwy", "channels, size and units of an image"),
+        ("nanotouch info result/recording.mcap --json", "what a touch left, as data"),
+    ),
+    "plan": (
+        ("nanotouch plan silicon_on_gold --rtol 1%", "the cheapest models that keep to 1 %"),
+        ("nanotouch plan scene.toml --json", "your own scene, as data"),
+    ),
+    "curve": (("nanotouch curve --scene scene.toml", "force against gap, for four contact models"),),
+    "image": (
+        ("nanotouch image scan.gwy", "level it, and measure its roughness"),
+        ("nanotouch image scan.gwy --scars --grains", "find particles: a table of them in grains.csv"),
+    ),
+    "fit": (("nanotouch fit curve.h5 --radius 20nm --model maugis", "modulus and adhesion from a force curve"),),
+    "map": (("nanotouch map map.h5 --radius 20nm", "the same for every curve of a force volume"),),
+    "report": (("nanotouch report curves --radius 20nm --model maugis", "one page about a folder of force curves"),),
+    "export": (("nanotouch export result/recording.mcap --out touch.csv", "a recording as a table, with units"),),
+    "recover": (("nanotouch recover cut.mcap --out whole.mcap", "what a killed touch has left"),),
+    "reproduce": (("nanotouch reproduce --figure 5", "a figure of the paper, and which statements hold"),),
+    "tradeoff": (("nanotouch tradeoff --quick", "speed against accuracy on this machine, roughly"),),
+    "bench": (("nanotouch bench --quick", "what each law costs, roughly"),),
+    "latency": (("nanotouch latency --seconds 1", "how late this machine wakes a loop of 1 kHz up"),),
+    "rig": (("nanotouch rig check rig.toml", "is a rig file whole? nothing is moved"),),
+    "doctor": (("nanotouch doctor", "what is installed, and what to install for the rest"),),
+}
+"""command: (line, what it does), in an order in which each line finds the files that it names"""
+
+FIRST = (
+    ("nanotouch live", "touch a surface with your own hand, in a window"),
+    ("nanotouch touch", "the same without a hand: a touch is simulated, recorded and drawn"),
+    ("nanotouch plan silicon_in_air", "which forces matter for a sample, and how well they are known"),
+    ("nanotouch samples", "an image, a force curve, a map and a scene to try the other commands on"),
+    ("nanotouch doctor", "what is installed, and what to install for the rest"),
+    ("nanotouch --help", "all commands"),
+)
+"""what to try first"""
+
+
+def table(lines: tuple[tuple[str, str], ...]) -> str:
+    """The lines in two columns."""
+    width = max(len(line) for line, _ in lines)
+    return "\n".join(f"  {line:{width}}   {what}" for line, what in lines)

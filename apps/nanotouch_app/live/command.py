@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Touch with your own hand: a simulated session at the pace of the clock in one process, a window with its mouse and
+keys in another. What was recorded can be looked at again."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from nanotouch import record
+from nanotouch.errors import InvalidValue
+
+from nanotouch_app import output, properties
+from nanotouch_app.live import display, files
+from nanotouch_app.live.desk import Desk
+from nanotouch_app.live.host import Host
+from nanotouch_app.live.reel import surface_of
+from nanotouch_app.live.subject import PRESETS, Subject
+from nanotouch_app.quantity import parse_quantity, whole_number
+from nanotouch_app.training import TASKS, named
+
+FILMS, RECORDS = (".gif", ".mp4", ".png"), (".mcap",)
+EPILOG = """examples:
+  nanotouch live                         silicon in humid air: scroll down until the water snaps
+  nanotouch live --list                  all presets, with what to try
+  nanotouch live --task find             a task with a score; --task lesson begins the lesson
+  nanotouch live image.ibw               your own surface
+  nanotouch live curve.jpk-force --radius 30nm      what you have measured: its fit becomes the scene
+  nanotouch live silicon_in_air --record touch.mcap; nanotouch live touch.mcap
+  nanotouch live --browser               the same in a browser: here, or through ssh -L
+  nanotouch live silicon_in_air --film touch.gif    a film of a touch; needs no display"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "live",
+        help="touch with your own hand, in a window",
+        description=__doc__,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "what", nargs="?", metavar="PRESET|IMAGE|CURVE|MAP|SCENE|RECORDING",
+        help="what is touched: a preset, an AFM image, a force curve, a map.nc, a TOML file; or a recording "
+             "(default: silicon_in_air, or the sample of the task)",
+    )  # fmt: skip
+    parser.add_argument("--task", metavar="NAME", help="begin a task, or the lesson: see --list; its CSV is kept here")
+    parser.add_argument("--list", action="store_true", help="show the presets and end")
+    parser.add_argument("--radius", metavar="LENGTH", help="of the tip that measured CURVE, as 30nm")
+    properties.add_options(parser)
+    parser.add_argument("--record", metavar="FILE.mcap", help="record the session to this file")
+    parser.add_argument("--film", metavar="FILE", help="film a scripted touch instead: .gif, .mp4, or .png of its end")
+    output.add_overwrite(parser, "--record or --film")
+    parser.add_argument("--hand", default="auto", metavar="NAME",
+                        help="gamepad, spacemouse, auto (those that are connected) or none, beside mouse and keys "
+                             "(default: %(default)s)")  # fmt: skip
+    parser.add_argument("--browser", action="store_true",
+                        help="show it in browsers instead of a window: prints the links (docs/page.md)")  # fmt: skip
+    parser.add_argument("--port", type=whole_number(0, 65535), default=0, metavar="N",
+                        help="of --browser, on this machine only (default: one that is free)")  # fmt: skip
+    parser.add_argument("--page", metavar="FILE", help="the page of --browser (default: that of `make page`)")
+    parser.add_argument("--dark", action="store_true", help="begin with the dark colours")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    if args.list:
+        for name, preset in PRESETS.items():
+            print(f"{name:16} {preset.title}: {preset.hint}")
+        for name, one in TASKS.items():
+            print(f"--task {name:9} {one.title}")
+        print("--task lesson    predict, touch, explain: five pages")
+        return 0
+    task = None if args.task is None else named(args.task)
+    if args.what is None:
+        args.what = "silicon_in_air" if task is None else task.preset
+    for option, file, endings in (("--film", args.film, FILMS), ("--record", args.record, RECORDS)):
+        if file is not None:
+            if Path(file).suffix.lower() not in endings:
+                raise InvalidValue(f"{option} {file}: valid endings are {', '.join(endings)}")
+            output.check_free(Path(file), args, option)
+    path = Path(args.what)
+    if not properties.given(args):
+        files.check_named(args.what)
+    is_recording = path.is_file() and record.is_recording(path)
+    _check_together(args, is_recording)
+    if args.film is not None:
+        return _film(args)
+    if args.browser:
+        return _in_browsers(args, is_recording)
+    display.check()
+    if is_recording:
+        return _play(path, args)
+    subject = _subject(args)
+    desk = Desk(subject.topography, dark=args.dark, hand=args.hand)
+    try:
+        host = Host(subject, desk.tell, args.record)
+        try:
+            desk.wait_ready()
+            host.folder = Path.cwd()
+            desk.serve(host, first=None if args.task is None else {"do": "task", "name": args.task})
+        finally:
+            host.close()
+    finally:
+        desk.close()
+    return 0
+
+
+def _in_browsers(args: argparse.Namespace, is_recording: bool) -> int:
+    """Until Ctrl-C."""
+    if is_recording:
+        raise InvalidValue("--browser shows a running session: a recording is played in a window")
+    from nanotouch_app.browser import page  # its server is an extra
+    from nanotouch_app.browser.desk import BrowserDesk
+
+    subject = _subject(args)
+    desk = BrowserDesk(subject.topography, page(args.page), args.port)
+    try:
+        host = Host(subject, desk.tell, args.record)
+        try:
+            host.folder = Path.cwd()
+            print(desk.links(), flush=True)
+            desk.serve(host, first=None if args.task is None else {"do": "task", "name": args.task})
+        finally:
+            host.close()
+    finally:
+        desk.close()
+    return 0
+
+
+def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
+    """Refuse options that would do nothing here."""
+    for what, is_so, others in (
+        (f"{args.what} is a recording, which is played", is_recording, ("task", "record", "film")),
+        ("--film films a scripted touch", args.film is not None, ("task", "record")),
+    ):
+        useless = [f"--{name}" for name in others if getattr(args, name) is not None]
+        if is_so and useless:
+            raise InvalidValue(f"{what}: {' and '.join(useless)} cannot be used with it")
+
+
+def _subject(args: argparse.Namespace) -> Subject:
+    named = properties.surface_file(args, args.what, {}, None) if properties.given(args) else None
+    return files.of(args.what, None if args.radius is None else parse_quantity(args.radius, "m"), named)
+
+
+def _film(args: argparse.Namespace) -> int:
+    from nanotouch_app.live import film  # a window is drawn in another process
+
+    path = Path(args.film)
+    with output.progress_bar("filming") as progress:
+        film.write([(_subject(args), film.PRESS)], path, progress, dark=args.dark)
+    print(f"written to {path}: {path.stat().st_size / 1e6:.2f} MB")
+    return 0
+
+
+def _play(path: Path, args: argparse.Namespace) -> int:
+    desk = Desk(surface_of(record.read(path)), dark=args.dark, recording=path)
+    try:
+        desk.wait_ready()
+        desk.process.wait()
+    finally:
+        desk.close()
+    return 0

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The way from a window to a session of another program: requests through shared memory, one lease at a time. The
+session takes them between two ticks and answers; nobody waits."""
+
+from __future__ import annotations
+
+import copy
+import json
+from typing import Any
+
+import nanotouch as nt
+from nanotouch.commands import Answer
+from nanotouch.errors import Error
+
+from nanotouch_app.live.reel import world_of
+
+ARM, RESCALE, SETTING, SCENE = 2, 4, 6, 7  # nt_event_kind of session.h
+WATCHED = "watched: its program leads the hand"
+TAKEN = "another program drives this session; it may be asked again one second after its last request"
+Message = dict[str, Any]
+
+
+class Lease:
+    """Held while a hand is at work; it ends by itself a second after it was last used."""
+
+    def __init__(self, name: str) -> None:
+        self.client = nt.commands.attach(name)
+
+    def take(self) -> None:
+        """Take or renew it; :class:`~nanotouch.errors.Error` in words while another program holds it."""
+        try:
+            self.client.lease()
+        except Error:
+            raise Error(TAKEN) from None
+
+    def close(self) -> None:
+        """Let go."""
+        self.client.close()
+
+
+class Remote:
+    """Changes, stop and arm of a session that this window does not lead."""
+
+    def __init__(self, name: str, observer: nt.frames.Observer) -> None:
+        self.name, self.observer = name, observer
+        self.lease = Lease(name)
+        self.asked: dict[int, Message] = {}
+        self.described = 0
+        self.world: Message = {}
+        self._changed = False
+
+    def news(self) -> Message | None:
+        """The world, if it is another one than at the last call: the session has said so, whoever changed it."""
+        if self.observer.changes != self.described:
+            text, self.described = self.observer.description, self.observer.changes
+            self.world, self._changed = world_of(json.loads(text), self.name, WATCHED), True
+        changed, self._changed = self._changed, False
+        return copy.deepcopy(self.world) if changed else None
+
+    def ask(self, message: Message) -> None:
+        """Post a request; what a window without a hand cannot ask is refused."""
+        if message["do"] == "stop":
+            self.lease.client.stop()
+            return
+        kind, field, values = self._request(message)
+        self.lease.take()
+        first, second = (*values, 0.0)[:2]
+        self.asked[self.lease.client.post(kind, field, (first, second, 0.0, 0.0))] = message
+
+    def _request(self, message: Message) -> tuple[int, int, list[float]]:
+        match message["do"]:
+            case "arm":
+                return ARM, 0, [1.0]
+            case "change" if message["field"] in ("gains.alpha_p", "gains.alpha_f"):
+                gains = self.world["settings"]["gains"]
+                scales = {name: float(gains[name]) for name in ("alpha_p", "alpha_f")}
+                scales[message["field"].removeprefix("gains.")] = float(message["value"])
+                return RESCALE, 0, list(scales.values())
+            case "change" if message["what"] in ("scene", "settings"):
+                kind, fields = (SCENE, nt.Scene.fields) if message["what"] == "scene" else (SETTING, nt.Settings.fields)
+                return kind, list(fields).index(message["field"]), [float(message["value"])]
+        raise Error("this window watches: the program that has opened the session leads the hand")
+
+    def answers(self) -> list[tuple[Message, Answer]]:
+        """What has been decided since the last call."""
+        found = [(asked, self.lease.client.poll(asked)) for asked in self.asked]
+        decided = [(self.asked.pop(asked), answer) for asked, answer in found if not answer.pending]
+        for message, answer in decided:
+            if message["do"] == "change" and not answer.status and self.world:
+                section, key = message["field"].split(".")
+                self.world[message["what"]][section][key] = message["value"]
+                self._changed = True
+        return decided
+
+    def close(self) -> None:
+        """Let go."""
+        self.lease.close()

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch rig``: is a rig file whole, and does this machine keep its rate? Nothing is moved."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+from nanotouch import rig_file
+from nanotouch.units import in_words
+
+from nanotouch_app import latency
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "rig", help="check a rig file, probe its machine", description=__doc__
+    )
+    jobs = parser.add_subparsers(dest="job", required=True, metavar="JOB")
+    for job, words in (
+        ("check", "read the file: everything must be there and fit its chips; no device is touched"),
+        ("probe", "time the frames of its devices and the wake-up of a loop; exit status 1 if the rate is not kept"),
+    ):
+        one = jobs.add_parser(job, help=words, description=words)
+        one.add_argument("file", type=Path, metavar="RIG.toml")
+        if job == "probe":
+            latency.add_options(one)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command."""
+    found = rig_file.read(args.file)
+    nt.Rig.from_tables(found.rig)
+    halves = {"master": found.master, "slave": found.slave}
+    args.answer = {name: _told(half) for name, half in halves.items()}
+    for name, half in halves.items():
+        print(f"{name}: {_told(half)}")
+    return 0 if args.job == "check" else _probe(args, halves)
+
+
+def _told(half: rig_file.Converters | None) -> str:
+    if half is None:
+        return "simulated"
+    chips = ", ".join(f"{chip['chip']} at {chip['device']}" for chip in half.setup["chips"])
+    oldest = min(half.calibrated.values())
+    return f"{chips}; {len(half.calibrated)} channels, calibrated {oldest} or later"
+
+
+def _probe(args: argparse.Namespace, halves: dict[str, rig_file.Converters | None]) -> int:
+    frames = 0.0
+    for half in halves.values():
+        if half is None:
+            continue
+        for chip, times in zip(half.setup["chips"], rig_file.frame_times(half), strict=True):
+            print(f"{chip['chip']}: a frame p50 {in_words(times.median, 's', 3)}, p99.9 {in_words(times.late, 's', 3)}")
+            frames += 3.0 * times.late if chip is half.setup["chips"][0] else times.late
+    met = latency.measured(args)
+    latency.tell(met, args.priority)
+    late = met.quantiles[0.999]
+    share = latency.SHARE_OF_PERIOD * met.period
+    kept = late <= share and met.missed == 0 and late + frames <= met.period
+    reasons = [
+        *([f"p99.9 of the wake-up is above a fifth of the period, {in_words(share, 's', 3)}"] if late > share else []),
+        *([f"{met.missed} periods were lost"] if met.missed else []),
+        *(["wake-up and frames do not fit into a period"] if late + frames > met.period else []),
+    ]
+    args.answer |= {"rate": args.rate, "kept": kept, "reasons": reasons, "latency": met._asdict()}
+    print(f"{args.rate}: " + ("kept" if kept else "not kept: " + "; ".join(reasons)))
+    return 0 if kept else 1

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a command is told about the scene: a TOML file, or the name of a preset."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from typing import Any, NamedTuple
+
+import nanotouch as nt
+from nanotouch import presets
+from nanotouch.errors import InvalidValue
+from nanotouch.scene import read_tables
+
+PRESETS = tuple(presets.FELT)
+PAPER = (
+    "paper_silicon", "paper_gold", "paper_mica", "paper_polyester", "paper_silicone_rubber", "paper_inas",
+)  # fmt: skip
+"""the scenes of the paper as they stand there, up to the largest load of its rig"""
+HELP = "TOML file with {what}, or a preset, as silicon_in_air (nanotouch plan --help lists them)"
+
+
+class Described(NamedTuple):
+    """What the name stands for."""
+
+    scene: nt.Scene
+    rig: nt.Rig
+    tables: dict[str, Any]
+    """of the file; empty for a preset"""
+
+
+def read(name: str | None) -> Described:
+    """A preset by its name, or a file; None is the default, silicon in humid air."""
+    if name in PRESETS + PAPER:
+        scene, rig = getattr(presets, name)()
+        return Described(scene, rig, {})
+    tables = {} if name is None else read_tables(_checked(name))
+    return Described(nt.Scene.from_tables(tables), nt.Rig.from_tables(tables), tables)
+
+
+def _checked(name: str) -> str:
+    """The file, if it can be one."""
+    if not name.endswith(".toml") and not os.path.exists(name):
+        close = difflib.get_close_matches(name, PRESETS + PAPER, n=1)
+        hint = f"; did you mean {close[0]}" if close else ""
+        raise InvalidValue(f"{name!r} is neither a TOML file nor a preset{hint}; presets are {', '.join(PRESETS)}")
+    return name
