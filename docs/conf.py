@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The site: ``make docs``. Pages on the command and the headers are written when it is built."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent
+sys.path.insert(0, str(HERE))
+
+project = "nanotouch"
+author = "The libnanotouch authors"
+version = release = re.search(r'NT_VERSION "([^"]+)"', (ROOT / "libnanotouch/include/nanotouch/version.h").read_text())[
+    1
+]  # type: ignore[index]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx.ext.doctest",
+    "sphinx_gallery.gen_gallery",
+    "sphinx_copybutton",
+]
+html_theme = "furo"
+html_title = f"nanotouch {version}"
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+exclude_patterns = ["README.md", "examples/**", "build", "gallery/*.md5", "decisions/README.md"]
+myst_enable_extensions = ["deflist", "colon_fence"]
+myst_heading_anchors = 4
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+autodoc_preserve_defaults = True
+napoleon_use_ivar = True
+doctest_global_setup = """
+import numpy as np
+import nanotouch as nt
+from nanotouch import *
+from nanotouch.geometry import Shape, validity
+"""
+html_copy_source = False
+suppress_warnings = ["ref.python"]  # fields of many records have the same name, such as x
+linkcheck_ignore = [r"https?://localhost.*", r"tcp://.*"]
+sphinx_gallery_conf = {
+    "examples_dirs": "examples/gallery",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"/plot_",
+    "remove_config_comments": True,
+    "abort_on_example_error": True,
+    "within_subsection_order": "FileNameSortKey",
+    "min_reported_time": 1000,
+    "show_memory": False,
+    "capture_repr": (),
+    "download_all_examples": False,
+    "default_thumb_file": str(HERE / "pictures/touch.png"),
+}
+
+
+def command_page() -> str:
+    """The reference of the command: its own help texts."""
+    from nanotouch_app.main import COMMANDS, build_parser
+
+    parser = build_parser()
+    (commands,) = (action for action in parser._actions if isinstance(action.choices, dict))
+    parts = ["# The command\n", f"```text\n{parser.format_help()}```\n"]
+    for name in COMMANDS:
+        parts.append(f"## nanotouch {name}\n\n```text\n{commands.choices[name].format_help()}```\n")
+    return "\n".join(parts)
+
+
+def header_page() -> str:
+    """The reference of the C library: its public headers, which say all that there is to say."""
+    headers = sorted((ROOT / "libnanotouch/include/nanotouch").glob("*.h"))
+    parts = ["# The C headers\n", "A user includes `nanotouch/nanotouch.h`, or the one that is needed.\n"]
+    for header in headers:
+        parts.append(f"## {header.name}\n\n```{{literalinclude}} ../../{header.relative_to(ROOT)}\n:language: c\n```\n")
+    return "\n".join(parts)
+
+
+def write_pages(app: Any) -> None:
+    """Write what is made from the sources; unchanged pages keep their time, so that nothing is built again."""
+    for name, text in (("command.md", command_page()), ("headers.md", header_page())):
+        path = HERE / "reference" / name
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
+
+
+def keep_links_inside(app: Any, name: str, source: list[str]) -> None:
+    """Links to folders and to sources, which the site does not have, become plain text."""
+    folder = Path(app.srcdir, name).parent
+
+    def plain(link: re.Match[str]) -> str:
+        target = (folder / link[2]).resolve()
+        return link[1] if target.is_dir() or (target.exists() and HERE not in target.parents) else link[0]
+
+    source[0] = re.sub(r"\[([^\]]+)\]\(([^)#:\s]+)\)", plain, source[0])
+
+
+def setup(app: Any) -> None:
+    """Called by Sphinx."""
+    app.connect("builder-inited", write_pages)
+    app.connect("source-read", keep_links_inside)
