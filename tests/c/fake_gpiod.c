@@ -22,6 +22,7 @@ struct gpiod_line_info {
 };
 struct gpiod_line_settings {
     int is_output, pulled_down, value;
+    unsigned long debounce;
 };
 struct gpiod_line_config {
     unsigned offset;
@@ -177,6 +178,11 @@ int gpiod_line_settings_set_output_value(struct gpiod_line_settings *settings, e
     return 0;
 }
 
+void gpiod_line_settings_set_debounce_period_us(struct gpiod_line_settings *settings, unsigned long period)
+{
+    settings->debounce = period;
+}
+
 struct gpiod_line_config *gpiod_line_config_new(void)
 {
     return fake_new(sizeof(struct gpiod_line_config));
@@ -223,6 +229,7 @@ struct gpiod_line_request *gpiod_chip_request_lines(struct gpiod_chip *chip, str
     line->requested = 1;
     line->is_output = lines->settings.is_output;
     line->pulled_down = lines->settings.pulled_down;
+    line->debounce = lines->settings.debounce;
     if (line->is_output)
         line->level = lines->settings.value;
     struct gpiod_line_request *request = fake_new(sizeof *request);
@@ -248,6 +255,7 @@ int gpiod_line_request_set_value(struct gpiod_line_request *request, unsigned of
 {
     if (request->line->gone || offset != request->offset)
         return -1;
+    request->line->edges += request->line->level != (value == GPIOD_LINE_VALUE_ACTIVE);
     request->line->level = value == GPIOD_LINE_VALUE_ACTIVE;
     return 0;
 }

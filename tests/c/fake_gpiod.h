@@ -10,6 +10,8 @@ typedef struct fake_line {
     const char *name, *consumer; /* consumer NULL: free */
     int level;                   /* 1: high */
     int is_output, pulled_down;  /* as it was requested */
+    unsigned long debounce;      /* as it was requested [us] */
+    long edges;                  /* of an output so far */
     int refuse;                  /* errno that a request for it ends with, or 0 */
     int requested;               /* held by a request now */
     int gone;                    /* every access fails */

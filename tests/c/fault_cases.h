@@ -59,6 +59,36 @@ static const fault_case fault_cases[] = {
 };
 enum { FAULT_CASES = (int)(sizeof fault_cases / sizeof *fault_cases) };
 
+/* Rows that an audit of single faults of random value found missing: one at a time. */
+static const fault_case later_cases[] = {
+    {"stage without power", CASE(POWER, STAGE, FOREVER, -1e-6), NT_HOLD, 30, NT_LATCHED, NT_REASON_FOLLOW},
+    {"stage without power for 20 ms", CASE(POWER, STAGE, 0.02, -1e-6), NT_HOLD, 30, NT_HOLD, NT_REASON_FOLLOW},
+    {"motor without power", CASE(POWER, MOTOR, FOREVER, 0.0), NT_HOLD, 5000, NT_HOLD, NT_REASON_UNSTABLE},
+    {"clocks drift apart by 1000 ppm", CASE(CLOCK_DRIFT, RIG, FOREVER, 1e-3), NT_HOLD, 2100, NT_RETRACT,
+     NT_REASON_STALE},
+    {"samples from the future by 1000 ppm", CASE(CLOCK_DRIFT, RIG, FOREVER, -1e-3), NT_HOLD, 2, NT_RETRACT,
+     NT_REASON_INVALID},
+    {"deflection read three times as large", CASE(GAIN, DEFLECTION, FOREVER, 3.0), NT_RETRACT, 1, NT_RETRACT,
+     NT_REASON_FORCE_LIMIT},
+    {"deflection read as a tenth", CASE(GAIN, DEFLECTION, FOREVER, 0.1), NT_RETRACT, 6000, NT_RETRACT,
+     NT_REASON_INDENTATION},
+    {"deflection with the wrong sign", CASE(GAIN, DEFLECTION, FOREVER, -1.0), NT_RETRACT, 1000, NT_RETRACT,
+     NT_REASON_INDENTATION},
+    {"stage read-out goes a half", CASE(GAIN, STAGE_POSITION, FOREVER, 0.5), NT_HOLD, 2000, NT_LATCHED,
+     NT_REASON_FOLLOW},
+    {"deflection's zero drifts by 1 um/s", CASE(DRIFT, DEFLECTION, FOREVER, 1e-6), NT_RETRACT, 3000, NT_LATCHED,
+     NT_REASON_FORCE_LIMIT},
+    {"deflection's zero drifts by -1 um/s", CASE(DRIFT, DEFLECTION, FOREVER, -1e-6), NT_RETRACT, 6000, NT_RETRACT,
+     NT_REASON_INDENTATION},
+    {"frame drifts by 1 um/s", CASE(DRIFT, STAGE, FOREVER, 1e-6), NT_RETRACT, 6000, NT_RETRACT, NT_REASON_FORCE_LIMIT},
+    {"stage sticks for 80 ms, then slips", CASE(GAIN, STAGE, 0.08, 0.0), NT_HOLD, 1000, NT_LATCHED, NT_REASON_FOLLOW},
+    {"surface rises by 10 nm", CASE(JUMP, RIG, FOREVER, 10e-9), NT_RUN, 0, NT_RUN, 0},
+    {"stage read-out slips by 0.3 um", CASE(SLIP, STAGE_POSITION, FOREVER, 0.3e-6), NT_RETRACT, 1, NT_LATCHED,
+     NT_REASON_FOLLOW},
+    {"master slips by 0.1 mm", CASE(SLIP, MASTER_POSITION, FOREVER, 1e-4), NT_RUN, 0, NT_RUN, 0},
+};
+enum { LATER_CASES = (int)(sizeof later_cases / sizeof *later_cases) };
+
 /* Too much gain is made with a loop of 1 kHz, whose margin is 17; all else at 10 kHz. */
 static inline int is_slow(const fault_case *f)
 {

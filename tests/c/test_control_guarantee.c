@@ -14,8 +14,16 @@
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 
-static const nt_hazard flat = {
-    .pull_off_force = 18e-9, .snap_in = 50e-9, .snap_in_depth = 0.2e-9, .stiffness = 1000.0, .unseen = 0.3e-9};
+/* A lever that rings on for ever. */
+static const nt_hazard flat = {.pull_off_force = 18e-9,
+                               .snap_in = 50e-9,
+                               .snap_in_depth = 0.2e-9,
+                               .arrival = 40e-9,
+                               .thermal = 5e-9,
+                               .ring_down = HUGE_VAL,
+                               .stiffness = 1000.0,
+                               .unseen = 0.3e-9,
+                               .deepest = HUGE_VAL};
 
 static void it_is_the_limit_and_its_terms(void **state)
 {
@@ -25,7 +33,7 @@ static void it_is_the_limit_and_its_terms(void **state)
     const nt_guarantee g = nt_guarantee_compute(&rig, &settings, &flat);
     const double terms = g.calibration + g.motion + g.ringing + g.snap_in + g.noise;
     assert_true(fabs(g.force - settings.limits.force - terms) < 1e-18);
-    assert_true(g.snap_in == flat.snap_in);
+    assert_true(fabs(g.snap_in - flat.snap_in) < 1e-18 && g.arrival == flat.arrival);
     const double off = 3.0 * sqrt(0.05 * 0.05 + 0.02 * 0.02);
     assert_true(fabs(g.calibration / settings.limits.force - off / (1.0 - off)) < 1e-12);
     assert_true(1.0 + off / (1.0 - off) > (1.0 + 0.05 * 2.9) / (1.0 - 0.02 * 0.76)); /* 2.9^2 + 0.76^2 = 9 */
@@ -35,6 +43,9 @@ static void it_is_the_limit_and_its_terms(void **state)
     assert_true(fabs(g.speed - 26e-6) < 1e-18);
     assert_true(fabs(g.motion - 26e-6 * g.reaction_time * k_eff) < 1e-15);
     assert_true(g.indentation > settings.limits.indentation + 26e-6 * g.reaction_time + flat.snap_in_depth);
+    nt_hazard hard = flat;
+    hard.deepest = 2e-9;
+    assert_true(nt_guarantee_compute(&rig, &settings, &hard).indentation == 2e-9);
     assert_true(fabs(g.zero_drift - 9.2 * 0.1e-9) < 1e-20 && fabs(g.frame_drift - k_eff * 1e-9) < 1e-20);
     assert_true(fabs(g.help_time - 50e3) < 1e-6); /* half of 100 um at 1 nm/s */
 }
@@ -63,6 +74,10 @@ static void one_failure_is_the_worst_of_them(void **state)
     settings.limits.indentation = 30e-9;
     assert_true(nt_guarantee_compute(&rig, &settings, &flat).failure[NT_FAILURE_READ_OUT] <
                 0.11 * g.failure[NT_FAILURE_READ_OUT]);
+    /* without an integral nothing tells a stage that sticks from one with hysteresis */
+    nt_settings open = settings;
+    open.gains.stage_integral = 0.0;
+    assert_true(isinf(nt_guarantee_compute(&rig, &open, &flat).failure[NT_FAILURE_SLIP]));
     /* a sensor whose noise is below one step is not told from a dead one */
     rig.probe.noise = 0.0;
     const nt_guarantee silent = nt_guarantee_compute(&rig, &settings, &flat);
@@ -71,6 +86,30 @@ static void one_failure_is_the_worst_of_them(void **state)
     rig.stage.slip = 1e-6;
     assert_true(fabs(nt_guarantee_compute(&rig, &settings, &flat).failure[NT_FAILURE_SLIP] - 1e-6 * 9.2 / 1.0092) <
                 1e-15);
+}
+
+/* The swing of a jump dies away while the force grows: what is left is never more than both have at one time. */
+static void a_swing_dies_away(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    const nt_settings settings = nt_settings_defaults(&rig);
+    nt_hazard hazard = flat;
+    hazard.snap_in = 4e-6;
+    const double whole = nt_guarantee_compute(&rig, &settings, &hazard).force, still = whole - hazard.snap_in;
+    for (double tau = 1e-5; tau < 1.0; tau *= 3.0) {
+        hazard.ring_down = tau;
+        const nt_guarantee g = nt_guarantee_compute(&rig, &settings, &hazard);
+        double most = still + hazard.thermal;
+        for (double t = 0.0; t < 0.1; t += 1e-6) {
+            const double pressed = smaller(still, g.motion / g.reaction_time * t + g.ringing);
+            most = larger(most, pressed + hazard.thermal + (hazard.snap_in - hazard.thermal) * exp(-t / tau));
+        }
+        assert_true(g.force >= most * (1.0 - 1e-12) && g.force < 1.03 * most);
+    }
+    hazard.ring_down = 1e-5;
+    hazard.snap_in = 50e-9;
+    assert_true(nt_guarantee_compute(&rig, &settings, &hazard).snap_in == flat.pull_off_force); /* no less than that */
 }
 
 /* What makes it worse makes it larger. */
@@ -140,6 +179,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_the_limit_and_its_terms),
         cmocka_unit_test(one_failure_is_the_worst_of_them),
+        cmocka_unit_test(a_swing_dies_away),
         cmocka_unit_test(every_hazard_counts),
         cmocka_unit_test(the_stage_rings_no_farther),
     };

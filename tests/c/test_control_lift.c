@@ -20,20 +20,28 @@ typedef struct rig {
     nt_sample sample;
     nt_command command;
     double surface; /* x_s of first touch [m] */
-    double sign;    /* of the stage */
+    double sign;    /* of the stage: the share of its way that it goes */
     double drift;   /* of surface towards the tip [m/s] */
     double most;    /* deflection so far [m] */
     int blind;      /* the deflection is not a number */
     int64_t ticks;
 } rig;
 
-static void set_up(rig *r)
+static void set_up_with(rig *r, double hysteresis, double follow_time)
 {
-    const nt_rig paper = nt_rig_defaults();
-    const nt_settings settings = nt_settings_defaults(&paper);
+    nt_rig paper = nt_rig_defaults();
+    paper.stage.hysteresis = hysteresis;
+    nt_settings settings = nt_settings_defaults(&paper);
+    settings.limits.follow_time = follow_time;
     *r = (rig){.surface = -100e-9, .sign = 1.0};
     assert_int_equal(nt_touch_make(&r->touch, &paper, &settings, NT_MODE_TOUCH, NULL), NT_OK);
     r->state = nt_touch_start(&r->touch, 0.0, 0.0, 0.0);
+}
+
+static void set_up(rig *r)
+{
+    const nt_rig paper = nt_rig_defaults();
+    set_up_with(r, 0.0, nt_settings_defaults(&paper).limits.follow_time);
 }
 
 /* A stiff sample: what the stage goes beyond first touch bends the lever. */
@@ -130,12 +138,59 @@ static void a_stage_that_did_not_follow_waits(void **state)
     }
 }
 
+/* Hysteresis that is declared takes its share of a lift, for the integral stands still meanwhile. No force can be
+ * read, so nothing else tells that it lifts: it goes on all the same, and is no fault. */
+static void declared_hysteresis_stops_no_lift(void **state)
+{
+    (void)state;
+    rig r;
+    set_up_with(&r, 0.1, 5e-3);
+    run(&r, 100);
+    r.blind = 1;
+    r.sign = 0.81;
+    run(&r, 60000);
+    assert_int_equal(r.command.state, NT_RETRACT);
+    assert_int_equal(r.state.supervisor.lift, NT_LIFT_GOES);
+    assert_true(fabs(r.command.stage_position[NT_Z] + r.touch.stage_end) < 1e-12);
+}
+
+/* A sensor that clips below its range looks dead: no noise. If the stage does not show the lift meanwhile, that waits.
+ * When the sensor tells again, and drift presses, it is tried: fault 644 of the adversary was given up for good. */
+static void a_lift_that_nothing_told_of_is_tried_when_the_force_grows(void **state)
+{
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        rig r;
+        set_up(&r);
+        r.surface = 100e-9;
+        stop(&r);
+        const double stood = r.command.stage_position[NT_Z];
+        for (int i = 0; i < 3000; i++) {
+            r.sample.stage_position[NT_Z] = stood;
+            r.sample.deflection[NT_Z] = -100e-9;
+            nt_touch_step(&r.touch, &r.state, &r.sample, &r.command);
+        }
+        assert_int_equal(r.command.state, NT_LATCHED);
+        assert_int_equal(r.state.supervisor.lift, NT_LIFT_WAITS);
+        r.sign = turned ? -1.0 : 1.0;
+        r.surface = r.sign * r.command.stage_position[NT_Z] + 5e-9;
+        r.most = 0.0;
+        r.drift = 1e-8;
+        run(&r, 100000);
+        assert_int_equal(r.state.supervisor.lift, turned ? NT_LIFT_GIVEN_UP : NT_LIFT_TRIES);
+        if (!turned)
+            assert_true(r.most < 5e-9 && r.sample.deflection[NT_Z] < 2e-9);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(drift_is_lifted_from),
         cmocka_unit_test(what_cannot_be_read_is_lifted_as_far_as_it_goes),
         cmocka_unit_test(a_stage_that_did_not_follow_waits),
+        cmocka_unit_test(declared_hysteresis_stops_no_lift),
+        cmocka_unit_test(a_lift_that_nothing_told_of_is_tried_when_the_force_grows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

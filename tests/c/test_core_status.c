@@ -48,6 +48,19 @@ static void problem_without_unit(void **state)
                         "medium.kind = 3: valid is 0 .. 2 (air|vacuum|liquid)");
 }
 
+/* A reason is a sentence with the error that there would be, and no range. */
+static void problem_that_is_a_reason(void **state)
+{
+    (void)state;
+    char text[100];
+    const nt_problem known = {"sample: too soft", NT_UNIT_ERROR, 0.3, 0.0, 0.01};
+    const nt_problem unknown = {"sample: too soft", NT_UNIT_ERROR, HUGE_VAL, 0.0, 0.01};
+    assert_string_equal(nt_problem_print(&known, text, sizeof text),
+                        "sample: too soft: error 0.3 where 0.01 is demanded");
+    assert_string_equal(nt_problem_print(&unknown, text, sizeof text),
+                        "sample: too soft: no bound of the error is known");
+}
+
 /* What is said to be valid is, though it is said with six digits. */
 static void limits_are_printed_inwards(void **state)
 {
@@ -84,7 +97,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_status_has_its_own_message), cmocka_unit_test(unknown_status_has_a_message),
         cmocka_unit_test(problem_reads_as_a_sentence),      cmocka_unit_test(problem_without_unit),
-        cmocka_unit_test(limits_are_printed_inwards),       cmocka_unit_test(short_text_is_cut_and_ended),
+        cmocka_unit_test(problem_that_is_a_reason),         cmocka_unit_test(limits_are_printed_inwards),
+        cmocka_unit_test(short_text_is_cut_and_ended),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,7 +30,7 @@ static nt_fit_outcome read_with_spikes(double height)
                                (x > 1.5e-6 && i % 7 == 0 ? height * noise : 0.0);
         }
     nt_fit_recipe recipe = nt_fit_recipe_defaults(NT_FIT_HERTZ);
-    const nt_fit_curve curve = {{z[0], force[0], POINTS}, {z[1], force[1], POINTS}, spring_constant};
+    const nt_curve curve = {{z[0], force[0], POINTS}, {z[1], force[1], POINTS}, spring_constant, 0.0, 0.0};
     const nt_fit_curves one = {&curve, 1, 1};
     nt_fit_outcome outcome;
     assert_int_equal(nt_fit_batch(&recipe, &one, &outcome), NT_OK);

@@ -41,10 +41,10 @@ static double uniform(uint64_t *state)
     return (double)(*state >> 11) / 9007199254740992.0;
 }
 
-static nt_fit_curve curve_of(int i)
+static nt_curve curve_of(int i)
 {
-    const nt_fit_segment approach = {z_[0], force_[i][0], POINTS}, retract = {z_[1], force_[i][1], POINTS};
-    const nt_fit_curve curve = {approach, retract, spring_constant};
+    const nt_curve_segment approach = {z_[0], force_[i][0], POINTS}, retract = {z_[1], force_[i][1], POINTS};
+    const nt_curve curve = {approach, retract, spring_constant, 0.0, 0.0};
     return curve;
 }
 
@@ -75,7 +75,7 @@ static nt_fit_recipe recipe_of(void)
     return recipe;
 }
 
-static void run(const nt_fit_curve *curves, int count, int threads, nt_fit_outcome *outcome)
+static void run(const nt_curve *curves, int count, int threads, nt_fit_outcome *outcome)
 {
     const nt_fit_recipe recipe = recipe_of();
     const nt_fit_curves all = {curves, count, threads};
@@ -86,7 +86,7 @@ static void finds_modulus_contact_point_and_baseline(void **state)
 {
     (void)state;
     nt_fit_outcome outcome[CURVES];
-    nt_fit_curve curves[CURVES];
+    nt_curve curves[CURVES];
     double pull = 0.0;
     for (int i = 0; i < CURVES; i++)
         curves[i] = curve_of(i);
@@ -111,7 +111,7 @@ static void threads_and_neighbours_change_no_bit(void **state)
 {
     (void)state;
     static nt_fit_outcome alone[CURVES], together[CURVES];
-    nt_fit_curve curves[CURVES];
+    nt_curve curves[CURVES];
     for (int i = 0; i < CURVES; i++) {
         curves[i] = curve_of(i);
         run(&curves[i], 1, 1, &alone[i]);
@@ -130,7 +130,7 @@ static void bad_curves_say_what_is_wrong(void **state)
 {
     (void)state;
     static double bad[4][POINTS];
-    nt_fit_curve curves[7];
+    nt_curve curves[7];
     nt_fit_outcome outcome[7];
     for (int i = 0; i < 7; i++)
         curves[i] = curve_of(i);
@@ -143,7 +143,7 @@ static void bad_curves_say_what_is_wrong(void **state)
     for (int i = 0; i < 3; i++)
         curves[i].approach.force = bad[i];
     curves[3].approach.count = 0;
-    curves[4].approach.count = NT_FIT_MIN_POINTS - 1;
+    curves[4].approach.count = NT_CURVE_FEWEST - 1;
     curves[5].spring_constant = -1.0;
     run(curves, 7, 2, outcome);
     const nt_status expected[7] = {NT_E_NOT_FINITE, NT_E_RANGE, NT_E_RANGE, NT_E_RANGE, NT_E_RANGE, NT_E_RANGE, NT_OK};
@@ -176,7 +176,7 @@ static void wrong_recipes_are_refused(void **state)
     recipe = recipe_of();
     recipe.options.radius = -1.0;
     assert_int_equal(nt_fit_recipe_check(&recipe, &problem), NT_E_RANGE);
-    const nt_fit_curve curve = curve_of(0);
+    const nt_curve curve = curve_of(0);
     const nt_fit_curves one = {&curve, 1, 1};
     nt_fit_outcome outcome;
     assert_int_equal(nt_fit_batch(&recipe, &one, &outcome), NT_E_RANGE);
@@ -191,7 +191,7 @@ static void a_window_limits_what_is_fitted(void **state)
 {
     (void)state;
     nt_fit_recipe recipe = recipe_of();
-    const nt_fit_curve curve = curve_of(0);
+    const nt_curve curve = curve_of(0);
     const nt_fit_curves one = {&curve, 1, 1};
     nt_fit_outcome all, part, none;
     assert_int_equal(nt_fit_batch(&recipe, &one, &all), NT_OK);

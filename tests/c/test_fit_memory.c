@@ -45,9 +45,9 @@ static nt_status run_tear(void *out)
 static nt_status run_batch(void *out)
 {
     static nt_fit_outcome outcome[CURVES];
-    nt_fit_curve recorded[CURVES];
+    nt_curve recorded[CURVES];
     for (int i = 0; i < CURVES; i++)
-        recorded[i] = (nt_fit_curve){{heights[0], forces[0], POINTS}, {heights[1], forces[1], POINTS}, 1.0};
+        recorded[i] = (nt_curve){{heights[0], forces[0], POINTS}, {heights[1], forces[1], POINTS}, 1.0, 0.0, 0.0};
     const nt_fit_curves curves = {recorded, CURVES, threads};
     memset(outcome, 0xa5, sizeof outcome);
     const nt_status status = nt_fit_batch(&recipe, &curves, outcome);

@@ -14,7 +14,7 @@
 
 enum { POINTS = 600 };
 
-static nt_fit_reading reading_of(const nt_fit_curve *curve)
+static nt_fit_reading reading_of(const nt_curve *curve)
 {
     nt_fit_recipe recipe = nt_fit_recipe_defaults(NT_FIT_HERTZ);
     nt_fit_outcome outcome;
@@ -44,7 +44,7 @@ static void the_work_of_adhesion_is_an_area(void **state)
         }
         const double from = z[first] - z0, to = z[last] - z0, step = z[last + 1] - z[last];
         expected = 0.5 * k * (to * to - from * from) + 0.5 * k * to * step;
-        const nt_fit_curve curve = {.retract = {z, force, POINTS}, .spring_constant = k};
+        const nt_curve curve = {.retract = {z, force, POINTS}, .spring_constant = k};
         const nt_fit_reading found = reading_of(&curve);
         assert_within(found.pull_off_force.value, k * to, 1e-12);
         assert_within(found.adhesion_work.value, expected, 1e-4 * expected);

@@ -282,9 +282,31 @@ static void a_device_that_is_lost_shows_in_the_reading(void **state)
     d.next = reading_of(4);
     assert_int_equal(nt_hal_read(&hal), NT_OK);
     expect_number(&hal, 4.0);
-    d.reads = d.writes = NT_E_NO_CONVERGENCE; /* anything else is for the caller */
+    d.reads = 77; /* no status that anybody knows: lost all the same */
+    assert_int_equal(nt_hal_read(&hal), NT_OK);
+    expect_nothing(&hal, lost);
+    d.reads = d.writes = NT_E_NO_CONVERGENCE;
+    hal.is_model = 1; /* what fails in a model is for the caller */
     assert_int_equal(nt_hal_read(&hal), NT_E_NO_CONVERGENCE);
     assert_int_equal(nt_hal_write(&hal, &action), NT_E_NO_CONVERGENCE);
+}
+
+static void what_is_no_lateness_is_too_late(void **state)
+{
+    (void)state;
+    const nt_backend backend = backend_of(NT_HALF_SLAVE);
+    device d = {.next = reading_of(1)};
+    nt_hal hal;
+    assert_int_equal(open_half(&hal, &backend, &d), NT_OK);
+    const double wrong[] = {NAN, -1.0, -INFINITY};
+    for (int i = 0; i < 3; ++i) {
+        d.next.lateness = wrong[i];
+        assert_int_equal(nt_hal_read(&hal), NT_OK);
+        assert_true(isinf(hal.reading.lateness));
+    }
+    d.next.lateness = 2e-6;
+    assert_int_equal(nt_hal_read(&hal), NT_OK);
+    assert_true(hal.reading.lateness == 2e-6);
 }
 
 static void flags_and_lateness_of_both_halves_count(void **state)
@@ -306,6 +328,7 @@ static void flags_and_lateness_of_both_halves_count(void **state)
     assert_int_equal(nt_hal_sample(&master, &slave, 5, 2000, &sample), NT_OK);
     assert_true(sample.lateness == 3e-5);
     sample.tick = 77;
+    slave.is_model = 1;
     e.reads = NT_E_NO_CONVERGENCE; /* then nothing is written */
     assert_int_equal(nt_hal_sample(&master, &slave, 5, 2000, &sample), NT_E_NO_CONVERGENCE);
     assert_int_equal(sample.tick, 77);
@@ -321,6 +344,7 @@ static void a_command_reaches_both_halves(void **state)
     assert_int_equal(open_half(&slave, &probe, &e), NT_OK);
     const nt_command command = {.motor_force = {1.0, 2.0, 3.0}, .stage_position = {4.0, 5.0, 6.0}, .state = NT_HOLD};
     nt_action action = {.size = sizeof action, .tick = 11, .time = 12};
+    master.is_model = slave.is_model = 1;
     d.writes = NT_E_NOT_FINITE; /* the slave is told all the same */
     assert_int_equal(nt_hal_command(&master, &slave, &command, &action), NT_E_NOT_FINITE);
     assert_memory_equal(d.told.target, command.motor_force, sizeof command.motor_force);
@@ -345,6 +369,7 @@ int main(void)
         cmocka_unit_test(what_is_not_valid_is_no_number),
         cmocka_unit_test(nothing_has_been_measured_before_the_first_reading),
         cmocka_unit_test(a_device_that_is_lost_shows_in_the_reading),
+        cmocka_unit_test(what_is_no_lateness_is_too_late),
         cmocka_unit_test(flags_and_lateness_of_both_halves_count),
         cmocka_unit_test(a_command_reaches_both_halves),
     };

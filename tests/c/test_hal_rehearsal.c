@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "nanotouch/hal.h"
+#include "host_fixture.h"
 
 typedef enum offence {
     NONE,
@@ -56,22 +56,6 @@ typedef struct device {
     int is_out_of_order;
     double left_at; /* what the motor is left at [N] */
 } device;
-
-static int64_t clock_now;
-
-static int64_t now(const nt_host *host)
-{
-    (void)host;
-    return clock_now;
-}
-
-static void pass(const nt_host *host, double period)
-{
-    (void)host;
-    clock_now += llround(1e9 * period);
-}
-
-static const nt_host host = {sizeof host, NT_HAL_API_VERSION, now, NULL, NULL};
 
 static nt_status open_device(void *context, const nt_host *given, nt_problem *problem)
 {

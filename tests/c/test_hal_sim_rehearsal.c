@@ -8,23 +8,8 @@
 
 #include <cmocka.h>
 
+#include "host_fixture.h"
 #include "nanotouch/sim.h"
-
-static int64_t clock_now;
-
-static int64_t now(const nt_host *host)
-{
-    (void)host;
-    return clock_now;
-}
-
-static void pass(const nt_host *host, double period)
-{
-    (void)host;
-    clock_now += llround(1e9 * period);
-}
-
-static const nt_host host = {sizeof host, NT_HAL_API_VERSION, now, NULL, NULL};
 
 static void rehearse(nt_half half, void *context, const nt_sim_setup *setup)
 {

@@ -152,7 +152,9 @@ static void a_plan_keeps_its_bound(void **state)
                 if (fabs(gap - full.release_gap) > 1e-6 * full.release_gap)
                     assert_true(error <= bound * larger(fabs(F), full.pull_off_force));
             }
-        assert_true(plan.bound.force_error <= demand.relative_accuracy && plan.cost <= full.cost);
+        const double rigid = plan.yield.count > 0 ? 0.0 : larger(plan.rigid_error, plan.around_error);
+        const double beyond = rigid >= demand.relative_accuracy ? rigid * (1.0 + 1e-12) : 0.0; /* which is warned of */
+        assert_true(plan.bound.force_error <= demand.relative_accuracy + beyond && plan.cost <= full.cost);
     }
     assert_true(made > 100);
 }

@@ -147,12 +147,113 @@ static void force_is_the_slope_of_energy(void **state)
     }
 }
 
+/* A contact whose adhesion ends at c = sqrt(a^2 + e): Maugis (1992), eqs. 11 and 15, written down here. */
+static double maugis_gap(const nt_yield_sample *sample, double a, double c)
+{
+    const double s = sqrt(c * c - a * a), R = sample->radius, pull = sample->stress / sample->modulus;
+    const double depth = a * a / R - 2.0 * pull * s;
+    return -depth + 0.5 * c * c / R + 2.0 / NT_PI * ((depth - 0.5 * c * c / R) * asin(a / c) + 0.5 * a * s / R) -
+           4.0 / NT_PI * pull * (c - a);
+}
+
+static double maugis_force(const nt_yield_sample *sample, double a, double c)
+{
+    const double s = sqrt(c * c - a * a);
+    return 4.0 / 3.0 * sample->modulus * a * a * a / sample->radius -
+           2.0 * sample->stress * (a * s + c * c * acos(a / c));
+}
+
+#define RANGE (9.0 * 1.7320508075688772 / 16.0 * 0.165e-9) /* of w = 1 mJ/m^2 */
+
+static nt_yield_solver solver;
+
+static void contact_alone_is_maugis(void **state)
+{
+    (void)state;
+    const law none = {0.0, 1e-9};
+    const nt_yield_sample sample = {.radius = 1e-6,
+                                    .modulus = 1e6,
+                                    .law = exponential,
+                                    .context = &none,
+                                    .length = 1e-9,
+                                    .stress = 6.2e6,
+                                    .range = 1.6e-10};
+    assert_int_equal(nt_yield_begin_contact(&solver, &sample, 120e-9), NT_OK);
+    static const double radii[] = {120e-9, 90e-9, 300e-9};
+    for (int i = 0; i < 3; ++i) {
+        nt_yield_point point;
+        assert_int_equal(nt_yield_go(&solver, NT_YIELD_CONTACT, radii[i], &point), NT_OK);
+        const double c = sqrt(radii[i] * radii[i] + solver.end);
+        assert_true(within(maugis_gap(&sample, radii[i], c), sample.range) < 1e-5);
+        assert_true(within(point.F, maugis_force(&sample, radii[i], c)) < 1e-6);
+    }
+}
+
+/* With a double layer around it: F is the slope of the energy of all pressures. */
+static void a_surrounded_contact_is_one_potential(void **state)
+{
+    (void)state;
+    static const law around[] = {{1e5, 1e-8}, {1e6, 1e-9}, {-1e5, 5e-9}};
+    static const double gap[] = {-1.52342569e-9, -3.24645423e-9, 0.0}; /* at a = 120 nm, by an own writing in Python */
+    for (int i = 0; i < 3; ++i) {
+        const nt_yield_sample sample = {.radius = 1e-6,
+                                        .modulus = 1e6,
+                                        .law = exponential,
+                                        .context = &around[i],
+                                        .length = around[i].length,
+                                        .stress = 1e-3 / RANGE,
+                                        .range = RANGE};
+        nt_yield_point here, inner, outer;
+        assert_int_equal(nt_yield_begin_contact(&solver, &sample, 120e-9), NT_OK);
+        assert_int_equal(nt_yield_go(&solver, NT_YIELD_CONTACT, 119.9e-9, &outer), NT_OK);
+        const double U = nt_yield_energy_in_contact(&solver);
+        assert_int_equal(nt_yield_go(&solver, NT_YIELD_CONTACT, 120.1e-9, &inner), NT_OK);
+        const double F = (nt_yield_energy_in_contact(&solver) - U) / (outer.h - inner.h);
+        assert_int_equal(nt_yield_go(&solver, NT_YIELD_CONTACT, 120e-9, &here), NT_OK);
+        assert_true(within(here.F, F) < 1e-4);
+        assert_true(fabs(here.k - (inner.F - outer.F) / (outer.h - inner.h)) < 1e-2 * fabs(here.k) + 1e-3);
+        assert_true(gap[i] == 0.0 || fabs(here.h - gap[i]) < 2e-14);
+    }
+}
+
+static void a_surrounded_contact_lets_go_at_its_fold(void **state)
+{
+    (void)state;
+    const law l = {1e5, 1e-8};
+    const nt_yield_sample sample = {.radius = 1e-6,
+                                    .modulus = 1e6,
+                                    .law = exponential,
+                                    .context = &l,
+                                    .length = l.length,
+                                    .stress = 1e-3 / RANGE,
+                                    .range = RANGE};
+    const nt_yield_range range = {
+        .nearest = -INFINITY, .load = 1e-8, .tolerance = 1e-3, .scale = 4e-9, .radius_scale = 1e-7};
+    table.count = 0;
+    assert_int_equal(nt_yield_table_hold(&table, &sample, &range, 150e-9), NT_OK);
+    assert_true(table.holds && within(table.release, 2.60216e-9) < 1e-4);
+    static const double radii[] = {80e-9, 130e-9, 230e-9};
+    assert_int_equal(nt_yield_begin_contact(&solver, &sample, 120e-9), NT_OK);
+    for (int i = 0; i < 3; ++i) {
+        nt_yield_point point;
+        assert_int_equal(nt_yield_go(&solver, NT_YIELD_CONTACT, radii[i], &point), NT_OK);
+        const nt_law_value value = nt_yield_table_held(&table, point.h);
+        assert_true(fabs(value.F - point.F) < range.tolerance * range.scale);
+        assert_true(fabs(value.a - radii[i]) < 2e-3 * radii[i]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_exponential_has_one_group), cmocka_unit_test(a_brush_on_a_cell),
-        cmocka_unit_test(in_contact_it_becomes_hertz),  cmocka_unit_test(attraction_jumps_where_it_does),
+        cmocka_unit_test(an_exponential_has_one_group),
+        cmocka_unit_test(a_brush_on_a_cell),
+        cmocka_unit_test(in_contact_it_becomes_hertz),
+        cmocka_unit_test(attraction_jumps_where_it_does),
         cmocka_unit_test(force_is_the_slope_of_energy),
+        cmocka_unit_test(contact_alone_is_maugis),
+        cmocka_unit_test(a_surrounded_contact_is_one_potential),
+        cmocka_unit_test(a_surrounded_contact_lets_go_at_its_fold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,8 @@
  * they truly are, never pass what was promised before arming. Some runs of each kind by default;
  * tests/heavy/guarantee.py calls the same program for all of them:
  *
- *     test_session_adversary KIND FIRST COUNT      KIND quasi-static, dynamic or fault; one line for each seed
- *     test_session_adversary search KIND SEED RUNS the default rig: runs that come ever closer */
+ *     test_session_adversary KIND FIRST COUNT           quasi-static, dynamic or fault; one line for each seed
+ *     test_session_adversary search AIM RIG SEED RUNS   the best share of one promise on one rig (adversary_rigs.h) */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -29,7 +29,7 @@ static closeness run_seed(attack kind, long seed)
 static void no_operator_breaks_the_guarantee(void **state)
 {
     (void)state;
-    static const long runs[ATTACKS] = {60, 4, 60};
+    static const long runs[ATTACKS] = {40, 12, 60};
     for (int kind = 0; kind < ATTACKS; kind++) {
         double force = 0.0, indentation = 0.0;
         int stops = 0, opened = 0;
@@ -45,7 +45,7 @@ static void no_operator_breaks_the_guarantee(void **state)
         }
         print_message("%s: %d runs, %d stops: at worst %.3f of the promised force, %.3f of the indentation\n",
                       kinds[kind], opened, stops, force, indentation);
-        assert_true(2 * opened > runs[kind]); /* few are refused before arming */
+        assert_true(3 * opened > runs[kind]); /* not all are refused before arming */
         assert_true(force < 1.0 && indentation < 1.0);
         assert_true(force > 0.1); /* they did try */
     }
@@ -55,14 +55,43 @@ static int print_runs(attack kind, long first, long count)
 {
     for (long seed = first; seed < first + count; seed++) {
         const closeness found = run_seed(kind, seed);
-        printf("%ld %d %.4f %.4f %d %s %.3g\n", seed, found.opened, found.force, found.indentation, found.stops,
-               found.fault[0] ? found.fault : "-", found.value);
+        const char *channel = found.fault[0] ? nt_channel_name(found.channel) : "-";
+        printf("%ld %d %.4f %.4f %d %s:%s %.3g", seed, found.opened, found.force, found.indentation, found.stops,
+               found.fault[0] ? found.fault : "-", channel, found.value);
+        if (!found.opened && found.refused.field)
+            printf(" %s %.3g: %.3g .. %.3g", found.refused.field, found.refused.value, found.refused.minimum,
+                   found.refused.maximum);
+        printf("\n");
     }
     return 0;
 }
 
-/* Genes are changed, a few at a time; what comes closer stays. */
-static int search(attack kind, long seed, long runs)
+/* What a search maximises: a share of one promise. */
+typedef enum aim_of {
+    AIM_FORCE,
+    AIM_PEAK, /* force, of the dynamic probe */
+    AIM_INDENTATION,
+    AIM_FAILURE, /* and NT_FAILURES of them */
+    AIMS = AIM_FAILURE + NT_FAILURES
+} aim_of;
+
+static double share_of(const closeness *found, aim_of aim)
+{
+    return !found->opened ? 0.0 : aim == AIM_INDENTATION ? found->indentation : found->force;
+}
+
+static plot plot_of(aim_of aim, const known_rig *rig)
+{
+    const int fails = aim >= AIM_FAILURE;
+    return (plot){.kind = fails             ? ATTACK_FAULT
+                          : aim == AIM_PEAK ? ATTACK_DYNAMIC
+                                            : ATTACK_QUASI_STATIC,
+                  .known = rig,
+                  .sought = fails ? (nt_failure)(aim - AIM_FAILURE) : NT_FAILURES};
+}
+
+/* Genes are changed, a few at a time; what comes closer stays. Prints the best share. */
+static int search(aim_of aim, const known_rig *rig, long seed, long runs)
 {
     static plot p;
     static double best_genes[GENES], genes[GENES];
@@ -75,35 +104,89 @@ static int search(attack kind, long seed, long runs)
             const int changes = fresh || nt_random_uniform(&random) < share;
             genes[i] = changes ? nt_random_uniform(&random) : best_genes[i];
         }
-        p = (plot){.kind = kind, .plain = 1};
+        p = plot_of(aim, rig);
         dice d = {.genes = genes};
         const closeness found = run_plot(&p, &d);
-        if (!found.opened || !(found.force >= best.force))
+        if (!(share_of(&found, aim) >= share_of(&best, aim)))
             continue;
         best = found;
         memcpy(best_genes, genes, sizeof genes);
-        printf("%ld: %.1f nN of %.1f nN, %.3f; %.3f of the indentation; %s %.3g\n", run, 1e9 * best.worst_force,
-               1e9 * best.promised_force, best.force, best.indentation, best.fault, best.value);
     }
+    printf("%.4f %.6g %.6g %s:%s %.3g\n", share_of(&best, aim), best.worst_force, best.promised_force,
+           best.fault[0] ? best.fault : "-", best.fault[0] ? nt_channel_name(best.channel) : "-", best.value);
     return 0;
 }
 
-static int kind_of(const char *name)
+/* Where a word stands in a list; count: nowhere. */
+static int place_of(const char *word, const char *const *words, int count)
 {
-    int kind = 0;
-    while (kind < ATTACKS && strcmp(name, kinds[kind]) != 0)
-        kind++;
-    return kind;
+    int place = 0;
+    while (place < count && strcmp(word, words[place]) != 0)
+        place++;
+    return place;
+}
+
+static int search_by_words(char **words)
+{
+    static const char *const aims[AIMS] = {"force", "peak", "indentation", "read-out", "sensor", "slip", "stage"};
+    const int aim = place_of(words[0], aims, AIMS);
+    int rig = 0;
+    while (rig < KNOWN_RIGS && strcmp(words[1], known_rigs[rig].name) != 0)
+        rig++;
+    if (aim == AIMS || rig == KNOWN_RIGS)
+        return 2;
+    return search((aim_of)aim, &known_rigs[rig], strtol(words[2], NULL, 10), strtol(words[3], NULL, 10));
+}
+
+/* What one seed is made of, to look into. */
+static void explain(attack kind, long seed)
+{
+    static plot p;
+    static const struct {
+        const char *name;
+        const nt_field *(*fields)(int *count);
+        size_t offset;
+    } tables[] = {{"scene", nt_scene_fields, offsetof(plot, setup.scene)},
+                  {"rig", nt_rig_fields, offsetof(plot, believed)},
+                  {"settings", nt_settings_fields, offsetof(plot, settings)}};
+    dice d = {.random = nt_random_seed((uint64_t)seed * ATTACKS + (uint64_t)kind)};
+    p = (plot){.kind = kind};
+    const closeness found = run_plot(&p, &d);
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+        int count = 0;
+        const nt_field *fields = tables[i].fields(&count);
+        for (int j = 0; j < count; j++)
+            printf("%s.%s = %g %s\n", tables[i].name, fields[j].name,
+                   nt_field_get(&fields[j], (const char *)&p + tables[i].offset), fields[j].unit);
+    }
+    const nt_guarantee *g = &p.promised;
+    for (int i = 0; i < p.faults.count; i++)
+        printf("fault %d: %d on %s from %g s for %g s: %g\n", i, (int)p.faults.list[i].kind,
+               nt_channel_name(p.faults.list[i].channel), p.faults.list[i].start, p.faults.list[i].duration,
+               p.faults.list[i].value);
+    printf("k_c %g N/m of %g N/m\nrelief %d, slope %g, pull-off %g N, snap-in %g N, stiffest %g N/m, unseen %g m\n",
+           p.setup.rig.probe.spring_constant, p.believed.probe.spring_constant, p.setup.map.heights != NULL,
+           p.hazard.slope, p.hazard.pull_off_force, p.hazard.snap_in, p.hazard.stiffness, p.hazard.unseen);
+    printf("limit %g, calibration %g, motion %g, ringing %g, snap-in %g, noise %g, zero %g N/s\n",
+           p.settings.limits.force, g->calibration, g->motion, g->ringing, g->snap_in, g->noise, g->zero_drift);
+    printf("failures %g %g %g %g\n", g->failure[0], g->failure[1], g->failure[2], g->failure[3]);
+    printf("%g N of %g N after %g s, %s; %d stops\n", found.worst_force, found.promised_force, found.worst_time,
+           found.worst_pulls ? "pulls" : "presses", found.stops);
 }
 
 int main(int count, char **words)
 {
-    const int searches = count == 5 && strcmp(words[1], "search") == 0;
-    const int kind = count > 2 ? kind_of(words[count == 5 ? 2 : 1]) : ATTACKS;
-    if (searches && kind < ATTACKS)
-        return search((attack)kind, strtol(words[3], NULL, 10), strtol(words[4], NULL, 10));
-    if (count == 4 && kind < ATTACKS)
+    if (count == 6 && strcmp(words[1], "search") == 0)
+        return search_by_words(words + 2);
+    const int kind = count == 4 ? place_of(words[1], kinds, ATTACKS) : ATTACKS;
+    if (kind < ATTACKS && strcmp(words[3], "words") == 0) {
+        explain((attack)kind, strtol(words[2], NULL, 10));
+        return 0;
+    }
+    if (kind < ATTACKS)
         return print_runs((attack)kind, strtol(words[2], NULL, 10), strtol(words[3], NULL, 10));
+    if (count > 1)
+        return 2;
     const struct CMUnitTest tests[] = {cmocka_unit_test(no_operator_breaks_the_guarantee)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -152,10 +152,11 @@ static void setups_are_refused_by_name(void **state)
 static double unseen(const nt_session *session, const nt_session_setup *setup)
 {
     const nt_plan *found = nt_session_plan(session);
-    nt_hazard seen = nt_hazard_of(found, &setup->rig, &setup->settings, 0.0);
-    seen.unseen = 0.0;
-    const nt_guarantee without = nt_guarantee_compute(&setup->rig, &setup->settings, &seen);
-    return nt_session_guarantee(session).indentation - without.indentation;
+    nt_hazard hazard = nt_hazard_of(found, &setup->rig, &setup->settings, 0.0);
+    hazard.deepest = HUGE_VAL; /* by travel alone */
+    const nt_guarantee with = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
+    hazard.unseen = 0.0;
+    return with.indentation - nt_guarantee_compute(&setup->rig, &setup->settings, &hazard).indentation;
 }
 
 /* Hertz has F = 4/3 E* sqrt(R) delta^1.5 at twice the threshold of free motion; with adhesion the force reaches it

@@ -86,12 +86,51 @@ static void a_pull_off_counts_where_it_rings_on(void **state)
     assert_true(before > 5e-7 && before < sqrt(2.0 * 4.0 * all * 10.0 * l.plan.maximum_stiffness));
 }
 
+/* A frame that drifts as fast as declared, after a stop: until help is needed the tip is never pressed beyond a touch,
+ * and soon after it is, by k_eff times the drift in a second. */
+static void a_stop_needs_help_when_it_says(void **state)
+{
+    (void)state;
+    nt_session_setup setup = nt_session_defaults();
+    setup.rig.stage.travel = 2e-6;
+    setup.rig.stage.drift = 50e-9;
+    setup.settings = nt_settings_defaults(&setup.rig);
+    setup.settings.gains.rate = 2e3;
+    setup.settings.limits.retract_distance = 0.2e-6;
+    setup.clearance = 20e-9;
+    assert_int_equal(loop_open(&l, &setup), NT_OK);
+    const nt_guarantee g = promise(&l, 0.0);
+    loop_push(&l, 1.0, 0.1);
+    for (int tick = 0; tick < 1000; tick++)
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+    const double now = (double)l.sim.slave.link.tick * l.touch.period;
+    const nt_fault stop = {NT_FAULT_EMERGENCY_STOP, NT_CHANNEL_RIG, now, HUGE_VAL, 0.0};
+    const nt_fault drift = {NT_FAULT_DRIFT, NT_CHANNEL_STAGE, now, HUGE_VAL, setup.rig.stage.drift};
+    assert_int_equal(nt_sim_inject(&l.sim, &stop), NT_OK);
+    assert_int_equal(nt_sim_inject(&l.sim, &drift), NT_OK);
+    const double touch = 4.0 * l.plan.pull_off_force;
+    double time = 0.0, earlier = 0.0;
+    while (time < 3.0 * g.help_time && !(l.sim.slave.truth.tip_force[NT_Z] > touch && time > 0.5)) {
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+        time += l.touch.period;
+    }
+    earlier = l.sim.slave.truth.tip_force[NT_Z];
+    for (int tick = 0; tick < 2000; tick++)
+        assert_int_equal(loop_tick(&l, NULL, NULL), NT_OK);
+    const double rate = l.sim.slave.truth.tip_force[NT_Z] - earlier;
+    print_message("help is needed after %.1f s, %.1f s promised; then %.0f nN more each second, %.0f nN/s promised\n",
+                  time, g.help_time, 1e9 * rate, 1e9 * g.frame_drift);
+    assert_true(time > g.help_time && time < 2.0 * g.help_time);
+    assert_true(rate < g.frame_drift && rate > 0.5 * g.frame_drift);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lever_arrives_with_the_energy_of_its_jump),
         cmocka_unit_test(without_attraction_there_is_none),
         cmocka_unit_test(a_pull_off_counts_where_it_rings_on),
+        cmocka_unit_test(a_stop_needs_help_when_it_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

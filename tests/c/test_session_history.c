@@ -63,6 +63,7 @@ static void it_goes_on_to_the_last_bit(void **state)
         assert_int_equal(nt_session_read_events(session, events, 4), 3); /* the aim, and both rewinds */
         assert_int_equal(events[2].kind, NT_EVENT_REWIND);
         assert_true(events[2].tick == (uint64_t)(begin + ticks) && events[2].value[0] == (double)begin);
+        assert_true(events[1].value[1] == 1.0 && events[2].value[1] == 1.0); /* the aim was kept by then */
         nt_snapshot_close(snapshot);
         nt_session_close(session);
     }

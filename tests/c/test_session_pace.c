@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "larger.h"
+#include "session/state.h"
 #include "session_fixture.h"
 
 enum { MOST = 20000 };
@@ -128,13 +129,9 @@ static void a_pause_stops_and_steps_on(void **state)
         assert_int_equal(nt_session_step_on(session, 3), NT_E_STATE); /* it is not paused */
         assert_true(await_ticks(session, 100) >= 100);
         assert_int_equal(nt_session_pause(session, 1), NT_OK);
-        uint64_t before, now = 0;
-        do { /* the batch that runs ends first */
-            before = now;
-            for (int i = 0; i < 20; i++)
-                doze();
-            now = nt_session_progress(session).ticks;
-        } while (now != before);
+        while (!nt_session_progress(session).stands) /* the batch that runs ends first */
+            doze();
+        const uint64_t now = nt_session_progress(session).ticks;
         assert_true(nt_session_progress(session).paused);
         assert_int_equal(nt_session_step_on(session, -1), NT_E_RANGE);
         assert_int_equal(nt_session_step_on(session, 7), NT_OK);
@@ -301,7 +298,7 @@ static void hard_pace_counts_what_a_full_ring_drops(void **state)
     nt_session_close(session);
 }
 
-/* A rig that gives no numbers any more ends the thread, which says why. */
+/* A model that gives no numbers any more ends the thread, which says why. */
 static nt_status break_down(void *context, nt_reading *reading)
 {
     *reading = (nt_reading){.size = sizeof *reading, .sequence = 1, .valid = (1u << NT_READS) - 1u};
@@ -329,6 +326,7 @@ static void a_thread_that_fails_says_why(void **state)
         setup.preflight = 0;
         setup.master = (nt_hal_choice){&broken, &reads};
         nt_session *session = open_session(&setup);
+        session->master.is_model = 1; /* a device that fails would be lost, and latched */
         assert_int_equal(nt_session_start(session, (nt_pace)pace, 0), NT_OK);
         const nt_progress end = await_end(session);
         assert_int_equal(end.status, NT_E_NO_CONVERGENCE);

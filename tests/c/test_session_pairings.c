@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A simulated or a real master on a simulated or a real slave, at hard pace: touch, HOLD, RETRACT, stop, close. Real
- * halves are shared objects (real_backend.c). A busy machine may be late: what counts is what comes, not when. */
+ * halves are shared objects (real_backend.c). A busy machine is late, and then a session holds: that is right, and no
+ * fault here. So the story is told by ticks and reasons, the hand goes on until it is stopped, and ticks that are held
+ * for lateness cost no patience, as long as the machine lets any others be. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <math.h>
@@ -17,7 +19,8 @@
 #include "session_fixture.h"
 
 #define RATE 500.0
-#define PATIENCE 10000 /* ticks */
+#define PATIENCE 10000  /* ticks, but for those ... */
+#define LATE_MOST 15000 /* ... that are held for lateness, of which there may be so many */
 
 static int left; /* halves that have said so */
 
@@ -55,15 +58,18 @@ static double seconds(void)
 
 /* What has come, and in which order. */
 typedef struct story {
-    long ticks;
+    long ticks, late;
     int touched, held, retracted, latched;
     double deepest; /* travel [m] */
 } story;
 
 static void tell(story *s, const nt_record *r, int is_real)
 {
-    if (s->ticks++ == 0)
+    const int is_late = r->state == NT_HOLD && r->reasons & NT_REASON_LATE;
+    if (s->ticks + s->late == 0)
         assert_true(fabs(r->stage_command[NT_Z]) < 3e-9); /* a hand that moved in preflight moves no stage */
+    s->ticks += !is_late;
+    s->late += is_late;
     s->touched |= is_real ? r->deflection[NT_Z] > 5e-9 : r->contact_radius > 0.0;
     s->held |= r->state == NT_HOLD && r->reasons & (NT_REASON_MASTER_STALE | NT_REASON_STALE);
     s->retracted |= r->state == NT_RETRACT && r->reasons & NT_REASON_FORCE_LIMIT;
@@ -77,24 +83,25 @@ static void await(nt_session *session, story *s, const int *happened, int is_rea
 {
     const struct timespec nap = {.tv_nsec = 2000000};
     nt_record r;
-    while (!*happened && s->ticks < PATIENCE && nt_session_progress(session).runs) {
+    while (!*happened && s->ticks < PATIENCE && s->late < LATE_MOST && nt_session_progress(session).runs) {
         if (nt_session_read(session, &r, 1) == 1)
             tell(s, &r, is_real);
         else
             (void)nanosleep(&nap, NULL);
     }
     if (!*happened)
-        fail_msg("not seen in %ld ticks", s->ticks);
+        fail_msg("not seen in %ld ticks and %ld that were held for lateness", s->ticks, s->late);
 }
 
-/* A simulated hand presses on, and its link is stale for three and a half periods before it touches. */
+/* A simulated hand presses on, at 0.5 mm/s through most of its travel, and its link is stale for three and a half
+ * periods before it touches. */
 static void press(nt_session *session)
 {
-    const nt_input input = {.master_position = {[NT_Z] = nt_session_master_start(session) + 2e-3},
+    const nt_input input = {.master_position = {[NT_Z] = nt_session_master_start(session) + 15e-3},
                             .holds = 1,
                             .x = (double)NAN,
                             .y = (double)NAN,
-                            .duration = 4.0};
+                            .duration = 30.0};
     const nt_fault stale = {.kind = NT_FAULT_STALE, .channel = NT_CHANNEL_RIG, .start = 0.05, .duration = 3.5 / RATE};
     assert_int_equal(nt_session_inject(session, &stale), NT_OK);
     assert_int_equal(nt_session_aim(session, &input, NULL), NT_OK);

@@ -12,7 +12,7 @@
 
 #include "session_fixture.h"
 
-enum { MOST = 65536, EVENTS = 64 };
+enum { MOST = 65536, EVENTS = 64, STANDS = 100 };
 static nt_record records[MOST], others[MOST];
 static nt_event events[EVENTS];
 
@@ -151,6 +151,69 @@ static void a_change_while_it_runs(void **state)
         nt_session_close(session);
         expect_swap_at(events[0].tick, count, changes[i].kind, changes[i].field, changes[i].value);
     }
+}
+
+/* A replay does not see the scene: what the touch step was made with, scales among it, is left alone. */
+static void a_change_of_the_scene_is_none_of_the_touch_step(void **state)
+{
+    (void)state;
+    nt_session *session = open_pressing();
+    const nt_gains *gains = &nt_session_touch(session)->settings.gains;
+    const nt_scaling finer = {0.5 * gains->alpha_p, gains->alpha_f};
+    run(session, records, 100);
+    assert_int_equal(nt_session_rescale(session, &finer, NULL), NT_OK);
+    const nt_touch before = *nt_session_touch(session);
+    assert_int_equal(nt_session_change(session, NT_EVENT_SCENE, "sample.youngs_modulus", 5e9, NULL), NT_OK);
+    const nt_touch *after = nt_session_touch(session);
+    assert_true(after->passivity.dead_zone == before.passivity.dead_zone);
+    assert_true(after->settings.gains.alpha_p == before.settings.gains.alpha_p);
+    assert_int_equal(nt_session_change(session, NT_EVENT_SETTING, "gains.force_gain", 1.0, NULL), NT_OK);
+    assert_true(nt_session_touch(session)->passivity.dead_zone > 1.5 * before.passivity.dead_zone); /* now it is made */
+    nt_session_close(session);
+}
+
+static int stands(void)
+{
+    for (int k = 1; k < STANDS; k++)
+        if (records[k].gap != records[0].gap)
+            return 0;
+    return 1;
+}
+
+/* Nothing moves, and the tip sinks into what has become softer all the same. */
+static void a_tip_that_stands_feels_a_change_of_the_scene(void **state)
+{
+    (void)state;
+    nt_session_setup setup = nt_session_defaults();
+    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.stage.quality = 0.5;
+    setup.probe_model = NT_PROBE_QUASI_STATIC;
+    setup.rig.probe.temperature = 0.0;
+    setup.settings = nt_settings_defaults(&setup.rig);
+    setup.settings.gains.stage_integral = 0.0;
+    setup.clearance = 20e-9;
+    nt_session *session = open_session(&setup);
+    const nt_input input = {
+        .master_position = {[NT_Z] = nt_session_master_start(session) + 50e-9 / setup.settings.gains.alpha_p},
+        .holds = 1,
+        .x = (double)NAN,
+        .y = (double)NAN};
+    assert_int_equal(nt_session_aim(session, &input, NULL), NT_OK);
+    run(session, records, 10000);
+    nt_session_clutch(session, 1);
+    run(session, records, 30000);
+    do { /* to the last bit */
+        run(session, records, STANDS);
+        assert_true(records[0].tick < 200000);
+    } while (!stands());
+    const nt_record before = records[STANDS - 1];
+    assert_true(before.contact_radius > 0.0 && before.tip_force[NT_Z] > 50e-9);
+    assert_int_equal(nt_session_change(session, NT_EVENT_SCENE, "sample.youngs_modulus", 5e9, NULL), NT_OK);
+    run(session, records, 100);
+    assert_true(records[99].gap < 1.2 * before.gap && before.gap < 0.0); /* deeper */
+    assert_true(records[99].contact_radius > 1.1 * before.contact_radius);
+    assert_true(records[99].tip_force[NT_Z] < before.tip_force[NT_Z]); /* the cantilever is bent less */
+    nt_session_close(session);
 }
 
 /* The surface that the map became outlives the plan that it was made for. */
@@ -296,9 +359,14 @@ static void records_and_events_are_a_replay(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(requests_are_kept_as_events),     cmocka_unit_test(what_is_refused_leaves_no_event),
-        cmocka_unit_test(a_change_while_it_runs),          cmocka_unit_test(a_scene_changes_over_a_map),
-        cmocka_unit_test(records_and_events_are_a_replay), cmocka_unit_test(a_full_ring_keeps_no_request_waiting),
+        cmocka_unit_test(requests_are_kept_as_events),
+        cmocka_unit_test(what_is_refused_leaves_no_event),
+        cmocka_unit_test(a_change_while_it_runs),
+        cmocka_unit_test(a_scene_changes_over_a_map),
+        cmocka_unit_test(records_and_events_are_a_replay),
+        cmocka_unit_test(a_full_ring_keeps_no_request_waiting),
+        cmocka_unit_test(a_change_of_the_scene_is_none_of_the_touch_step),
+        cmocka_unit_test(a_tip_that_stands_feels_a_change_of_the_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

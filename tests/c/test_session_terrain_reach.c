@@ -109,9 +109,43 @@ static void a_flat_is_level_everywhere(void **state)
     assert_int_equal(nt_terrain_reach_path(terrain, path, 2, &reach, NULL), NT_OK);
     assert_true(reach.rise == 0.0 && reach.relief == 0.0 && reach.slope == 0.0);
     assert_true(reach.least_radius == R && reach.largest_radius == R);
+    assert_true(reach.least_modulus == 0.0 && reach.largest_work == 0.0);
     const nt_area whole = nt_terrain_whole(terrain, 1.0, -1.0);
     assert_int_equal(nt_terrain_reach_area(terrain, &whole, &reach, NULL), NT_OK);
     assert_true(reach.rise == 0.0 && reach.slope == 0.0);
+    nt_terrain_close(terrain);
+}
+
+/* Soft and sticky on the left, hard and less sticky on the right: what is reached is what lies on the way. */
+static void properties_that_are_reached(void **state)
+{
+    (void)state;
+    static double modulus[N * N], work[N * N];
+    for (int k = 0; k < N * N; k++) {
+        heights[k] = 0.0;
+        modulus[k] = k % N < N / 2 ? 1e9 : 50e9;
+        work[k] = k % N < N / 2 ? 0.08 : 0.02;
+    }
+    nt_terrain_setup setup = nt_terrain_defaults();
+    setup.scene.medium.relative_humidity = 0.0;
+    setup.scene.adhesion.hamaker_constant = 1e-20;
+    setup.scene.range.maximum_load = 100e-9;
+    setup.map = (nt_height_map){heights, N, N, PIXEL, PIXEL};
+    const nt_surface grid = {heights, N, N, PIXEL, PIXEL, 0.0, 0.0};
+    nt_properties properties;
+    assert_int_equal(nt_properties_init(&properties, &grid, modulus, work, NULL), NT_OK);
+    setup.properties = &properties;
+    nt_terrain *terrain = NULL;
+    nt_reach reach;
+    assert_int_equal(nt_terrain_make(&terrain, &setup, NULL), NT_OK);
+    const double middle = 0.5 * (N - 1) * PIXEL, left[] = {5.0 * PIXEL, middle, 20.0 * PIXEL, middle};
+    assert_int_equal(nt_terrain_reach_path(terrain, left, 2, &reach, NULL), NT_OK);
+    assert_true(reach.least_modulus == 1e9 && reach.largest_modulus == 1e9);
+    assert_true(reach.least_work == 0.08 && reach.largest_work == 0.08);
+    const nt_area whole = nt_terrain_whole(terrain, middle, middle);
+    assert_int_equal(nt_terrain_reach_area(terrain, &whole, &reach, NULL), NT_OK);
+    assert_true(reach.least_modulus == 1e9 && reach.largest_modulus == 50e9);
+    assert_true(reach.least_work == 0.02 && reach.largest_work == 0.08);
     nt_terrain_close(terrain);
 }
 
@@ -119,7 +153,7 @@ static void places_elsewhere_are_refused(void **state)
 {
     (void)state;
     nt_terrain *terrain = terrain_of(wave, 1);
-    const nt_reach before = {1.0, 2.0, 3.0, 4.0, 5.0};
+    const nt_reach before = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0};
     nt_reach reach = before;
     nt_problem problem;
     const struct {
@@ -168,6 +202,7 @@ int main(void)
         cmocka_unit_test(over_a_wave),
         cmocka_unit_test(over_a_ball),
         cmocka_unit_test(a_flat_is_level_everywhere),
+        cmocka_unit_test(properties_that_are_reached),
         cmocka_unit_test(places_elsewhere_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -22,6 +22,7 @@ enum { NX = 129, NY = 97 };
 #define PI 3.14159265358979323846
 
 static double coefficients[NX * NY];
+static const nt_fields NONE = {{NULL, NULL, NULL}};
 
 static nt_surface surface_of(double (*height)(double x, double y), long nx, long ny)
 {
@@ -50,14 +51,15 @@ static void waves_in_an_area(void **state)
     (void)state;
     const nt_surface surface = surface_of(waves, NX, NY);
     const double x[2] = {0.0, WIDTH}, y[2] = {0.0, HEIGHT};
-    const nt_extremes all = nt_extremes_in_area(&surface, NULL, x, y);
+    const nt_extremes all = nt_extremes_in_area(&surface, &NONE, x, y);
     assert_within(all.highest, A + B, 1e-5 * (A + B));
     assert_within(all.lowest, -(A + B), 1e-5 * (A + B));
     assert_within(all.steepest, hypot(A * KX, B * KY), 1.2e-3 * hypot(A * KX, B * KY));
-    assert_true(all.least_ratio == 1.0 && all.most_ratio == 1.0);
+    for (int field = 0; field < NT_FIELDS; field++)
+        assert_true(all.least[field] == 0.0 && all.most[field] == 0.0);
     /* a part without crest and trough: heights at its corners, slope along x alone */
     const double part_x[2] = {0.30 / KX, 1.20 / KX}, part_y[2] = {0.1 / KY, 0.2 / KY};
-    const nt_extremes part = nt_extremes_in_area(&surface, NULL, part_x, part_y);
+    const nt_extremes part = nt_extremes_in_area(&surface, &NONE, part_x, part_y);
     assert_within(part.highest, A * cos(0.30) + B * cos(0.1), 1e-5 * A);
     assert_within(part.lowest, A * cos(1.20) + B * cos(0.2), 1e-5 * A);
     assert_within(part.steepest, hypot(A * KX * sin(1.20), B * KY * sin(0.2)), 1.2e-3 * A * KX);
@@ -68,13 +70,13 @@ static void waves_along_a_path(void **state)
     (void)state;
     const nt_surface surface = surface_of(waves, NX, NY);
     const double along_x[] = {0.5 / KX, 0.4 / KY, 5.0 / KX, 0.4 / KY};
-    const nt_extremes row = nt_extremes_on_path(&surface, NULL, along_x, 2);
+    const nt_extremes row = nt_extremes_on_path(&surface, &NONE, along_x, 2);
     assert_within(row.highest, A * cos(0.5) + B * cos(0.4), 1e-5 * A);
     assert_within(row.lowest, -A + B * cos(0.4), 1e-5 * A);
     assert_within(row.steepest, A * KX, 1.2e-3 * A * KX); /* not what the surface rises by across the path */
     /* down and back up a corner: z = A cos(KX x) + B cos(KY y) with KX x = KY y = t on the way */
     const double corner[] = {0.0, 0.0, 2.0 / KX, 2.0 / KY, 0.1 / KX, 2.0 / KY};
-    const nt_extremes turned = nt_extremes_on_path(&surface, NULL, corner, 3);
+    const nt_extremes turned = nt_extremes_on_path(&surface, &NONE, corner, 3);
     const double leg = hypot(1.0 / KX, 1.0 / KY);
     assert_within(turned.highest, A + B, 1e-5 * A);
     assert_within(turned.lowest, (A + B) * cos(2.0), 1e-5 * A);
@@ -88,8 +90,8 @@ static void a_trough_in_the_middle(void **state)
     const nt_surface surface = surface_of(waves, NX, NY);
     const double x[2] = {PI / KX - 0.3e-9, PI / KX + 0.3e-9}, y[2] = {PI / KY, PI / KY};
     const double path[] = {x[0], y[0], x[1], y[1]};
-    const nt_extremes found[] = {nt_extremes_in_area(&surface, NULL, x, y),
-                                 nt_extremes_on_path(&surface, NULL, path, 2)};
+    const nt_extremes found[] = {nt_extremes_in_area(&surface, &NONE, x, y),
+                                 nt_extremes_on_path(&surface, &NONE, path, 2)};
     for (int k = 0; k < 2; k++) {
         assert_within(found[k].highest, -B - A * cos(KX * 0.3e-9), 1e-4 * A);
         assert_within(found[k].lowest, -B - A, 1e-4 * A);
@@ -111,7 +113,7 @@ static void a_ball(void **state)
     const nt_surface surface = surface_of(ball, NX, NY);
     const double a = 20e-9, x0 = 0.5 * WIDTH, y0 = 0.5 * HEIGHT;
     const double x[2] = {x0 - a, x0 + a}, y[2] = {y0 - a, y0 + a};
-    const nt_extremes found = nt_extremes_in_area(&surface, NULL, x, y);
+    const nt_extremes found = nt_extremes_in_area(&surface, &NONE, x, y);
     const double low = sqrt(BALL * BALL - 2.0 * a * a);
     assert_within(found.highest, BALL, 1e-5 * BALL);
     assert_within(found.lowest, low, 1e-5 * BALL);
@@ -133,7 +135,7 @@ static void noise_is_never_above_its_bounds(void **state)
     (void)state;
     const nt_surface surface = surface_of(noise, SMALL_X, SMALL_Y);
     const double x[2] = {0.3 * DX, (SMALL_X - 1) * DX}, y[2] = {0.0, (SMALL_Y - 1.6) * DY};
-    const nt_extremes found = nt_extremes_in_area(&surface, NULL, x, y);
+    const nt_extremes found = nt_extremes_in_area(&surface, &NONE, x, y);
     double highest = -1.0, lowest = 1.0, steepest = 0.0;
     for (int j = 0; j <= DENSE * (SMALL_Y - 1); j++)
         for (int i = 0; i <= DENSE * (SMALL_X - 1); i++) {
@@ -168,7 +170,7 @@ static void paths_over_noise(void **state)
             lowest = smaller(lowest, at.z);
             steepest = larger(steepest, slope);
         }
-        const nt_extremes found = nt_extremes_on_path(&surface, NULL, xy, 4);
+        const nt_extremes found = nt_extremes_on_path(&surface, &NONE, xy, 4);
         assert_true(found.highest >= highest - 1e-24 && found.highest <= highest + 1e-3 * 3e-9);
         assert_true(found.lowest <= lowest + 1e-24 && found.lowest >= lowest - 1e-3 * 3e-9);
         assert_true(found.steepest >= steepest * (1.0 - 1e-12) && found.steepest <= 1.01 * steepest);
@@ -188,18 +190,19 @@ static void points_and_levels(void **state)
     (void)state;
     const double point[] = {41.3e-9, 22.2e-9}, x[2] = {0.0, WIDTH}, y[2] = {3e-9, 3e-9};
     nt_surface surface = surface_of(noise, NX, NY);
-    const nt_extremes there = nt_extremes_on_path(&surface, NULL, point, 1);
+    const nt_extremes there = nt_extremes_on_path(&surface, &NONE, point, 1);
     const double z = nt_surface_height(&surface, point[0], point[1]).z;
     assert_true(there.highest == z && there.lowest == z && there.steepest == 0.0);
     surface = surface_of(level, NX, NY);
-    const nt_extremes found = nt_extremes_in_area(&surface, NULL, x, y);
+    const nt_extremes found = nt_extremes_in_area(&surface, &NONE, x, y);
     assert_within(found.highest, 7e-7, 1e-14 * 7e-7);
     assert_within(found.lowest, 7e-7, 1e-14 * 7e-7);
     assert_within(found.steepest, 0.0, 2e-9);
 }
 
-/* A radius map's ratios are coefficients of a spline, which never leaves their range: of those that reach the path. */
-static void ratios_that_reach(void **state)
+/* Ratios of a radius map, modulus and w are coefficients of a spline, which never leaves their range: of those that
+ * reach the path. */
+static void fields_that_reach(void **state)
 {
     (void)state;
     static double ratios[NX * NY];
@@ -208,16 +211,22 @@ static void ratios_that_reach(void **state)
         ratios[k] = 1.0;
     ratios[30 * NX + 50] = 0.4;
     ratios[34 * NX + 50] = 3.0;
-    nt_surface ratio = surface;
-    ratio.coefficients = ratios;
-    const double over[] = {10e-9, 30.4 * DY, 90e-9, 30.4 * DY}, far[] = {10e-9, 60e-9, 90e-9, 60e-9};
-    const nt_extremes near = nt_extremes_on_path(&surface, &ratio, over, 2);
-    assert_true(near.least_ratio == 0.4 && near.most_ratio == 1.0);
-    const nt_extremes beside = nt_extremes_on_path(&surface, &ratio, far, 2);
-    assert_true(beside.least_ratio == 1.0 && beside.most_ratio == 1.0);
-    const double x[2] = {0.0, WIDTH}, y[2] = {0.0, HEIGHT};
-    const nt_extremes all = nt_extremes_in_area(&surface, &ratio, x, y);
-    assert_true(all.least_ratio == 0.4 && all.most_ratio == 3.0);
+    nt_surface of = surface;
+    of.coefficients = ratios;
+    for (int field = 0; field < NT_FIELDS; field++) {
+        nt_fields fields = NONE;
+        fields.of[field] = &of;
+        const double over[] = {10e-9, 30.4 * DY, 90e-9, 30.4 * DY}, far[] = {10e-9, 60e-9, 90e-9, 60e-9};
+        const nt_extremes near = nt_extremes_on_path(&surface, &fields, over, 2);
+        assert_true(near.least[field] == 0.4 && near.most[field] == 1.0);
+        const nt_extremes beside = nt_extremes_on_path(&surface, &fields, far, 2);
+        assert_true(beside.least[field] == 1.0 && beside.most[field] == 1.0);
+        const double x[2] = {0.0, WIDTH}, y[2] = {0.0, HEIGHT};
+        const nt_extremes all = nt_extremes_in_area(&surface, &fields, x, y);
+        assert_true(all.least[field] == 0.4 && all.most[field] == 3.0);
+        for (int other = 0; other < NT_FIELDS; other++)
+            assert_true(other == field || (all.least[other] == 0.0 && all.most[other] == 0.0));
+    }
 }
 
 int main(void)
@@ -230,7 +239,7 @@ int main(void)
         cmocka_unit_test(noise_is_never_above_its_bounds),
         cmocka_unit_test(paths_over_noise),
         cmocka_unit_test(points_and_levels),
-        cmocka_unit_test(ratios_that_reach),
+        cmocka_unit_test(fields_that_reach),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random operators, rigs, samples, drifts, calibrations and faults: does the force ever pass what was promised?
 
-Each seed is one run of tests/c/test_session_adversary, quasi-static, dynamic (peaks inside a tick counted) or with one
-fault of random value. A run that passes its promise is printed with the seed that makes it again. With ``--rows FILE``
-each block of seeds is written there when it is done, and one that is there is not run again: stop it and go on at will.
-``--shard I/N`` takes every N-th block. ``--search`` looks for what comes closest on the default rig instead."""
+Each seed is one rig of tests/c/test_session_adversary: quasi-static with five operators, one after the other, dynamic
+(peaks inside a tick counted) with one, or with one and a fault of random value. A run is one operator on one rig that
+was not refused before arming. A rig whose promise is passed is printed with the seed that makes it again. With
+``--rows FILE`` each block of seeds is written there when it is done, and one that is there is not run again: stop it
+and go on at will. ``--shard I/N`` takes every N-th block. ``--search RUNS`` looks for what comes closest to each
+promise on each of some rigs instead (tests/c/adversary_rigs.h)."""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ import json
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,25 +23,31 @@ import numpy as np
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build" / "dev" / "tests" / "c" / "test_session_adversary"
-BLOCKS = {"quasi-static": 500, "dynamic": 20, "fault": 250}
+BLOCKS = {"quasi-static": 50, "dynamic": 10, "fault": 100}
 """seeds of a block: some seconds each"""
+OPERATORS = {"quasi-static": 5, "dynamic": 1, "fault": 1}
+"""on each rig"""
+AIMS = ("force", "peak", "indentation", "read-out", "sensor", "slip", "stage")
+RIGS = ("default", "soft", "stiff", "open-loop")
 
 
-def run(*words: str) -> list[list[str]]:
+def run(program: Path, *words: str) -> list[list[str]]:
     """Lines of the program, in words."""
-    done = subprocess.run([PROGRAM, *words], check=True, capture_output=True, text=True)
+    done = subprocess.run([program, *words], check=True, capture_output=True, text=True)
     return [line.split() for line in done.stdout.splitlines()]
 
 
-def measure(kind: str, first: int, count: int) -> dict[str, Any]:
+def measure(program: Path, kind: str, first: int) -> dict[str, Any]:
     """One block of seeds, and what of it is worth keeping."""
-    row: dict[str, Any] = {"kind": kind, "first": first, "count": count, "opened": 0, "stops": 0, "broken": []}
-    row |= {"force": 0.0, "indentation": 0.0}
-    for seed, opened, force, indentation, stops, fault, value in run(kind, str(first), str(count)):
+    count = BLOCKS[kind]
+    row: dict[str, Any] = {"kind": kind, "first": first, "count": count, "opened": 0, "touched": 0, "stops": 0}
+    row |= {"broken": [], "force": 0.0, "indentation": 0.0}
+    for seed, opened, force, indentation, stops, fault, value, *_ in run(program, kind, str(first), str(count)):
         row["opened"] += int(opened)
+        row["touched"] += float(force) > 0.01
         row["stops"] += int(stops)
-        row["force"] = max(row["force"], float(force))
-        row["indentation"] = max(row["indentation"], float(indentation))
+        row["force"] = float(np.maximum(row["force"], float(force)))
+        row["indentation"] = float(np.maximum(row["indentation"], float(indentation)))
         if not (float(force) < 1.0 and float(indentation) < 1.0):
             row["broken"].append([seed, force, indentation, fault, value])
     return row
@@ -52,65 +60,80 @@ def rows_of(path: Path | None) -> list[dict[str, Any]]:
     return [json.loads(line) for line in path.read_text().splitlines(keepends=True) if line.endswith("\n")]
 
 
+def runs_of(rows: list[dict[str, Any]], kind: str) -> int:
+    return OPERATORS[kind] * sum(row["opened"] for row in rows if row["kind"] == kind)
+
+
 def report(rows: list[dict[str, Any]]) -> int:
     """Print what came of each kind; how many broke their promise."""
     failed = 0
+    print("| runs | rigs | refused before arming | came down | stops | broken | of the force | of the indentation |")
+    print("|---|---|---|---|---|---|---|---|")
     for kind in BLOCKS:
         chosen = [row for row in rows if row["kind"] == kind]
         if not chosen:
             continue
-        count, opened, stops = (sum(row[key] for row in chosen) for key in ("count", "opened", "stops"))
-        worst = {key: max(row[key] for row in chosen) for key in ("force", "indentation")}
+        count, opened, touched, stops = (
+            sum(row[key] for row in chosen) for key in ("count", "opened", "touched", "stops")
+        )
+        worst = {key: np.max([row[key] for row in chosen]) for key in ("force", "indentation")}
         broken = [run for row in chosen for run in row["broken"]]
         print(
-            f"{kind}: {opened} runs ({count - opened} more refused before arming), {stops} stops: at worst "
-            f"{worst['force']:.3f} of the promised force, {worst['indentation']:.3f} of the indentation; "
-            f"{len(broken)} broken"
+            f"| {kind}: {runs_of(rows, kind)} | {opened} | {count - opened} | {touched} | {stops} | {len(broken)} | "
+            f"{100 * worst['force']:.1f} % | {100 * worst['indentation']:.1f} % |"
         )
         for seed, force, indentation, fault, value in broken:
-            print(f"  BROKEN: seed {seed}: force {force}, indentation {indentation}; {fault} {value}")
+            print(f"BROKEN: {kind} {seed}: force {force}, indentation {indentation}; {fault} {value}")
         failed += len(broken)
     return failed
 
 
-def sample(options: argparse.Namespace) -> int:
-    wanted = {"quasi-static": options.quasi_static, "dynamic": options.dynamic, "fault": options.faults}
-    rows = rows_of(options.rows)
-    done = {(row["kind"], row["first"]) for row in rows}
+def blocks(kind: str, wanted: int, options: argparse.Namespace) -> Iterator[tuple[str, int]]:
+    """Blocks of a kind that are not yet there, until so many runs are."""
     shard, shards = (int(word) for word in options.shard.split("/"))
-    jobs = [
-        (kind, options.first + i * BLOCKS[kind], BLOCKS[kind])
-        for kind, count in wanted.items()
-        for i in range(-(-count // BLOCKS[kind]))
-        if i % shards == shard
-    ]
-    end = time.monotonic() + options.seconds
+    done = {row["first"] for row in options.found if row["kind"] == kind}
+    number = shard
+    while runs_of(options.found, kind) * shards < wanted and time.monotonic() < options.end:
+        first = options.first + number * BLOCKS[kind]
+        number += shards
+        if first not in done:
+            yield kind, first
 
-    def one(job: tuple[str, int, int]) -> dict[str, Any] | None:
-        return measure(*job) if time.monotonic() < end else None
 
-    with ThreadPoolExecutor(options.jobs) as pool:
-        for row in pool.map(one, [job for job in jobs if job[:2] not in done]):
-            if row is None:
+def sample(options: argparse.Namespace) -> int:
+    """Kinds take turns, so that each has its share whenever this is stopped."""
+    options.found = rows_of(options.rows)
+    options.end = time.monotonic() + options.seconds
+    wanted = {"quasi-static": options.quasi_static, "dynamic": options.dynamic, "fault": options.faults}
+    waiting = [blocks(kind, count, options) for kind, count in wanted.items()]
+    while waiting:
+        for jobs in list(waiting):
+            job = next(jobs, None)
+            if job is None:
+                waiting.remove(jobs)
                 continue
-            rows.append(row)
+            row = measure(options.program, *job)
+            options.found.append(row)
             if options.rows is not None:
                 with options.rows.open("a") as stream:
                     print(json.dumps(row), file=stream)
-    return report(rows)
+    return report(options.found)
 
 
 def search(options: argparse.Namespace) -> int:
-    """The default rig, ever closer; how many promises it did not come within a factor of two of."""
+    """The best share of each promise on each rig; how many promises no rig comes within a factor of two of."""
     missed = 0
-    for kind in ("quasi-static", "fault"):
-        best = 0.0
-        for seed in range(options.first, options.first + 3):
-            words = run("search", kind, str(seed), str(options.search))[-1]
-            best = float(np.maximum(best, float(words[6].rstrip(";,"))))
-            print(f"{kind}, search {seed}: {' '.join(words[1:])}")
-        print(f"{kind}: {best:.3f} of what is promised")
-        missed += best < 0.5
+    print("| promise | " + " | ".join(RIGS) + " |")
+    print("|---|" + "---|" * len(RIGS))
+    for target in AIMS:
+        cells, best = [], 0.0
+        for rig in RIGS:
+            runs = options.search // 10 if target == "peak" else options.search
+            found = run(options.program, "search", target, rig, str(options.first), str(runs))[-1]
+            best = float(np.maximum(best, float(found[0])))
+            cells.append(f"{100 * float(found[0]):.0f} % of {1e9 * float(found[2]):.4g} nN ({found[3]} {found[4]})")
+        print(f"| {target} | " + " | ".join(cells) + " |", flush=True)
+        missed += not best >= 0.5
     return missed
 
 
@@ -118,12 +141,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quasi-static", type=int, default=100_000, help="runs")
     parser.add_argument("--dynamic", type=int, default=2000)
-    parser.add_argument("--faults", type=int, default=20_000)
+    parser.add_argument("--faults", type=int, default=10_000)
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--shard", default="0/1", help="I/N: every N-th block of seeds, from the I-th")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no block after this time")
-    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--rows", type=Path, help="file of what has been run")
+    parser.add_argument("--program", type=Path, default=PROGRAM, help="of another build")
     parser.add_argument("--search", type=int, default=0, metavar="RUNS", help="search with so many runs instead")
     options = parser.parse_args()
     return (search(options) if options.search else sample(options)) > 0

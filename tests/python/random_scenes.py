@@ -101,7 +101,8 @@ def gaps_of(plan: Plan, scene: Scene, count: int, roots: Sequence[float] = ()) -
     lowest = scene.range.minimum_gap
     near = max(abs(facts["release_gap"]), abs(facts["capture_gap"]), 1e-12)
     deepest = -max(facts["largest_indentation"], 1e-15)
-    beside = np.geomspace(max(1.001 * plan.fold_distance_m, 1e-15), max(near, 1e-14), count // 3)
+    begins = plan.fold_distance_m if math.isfinite(plan.fold_distance_m) else near
+    beside = np.geomspace(max(1.001 * begins, 1e-15), max(near, 1e-14), count // 3)
     gaps = np.concatenate([
         np.geomspace(1e-2, 1e-3 * near, count),
         np.linspace(1.2 * near, -1.2 * near, count),
@@ -118,6 +119,19 @@ def largest_error(value: Any, truth: Any, quantity: str, scale: float) -> float:
     planned, true = getattr(value, name[0]), getattr(truth, name[1])
     share = np.abs(planned - true) / np.maximum(np.maximum(np.abs(true), scale), 1e-300)
     return float(share.max(initial=0.0)) if np.isfinite(share).all() else math.inf
+
+
+def keeps(plan: Plan, rtol: float) -> bool:
+    """Its bound is inside the demand; or what the rigid sum errs by is beyond it, is warned of, and the rest is.
+
+    Where the sample jumps there is no bound, and a warning says so.
+    """
+    facts = plan.explain()
+    if math.isinf(plan.bound):
+        return any("jumps to the tip" in warning.text for warning in plan.warnings)
+    warned = any("more than demanded" in warning.text for warning in plan.warnings)
+    rigid = max(facts["rigid_error"], facts["around_error"]) if warned and not facts["yields"] else 0.0
+    return bool(plan.bound <= rtol + rigid * (1.0 + 1e-12))
 
 
 def compare(scene: Scene, rtol: float, quantity: str = "force", count: int = 40) -> Outcome | Error:

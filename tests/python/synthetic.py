@@ -62,9 +62,15 @@ def write_matrix(path: Path, heights: Array, side: tuple[float, float] | None, u
     return path
 
 
-def write_gwy(path: Path, heights: Array, side: tuple[float, float], mask: NDArray[np.bool_] | None = None) -> Path:
-    """Gwyddion's native format: nested named components, little endian, first row is the top."""
-    ny, nx = heights.shape
+def write_gwy(
+    path: Path,
+    heights: Array,
+    side: tuple[float, float],
+    mask: NDArray[np.bool_] | None = None,
+    more: dict[str, tuple[Array, str]] | None = None,
+) -> Path:
+    """Gwyddion's native format: nested named components, little endian, first row is the top; ``more`` channels with
+    their units."""
 
     def text(value: str) -> bytes:
         return value.encode() + b"\0"
@@ -77,7 +83,8 @@ def write_gwy(path: Path, heights: Array, side: tuple[float, float], mask: NDArr
         return text(name) + struct.pack("<I", len(body)) + body
 
     def field(rows: Array, unit_z: str) -> bytes:
-        parts = [component(k, b"i", struct.pack("<i", v)) for k, v in (("xres", nx), ("yres", ny))]
+        shape = (("xres", rows.shape[1]), ("yres", rows.shape[0]))
+        parts = [component(k, b"i", struct.pack("<i", v)) for k, v in shape]
         parts += [component(k, b"d", struct.pack("<d", v)) for k, v in (("xreal", side[1]), ("yreal", side[0]))]
         for key, unit in (("si_unit_xy", "m"), ("si_unit_z", unit_z)):
             parts.append(component(key, b"o", thing("GwySIUnit", [component("unitstr", b"s", text(unit))])))
@@ -88,6 +95,9 @@ def write_gwy(path: Path, heights: Array, side: tuple[float, float], mask: NDArr
     container = [component("/0/data/title", b"s", text("Height")), component("/0/data", b"o", field(heights, "m"))]
     if mask is not None:
         container.append(component("/0/mask", b"o", field(mask.astype(float), "")))
+    for number, (name, (values, unit)) in enumerate((more or {}).items(), 1):
+        container.append(component(f"/{number}/data/title", b"s", text(name)))
+        container.append(component(f"/{number}/data", b"o", field(values, unit)))
     path.write_bytes(b"GWYP" + thing("GwyContainer", container))
     return path
 

@@ -31,6 +31,28 @@ def write_nanoscope_image(path: Path, heights: Array, side: tuple[float, float])
     return path
 
 
+def write_nanoscope_channel(path: Path, values: Array, side: tuple[float, float], name: str, sensitivity: str) -> Path:
+    """The same with one channel that is no height: ``sensitivity`` is what the header says of it, as ``2.5 MPa/V``."""
+    ny, nx = values.shape
+    per_volt = float(sensitivity.split()[0])
+    full = 2.1 * float(np.abs(values).max()) / per_volt  # V
+    counts = np.round(values / per_volt / full * 65536.0).astype("<i2")
+    width, height, offset = side[1] * 1e9, side[0] * 1e9, 2048
+    lines = [
+        "*File list", "Version: 0x08150300", "Date: 01:06:11 PM Wed Oct 09 2019", f"Data length: {offset}",
+        "*Scanner list", "@Sens. Zsens: V 25 nm/V",
+        "*Ciao scan list", f"Scan Size: {width:.6g} nm", f"Samps/line: {nx}", f"Lines: {ny}",
+        f"@Sens. {name}Sens: V {sensitivity}",
+        "*Ciao image list", f"Data offset: {offset}", f"Data length: {counts.nbytes}", "Bytes/pixel: 2",
+        f"Samps/line: {nx}", f"Number of lines: {ny}", f"Scan Size: {width:.6g} {height:.6g} nm",
+        f'@2:Image Data: S [{name}] "{name}"', "@Z magnify: C [2:Z scale] 1.000000",
+        f"@2:Z scale: V [Sens. {name}Sens] ({full / 65536.0:.12g} V/LSB) {full:.12g} V", "*File list end",
+    ]  # fmt: skip
+    header = "".join(f"\\{line}\r\n" for line in lines).encode("latin-1") + b"\x1a"
+    path.write_bytes(header.ljust(offset, b"\0") + counts.tobytes())
+    return path
+
+
 def write_wsxm(path: Path, heights: Array, side: tuple[float, float]) -> Path:
     """WSxM's .stp with doubles: the picture turned by 180 degrees, its first pixel the lower right one."""
     ny, nx = heights.shape

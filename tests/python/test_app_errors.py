@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from nanotouch.extras import ADDS, advice
 from nanotouch_app.main import COMMANDS, build_parser, main
 from synthetic import write_matrix
 
@@ -75,7 +76,7 @@ CASES: dict[str, tuple[list[str], list[str]]] = {
     "fit on prose": (["fit", "prose.txt"], ["prose.txt"]),
     "fit on nothing": (["fit", "nowhere.ibw"], ["nowhere.ibw", "no such file"]),
     "export nothing": (["export", "nowhere.mcap", "--out", "x.csv"], ["nowhere.mcap", "no such file"]),
-    "export as text": (["export", "prose.txt", "--out", "x.txt"], [".csv, .h5 or .hdf5"]),
+    "export as text": (["export", "prose.txt", "--out", "x.txt"], [".csv, .h5, .hdf5"]),
     "export prose": (["export", "prose.txt", "--out", "x.csv"], ["prose.txt"]),
 }
 
@@ -102,7 +103,7 @@ def test_results_that_cannot_be_replaced(folder: Path, capsys: pytest.CaptureFix
 
 @pytest.mark.parametrize(
     "arguments",
-    [[], ["touhc"], ["touch", "--mode", "hover"], ["touch", "--seed", "x"], ["touch", "a", "b"], ["export", "a"]],
+    [["touhc"], ["touch", "--mode", "hover"], ["touch", "--seed", "x"], ["touch", "a", "b"], ["export", "a"]],
 )
 def test_wrong_usage(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
@@ -132,7 +133,7 @@ def run(*arguments: str, blocked: tuple[str, ...] = (), cwd: Path) -> subprocess
     return subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
 
 
-EXTRAS = ("cv2", "scipy", "SurfaceTopography", "afmformats", "mcap", "h5py", "vtk", "vtkmodules", "trame", "tqdm")
+EXTRAS = ("cv2", "scipy", "SurfaceTopography", "afmformats", "mcap", "h5py", "vtk", "vtkmodules", "aiohttp", "tqdm")
 EXTRAS = (*EXTRAS, "matplotlib", "xarray", "nanotouch._fit")
 
 
@@ -146,14 +147,24 @@ EXTRAS = (*EXTRAS, "matplotlib", "xarray", "nanotouch._fit")
         (["image", "no_unit.txt"], "images"),
         (["fit", "prose.txt"], "curves"),
         (["map", "prose.txt"], "maps"),
-        (["export", "prose.txt", "--out", "x.csv"], "app"),
+        (["export", "prose.txt", "--out", "x.csv"], "curves"),
     ],
 )
 def test_missing_extra_is_named(arguments: list[str], extra: str, folder: Path) -> None:
     done = run(*arguments, blocked=EXTRAS, cwd=folder)
     assert done.returncode == 2, done.stderr
-    assert f"pip install 'nanotouch[{extra}]'" in done.stderr
+    assert f"(extra {extra}, {ADDS[extra]}): {advice(extra)}" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_a_touch_needs_the_recorder_only(folder: Path) -> None:
+    """Pictures and bars are left out, and it is said what would bring them."""
+    blocked = [name for name in EXTRAS if name not in ("mcap", "h5py")]
+    done = run("touch", "--duration", "0.2s", "--out", "small", blocked=blocked, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in (folder / "small").iterdir()) == ["recording.mcap", "summary.json"]
+    assert "picture left out: matplotlib" in done.stdout
+    assert "pip install vtk" in done.stdout
 
 
 def test_help_and_doctor_need_nothing(tmp_path: Path) -> None:

@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 from nanotouch import record
 from nanotouch.surface import grating
-from nanotouch_app import output, touch, view
+from nanotouch_app import output, told, touch, view
 from nanotouch_app.main import main
+from nanotouch_app.summary import words
 from synthetic import write_ibw_image, write_matrix
 
 pytest.importorskip("mcap")
@@ -28,7 +29,7 @@ KEYS = {  # of the interface, and beyond
     "models", "snap_in_force_N", "pull_off_force_N", "hand_pull_off_force_N", "position_tracking_rms_m",
     "force_tracking_rms_N", "loop_rate_Hz", "steps", "stability_margin", "force_limit_N", "force_overshoot_N",
     "surface", "mode", "hand_snap_in_force_N", "planned_pull_off_force_N", "largest_force_N", "alpha_p", "alpha_f",
-    "duration_s", "incomplete", "stability", "states", "reasons", "seed", "version",
+    "touched", "duration_s", "incomplete", "stability", "calm", "states", "reasons", "seed", "version",
 }  # fmt: skip
 ALWAYS = {"recording.mcap", "summary.json", "time.png", "force_gap.png", "view.png"}
 
@@ -91,7 +92,7 @@ def test_leaves_what_it_promises(
 
 def test_what_it_says_is_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
     """On a flat at the defaults: the plan's 18 nN, felt through alpha_f."""
-    assert main(["touch", "--surface", "flat", "--out", str(tmp_path)]) == 0
+    assert main(["touch", "--surface", "flat", "--verbose", "--out", str(tmp_path)]) == 0
     said = capsys.readouterr().out
     summary = json.loads((tmp_path / "summary.json").read_text())
     pull_off = summary["pull_off_force_N"]
@@ -103,6 +104,41 @@ def test_what_it_says_is_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFi
     assert all(line in said for line in summary["models"])
     assert "surface: flat, 6 x 6 um" in said
     assert summary["position_tracking_rms_m"] < 5e-9  # the paper's stage: 1 nm steps
+
+
+def test_a_touch_is_told_in_four_answers(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+    """What was touched, what was felt, was it safe, what to try next: short lines, the numbers of summary.json."""
+    assert main(["touch", "--surface", "flat", "--out", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    titles = [line.split()[0] for line in lines if not line.startswith(" ")]
+    assert titles == ["touched", "felt", "safe", "try", "written"]
+    assert max(len(line) for line in lines[:-1]) <= 120
+    assert len(lines) <= 16
+    said = "\n".join(lines)
+    assert f"pull-off       {summary['pull_off_force_N'] * 1e9:.1f} nN at the tip" in said
+    assert f"yes: no stop, and {summary['largest_force_N'] * 1e9:.1f} nN is below the limit" in said
+    assert "nanotouch touch --surface flat --mode scan" in said
+    assert "nanotouch touch --surface flat --verbose" in said
+
+
+def test_a_touch_that_was_stopped_is_not_called_safe() -> None:
+    facts = {
+        "force_limit_N": 400e-9, "largest_force_N": 114.8e-9, "loop_rate_Hz": 1e4, "reasons": ["force limit"],
+        "states": {"RUN": 100, "HOLD": 0, "RETRACT": 0, "LATCHED": 0},
+    }  # fmt: skip
+    assert told.verdict(facts) == "yes: no stop, and 114.8 nN is below the limit of 400 nN"
+    assert told.verdict(facts | {"largest_force_N": 401e-9}) == "no stop, but 401.0 nN is above the limit of 400 nN"
+    stopped = facts | {"states": {"RUN": 100, "HOLD": 20, "RETRACT": 3000, "LATCHED": 0}}
+    assert told.verdict(stopped) == "it was stopped: HOLD for 0.002 s, RETRACT for 0.3 s (force limit)"
+
+
+def test_a_touch_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
+    assert main(["touch", "--surface", "flat", "--duration", "1s", "--json", "--out", str(tmp_path)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed.pop("folder") == str(tmp_path)
+    assert set(printed.pop("files")) <= names(tmp_path)
+    assert printed == json.loads((tmp_path / "summary.json").read_text())
 
 
 def test_same_seed_same_recording(tmp_path: Path, no_view: None) -> None:
@@ -132,7 +168,7 @@ def test_touches_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str], no
     assert main(["touch", str(file), "--at", "1.5um,3um", "--duration", "4s", "--out", str(out)]) == 0
     said = capsys.readouterr().out
     assert "a tilt of 2 degrees" in said
-    assert "surface: grating.ibw, 6 x 6 um, 64 x 64 pixels" in said
+    assert "touched  grating.ibw, 6 x 6 um, 64 x 64 pixels" in said
     assert "LevelReport(" not in said
     recording = record.read(out / "recording.mcap")
     assert recording.x[-1] == pytest.approx(1.5e-6, rel=1e-6)
@@ -167,13 +203,17 @@ def test_scene_file(tmp_path: Path, no_view: None) -> None:
 
 def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], no_view: None) -> None:
     """Nothing was felt: it says so, with null in the summary."""
-    assert main(["touch", "--duration", "0.05s", "--out", str(tmp_path)]) == 0
+    assert main(["touch", "--duration", "0.05s", "--verbose", "--out", str(tmp_path)]) == 0
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["force_tracking_rms_N"] is None
     assert summary["pull_off_force_N"] is None
     said = capsys.readouterr().out
     assert "none: never in contact" in said
     assert "pull-off          none" in said
+    assert not summary["touched"]
+    touched = words(summary | {"touched": True})
+    assert "snap-in           none: no sudden pull on the way in" in touched
+    assert "pull-off          none: no sudden release on the way out" in touched
 
 
 def test_window_opens_where_there_is_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, no_view: None) -> None:
@@ -226,7 +266,7 @@ def test_approach_and_curve(no_view: None, tmp_path: Path, capsys: pytest.Captur
     found = json.loads((tmp_path / "a" / "summary.json").read_text())
     assert names(tmp_path / "a") == ALWAYS | {"summary.json"}
     assert found["position_tracking_rms_m"] is None
-    assert main(["touch", "--surface", "flat", "--mode", "curve", "--out", str(tmp_path / "c")]) == 0
+    assert main(["touch", "--surface", "flat", "--mode", "curve", "--verbose", "--out", str(tmp_path / "c")]) == 0
     found = json.loads((tmp_path / "c" / "summary.json").read_text())
     assert found["stability_margin"] is None
     assert found["force_tracking_rms_N"] is None
@@ -237,7 +277,7 @@ def test_approach_and_curve(no_view: None, tmp_path: Path, capsys: pytest.Captur
 
 
 def test_how_the_loop_is_closed(no_view: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    command = ["touch", "--surface", "flat", "--out", str(tmp_path), "--duration", "2s", "--overwrite"]
+    command = ["touch", "--surface", "flat", "--out", str(tmp_path), "--duration", "2s", "--overwrite", "--verbose"]
     assert main([*command, "--control", "paper"]) == 2  # its own stage loop is unstable
     assert "not armed: stability margin 0 (exact contact), at least 1.5" in capsys.readouterr().err
     assert main([*command, "--control", "paper", "--minimum-margin", "0"]) == 0

@@ -40,11 +40,12 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 def test_one_row_for_each_curve_and_bad_files_do_not_stop_it(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "results.csv"
-    summary = batch.fit_files([folder], out, "jkr", **RADIUS)
+    summary = batch.fit_files([folder], out, "jkr", long=True, **RADIUS)
     rows = rows_of(out)
     assert [(Path(row["file"]).name, row["status"]) for row in rows] == [
-        ("a.ibw", "ok"), ("b.ibw", "ok"), ("cut.ibw", "failed"), ("notes.md", "failed")]  # fmt: skip
-    assert summary.count("ok") == summary.count("failed") == 2
+        ("a.ibw", "undetermined"), ("b.ibw", "undetermined"),
+        ("cut.ibw", "failed"), ("notes.md", "failed")]  # fmt: skip
+    assert summary.fitted == summary.count("failed") == 2
     assert "cut.ibw" in rows[2]["reason"]
     one = nt.fit.fit_curve(nt.curves.read(folder / "a.ibw")[0], "jkr", **RADIUS)
     assert float(rows[0]["work_of_adhesion [J/m^2]"]) == one.values["work_of_adhesion"]
@@ -105,7 +106,7 @@ def test_decisions_by_hand(folder: Path, tmp_path: Path) -> None:
         f'baseline_nm = [{(far - 100e-9) * 1e9!r}, {far * 1e9!r}]\n["c.ibw"]\nexclude = "never measured"\n'
     )
     out = tmp_path / "results.csv"
-    summary = batch.fit_files([folder], out, "jkr", sidecar=sidecar, **RADIUS)
+    summary = batch.fit_files([folder], out, "jkr", sidecar=sidecar, long=True, **RADIUS)
     first, second = rows_of(out)[:2]
     assert (first["status"], first["reason"]) == ("excluded", "tip crashed")
     assert float(second["contact_point [m]"]) == pytest.approx(contact, abs=1e-15)
@@ -175,7 +176,7 @@ def test_the_command(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture
     out = tmp_path / "out" / "results.csv"
     assert main(["fit", str(folder), "--model", "jkr", "--radius", "30nm", "--out", str(out)]) == 0
     said = capsys.readouterr().out
-    assert "4 curves: 2 ok, 0 excluded, 2 failed" in said
+    assert "4 curves: 0 ok, 2 undetermined, 2 failed" in said
     assert "notes.md" in said
     assert sorted(path.name for path in out.parent.iterdir()) == [
         "results-01.png", "results.csv", "results.csv.journal", "results.csv.json"]  # fmt: skip
@@ -207,7 +208,7 @@ def test_any_name_a_file_can_have(tmp_path: Path, capsys: pytest.CaptureFixture[
     out = tmp_path / "results.csv"
     for _ in range(2):  # the second reads the journal
         assert main(["fit", str(folder), "--model", "jkr", "--radius", "30nm", "--out", str(out)]) == 0
-        assert "7 curves: 6 ok, 0 excluded, 1 failed" in capsys.readouterr().out
+        assert "7 curves: 0 ok, 6 undetermined, 1 failed" in capsys.readouterr().out
     found = {Path(row["file"]).name for row in rows_of(out)}
     written = [os.fsdecode(name).encode("utf-8", "backslashreplace").decode() for name in [*NAMES, b"cut\xff.ibw"]]
     assert found == set(written)

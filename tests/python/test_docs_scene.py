@@ -56,6 +56,26 @@ def test_example_file(example: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "pull-off 12 nN" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("name", ["plan", "scene", "interaction"])
+def test_python_of_the_page_runs(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", page(name), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, f"docs/{name}.md", "exec"), {})
+    assert capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["plan", "scene", "interaction", "yielding", "contact"])
+def test_no_sentence_is_longer_than_35_words(name: str) -> None:
+    """Of running text and of points of a list; code, tables and headings are none."""
+    text = re.sub(r"```.*?```", "", page(name), flags=re.DOTALL)
+    lines = [line for line in text.splitlines() if not line.startswith(("|", "#", "    ", "      "))]
+    paragraphs = re.split(r"\n\s*\n|\n(?=- |\d\. )", "\n".join(lines))
+    for paragraph in paragraphs:
+        for sentence in re.split(r"(?<=[.:;!?])\s+", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", paragraph)):
+            assert len(sentence.split()) <= 35, sentence
+
+
 def test_plan_is_printed_as_on_the_page() -> None:
     assert f"```\n{Scene().plan()}\n```" in page("plan")
 

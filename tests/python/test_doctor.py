@@ -13,6 +13,7 @@ import nanotouch
 import pytest
 from nanotouch import _core
 from nanotouch.errors import DeviceError
+from nanotouch.extras import EXTRAS
 from nanotouch_app import doctor, view
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
@@ -35,7 +36,7 @@ def test_status_is_0_and_everything_is_listed(capsys: pytest.CaptureFixture[str]
     assert args.run(args) == 0
     said = capsys.readouterr().out
     assert said.startswith(f"nanotouch {nanotouch.__version__}, Python {sys.version.split()[0]}, numpy ")
-    for name in (*doctor.EXTRAS, "core", "fit", "simulated", "gpio", "display", "VTK"):
+    for name in (*EXTRAS, "core", "fit", "simulated", "gpio", "display", "VTK"):
         assert re.search(rf"^  (ok|--) {name} ", said, re.MULTILINE), name
     assert "ok VTK        VTK 9.9" in said
 
@@ -44,14 +45,14 @@ def test_status_is_0_and_everything_is_listed(capsys: pytest.CaptureFixture[str]
 def test_extras_are_those_of_the_package() -> None:
     extras = tomllib.loads(PYPROJECT.read_text())["project"]["optional-dependencies"]
     declared = {name: {re.split(r"[<>=\[]", need)[0] for need in needs} for name, needs in extras.items()}
-    assert {name: set(packages) for name, packages in doctor.EXTRAS.items()} == {
-        name: declared[name] for name in declared if name not in ("all", "test", "lint")
+    assert {name: set(packages) for name, packages in EXTRAS.items()} == {
+        name: declared[name] for name in declared if name not in ("all", "docs", "test", "lint")
     }
 
 
 def test_a_missing_package_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "afmformats", None)
-    assert finding("curves") == "  -- curves     afmformats missing: pip install 'nanotouch[curves]'"
+    assert finding("curves") == "  -- curves     afmformats missing, for files of force curves: pip install afmformats"
 
 
 def test_without_fit(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,16 +5,16 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from nanotouch import curves, record
+from nanotouch import curves, images, maps, record
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.errors import Error, InvalidValue, ReadError
 from nanotouch.record import Recording
 from nanotouch_app import export
+from synthetic import DATA, asymmetric, write_gwy
 
 pytest.importorskip("mcap")
 pytest.importorskip("tqdm")
@@ -94,24 +94,140 @@ def test_curves_to_csv(curve: tuple[Path, list[ForceCurve]], tmp_path: Path) -> 
     assert np.isnan(force[100:]).all()
 
 
-def test_curves_to_hdf5(curve: tuple[Path, list[ForceCurve]], tmp_path: Path) -> None:
-    h5py = pytest.importorskip("h5py")
-    path, found = curve
-    assert run(path, "--out", tmp_path / "c.h5") == 0
-    with h5py.File(tmp_path / "c.h5") as file:
-        segment = file["curve 0/segment 1"]
-        assert segment.attrs["role"] == "retract"
-        assert segment["force"].attrs["unit"] == "N"
-        np.testing.assert_array_equal(segment["force"][:], found[0].segments[1].force)
-        assert "force" not in file["curve 1/segment 0"]
-        assert json.loads(file["curve 0"].attrs["spring constant"]) == 8.0
+def a_curve(name: str = "made", pause: bool = False, force: bool = True) -> ForceCurve:
+    rng = np.random.default_rng(7)
+    z = np.linspace(1e-6, 0, 60)
+    parts = [("approach", z), *([("pause", np.zeros(20))] if pause else []), ("retract", z[::-1])]
+    segments, start = [], 0.0
+    for role, height in parts:
+        values = 1e-9 * rng.standard_normal(height.size)
+        time = start + np.arange(height.size) * 1e-3
+        start = time[-1] + 1e-3
+        segments.append(Segment(role, time, height, "height (measured)", values if force else None, values / 0.05))
+    meta = {"spring constant": 0.05, "sensitivity": 4e-8, "grid index x": 3, "notes": ("ours",), "enum": 0}
+    return ForceCurve(tuple(segments), meta, name)
+
+
+@pytest.mark.parametrize("ending", [".h5", ".tab"])
+@pytest.mark.parametrize("pause", [False, True])
+def test_curves_open_in_afmformats_and_here(ending: str, pause: bool, tmp_path: Path) -> None:
+    afmformats = pytest.importorskip("afmformats")
+    pytest.importorskip("h5py")
+    made = a_curve(pause=pause)
+    file = curves.write(tmp_path / f"c{ending}", [made])
+    (theirs,) = afmformats.load_data(file)
+    assert made.approach is not None
+    assert made.retract is not None
+    np.testing.assert_array_equal(theirs.appr["force"], made.approach.force)
+    np.testing.assert_array_equal(theirs.retr["height (measured)"], made.retract.z)
+    np.testing.assert_array_equal(theirs.retr["time"], made.retract.time)
+    assert theirs.metadata["spring constant"] == 0.05
+    assert theirs.metadata["grid index x"] == 3
+    (ours,) = curves.read(file)
+    assert [segment.role for segment in ours.segments] == [segment.role for segment in made.segments]
+    for mine, back in zip(made.segments, ours.segments, strict=True):
+        np.testing.assert_array_equal(back.force, mine.force)
+        np.testing.assert_array_equal(back.z, mine.z)
+
+
+def test_many_curves_to_hdf5_and_one_to_text(tmp_path: Path) -> None:
+    pytest.importorskip("afmformats")
+    file = curves.write(tmp_path / "many.h5", [a_curve(), a_curve()])
+    assert run(file, "--out", tmp_path / "again.hdf5") == 0
+    with pytest.raises(InvalidValue, match="holds one curve, not 2"):
+        run(file, "--out", tmp_path / "all.tab")
+    assert run(file, "--index", "1", "--out", tmp_path / "one.tab") == 0
+    with pytest.raises(InvalidValue, match=r"0 \.\. 1"):
+        run(file, "--index", "2", "--out", tmp_path / "two.tab")
+    with pytest.raises(InvalidValue, match="no force"):
+        curves.write(tmp_path / "none.h5", [a_curve(force=False)])
+    assert not (tmp_path / "none.h5").exists()
+
+
+def test_a_calibration_is_given_where_the_file_states_none(tmp_path: Path) -> None:
+    pytest.importorskip("afmformats")
+    source = DATA / "corpus" / "curves" / "asylum-pairs" / "Line0000Point0000Defl.ibw"
+    if not source.is_file():
+        pytest.skip("without the corpus of real files")
+    with pytest.raises(InvalidValue, match="spring constant"):
+        run(source, "--out", tmp_path / "c.h5")
+    assert run(source, "--spring-constant", "0.1N/m", "--out", tmp_path / "c.h5") == 0
+    ours, back = curves.read(source, spring_constant=0.1)[0], curves.read(tmp_path / "c.h5")[0]
+    assert ours.retract is not None
+    assert back.retract is not None
+    np.testing.assert_array_equal(back.retract.force, ours.retract.force)
+
+
+def test_images_to_gwy_and_gsf(tmp_path: Path) -> None:
+    """A file of two channels, one with a mask: opened by gwyfile, SurfaceTopography and here; the right way up."""
+    gwyfile = pytest.importorskip("gwyfile")
+    pytest.importorskip("SurfaceTopography")
+    heights = asymmetric()
+    phase = np.cos(heights * 1e9)
+    hole = np.zeros(heights.shape, bool)
+    hole[3:5, 6] = True
+    write_gwy(tmp_path / "in.gwy", heights, (2e-6, 3e-6), hole, {"Phase": (phase, "deg")})
+    assert run(tmp_path / "in.gwy", "--out", tmp_path / "out.gwy") == 0
+    container = gwyfile.load(str(tmp_path / "out.gwy"))
+    fields = gwyfile.util.get_datafields(container)
+    assert len(fields) == 2
+    by_unit = {str(getattr(field.si_unit_z, "unitstr", "")): field for field in fields.values()}
+    np.testing.assert_allclose(by_unit["deg"].data[::-1], phase, rtol=1e-12)
+    np.testing.assert_allclose(np.where(hole, 0, by_unit["m"].data[::-1]), np.where(hole, 0, heights), atol=1e-18)
+    assert by_unit["m"].xreal == pytest.approx(3e-6)
+    masks = [container[key] for key in container if key.endswith("/mask")]
+    assert any(np.array_equal(mask.data[::-1] > 0.5, hole) for mask in masks)
+    assert run(tmp_path / "in.gwy", "--out", tmp_path / "out.gsf") == 0
+    back = images.read(tmp_path / "out.gsf")
+    np.testing.assert_allclose(np.where(hole, 0, back.heights), np.where(hole, 0, heights), atol=1e-14)
+    assert back.size == pytest.approx((2e-6, 3e-6))
+    content = (tmp_path / "out.gsf").read_bytes()  # once more, by the format's description
+    facts = dict(line.split(" = ") for line in content[: content.index(0)].decode().splitlines()[1:])
+    assert (facts["XRes"], facts["YRes"], facts["ZUnits"]) == ("32", "24", "m")
+    values = np.frombuffer(content[-4 * 32 * 24 :], "<f4").reshape(24, 32)
+    np.testing.assert_array_equal(values[::-1], back.heights.astype("<f4"))
+    assert (len(content) - values.nbytes) % 4 == 0
+    assert set(content[content.index(0) : -values.nbytes]) == {0}
+
+
+def test_a_map_to_gwy(tmp_path: Path) -> None:
+    gwyfile = pytest.importorskip("gwyfile")
+    xarray = pytest.importorskip("xarray")
+    values = np.arange(20.0).reshape(4, 5) + 1.0
+    flags = np.zeros((4, 5), np.uint32)
+    flags[1, 2] = 256
+    marks = {"flag_masks": np.array([64, 256], np.uint32), "flag_meanings": "waves effective_modulus_undetermined"}
+    data = xarray.Dataset(
+        {"effective_modulus": (("y", "x"), values, {"units": "Pa"}), "flags": (("y", "x"), flags, marks)},
+        {"y": ("y", np.arange(4) * 1e-7, {"units": "m"}), "x": ("x", np.arange(5) * 2e-7, {"units": "m"})},
+    )
+    (plane,) = maps.planes(data)
+    images.write_planes(tmp_path / "map.gwy", [plane])
+    container = gwyfile.load(str(tmp_path / "map.gwy"))
+    field = container["/0/data"]
+    assert (field.xreal, field.yreal) == pytest.approx((1e-6, 4e-7))
+    assert container["/0/mask"].data[::-1][1, 2] == 1.0
+    assert container["/0/mask"].data.sum() == 1.0
+    assert field.data[::-1][3, 4] == 20.0
+
+
+@pytest.mark.skipif(not (DATA / "corpus").is_dir(), reason="without the corpus of real files")
+@pytest.mark.parametrize("name", ["nid-1.nid", "sample_0.jpk-qi-image", "fdc_image_1.ibw"])
+def test_real_images_go_out_whole(name: str, tmp_path: Path) -> None:
+    gwyfile = pytest.importorskip("gwyfile")
+    source = DATA / "corpus" / "images" / name
+    assert run(source, "--out", tmp_path / "out.gwy") == 0
+    fields = gwyfile.util.get_datafields(gwyfile.load(str(tmp_path / "out.gwy")))
+    assert len(fields) >= 2
+    again = images.read(tmp_path / "out.gwy")
+    np.testing.assert_allclose(again.heights, images.read(source, again.channel).heights, rtol=1e-6, atol=1e-15)
 
 
 def test_errors_leave_nothing(recording: Path, tmp_path: Path) -> None:
     prose = tmp_path / "prose.txt"
     prose.write_text("no table here")
     before = sorted(tmp_path.iterdir())
-    with pytest.raises(InvalidValue, match=r"the ending must be \.csv, \.h5 or \.hdf5"):
+    with pytest.raises(InvalidValue, match=r"the ending must be \.csv, .* or \.gsf"):
         run(recording, "--out", tmp_path / "r.xlsx")
     with pytest.raises(ReadError, match=r"nowhere\.mcap"):
         run(tmp_path / "nowhere.mcap", "--out", tmp_path / "r.csv")

@@ -101,7 +101,7 @@ def test_html_says_what_is_not_determined() -> None:
     for part in ("E of the sample", "E*, of tip and sample together", "MPa", "calibration", "valid for"):
         assert part in html
     bound = nt.fit.fit_curve(curve, "jkr", radius=RADIUS, bounds={"effective_modulus": (1e6, 2e6)})
-    assert "NOT DETERMINED" in bound._repr_html_()
+    assert "not determined" in bound._repr_html_()
     assert "#c0392b" in bound._repr_html_()
 
 

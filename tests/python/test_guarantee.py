@@ -18,13 +18,33 @@ def test_the_guarantee_is_the_sum_of_its_terms() -> None:
         terms = found.calibration + found.motion + found.ringing + found.snap_in + found.noise
         assert found.force == pytest.approx(session.settings.limits.force + terms, rel=1e-12)
         assert found.limit == pytest.approx(session.settings.limits.force, rel=1e-12)
-        assert found.snap_in > session.plan.explain()["pull_off_force"]  # the tip arrives with more than that
+        assert found.snap_in >= session.plan.explain()["pull_off_force"]
+        assert found.arrival > 2.0 * session.plan.explain()["pull_off_force"]  # the tip arrives with more than that
         assert found.with_failure == found.force + max(found.failures.values())
-        assert session is rough or found.warning is None  # on the grating's flanks it may snap in with the limit
+        assert found.warning is None
+        assert found.arrival < found.limit
         for number in (found.force, found.with_failure):
             assert f"{number * 1e9:.4g} nN" in str(found)
         assert "help is needed within 13.9 h" in str(found)
     assert rough.guarantee().motion > 3.0 * flat.guarantee().motion  # the flank of the grating
+
+
+def test_what_nothing_would_show_is_said() -> None:
+    """Without an integral hysteresis hides a stage that sticks: the others keep their number."""
+    found = Session(gains={"stage_integral": 0.0}).guarantee()
+    assert found.with_failure == np.inf
+    others = found.force + max(most for most in found.failures.values() if most < np.inf)
+    assert f"at most {others * 1e9:.4g} nN if one thing fails" in str(found)
+    assert "without bound for slip of stage or surface: nothing would show it" in str(found)
+
+
+def test_one_failure_far_above_the_others_does_not_hide_them() -> None:
+    """An integral may hide half of a declared hysteresis: a slip of so much is no use to those who fear another."""
+    found = Session(rig=Rig(stage={"hysteresis": 0.15, "creep": 0.01})).guarantee()
+    slip, second = sorted(found.failures.values())[:-3:-1]
+    assert slip == found.failures["slip of stage or surface"] > 10.0 * second
+    assert f"{(found.force + second) * 1e9:.4g} nN if anything else does" in str(found)
+    assert "anything else" not in str(Session().guarantee())
 
 
 def test_a_limit_that_protects_nothing_is_said() -> None:

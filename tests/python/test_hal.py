@@ -144,6 +144,8 @@ def test_what_a_method_raises_reaches_the_caller(method: str) -> None:
         (3, "must return a nanotouch.hal.Reading or None, not 3"),
         (Reading(position=(1.0, 2.0)), "position must be three numbers"),
         (Reading(position=5.0), "position must be three numbers"),  # type: ignore[arg-type]
+        (Reading(position="abc"), "position = 'a': valid are numbers"),  # type: ignore[arg-type]
+        (Reading(position=(0.0, 0.0, 0.0), time=1.5), "time = 1.5: valid are whole"),  # type: ignore[arg-type]
         (Reading(flags=["tired"]), "no flag 'tired': valid are emergency_stop"),
     ],
 )

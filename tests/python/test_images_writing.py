@@ -126,7 +126,7 @@ def test_a_damaged_hdf5_image_is_refused(tmp_path: Path) -> None:
 
 
 def test_refusals(tmp_path: Path) -> None:
-    with pytest.raises(InvalidValue, match=r"written as \.gwy, \.h5, \.hdf5"):
+    with pytest.raises(InvalidValue, match=r"written as \.gwy, \.gsf, \.h5, \.hdf5"):
         images.write(tmp_path / "out.spm", topography())
     with pytest.raises(InvalidValue, match="offset"):
         images.write(tmp_path / "out.h5", topography(), offset=(0.0, 1.0, 2.0))  # type: ignore[arg-type]

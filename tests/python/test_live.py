@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import re
 import socket
+import threading
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -135,6 +137,58 @@ def test_rewind_goes_back(host: Host) -> None:
     wait(host, lambda frame: frame["tip_force"][2] > 1e-8, scroll(host))
 
 
+def test_rewind_shows_where_it_went_in_a_pause(host: Host) -> None:
+    host.answer({"do": "faster"})
+    host.answer({"do": "faster"})
+    before = wait(host, lambda frame: frame["time"] > 6.0)
+    host.answer({"do": "pause"})
+    host.answer({"do": "rewind"})
+    back = host.observer.newest()
+    assert before["time"] - 5.6 < back["time"] < before["time"] - 3.0  # four times as fast as the clock
+    assert host.paused
+    sequence = back["sequence"]
+    time.sleep(0.1)
+    assert host.observer.newest()["sequence"] == sequence
+
+
+def test_a_refused_slider_says_how_far_it_may_go(host: Host) -> None:
+    """What is said to be possible is taken, and a percent more is refused."""
+    old = host.session.settings["gains.alpha_f"]
+    request = {"do": "change", "what": "settings", "field": "gains.alpha_f"}
+    host.answer(request | {"value": 10.0 * old})
+    why = host.told[-1]["why"]  # type: ignore[attr-defined]
+    found = re.fullmatch(
+        r"force scaling ([\d.]+) million: the loop would not be stable enough \(margin [\d.]+ of virtual coupling; "
+        r"at least 1.5 is kept\)\. Possible is up to ([\d.]+) million\. It stays at ([\d.]+) million\.", why,
+    )  # fmt: skip
+    assert found, why
+    assert float(found[1]) == pytest.approx(10.0 * old / 1e6, rel=0.01)
+    assert float(found[3]) == pytest.approx(old / 1e6, rel=0.01)
+    possible = 1e6 * float(found[2])
+    host.answer(request | {"value": 1.02 * possible})
+    assert host.told[-1]["tell"] == "refused"  # type: ignore[attr-defined]
+    host.answer(request | {"value": 0.99 * possible})
+    assert host.session.settings["gains.alpha_f"] == 0.99 * possible
+
+
+@pytest.mark.parametrize(
+    ("preset", "field", "value", "words"),
+    [
+        ("silicon_on_gold", "medium.relative_humidity", 0.0,
+         "humidity 0 %: known only within 10 % there, and this session keeps 1 %. It stays at 61 %."),
+        ("mica_in_air", "adhesion.work_of_adhesion", 2e-3,
+         "that does not go with adhesion.hamaker_constant = 1e-19 J, which would have to be within 0 .. "),
+    ],
+)  # fmt: skip
+def test_what_a_law_does_not_cover_is_told_in_words(preset: str, field: str, value: float, words: str) -> None:
+    told: list[dict[str, Any]] = []
+    host = Host(of_preset(preset), told.append, stepped=True)
+    host.advance(0.02)
+    host.answer({"do": "change", "what": "scene", "field": field, "value": value})
+    assert words in told[-1]["why"]
+    host.close()
+
+
 def test_old_frames_are_not_felt(host: Host) -> None:
     seen = Seen()
     seen.hear(host.world())
@@ -204,3 +258,49 @@ def test_a_display_that_does_not_answer_is_given_up(monkeypatch: pytest.MonkeyPa
         monkeypatch.setenv("DISPLAY", f"127.0.0.1:{number}.0")
         with pytest.raises(nt.Error, match=r"did not answer within 0\.2 s"):
             display.check(0.2)
+
+
+def test_forces_are_scaled_as_in_a_first_touch(host: Host) -> None:
+    scene, rig = nt.presets.silicon_in_air()
+    load, pull_off = float(scene.range.maximum_load), scene.plan().pull_off_force
+    wanted = nt.margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), pull_off, load)
+    assert host.session.settings.gains.alpha_f == pytest.approx(wanted)
+    assert wanted * pull_off >= 0.1  # [N]: felt
+
+
+def test_the_shadow_lies_on_the_surface() -> None:
+    vtk = pytest.importorskip("vtkmodules.all")
+    heights = np.outer(np.ones(40), np.linspace(0.0, 1e-7, 40))
+    made = stage.Stage(vtk, vtk.vtkRenderer(), heights, np.array([1e-8, 1e-8]))
+    made._cast(np.array([0.5, 0.5, 0.0]), 1.0)
+    for _, data in made.shadows:
+        for x, _, z in (data.GetPoint(point) for point in range(data.GetNumberOfPoints())):
+            drawn = (x * made.unit / 1e-8 - 0.5) / 39 * 1e-7 * made.scale[2]
+            assert z == pytest.approx(drawn + stage.LIFTED, abs=1e-6)
+
+
+def test_what_is_no_display_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Somebody answers on the port of a display, and is none."""
+    server = socket.socket()
+    server.bind(("127.0.0.1", 0))
+    server.listen()
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setattr(display, "BASE_PORT", server.getsockname()[1])
+    monkeypatch.setenv("DISPLAY", "127.0.0.1:0")
+
+    def answer(words: bytes) -> None:
+        wire, _ = server.accept()
+        wire.recv(12)
+        wire.sendall(words)
+        wire.close()
+
+    for words, is_display in ((b"HTTP/1.1 400", False), (b"\x00\x12No protocol", True), (b"\x01", True)):
+        thread = threading.Thread(target=answer, args=(words,))
+        thread.start()
+        if is_display:
+            display.check()
+        else:
+            with pytest.raises(nt.Error, match="what answers there is no X server"):
+                display.check()
+        thread.join()
+    server.close()

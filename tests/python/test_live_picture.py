@@ -4,6 +4,7 @@ what is touched."""
 
 from __future__ import annotations
 
+import os
 import time
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,13 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
+import synthetic
 from nanotouch import curves
 from nanotouch.errors import Error
 from nanotouch_app import view
-from nanotouch_app.live import cards, files, film, reel
+from nanotouch_app.live import cards, files, film, parts, picture, readings, reel
 from nanotouch_app.live.host import Host
+from nanotouch_app.live.remote import Remote
 from nanotouch_app.live.subject import of_preset
 from nanotouch_app.main import main
 
@@ -144,6 +147,100 @@ def test_a_curve_becomes_the_scene() -> None:
     assert plan.pull_off_force == pytest.approx(nt.contact.pull_off_force("maugis", contact), rel=0.05)
     assert plan.explain()["effective_modulus"] == pytest.approx(20e6, rel=0.05)
     assert subject.rig["probe.spring_constant"] == 1.0
+    host = Host(subject, lambda message: None, stepped=True)
+    host.answer({"do": "press", "on": True})
+    host.advance(3.0)
+    assert host.observer.newest()["contact_radius"] > 0.0
+    host.answer({"do": "press", "on": False})
+    host.advance(3.0)
+    free = host.observer.newest()
+    assert (free["contact_radius"], free["state"]) == (0.0, 0)  # torn off, and not stopped
+    host.close()
+
+
+def test_what_a_curve_does_not_tell_is_assumed_and_said() -> None:
+    """A hard sample under a soft lever: the pull-off that is touched is the measured one."""
+    pytest.importorskip("nanotouch._fit")
+    contact = nt.Contact(radius=20e-9, effective_modulus=77e9, work_of_adhesion=0.1, range=0.2e-9)
+    curve = curves.synthesise(contact, spring_constant=0.05, noise=0.2e-9, depth=300e-9, clearance=900e-9)
+    subject = files.of_fit(curve, "curve", 20e-9)
+    measured = curves.analyse(curve).pull_off_force
+    assert measured == pytest.approx(nt.contact.pull_off_force("maugis", contact), rel=0.05)
+    assert subject.scene.plan().pull_off_force == pytest.approx(measured, rel=0.01)
+    assert "E* 10 GPa (assumed: stiff)" in subject.felt
+    assert "(from the pull-off)" in subject.felt
+    assert "--radius" not in subject.felt
+
+
+def test_each_real_curve_can_be_touched() -> None:
+    files_there = sorted((synthetic.DATA / "curves").glob("*.*"))
+    if not files_there:
+        pytest.skip("the real curves are not there")
+    for file in files_there:
+        subject = files.of(str(file))
+        assert subject.felt.startswith("Your curve: ")
+        assert "R = 20 nm is assumed" in subject.felt
+        host = Host(subject, lambda message: None, stepped=True)
+        host.answer({"do": "press", "on": True})
+        for _ in range(60):
+            host.advance(0.1)
+            if host.observer.newest()["tip_force"][2] > 0.4 * subject.scene.range.maximum_load:
+                break
+        assert host.observer.newest()["tip_force"][2] > 0.4 * subject.scene.range.maximum_load, file.name
+        host.close()
+
+
+class Stage(nt.hal.Slave):
+    """A real slave of one axis says where it is and what its lever bends, and nothing of the sample."""
+
+    def __init__(self) -> None:
+        self.travel = 0.0
+
+    def describe(self) -> nt.hal.Capabilities:
+        return nt.hal.Capabilities(axes=1, feels=True)
+
+    def read(self) -> nt.hal.Reading:
+        bent = max(0.0, 0.5 * (self.travel - 100e-9)) + 1e-12 * np.random.default_rng(int(1e12 * self.travel)).random()
+        return nt.hal.Reading(position=(np.nan, np.nan, self.travel), felt=(np.nan, np.nan, bent))
+
+    def write(self, action: nt.hal.Action) -> None:
+        self.travel = action.target[2]
+
+
+def test_a_real_slave_is_watched(recwarn: pytest.WarningsRecorder) -> None:
+    pytest.importorskip("vtkmodules")
+    name = f"real-{os.getpid()}"
+    session = nt.Session(rig=nt.Rig(stage={"axes": 1}), slave=Stage(), path=[(1e-6, 2e-6)], preflight=False)
+    session.publish(name)
+    vtk, observer = parts.load(), nt.frames.attach(name)
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetSize(1008, 704)
+    made = picture.Picture(vtk, window, np.zeros((16, 16)), np.full(2, 0.25e-6))
+    remote = Remote(name, observer)
+    world = remote.news()
+    assert world is not None
+    made.hear(world)
+    for _ in range(8):
+        session.advance(0.1, nt.Input(0.4, np.nan, np.nan, 0.3))
+        made.seen.look(observer)
+        made.render()
+    assert made.seen.is_blind
+    measured = session.rig.probe.spring_constant * float(made.seen.frame["deflection"])
+    assert made.seen.force == measured > 10e-9
+    assert tuple(made.seen.frame["tip_position"][:2]) == (1e-6, 2e-6)
+    assert "the gap is not known: a real slave" in readings._facts(made.seen)
+    assert not list(recwarn)
+    remote.close()
+    observer.close()
+
+
+def test_a_reason_is_told_once(tmp_path: Path) -> None:
+    empty = tmp_path / "empty.ibw"
+    empty.touch()
+    with pytest.raises(Error) as caught:
+        files.of(str(empty))
+    assert str(caught.value) == f"{empty}: the file is empty"
 
 
 def test_nonsense_is_refused(tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ def test_names_the_extra_that_is_missing(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "h5netcdf", None)
     assert main(["map", str(volume_file), *KNOWN, "--out", str(tmp_path / "out")]) == 2
-    assert "nanotouch[maps]" in capsys.readouterr().err
+    assert "(extra maps, force maps, also on a cluster)" in capsys.readouterr().err
 
 
 def test_a_file_that_is_no_map_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -312,6 +312,26 @@ def test_a_converter_slower_than_the_loop_costs_margin() -> None:
         nt.Session(rig=nt.Rig(converters={"adc_latency": 0.4e-3}))
 
 
+@pytest.mark.parametrize(
+    ("periods", "latency"), [(2.4, 0.5), (2.9, 0.05), (1.5, 1.4), (2.2, 0.1), (2.99, 0.0), (2.0, 0.9)]
+)
+def test_a_session_that_is_armed_has_no_stale_samples(periods: float, latency: float) -> None:
+    """A converter that repeats a sample for so many periods, with so many of latency: the first four armed at 10 kHz,
+    and held in 9 to 33 % of the ticks."""
+    converters = {"adc_rate": 10e3 / periods, "adc_latency": latency * 1e-4}
+    rate = 10e3
+    try:
+        session = nt.Session(rig=nt.Rig(converters=converters), minimum_margin=0.0)
+    except nt.Error as error:
+        assert latency > 0.0
+        assert "gains.rate = 10000 Hz" in str(error)  # noqa: PT017  some are refused, some not
+        rate = 0.999 * float(str(error).split("0 .. ")[1].split(" ")[0])
+        session = nt.Session(rig=nt.Rig(converters=converters), minimum_margin=0.0, rate=rate)
+    columns = session.advance(0.2)
+    assert columns["age"].max() <= 2.0 / rate * (1.0 + 1e-9)
+    assert not np.any(columns["reasons"] & 8)
+
+
 def test_force_range_sets_the_scale() -> None:
     rig, plan = nt.Rig(), nt.Scene().plan()
     span = margins.force_range(plan, 500e-9)

@@ -14,7 +14,8 @@ import pytest
 from nanotouch import errors
 
 HEAVY = (
-    "scipy", "cv2", "SurfaceTopography", "afmformats", "mcap", "h5py", "vtk", "vtkmodules", "trame", "tqdm",
+    "scipy", "cv2", "SurfaceTopography", "afmformats", "mcap", "h5py", "vtk", "vtkmodules", "aiohttp", "anywidget",
+    "tqdm",
     "matplotlib", "pandas", "dask", "xarray", "PIL", "asyncio", "nanotouch_app",
 )  # fmt: skip
 PACKAGE = Path(nt.__file__).parent
@@ -53,7 +54,7 @@ except nt.Error as error:
 """
     lines = python(code).splitlines()
     assert int(lines[0]) == pytest.approx(5000, abs=8)
-    assert "pip install 'nanotouch[record]'" in lines[1]
+    assert "(extra record, recordings: nanotouch touch): pip install mcap h5py" in lines[1]
 
 
 def test_every_name_resolves() -> None:

@@ -126,7 +126,7 @@ def test_no_attraction_is_steeper_than_the_minimum_spring(name: str) -> None:
     """On the way in, 60 000 gaps: also where a term is held inside the range of adhesion."""
     charged = Scene(tip={"radius": 100e-9}, sample={"charge": 1e-17})
     scene = BARRIERS.get(name, charged)
-    spring = scene.plan(rtol=0.1).minimum_spring
+    spring = scene.plan(rtol=0.0 if name == "second minimum" else 0.1).minimum_spring  # it jumps there: refused
     exact = scene.plan(rtol=0.0)
     capture = max(exact.explain()["capture_gap"], 1e-13)
     gaps = np.concatenate(
@@ -172,9 +172,10 @@ def test_plans_keep_the_bound(seed: int) -> None:
         rtol = 10.0 ** rng.uniform(-6, math.log10(0.3))
         outcome = random_scenes.compare(scene, rtol, str(rng.choice(random_scenes.QUANTITIES)))
         if isinstance(outcome, Error):
-            assert any(name in str(outcome) for name in (*scene.fields, "demand.")), outcome
+            assert any(name in str(outcome) for name in (*scene.fields, "demand.", "on this soft sample")), outcome
             continue
-        assert outcome.error <= outcome.plan.bound <= rtol, (index, repr(outcome.plan))
+        kept = outcome.error <= outcome.plan.bound and random_scenes.keeps(outcome.plan, rtol)
+        assert kept, (index, repr(outcome.plan))
         assert outcome.folds_hold, (index, repr(outcome.plan))
 
 
@@ -192,16 +193,18 @@ def test_bounds_hold_beside_the_folds(name: str, quantity: str) -> None:
     for rtol in (1e-6, 1e-4, 1e-2):
         outcome = random_scenes.compare(scene, rtol, quantity, count=1000)
         assert not isinstance(outcome, Error)
-        assert outcome.plan.fold_distance_m < 2e-4 * outcome.plan.explain()["release_gap"]
-        assert outcome.error <= outcome.plan.bound <= rtol
+        assert outcome.plan.fold_distance_m - outcome.plan.fold_shift_m < 2e-4 * outcome.plan.explain()["release_gap"]
+        assert outcome.error <= outcome.plan.bound
+        assert random_scenes.keeps(outcome.plan, rtol)
 
 
 def test_large_terms_that_cancel_lose_bits() -> None:
     """A cell without adhesion: 77, 113 and 174 nN come to 1 pN, which rounding moves by 9e-12 of the scale of 2 pN."""
-    rng = np.random.default_rng(5033)
-    outcome = random_scenes.compare(random_scenes.near_preset(rng), 1e-6)
+    scene = random_scenes.near_preset(np.random.default_rng(5033))
+    scene.tip.youngs_modulus = scene.sample.youngs_modulus = 1e13  # nothing yields, and there is more to lose
+    outcome = random_scenes.compare(scene, 1e-6)
     assert not isinstance(outcome, Error)
-    assert 1e-12 < outcome.error <= outcome.plan.bound < 1e-9
+    assert 1e-12 < outcome.error <= outcome.plan.bound - outcome.plan.explain()["rigid_error"] < 1e-8
 
 
 @pytest.mark.parametrize("name", [name for name in PRESETS if name != "cell_in_liquid"])  # which yields
@@ -244,7 +247,7 @@ def test_a_session_makes_the_plan_of_its_demand(rtol: float) -> None:
     scene.range.maximum_load = session.settings.limits.force
     assert str(session.plan) == str(scene.plan(rtol=rtol, probe=rig))
     assert session.plan.pull_off_force > 1e-9
-    assert session.plan.bound <= rtol
+    assert random_scenes.keeps(session.plan, rtol)
 
 
 @pytest.mark.parametrize("quantity", ["stiffness", "radius", "folds"])
@@ -369,9 +372,8 @@ def test_numbers_for_control_and_simulators() -> None:
 def test_below_the_minimum_spring_the_tip_jumps_in() -> None:
     """A spring stiffer than the steepest attraction has one equilibrium at every base height, a softer one several."""
     scene = Scene(medium={"relative_humidity": 0.0}, adhesion={"contact_potential": 3.0, "work_of_adhesion": 0.0})
-    plan = scene.plan(rtol=1e-9)
-    gap = np.linspace(5e-9, -0.5e-9, 20001)
-    force = plan.force(gap)
+    plan = scene.plan(rtol=0.0)
+    force = plan.force(gap := np.linspace(5e-9, -0.5e-9, 20001))
     for spring, monotonous in ((1.01 * plan.minimum_spring, True), (0.5 * plan.minimum_spring, False)):
         base = gap - force / spring  # where the base has to be to hold the tip there
         assert (np.diff(base) < 0.0).all() == monotonous

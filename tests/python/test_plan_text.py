@@ -36,7 +36,9 @@ def test_words_name_what_the_bound_is_measured_by() -> None:
     """Scale and unit are those of the quantity; what the quantity does not know is told so."""
     scene = presets.paper_gold()[0]
     force = str(scene.plan())
-    assert re.search(r"force within 0.\d+ % of the larger of itself and 27.29 nN, the pull-off; folds in place", force)
+    assert re.search(
+        r"force within 0.\d+ % of the larger of itself and 27.29 nN, the pull-off; folds within 0.\d+ pm", force
+    )
     floor = str(scene.plan(rtol=0.01, atol=2e-9))
     assert "of the larger of itself and 200 nN;" in floor
     stiffness = scene.plan(rtol=0.1, quantity="stiffness")
@@ -45,7 +47,7 @@ def test_words_name_what_the_bound_is_measured_by() -> None:
     assert f"of the larger of itself and {radius.scale * 1e9:.4g} nm;" in str(radius)
     assert lines_of(radius)["van der Waals"].endswith("no part of the contact radius")
     folds = str(scene.plan(rtol=0.1, quantity="folds"))
-    assert "\nfolds in place; cost" in folds
+    assert re.search(r"\nfolds within 0.\d+ pm; cost", folds)
     hertz = force.split("Hertz would err by ")[1].split(" %")[0]
     for plan in (stiffness, radius):  # of the force, whatever is demanded
         assert f"in force Hertz would err by {hertz} %" in str(plan)

@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import nanotouch as nt
 import numpy as np
 import pytest
 from hypothesis import given
@@ -231,5 +232,31 @@ def test_nothing_half_written(tmp_path: Path) -> None:
 
 def test_without_matplotlib(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    with pytest.raises(MissingExtra, match=r"pip install 'nanotouch\[app\]'"):
+    with pytest.raises(MissingExtra, match="pip install tqdm matplotlib"):
         plots.time(touch(1000))
+
+
+def test_force_gap_is_no_zigzag_and_lies_on_the_planned_law() -> None:
+    """Medians over the stage's steps scatter less than readings, and the law of the recorded scene is drawn."""
+    recording = nt.Session(seed=1).run()
+    whole = plots.force_gap(recording).axes[0]
+    drawn_lines = {line.get_label(): line.get_xydata() for line in whole.lines}
+    assert {"planned law", "approach", "retraction"} <= set(drawn_lines)
+    gap, force = drawn_lines["approach"].T
+    readings = next(line for line in whole.lines if line.get_marker() == "." and line.get_color() == plots.BLUE)
+    x, y = np.asarray(readings.get_xydata()).T
+    assert len(gap) <= 300
+    assert np.std(force[gap > 20.0]) < 0.5 * np.std(y[x > 20.0])  # far away: noise alone
+    law = drawn_lines["planned law"]
+    seen = np.isfinite(law[:, 1])
+    assert np.interp(50.0, law[seen, 0], law[seen, 1]) == pytest.approx(0.0, abs=1.0)
+
+
+def test_the_band_of_a_line_is_explained() -> None:
+    """One step of a master of 40 um resolution at 1:25 000, on a lever of 8 N/m: 12.8 nN."""
+    recording = nt.Session(mode="scan", path=[(0.0, 0.0), (1e-6, 0.0)], seed=1).run(1.0)
+    rig, scale = nt.Rig(), recording.parameter("alpha_p")
+    texts = [text.get_text() for axes in plots.line(recording).axes for text in axes.texts]
+    step = 1e9 * rig.master.resolution * scale * rig.probe.spring_constant
+    told = f"line: mean; band: least to largest; one step: the master's position {step:.3g} nN"
+    assert any(told in one for one in texts)

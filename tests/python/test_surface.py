@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from typing import Any
 
 import nanotouch as nt
@@ -32,6 +33,34 @@ def test_size_is_the_scan_size_and_all_of_it_can_be_touched() -> None:
     assert made.size == (17 * 3e-9, 12 * 2e-9)
     nt.Session(surface=made, path=[made.size], clearance=20e-9)
     nt.Session(surface=made, path=[(0.0, 0.0)], clearance=20e-9)
+
+
+def test_an_array_is_a_surface_too() -> None:
+    topography = bumpy()
+    for made in (Surface(topography.heights, pixel_size=(2e-9, 3e-9)),
+                 Surface(topography.heights.tolist(), pixel_size=np.array([2e-9, 3e-9])),  # type: ignore[arg-type]
+                 pickle.loads(pickle.dumps(Surface(topography.heights, pixel_size=(2e-9, 3e-9))))):  # fmt: skip
+        assert made.height(7e-9, 5e-9) == Surface(topography).height(7e-9, 5e-9)
+    square = Surface(topography.heights, 20e-9, pixel_size=1e-9)
+    assert square.size == pytest.approx((17e-9, 12e-9))
+    assert repr(square).startswith("Surface(17 x 12 pixels, 17 nm x 12 nm, heights over ")
+    assert repr(square).endswith("dilated by a tip of 20 nm)")
+    of_scene = Surface.touched_by(nt.Scene(), topography.heights, pixel_size=1e-9)
+    assert of_scene.height(3e-9, 4e-9) == Surface(topography.heights, 20e-9, pixel_size=1e-9).height(3e-9, 4e-9)
+    nt.Session(surface=of_scene, clearance=20e-9)
+
+
+def test_an_array_needs_its_pixel_size() -> None:
+    heights = bumpy().heights
+    for wrong, words in (
+        (lambda: Surface(heights), "an array of heights .* needs the size of its pixels"),
+        (lambda: Surface(bumpy(), pixel_size=1e-9), "a Topography has its own"),
+        (lambda: Surface(heights, pixel_size=(1e-9, 1e-9, 1e-9)), "one length .* or two"),  # type: ignore[arg-type]
+        (lambda: Surface(heights, pixel_size=-1e-9), "expected two positive lengths"),
+        (lambda: Surface(heights[0], pixel_size=1e-9), "expected two dimensions"),
+    ):  # fmt: skip
+        with pytest.raises(InvalidValue, match=words):
+            wrong()
 
 
 def test_broadcasts() -> None:

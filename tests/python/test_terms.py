@@ -114,7 +114,8 @@ def test_ones_own_law_is_planned_within_its_bound(rtol: float) -> None:
         scene = gelled(strength)
         outcome = random_scenes.compare(scene, rtol)
         assert isinstance(outcome, random_scenes.Outcome)
-        assert outcome.error <= outcome.plan.bound <= rtol
+        assert outcome.error <= outcome.plan.bound
+        assert random_scenes.keeps(outcome.plan, rtol)
     gap = np.geomspace(0.3e-9, 30e-9, 50)
     truth = [force(h, -0.2, 2e-9, 20e-9) for h in gap]
     law = outcome.plan.law("gel", gap)
@@ -159,7 +160,8 @@ def test_random_laws_in_random_scenes() -> None:
         outcome = random_scenes.compare(scene, rtol)
         if isinstance(outcome, random_scenes.Outcome):
             made += 1
-            assert outcome.error <= outcome.plan.bound <= rtol, scene
+            assert outcome.error <= outcome.plan.bound, scene
+            assert random_scenes.keeps(outcome.plan, rtol), scene
             assert outcome.folds_hold, scene
         else:
             assert "terms." not in str(outcome)
@@ -316,3 +318,9 @@ def test_what_runs_never_calls_python() -> None:
     assert 0 < planned < 5000
     plan.force(np.linspace(20e-9, -1e-9, 5000))
     assert calls == planned
+
+
+def test_a_unit_that_no_file_could_spell_is_refused() -> None:
+    law = {name: lambda gap, length: 0.0 for name in ("energy", "force", "stiffness", "bound")}
+    with pytest.raises(InvalidValue, match="unit 'furlong' of 'length'; known are m, Pa"):
+        nt.scene.register("far", parameters={"length": 1.0}, units={"length": "furlong"}, **law)

@@ -49,7 +49,7 @@ def test_reach_of_all_is_more_than_of_a_part() -> None:
 
 def test_a_flat_has_a_plan_and_no_relief() -> None:
     flat = make_terrain(SCENE, Demand(), None, None)
-    assert Reach.along(flat, PATH) == (0.0, 0.0, 0.0, SCENE.tip.radius, SCENE.tip.radius)
+    assert Reach.along(flat, PATH) == (0.0, 0.0, 0.0, SCENE.tip.radius, SCENE.tip.radius, 0.0, 0.0, 0.0, 0.0)
     assert flat.plan.as_dict()["bound"] == SCENE.plan().bound
 
 

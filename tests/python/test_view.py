@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nanotouch.errors import Error, MissingExtra
+from nanotouch.errors import Error, MissingExtra, missing
 from nanotouch.images import Topography
 from nanotouch.record import Recording
 from nanotouch_app import view
-from nanotouch_app.view import picture
+from nanotouch_app.view import picture, stage
 from nanotouch_app.view.picture import Picture
 
 SCENE = {"tip": {"radius": 30e-9, "half_angle": 0.2}}
@@ -106,6 +106,23 @@ def test_png_shows_the_letter_the_right_way_up(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("vtk_works")
+def test_a_touch_at_a_point_is_seen_through_its_tip() -> None:
+    """A ring and a fainter tip for a touch that stands; neither for one that moves."""
+    pytest.importorskip("vtkmodules")
+    standing = press()
+    x = np.linspace(1e-6, 19e-6, len(standing))
+    moving = Recording({**standing.columns, "x": x}, standing.metadata)
+    found = []
+    for recording in (standing, moving):
+        actors = stage.build(Picture.of(letter(), recording), 300).GetActors()
+        looks = [actors.GetItemAsObject(number).GetProperty() for number in range(actors.GetNumberOfItems())]
+        rings = [one for one in looks if one.GetColor() == pytest.approx(stage.REPULSION) and not one.GetLighting()]
+        found.append((len(rings), min(one.GetOpacity() for one in looks)))
+    assert found[0] == (1, pytest.approx(0.25))
+    assert found[1] == (0, pytest.approx(0.55))
+
+
+@pytest.mark.usefixtures("vtk_works")
 def test_png_shows_tip_and_trace(tmp_path: Path) -> None:
     view.render_png(letter(), None, tmp_path / "without.png", size=(400, 300))
     view.render_png(letter(), press(), tmp_path / "with.png", size=(400, 300))
@@ -152,7 +169,7 @@ def test_an_error_of_vtk_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_without_vtk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(view.importlib.util, "find_spec", lambda name: None)
-    assert view.probe() == (False, "vtk is not installed: pip install 'nanotouch[view]'")
+    assert view.probe() == (False, str(missing("vtk", "view")))
     with pytest.raises(MissingExtra):
         view.render_png(letter(), None, tmp_path / "view.png")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nanotouch import Interaction, Plan, Scene, presets, reference
+from nanotouch import Interaction, Plan, Scene, Surface, Topography, presets, reference
 from nanotouch.errors import InvalidValue
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "heavy"))
@@ -40,8 +40,8 @@ def test_a_softer_cell_gives_more() -> None:
     for modulus in (100.0, 1e3, 1e5, 1e7):
         scene, _ = presets.cell_in_liquid()
         scene.sample.youngs_modulus = modulus
-        gaps.append(gap_at(scene.plan(0.01), 1e-9))
-    np.testing.assert_allclose(gaps, [-1320.7e-9, -261.5e-9, 38.1e-9, 44.1e-9], atol=0.3e-9)
+        gaps.append(gap_at(scene.plan(1e-3), 1e-9))
+    np.testing.assert_allclose(gaps, [-1320.7e-9, -261.5e-9, 38.1e-9, 44.1e-9], atol=0.15e-9)
 
 
 def test_a_gel_gives_under_a_double_layer() -> None:
@@ -55,10 +55,10 @@ def test_a_gel_gives_under_a_double_layer() -> None:
     assert abs(float(plan.force(gap)) - truth) <= plan.bound * truth
 
 
-@pytest.mark.parametrize("seed", [12, 34, 49])
+@pytest.mark.parametrize("seed", [12, 33, 48, 2007, 2088, 2091])  # of force, stiffness and radius
 def test_random_soft_scenes_keep_the_bound(seed: int) -> None:
     kind, error, bound = yielding.compare(seed, count=3)
-    assert kind in ("yields", "rigid")
+    assert kind.split(",")[0] in ("yields", "rigid")
     assert error <= bound
 
 
@@ -120,6 +120,45 @@ def test_a_surface_bulges_and_jumps_towards_the_tip(modulus: float, jumps: bool)
         assert np.all(errors_of(scene, plan, reference.yielded_scene(scene, 1e-5), history) <= plan.bound)
 
 
+@pytest.mark.parametrize(("modulus", "demand"), [(1e11, 1e-6), (1e12, 1e-7), (1e11, 0.0), (1e12, 0.0)])
+def test_a_bound_beyond_the_demand_has_what_a_rigid_sample_errs_by(modulus: float, demand: float) -> None:
+    """No table is that fine: beside contact the tail pulls more than the demand knows, and less than the bound."""
+    scene = sticky(modulus)
+    plan, truth = scene.plan(demand), reference.yielded_scene(scene, tolerance=1e-8)
+    capture = plan.explain()["capture_gap"]
+    gaps = capture * np.array([3.0, 1.5, 1.1])
+    error = np.abs([plan.force(gap) for gap in gaps] - truth.force(gaps, "approach")) / plan.scale
+    assert not plan.explain()["yields"]
+    assert demand < error.max() <= plan.bound
+    if demand > 0.0:
+        assert any("more than demanded" in warning.text for warning in plan.warnings)
+
+
+@pytest.mark.parametrize("demand", [1e-6, 0.0])
+def test_the_bound_of_a_surface_with_properties_is_that_of_its_softest_place(demand: float) -> None:
+    """The tail over the soft half, solved with its deformation."""
+    soft, stiff = 2e10, 1e12
+    flat = Topography(np.zeros((16, 16)), (10e-9, 10e-9))
+    modulus = np.full((16, 16), stiff)
+    modulus[:, :8] = soft
+    scene = sticky(stiff)
+    surface = Surface.touched_by(scene, flat, youngs_modulus=modulus)
+    plan = scene.plan(demand, surface=surface)
+    truth = reference.yielded_scene(sticky(soft), tolerance=1e-8)
+    gaps = plan.explain()["capture_gap"] * np.array([3.0, 1.5, 1.1])
+    at = np.column_stack([np.full(3, 40e-9), np.full(3, 80e-9), gaps])
+    error = np.abs(Interaction(plan, "approach").eval(at).Fz - truth.force(gaps, "approach")) / plan.scale
+    assert demand < error.max() <= plan.bound
+
+
+def test_a_surface_that_would_jump_is_refused_in_words() -> None:
+    flat = Topography(np.zeros((16, 16)), (10e-9, 10e-9))
+    scene = sticky(1e12)
+    surface = Surface.touched_by(scene, flat, youngs_modulus=np.linspace(1e6, 1e12, 256).reshape(16, 16))
+    with pytest.raises(InvalidValue, match=r"yields to van der Waals, which cannot be planned here .*: no bound of"):
+        scene.plan(0.01, surface=surface)
+
+
 def test_in_contact_all_of_w_is_maugis_dugdale() -> None:
     """What van der Waals pulls is part of w: pull-off, release and force in contact do not know of it."""
     plan, bare = sticky(1e6).plan(1e-3), sticky(1e6, 0.0).plan(1e-3)
@@ -144,3 +183,27 @@ def test_a_cycle_loses_what_its_jumps_lose(modulus: float) -> None:
     assert facts["capture_energy"] > 0.0 or modulus > 1e10
     assert facts["release_energy"] >= 0.0
     assert lost == pytest.approx(facts["capture_energy"] + facts["release_energy"], rel=2e-3)
+
+
+def test_contact_under_a_double_layer_is_solved_with_it() -> None:
+    """In contact and apart, where it takes hold and lets go; the sum of both is off by far more."""
+    scene = Scene(
+        tip={"radius": 1e-6, "surface_potential": -0.03},
+        sample={"youngs_modulus": 1e6, "poisson_ratio": 0.5, "surface_potential": -0.03},
+        medium={"kind": "liquid", "ionic_strength": 1.0},
+        adhesion={"work_of_adhesion": 1e-3, "hamaker_constant": 0.0},
+        range={"maximum_load": 2e-8},
+    )
+    plan, truth = scene.plan(1e-3), reference.yielded_scene(scene, 1e-5)
+    facts, around = plan.explain(), truth.surrounded
+    assert facts["yields"]
+    assert around is not None
+    assert around.release is not None
+    assert facts["capture_gap"] == pytest.approx(truth.capture_gap, abs=plan.fold_shift_m)
+    assert facts["release_gap"] == pytest.approx(around.release.gap, abs=plan.fold_shift_m)
+    gaps = np.array([10e-9, -5e-9])
+    value = Interaction(plan, "retract").eval(np.column_stack([0.0 * gaps, 0.0 * gaps, gaps]))  # type: ignore[arg-type]
+    true = [around.at(gap) for gap in gaps]
+    assert np.all(np.abs(value.Fz - [t.force for t in true]) <= plan.bound * plan.scale)
+    np.testing.assert_allclose(value.a, [t.contact_radius for t in true], rtol=1e-2)
+    assert float(plan.force(10e-9)) == pytest.approx(truth.force([10e-9])[0], abs=plan.bound * plan.scale)

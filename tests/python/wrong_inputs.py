@@ -150,7 +150,7 @@ plan budget.toml                    | [demand] budget = -1 | 0 .. 1e+09
 plan colour.toml                    | quantity = 'colour' | force, stiffness, radius, folds
 plan choice.toml                    | quantity = 1.5 | force, stiffness, radius, folds
 plan silicon-in-air                 | 'silicon-in-air' | did you mean silicon_in_air
-plan folder                         | 'folder' is neither a TOML file nor a preset
+plan folder                         | this is a folder
 plan ''                             | scene is empty
 plan                                | required: SCENE
 plan silicon_in_air polyester       | unrecognized arguments: polyester
@@ -247,11 +247,12 @@ margins magic.mcap                  | magic.mcap
 margins nowhere.mcap                | nowhere.mcap
 margins nowhere.mcap --rate 1kHz    | holds its own rate
 margins --no-map --out file         | cannot write into file
+samples --out file/out              | cannot write into file/out
 curve --scene ''                    | scene is empty
 curve --out file/out                | cannot write into file/out
 curve prose.txt                     | unrecognized arguments: prose.txt
-export prose.txt --out x.txt        | .csv, .h5 or .hdf5
-export prose.txt --out ''           | .csv, .h5 or .hdf5
+export prose.txt --out x.txt        | --out x.txt | .csv, .h5, .hdf5, .tab, .gwy or .gsf
+export prose.txt --out ''           | .csv, .h5, .hdf5, .tab, .gwy or .gsf
 export prose.txt                    | required: --out
 export nowhere.mcap --out x.csv     | nowhere.mcap: no such file
 image                               | required: FILE
@@ -308,8 +309,8 @@ reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 
 reproduce --figure -5               | --figure -5 | 5, 6, 9
 reproduce --figure x                | 'x' | int
 live prose.txt --film new.gif       | prose.txt
-live --record file                  | file exists already
-live --film file                    | file exists already
+live --record file                  | --record file | .mcap
+live --film file                    | --film file | .gif, .mp4, .png
 live --film touch.txt               | --film touch.txt | .gif, .mp4, .png
 live prose.txt --radius 30 --film new.gif | 30 | unit
 tradeoff --quick --doc x.md         | --doc with --quick
@@ -317,6 +318,10 @@ tradeoff --out file                 | cannot write into file
 bench --out x.txt                   | --out x.txt | .json
 bench --out nowhere/x.json          | nowhere is not a folder
 doctor now                          | unrecognized arguments: now
+latency --rate 0.5Hz                | 0.5Hz | 1.1 Hz
+latency --out wake.txt               | wake.txt | .png
+rig check no.toml                    | no.toml | no such file
+rig check folder.toml                | folder.toml
 touhc                               | 'touhc' | 'touch'
 --versoin                           | required: COMMAND
 """
@@ -352,6 +357,8 @@ for arguments, words in rows(SCENES)[::4]:
     CASES += [(["margins", "--no-map", *arguments], words), (["fit", "prose.txt", "--scene", *arguments], [])]
 CASES += [(shlex.split(form.format(name)), [name]) for form in READ_BY.values() for name in MEASURED]
 CASES += [(["fit", "folder.txt"], ["results.csv"])]
+CASES += [(["report", "prose.txt"], ["prose.txt", "no folder"]), (["report", "nowhere"], ["nowhere"])]
+CASES += [(["fit", "prose.txt", "--groups", "folder"], ["--groups", "results.csv"])]
 CASES += [(["touch", "--seed", DIGITS], ["999", "0 .. 2^64 - 1"]), (["plan", "\udcff.toml"], ["no such file"]),
           (["info", "bad\udcff.txt"], ["\\udcff"]), (["plan", "a\nb.toml"], ["a\\nb.toml: no such file"]),
           (["info", "x" * 5000], ["xxx"])]  # fmt: skip

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Chips at the ends of an SPI bus, as a data sheet describes them, frame by frame; nothing of the library's tables is
+ * used. A DAC at number 0 moves a stage, an ADC at number 1 measures stage (input 1) and deflection (input 2). Behind
+ * them is a spring of the lever's own stiffness. Faults are set by name. */
+#ifndef TESTS_SIMULATED_BUS_H
+#define TESTS_SIMULATED_BUS_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define STAGE_GAIN 1e-6       /* of the stage: -10 .. 10 V are -10 .. 10 um of travel [m/V] */
+#define DEFLECTION_GAIN 33e-9 /* of the read-out [m/V] */
+#define SURFACE 2e-6          /* travel at which the tip meets the spring [m] */
+
+typedef enum bus_fault {
+    BUS_WELL,
+    BUS_ALL_ZERO, /* MISO hangs */
+    BUS_ALL_ONE,
+    BUS_SHORT,   /* fewer bytes than asked went through */
+    BUS_REFUSED, /* EIO */
+    BUS_GONE,    /* ENODEV */
+    BUS_FLIPPED, /* one bit of what comes back is wrong */
+    BUS_DEAF,    /* the DAC no longer hears: it keeps its code */
+    BUS_FAULTS
+} bus_fault;
+
+typedef struct simulated_bus {
+    bus_fault fault;
+    uint32_t dac, control, reply; /* registers of an AD5791 */
+    int has_reply;
+    long frames[2];
+    uint32_t noise; /* of the ADC: its lowest bits change */
+} simulated_bus;
+
+static inline simulated_bus simulated_bus_after_power_up(void)
+{
+    return (simulated_bus){.control = 0x00000E};
+}
+
+/* At ground while the output is off. */
+static inline double simulated_volts(const simulated_bus *bus)
+{
+    return bus->control & 0xCu ? 0.0 : -10.0 + 20.0 * bus->dac / 1048575.0;
+}
+
+static inline double simulated_travel(const simulated_bus *bus)
+{
+    return STAGE_GAIN * simulated_volts(bus);
+}
+
+static inline double simulated_deflection(const simulated_bus *bus)
+{
+    const double beyond = simulated_travel(bus) - SURFACE;
+    return beyond > 0.0 ? 0.5 * beyond : 0.0;
+}
+
+static inline void simulated_ad5791(simulated_bus *bus, const uint8_t *out, uint8_t *in)
+{
+    const uint32_t word = (uint32_t)out[0] << 16 | (uint32_t)out[1] << 8 | out[2], at = word >> 20 & 7u;
+    const uint32_t reply = bus->has_reply ? bus->reply : 0u;
+    in[0] = (uint8_t)(reply >> 16), in[1] = (uint8_t)(reply >> 8), in[2] = (uint8_t)reply;
+    bus->has_reply = word >> 23 != 0;
+    bus->reply = at << 20 | (at == 1 ? bus->dac : at == 2 ? bus->control : 0u);
+    if (word >> 23 || bus->fault == BUS_DEAF)
+        return;
+    if (at == 1)
+        bus->dac = word & 0xFFFFFu;
+    if (at == 2)
+        bus->control = word & 0xFFFFFu;
+}
+
+static inline void simulated_ad7606(simulated_bus *bus, uint8_t *in, uint32_t count)
+{
+    const double inputs[8] = {simulated_volts(bus), simulated_deflection(bus) / DEFLECTION_GAIN};
+    ++bus->noise;
+    for (uint32_t i = 0; i + 1 < count && i < 16; i += 2) {
+        double code = floor(inputs[i / 2] / 20.0 * 65536.0 + 0.5) + (double)(bus->noise >> 1 & 1u);
+        code += i >= 4 ? i : 0; /* offsets of inputs that nobody uses */
+        code = code > 32767.0 ? 32767.0 : code < -32768.0 ? -32768.0 : code;
+        const uint32_t bits = (uint32_t)(int32_t)code;
+        in[i] = (uint8_t)(bits >> 8), in[i + 1] = (uint8_t)bits;
+    }
+}
+
+/* One frame under one chip select. */
+static inline void simulated_frame(simulated_bus *bus, int chip, const uint8_t *out, uint8_t *in, uint32_t count)
+{
+    ++bus->frames[chip & 1];
+    memset(in, 0, count);
+    if (chip == 0 && count == 3)
+        simulated_ad5791(bus, out, in);
+    if (chip == 1)
+        simulated_ad7606(bus, in, count);
+    if (bus->fault == BUS_ALL_ZERO || bus->fault == BUS_ALL_ONE)
+        memset(in, bus->fault == BUS_ALL_ONE ? 0xFF : 0x00, count);
+    if (bus->fault == BUS_FLIPPED)
+        in[count - 1] ^= 1u;
+}
+
+#endif

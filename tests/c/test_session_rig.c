@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A session at hard pace on a slave of converters, with spidev's driver and modelled chips behind its system calls: it
+ * is checked, runs, is stopped by the button's line, and lifts. A busy machine is late and holds; no time is judged. */
+#define _POSIX_C_SOURCE 200809L
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "converter_rig.h"
+#include "nanotouch/hal_spi.h"
+#include "session_fixture.h"
+#include "spidev_model.h"
+
+enum { PATIENCE = 20000 }; /* readings of the ring, 2 ms apart where it is empty */
+
+static simulated_bus bus;
+static spidev_model model[2];
+static atomic_int is_pressed;
+
+static int open_call(void *context, const char *path)
+{
+    (void)context;
+    return path[0] - '0';
+}
+static void close_call(void *context, int file)
+{
+    (void)context, (void)file;
+}
+static int copy_bytes(void *context, uint64_t theirs, uint8_t *ours, uint32_t count, int is_write)
+{
+    (void)context;
+    memcpy(is_write ? (void *)(uintptr_t)theirs : ours, is_write ? ours : (const void *)(uintptr_t)theirs, count);
+    return 0;
+}
+static int control_call(void *context, int file, unsigned long request, void *argument)
+{
+    (void)context;
+    return model_request(&model[file], (unsigned)request, argument, copy_bytes, NULL);
+}
+static uint32_t line_flags(void *context)
+{
+    (void)context;
+    return atomic_load(&is_pressed) ? (uint32_t)NT_SAMPLE_EMERGENCY_STOP : 0u;
+}
+
+static nt_session_setup setup_on(nt_converter_half *half)
+{
+    nt_session_setup setup = nt_session_defaults();
+    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.stage.axes = 1.0;
+    setup.rig.stage.resonance = 100.0; /* far from the rate of the loop */
+    setup.rig.stage.quality = 1.0;
+    setup.settings = nt_settings_defaults(&setup.rig);
+    setup.settings.gains.rate = 500.0;
+    setup.settings.gains.alpha_p = 1e-3;
+    setup.settings.limits.force = 0.4e-6;
+    setup.slave = (nt_hal_choice){nt_converter_half_backend(NT_HALF_SLAVE), half};
+    return setup;
+}
+
+/* Until a record has this state, or patience is over; how many records there were. */
+static long await_state(nt_session *session, uint32_t state, long least)
+{
+    const struct timespec nap = {.tv_nsec = 2000000};
+    long seen = 0;
+    nt_record r;
+    for (int i = 0; i < PATIENCE; ++i) {
+        if (nt_session_read(session, &r, 1) != 1) {
+            (void)nanosleep(&nap, NULL);
+            continue;
+        }
+        assert_true(isfinite(r.stage_position[NT_Z]) && isfinite(r.deflection[NT_Z]));
+        if (++seen >= least && r.state == state)
+            return seen;
+    }
+    fail_msg("state %u not seen in %ld records", (unsigned)state, seen);
+    return 0;
+}
+
+static void it_runs_stops_and_lifts(void **state)
+{
+    (void)state;
+    const nt_spi_calls calls = {open_call, control_call, close_call, NULL};
+    const nt_spi_device devices[] = {{"0", 1, 10e6}, {"1", 2, 10e6}};
+    nt_spi spi;
+    static nt_converter_half half;
+    bus = simulated_bus_after_power_up();
+    for (int i = 0; i < 2; ++i)
+        model[i] = (spidev_model){.bus = &bus, .chip = i};
+    assert_int_equal(nt_spi_open(&spi, devices, 2, &calls, NULL), NT_OK);
+    nt_converter_setup made = slave_setup(&bus, 1);
+    made.exchange = nt_spi_exchange;
+    made.bus = &spi;
+    made.lines.flags = line_flags;
+    assert_int_equal(nt_converter_half_init(&half, &made, NULL), NT_OK);
+    const nt_session_setup setup = setup_on(&half);
+    nt_session *session = open_session(&setup);
+    assert_int_equal(nt_session_start(session, NT_PACE_WALL, 1), NT_E_UNSUPPORTED); /* it can move something */
+    assert_int_equal(nt_session_start(session, NT_PACE_HARD, 0), NT_OK);
+    const long before = await_state(session, NT_RUN, 100);
+    atomic_store(&is_pressed, 1);
+    const long until = await_state(session, NT_LATCHED, 1);
+    assert_int_equal(nt_session_halt(session), NT_OK);
+    print_message("%ld records, latched %ld later; %lu messages\n", before, until, (unsigned long)spi.messages);
+    const double stood = simulated_travel(&bus);
+    nt_session_close(session);
+    assert_true(simulated_travel(&bus) < stood - 1e-8);
+    assert_true(half.counts.failed == 0 && half.counts.mismatched == 0 && half.counts.stuck == 0);
+    nt_spi_close(&spi);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(it_runs_stops_and_lifts)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`nanotouch live --browser`: who may touch and who may look, what a reader is sent, what a slow one costs."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch_app.browser import access, page
+from nanotouch_app.browser.readers import Reader, Readers
+from nanotouch_app.browser.update import LAYOUT, Summary, message_text
+
+aiohttp = pytest.importorskip("aiohttp", reason="pip install 'nanotouch[browser]'")
+from nanotouch_app.browser.desk import BrowserDesk  # noqa: E402
+from nanotouch_app.live.host import Host  # noqa: E402
+from nanotouch_app.live.subject import of_preset  # noqa: E402
+from nanotouch_app.main import main  # noqa: E402
+
+HTML = b"<!doctype html><title>page</title>"
+LONG = 60.0  # on a loaded machine [s]
+Call = Callable[[Any, str, BrowserDesk], Awaitable[None]]
+
+
+@pytest.fixture(scope="module")
+def desk() -> Iterator[BrowserDesk]:
+    """A running session, served."""
+    subject = of_preset("silicon_in_air")
+    made = BrowserDesk(subject.topography, HTML)
+    host = Host(subject, made.tell)
+    ends = threading.Event()
+
+    def serve() -> None:
+        while not ends.is_set():
+            made.serve(host, until=time.monotonic() + 0.2)
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    yield made
+    ends.set()
+    thread.join()
+    host.close()
+    made.close()
+
+
+def visit(desk: BrowserDesk, call: Call) -> None:
+    """Run a visit; its address is http://127.0.0.1:port."""
+
+    async def run() -> None:
+        async with aiohttp.ClientSession() as client:
+            await asyncio.wait_for(call(client, f"http://127.0.0.1:{desk.server.port}", desk), LONG)
+
+    asyncio.run(run())
+
+
+async def opened(client: Any, address: str, key: str, token: str = "", **headers: str) -> Any:
+    """A socket that has said its key."""
+    socket = await client.ws_connect(f"{address}/session", headers={"Origin": address, **headers})
+    await socket.send_json({"key": key, "token": token})
+    return socket
+
+
+async def heard(socket: Any, kind: str) -> Any:
+    """The next message of a kind; updates on the way are taken."""
+    while True:
+        message = await socket.receive()
+        if message.type is aiohttp.WSMsgType.BINARY:
+            if message.data[0] == 1:
+                await socket.send_str("{}")
+                if kind == "update":
+                    return message.data
+        elif message.type is aiohttp.WSMsgType.TEXT:
+            if (told := json.loads(message.data))["tell"] == kind:
+                return told
+        else:
+            raise ConnectionError(str(socket.close_code))
+
+
+async def refused(socket: Any) -> int:
+    """The socket is closed without a word of the session."""
+    message = await socket.receive()
+    assert message.type in (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED), message
+    return int(socket.close_code)
+
+
+def test_only_the_right_key_opens_and_operates_once(desk: BrowserDesk) -> None:
+    async def call(client: Any, address: str, desk: BrowserDesk) -> None:
+        keys = desk.server.keys
+        for wrong in ("", "wrong", keys.operate[:-1], keys.operate + "x", None, 3, ["a"]):
+            assert await refused(await opened(client, address, wrong)) == 4403
+        first = await opened(client, address, keys.operate)
+        granted = await heard(first, "granted")
+        assert granted["operates"]
+        assert await refused(await opened(client, address, keys.operate)) == 4403  # a second operator
+        assert await refused(await opened(client, address, keys.operate, "guessed")) == 4403
+        again = await opened(client, address, keys.operate, granted["token"])  # the same page, loaded again
+        assert (await heard(again, "granted"))["operates"]
+        watching = await opened(client, address, keys.watch)
+        assert not (await heard(watching, "granted"))["operates"]
+        world = await heard(watching, "world")
+        assert world["scene"]["tip"]["radius"] == 20e-9
+        await watching.send_json({"do": "wheel", "steps": 1.0})
+        assert "watches" in (await heard(watching, "refused"))["why"]
+        await again.send_json({"do": "change", "what": "scene", "field": "medium.relative_humidity", "value": 0.2})
+        while (await heard(watching, "world"))["scene"]["medium"]["relative_humidity"] != 0.2:
+            pass
+        for hostile in ({"do": "open", "path": "/etc/passwd"}, {"do": "leave"}, {"do": "move", "way": [1, 2]},
+                        {"do": "wheel", "steps": "1"}, {"do": "preset", "name": "../x"}, {"do": []}, [], 3,
+                        {"do": "__init__"}, {"do": "change", "what": "core", "field": "a", "value": 1.0}):  # fmt: skip
+            await again.send_json(hostile)
+            await heard(again, "refused")
+
+    visit(desk, call)
+
+
+def test_another_page_and_a_rebound_name_are_refused(desk: BrowserDesk) -> None:
+    async def call(client: Any, address: str, desk: BrowserDesk) -> None:
+        port = desk.server.port
+        for headers in ({"Origin": "http://evil.example"}, {"Origin": "null"}, {"Origin": f"http://localhost:{port}"},
+                        {"Origin": f"{address}.evil.example"}, {}):  # fmt: skip
+            with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                await client.ws_connect(f"{address}/session", headers=headers)
+            assert caught.value.status == 403
+        rebound = f"evil.example:{port}"
+        for path in ("/", "/session"):
+            async with client.get(address + path, headers={"Host": rebound, "Origin": f"http://{rebound}"}) as answer:
+                assert answer.status == 403
+        tunnel = f"localhost:{port + 1 if port < 65535 else 1}"  # ssh -L with another port
+        async with client.get(address, headers={"Host": tunnel}) as answer:
+            assert answer.status == 200
+            assert await answer.read() == HTML
+            assert answer.headers["X-Frame-Options"] == "DENY"
+        socket = await opened(client, address, desk.server.keys.watch, Host=tunnel, Origin=f"http://{tunnel}")
+        assert await heard(socket, "granted")
+
+    visit(desk, call)
+
+
+def test_the_server_is_on_this_machine_only(desk: BrowserDesk) -> None:
+    assert [address for address, _ in desk.server.runner.addresses] == ["127.0.0.1"]
+    assert all(f":{desk.server.port}/#key=" in line for line in desk.links().splitlines() if "http" in line)
+
+
+def test_an_update_has_128_bytes_and_is_the_frame(desk: BrowserDesk) -> None:
+    async def call(client: Any, address: str, desk: BrowserDesk) -> None:
+        socket = await opened(client, address, desk.server.keys.watch)
+        first, second = LAYOUT.unpack(await heard(socket, "update")), LAYOUT.unpack(await heard(socket, "update"))
+        assert first[0] == 1
+        assert second[7] > first[7]  # the tick
+        assert second[8] == pytest.approx(second[7] / 1e4, abs=2e-4)  # and its time
+        least, force, largest = second[16], second[13], second[17]
+        assert least - 1e-15 <= force <= largest + 1e-15
+
+    visit(desk, call)
+
+
+def frames(count: int, **columns: Any) -> Any:
+    """Frames of nothing but these columns."""
+    made = np.zeros(count, dtype=nt.frames.FRAME)
+    for name, values in columns.items():
+        made[name] = values
+    return made
+
+
+def test_a_slow_reader_is_given_the_newest_and_every_spike() -> None:
+    readers, sent = Readers(), Reader(lambda data: None, False)
+    readers.all.append(sent)
+    blocks = [frames(50, sequence=np.arange(50) + 50 * number) for number in range(40)]
+    blocks[3]["tip_force"][7, 2] = 9e-9
+    blocks[20]["tip_force"][40, 2] = -5e-9
+    blocks[20]["contact_radius"][40] = 1e-9
+
+    class Blocks:
+        def read(self) -> Any:
+            return blocks.pop(0) if blocks else frames(0)
+
+    readers.observer = Blocks()  # type: ignore[assignment]
+    first = readers.look()
+    assert len(first) == 1
+    while blocks:  # it takes nothing
+        assert readers.look() == []
+    assert (sent.updates, sent.dropped) == (1, 39)
+    sent.free = True
+    blocks.append(frames(50, sequence=np.arange(2000, 2050)))
+    [(_, update)] = readers.look()
+    told = LAYOUT.unpack(update)
+    assert (told[7], told[6]) == (2049, 40 * 50)  # the newest tick, and all that it sums up
+    assert told[16:18] == (pytest.approx(-5e-9), pytest.approx(9e-9))
+    assert told[3] == 3  # snap and tear
+    assert len(update) == 128
+
+
+def test_what_json_cannot_say_is_null() -> None:
+    assert json.loads(message_text({"a": [np.inf, np.nan, 1.5], "b": {"c": np.float64("nan")}, "d": np.int64(3)})) == {
+        "a": [None, None, 1.5], "b": {"c": None}, "d": 3}  # fmt: skip
+
+
+def test_the_summary_of_one_block_is_that_of_its_parts() -> None:
+    rng = np.random.default_rng(1)
+    force = np.zeros((100, 3))
+    force[:, 2] = rng.normal(size=100)
+    whole = frames(100, tip_force=force, contact_radius=rng.random(100) > 0.5)
+    parts = Summary()
+    touched = False
+    for block in np.split(whole, [1, 17, 60]):
+        parts.add(Summary.of(block, touched))
+        touched = bool(block[-1]["contact_radius"] > 0)
+    alone = Summary.of(whole, False)
+    assert (parts.least, parts.largest, parts.ticks, parts.events) == (alone.least, alone.largest, 100, alone.events)
+
+
+def test_a_missing_page_is_a_plain_word(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(nt.Error, match="make page"):
+        page(tmp_path / "none.html")
+    assert main(["live", "--browser", "--page", str(tmp_path / "none.html")]) == 2
+    assert "make page" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("host", [None, "", "evil.example", "127.0.0.1.evil.example", "[::1", "localhost@evil.example"])
+def test_hosts_that_are_not_ours(host: str | None) -> None:
+    assert not access.host_is_ours(host)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The C library reads curves as the NumPy code did that it replaced: its numbers, recorded before it went.
+
+``curve_numbers.json`` holds them in SI; the comments of :func:`read` and :func:`baseline` say in which order.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import synthetic
+from nanotouch import curves
+from nanotouch.curves.baseline import fit_baseline
+
+NUMBERS: dict[str, list[float | None]] = json.loads((Path(__file__).parent / "curve_numbers.json").read_text())
+MADE = ("stiff", "soft", "wave", "drift", "jitter")
+KINDS: tuple[Any, ...] = ("auto", "line", "wave", "constant", (4e-7, 1.1e-6))
+REAL = sorted({key.rsplit(" ", 2)[0] for key in NUMBERS if not key.startswith(MADE)})
+
+
+def noise(count: int, seed: int) -> np.ndarray:
+    """Nearly Gaussian, exact on every machine: sums of twelve numbers of a linear congruence."""
+    state, found = np.uint64(seed), []
+    with np.errstate(over="ignore"):
+        for _ in range(12 * count):
+            state = state * np.uint64(6364136223846793005) + np.uint64(1442695040888963407)
+            found.append(int(state >> np.uint64(40)))
+    return np.asarray((np.array(found, float).reshape(count, 12) / 2.0**24).sum(1) - 6.0)
+
+
+def branch(name: str, count: int = 700) -> tuple[np.ndarray, np.ndarray]:
+    """Height [m] and force [N]: a retraction from a stiff contact; of "soft" an approach without adhesion."""
+    z = np.linspace(0.0, 1.2e-6, count)
+    x = z - 2e-7
+    force = 12e-12 * noise(count, 5) + 3e-4 * z
+    if name == "soft":
+        force = force + 4e-2 * np.clip(-x, 0.0, None) ** 1.5 / 4.5e-4
+        return z[::-1], force[::-1]
+    force = force + np.where(x < 12e-9, -0.1 * x, 0.0)
+    if name == "wave":
+        phase = np.modf(z / 310e-9)[0]
+        force = force + 2e-10 * (
+            16 * phase * (0.5 - phase) * (phase < 0.5) - 16 * (phase - 0.5) * (1 - phase) * (phase >= 0.5)
+        )
+    if name == "drift":
+        force = force + 2e-12 * np.cumsum(noise(count, 9))
+    if name == "jitter":
+        z = z + 2e-9 * noise(count, 3)
+    return z, force
+
+
+def agree(found: list[float | None], key: str) -> None:
+    expected = [np.nan if value is None else value for value in NUMBERS[key]]
+    np.testing.assert_allclose(
+        [np.nan if value is None else value for value in found], expected, rtol=2e-12, err_msg=key
+    )
+
+
+@pytest.mark.parametrize("name", MADE)
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+def test_baselines(name: str, kind: Any) -> None:
+    found = fit_baseline(*branch(name), kind)
+    wave = [] if found.wave is None else [found.wave.period, found.wave.cosine, found.wave.sine]
+    agree(
+        [found.force, found.slope, found.z_mean, found.scatter, *found.variance, *found.noise, *wave], f"{name} {kind}"
+    )
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_events_and_contact_points(name: str) -> None:
+    z, force = branch(name)
+    role: Any = "approach" if name == "soft" else "retract"
+    segment = curves.Segment(role, np.full(z.size, np.nan), z, "height (measured)", force)
+    report = curves.analyse(curves.ForceCurve((segment,), {"spring constant": 0.2}, name), baseline="line")
+    read = report.branches[role]
+    points = [report.contact_points.get(k) for k in ("crossing", "deviation", "hertz", "two_lines", "gradient")]
+    depth = (report.snap_in_force, report.snap_in_z) if name == "soft" else (report.pull_off_force, report.pull_off_z)
+    agree(
+        [
+            *depth, report.contact_point, report.sigma["contact_point"], report.contact_slope,
+            report.sigma["contact_slope"], report.adhesion_work, report.sigma["adhesion_work"], report.noise,
+            read.lowest, -1 if read.tear is None else read.tear, *points,
+        ],
+        f"{name} line read",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_measured_curves(name: str) -> None:
+    pytest.importorskip("afmformats")
+    found = [path for path in synthetic.DATA.rglob(name) if path.is_file()] if synthetic.DATA.is_dir() else []
+    if not found:
+        pytest.skip(f"real data not here: {name}")
+    curve = curves.read(found[0])[0]
+    for kind in ("line", "constant"):
+        if f"{name} 0 {kind}" not in NUMBERS:
+            continue
+        r = curves.analyse(curve, baseline=kind)  # type: ignore[arg-type]
+        agree(
+            [
+                r.pull_off_force, r.snap_in_force, r.contact_point, r.contact_slope, r.adhesion_work, r.noise,
+                r.baseline_tilt, r.sigma["pull_off_force"], r.sigma["contact_point"],
+            ],
+            f"{name} 0 {kind}",
+        )  # fmt: skip

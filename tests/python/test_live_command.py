@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What `nanotouch live` refuses before it opens anything, and how it says so."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import nanotouch as nt
+import pytest
+
+pytest.importorskip("vtkmodules")
+from nanotouch_app.live import desk as desks
+from nanotouch_app.main import main
+
+
+def _refused(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    assert main(["live", *words]) == 2
+    return capsys.readouterr().err
+
+
+def test_a_wrong_name_is_told_before_the_display(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    assert "missing.ibw: neither a file nor a preset" in _refused(capsys, "missing.ibw")
+    assert "DISPLAY is not set" in _refused(capsys, "silicon_in_air")
+
+
+@pytest.mark.parametrize(("option", "ending"), [("--film", ".gif"), ("--record", ".mcap")])
+def test_a_file_that_exists_is_refused_by_its_own_option(
+    tmp_path: Path, option: str, ending: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    held = tmp_path / f"held{ending}"
+    held.write_text("mine")
+    assert f"name another {option}, or add --overwrite" in _refused(capsys, option, str(held))
+    assert held.read_text() == "mine"
+
+
+@pytest.mark.parametrize(("option", "valid"), [("--film", ".gif, .mp4, .png"), ("--record", ".mcap")])
+@pytest.mark.parametrize("name", ["foo.txt", "foo", "foo.mcap.gz"])
+def test_a_file_of_another_kind_is_refused_with_the_valid_ones(
+    tmp_path: Path, option: str, valid: str, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = tmp_path / name
+    assert f"{made}: valid endings are {valid}" in _refused(capsys, option, str(made))
+    assert not made.exists()
+
+
+def test_what_a_killed_view_leaves_is_removed_by_the_next(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    program = (
+        "import os, signal; from nanotouch.scratch import Scratch; kept = Scratch(); print(kept.path, flush=True); "
+    )
+    with subprocess.Popen([sys.executable, "-c", program + "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                          text=True) as lives:  # fmt: skip
+        assert lives.stdout is not None
+        alive = Path(lives.stdout.readline().strip())
+        killed = subprocess.run([sys.executable, "-c", program + "os.kill(os.getpid(), signal.SIGKILL)"],
+                                capture_output=True, text=True, check=False)  # fmt: skip
+        left, other = Path(killed.stdout.strip()), tmp_path / "nanotouch-live-not-ours"
+        other.mkdir()
+        assert left.is_dir()
+        assert left.parent == tmp_path
+        own = desks.Scratch()
+        assert sorted(tmp_path.iterdir()) == sorted((alive, own.path, other))
+        own.close()
+        assert not own.path.exists()
+        lives.communicate("\n")
+
+
+def test_options_that_would_do_nothing_are_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    film = tmp_path / "a.gif"
+    assert "--task cannot be used with it" in _refused(capsys, "--film", str(film), "--task", "find")
+    monkeypatch.setattr("nanotouch_app.live.command.record.is_recording", lambda path: True)
+    played = tmp_path / "touch.mcap"
+    played.write_text("a recording")
+    said = _refused(capsys, str(played), "--task", "find", "--record", str(tmp_path / "b.mcap"))
+    assert "touch.mcap is a recording, which is played: --task and --record cannot be used with it" in said
+
+
+def test_a_window_that_is_killed_while_it_opens_says_by_what(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    killed = tmp_path / "killed"
+    killed.write_text(f"#!{sys.executable}\nimport os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
+    killed.chmod(0o755)
+    monkeypatch.setattr(desks.sys, "executable", str(killed))
+    desk = desks.Desk(nt.surface.grating())
+    with pytest.raises(nt.Error, match="could not be opened: it died of SIGKILL"):
+        desk.wait_ready()

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The work of the hand is what is stored, what the law takes and what becomes heat at the folds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from nanotouch_app.live import charts
+from nanotouch_app.live.energy import Balance, cycle
+from nanotouch_app.live.host import Host
+from nanotouch_app.live.seen import Seen
+from nanotouch_app.live.subject import of_preset
+
+
+@pytest.mark.parametrize("name", ["silicon_in_air", "mica_in_air", "polyester", "silicone_rubber"])
+def test_the_law_balances_over_a_slow_cycle(name: str) -> None:
+    subject = of_preset(name)
+    plan, spring = subject.scene.plan(), 0.2 * subject.rig.probe.spring_constant
+    deepest = 0.8 * float(plan.explain()["largest_indentation"])
+    pieces, energies = cycle(plan, spring, deepest, subject.clearance())
+    hand, stored, tip, heat = energies
+    assert abs(hand - (stored + tip + heat)) < 1e-6 * abs(hand)
+    assert heat > 0.0
+    assert pieces[0].end > pieces[1].start  # it has jumped in
+    assert pieces[3].start > pieces[2].end  # and out
+
+
+def test_frames_balance_and_the_heat_is_that_of_the_folds() -> None:
+    host = Host(of_preset("silicone_rubber"), lambda message: None, stepped=True)
+    world = host.world()
+    balance = Balance(world["stiffness"], world["zero"], world["settings"]["gains"]["alpha_p"],
+                      float(host.session.scene.range.maximum_load))  # fmt: skip
+
+    def go(steps: float, count: int) -> None:
+        for _ in range(count):
+            host.answer({"do": "wheel", "steps": steps})
+            host.advance(0.1)
+            balance.add(host.observer.read())
+
+    host.observer.read()
+    host.advance(0.1)
+    while not host.observer.newest()["contact_radius"] > 0.0:
+        go(0.2, 1)
+    go(0.3, 60)
+    while host.observer.newest()["contact_radius"] > 0.0:
+        go(-0.2, 1)
+    go(-0.2, 10)
+    hand, stored, tip, heat = balance.energies
+    plan = host.session.plan
+    host.close()
+    assert abs(hand - (stored + tip + heat)) < 1e-6 * abs(hand)
+    assert abs(stored) < 0.02 * hand
+    _, slow = cycle(plan, world["stiffness"], 50e-9, 200e-9)
+    # the law keeps what its own folds lose within U's jumps: work at the tip and heat together are what was lost
+    assert tip + heat == pytest.approx(slow.tip + slow.heat, rel=0.1)
+    assert hand == pytest.approx(slow.hand, rel=0.1)
+    assert np.isfinite(list(balance.energies)).all()
+
+
+def test_the_view_shows_where_the_work_goes() -> None:
+    host, seen = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True), Seen()
+    seen.hear(host.world())
+    host.answer({"do": "press", "on": True})
+    for _ in range(10):
+        host.advance(0.1)
+        seen.look(host.observer)
+    assert seen.balance is not None
+    hand, stored, tip, heat = seen.balance.energies
+    host.close()
+    assert stored > 0.0
+    assert abs(hand - (stored + tip + heat)) < 1e-6 * abs(hand)
+    assert charts._energies(seen).startswith("work of the hand ")
+    assert charts._energies(Seen()) == ""
+
+
+def test_energies_have_the_digits_of_the_largest() -> None:
+    assert charts._alike([4.3721, 4.3438, 0.000843, 0.0275]) == [4.37, 4.34, 0.0, 0.03]
+    assert charts._alike([-437.21, 0.4, -0.2, 12.6]) == [-437.0, 0.0, 0.0, 13.0]
+    assert [f"{value:g}" for value in charts._alike([0.0, -0.0])] == ["0", "0"]

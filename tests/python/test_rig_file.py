@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rig files: the one in the docs is read, and each thing that is missing or wrong is refused by its name; then the
+machine's latency and ``nanotouch rig``, of which no time is judged."""
+
+from __future__ import annotations
+
+import datetime
+import random
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import pytest
+from nanotouch import rig_file
+from nanotouch.errors import DeviceError, Error, InvalidValue
+from nanotouch_app.main import main
+
+FILE = Path(__file__).parents[2] / "docs/examples/rig/rig.toml"
+
+
+def tables() -> dict[str, Any]:
+    return tomllib.loads(FILE.read_text())
+
+
+def test_the_file_of_the_docs():
+    found = rig_file.read(FILE)
+    assert found.master is None
+    assert found.slave is not None
+    assert found.rig == {"probe": {"spring_constant_N_per_m": 8}, "stage": {"axes": 1}}
+    assert nt.Rig.from_tables(found.rig).probe.spring_constant == 8.0
+    setup = found.slave.setup
+    assert [chip["chip"] for chip in setup["chips"]] == ["AD5791", "AD7606"]
+    assert setup["chips"][0]["clock"] == 10e6
+    assert setup["driven"][2]["gain"] == 1e-6
+    assert setup["felt"][2]["gain"] == 33e-9
+    assert setup["felt"][2]["uncertainty"] == 0.02
+    assert setup["felt"][2]["noise"] == 20e-12
+    assert setup["felt"][0] is None
+    assert setup["lines"]["debounce"] == 2e-3
+    assert set(found.slave.calibrated.values()) == {datetime.date(2026, 11, 20)}
+
+
+def leaves(given: dict[str, Any], path: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
+    """The path of each table and key below [slave]."""
+    found = []
+    for key, value in given.items():
+        found.append((*path, key))
+        if isinstance(value, dict):
+            found += leaves(value, (*path, key))
+    return found
+
+
+OPTIONAL = {"noise_nm", "noise_pm", "debounce_ms", "limit_switch", "laser_enable", "watchdog", "convert", "position_z"}
+NEEDED = [path for path in leaves(tables()["slave"]) if path[-1] not in OPTIONAL - {"position_z"}]
+
+
+@pytest.mark.parametrize("path", NEEDED, ids="-".join)
+def test_each_key_is_needed_and_named(path: tuple[str, ...]):
+    given = tables()
+    table = given["slave"]
+    for key in path[:-1]:
+        table = table[key]
+    del table[path[-1]]
+    if path == ("backend",):  # without it the half is no real one: its table is unknown
+        with pytest.raises(InvalidValue, match="slave"):
+            nt.Rig.from_tables(rig_file.from_tables(given).rig)
+        return
+    name = path[-1].rsplit("_", 3)[0] if "_per_" in path[-1] else path[-1].rsplit("_", 1)[0]
+    with pytest.raises(InvalidValue, match=rf"{name}.*(is missing|needs)|this half has"):
+        rig_file.from_tables(given)
+
+
+WRONG = {
+    ("slave", "chips", "dac", "chip"): ("AD9999", "known are AD5791"),
+    ("slave", "chips", "dac", "clock_MHz"): (float("nan"), "finite"),
+    ("slave", "chips", "dac", "high_V"): (-10, "converter.span.high"),
+    ("slave", "travel_z", "chip"): ("adc", "driven"),
+    ("slave", "travel_z", "channel"): (1, "channel.channel"),
+    ("slave", "travel_z", "channel "): (0, "has no key 'channel '"),
+    ("slave", "travel_z", "gain_um_per_V"): (0, "not 0"),
+    ("slave", "travel_z", "gain_nm_per_V"): (1000, "has both"),
+    ("slave", "travel_z", "maximum_um"): (11, "channel.maximum"),
+    ("slave", "deflection_z", "uncertainty_percent"): (200, "channel.uncertainty"),
+    ("slave", "deflection_z", "calibrated"): ("yesterday", "2026-11-20"),
+    ("slave", "lines", "emergency_stop"): (4, "estop"),
+    ("slave", "lines", "stop"): ("x", "no key 'stop'"),
+    ("slave", "axes"): (4, "axes"),
+    ("slave", "backend"): ("comedi", "valid are spidev, simulated"),
+    ("slave", "speed"): (1, "no key 'speed'"),
+}
+
+
+@pytest.mark.parametrize("path", WRONG, ids="-".join)
+def test_what_is_wrong_is_named(path: tuple[str, ...]):
+    given = tables()
+    value, words = WRONG[path]
+    table = given
+    for key in path[:-1]:
+        table = table[key]
+    table[path[-1]] = value
+    with pytest.raises(InvalidValue, match=words):
+        rig_file.from_tables(given)
+
+
+def test_a_master_on_converters_and_a_simulated_one():
+    given = tables()
+    given["master"] = {"rate_Hz": 1000, "backend": "simulated"}
+    found = rig_file.from_tables(given)
+    assert found.master is None
+    assert found.rig["master"] == {"rate_Hz": 1000}
+    channel = {key: value for key, value in given["slave"]["position_z"].items() if not key.startswith("noise")}
+    motor = {"chip": "dac", "channel": 0, "gain_N_per_V": 0.5, "offset_N": 0, "minimum_N": -5, "maximum_N": 4.99,
+             "uncertainty_percent": 3, "calibrated": datetime.date(2026, 1, 2)}  # fmt: skip
+    given["master"] = {"backend": "spidev", "axes": 1, "chips": given["slave"]["chips"], "position_z": channel,
+                       "motor_z": motor}  # fmt: skip
+    found = rig_file.from_tables(given)
+    assert found.master is not None
+    assert found.master.setup["driven"][2]["gain"] == 0.5
+    assert found.rig["master"] == {"axes": 1}
+    assert found.master.setup["lines"] is None
+
+
+def test_a_session_says_what_device_is_missing():
+    half = rig_file.read(FILE).slave
+    with pytest.raises(DeviceError, match=r"/dev/spidev0\.0: open: "):
+        nt.Session(slave=half)
+    with pytest.raises(TypeError, match="these converters are the rig's slave"):
+        nt.Session(master=half)
+
+
+def test_latency_is_counted_whole():
+    found = rig_file.latency(1e-3, 0.2, priority=0)
+    assert found.ticks <= 200 <= found.ticks + found.missed  # more if it was late beyond the last period
+    assert sum(found.counts) == found.ticks
+    assert found.quantiles[0.5] <= found.quantiles[0.999] <= found.longest
+    with pytest.raises(InvalidValue, match="period"):
+        rig_file.latency(0.0, 1.0)
+    with pytest.raises(Error):
+        rig_file.latency(1e-3, 0.1, processor=10**9)
+
+
+def test_the_commands(capsys: pytest.CaptureFixture[str], tmp_path: Path):
+    assert main(["rig", "check", str(FILE)]) == 0
+    assert "AD5791 at /dev/spidev0.0, AD7606 at /dev/spidev0.1; 3 channels" in capsys.readouterr().out
+    assert main(["rig", "probe", str(FILE), "--seconds", "0.1"]) == 2
+    assert "/dev/spidev0.0: open: " in capsys.readouterr().err
+    picture = tmp_path / "wake.png"
+    assert main(["latency", "--seconds", "0.2", "--out", str(picture)]) == 0
+    told = capsys.readouterr().out
+    assert "p99.9" in told
+    assert picture.stat().st_size > 1000
+    assert main(["latency", "--rate", "0.5Hz"]) == 2
+    assert main(["latency", "--out", str(picture)]) == 2
+
+
+def test_probe_of_simulated_halves_is_that_of_the_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path):
+    file = tmp_path / "rig.toml"
+    file.write_text("[probe]\nspring_constant_N_per_m = 8\n")
+    status = main(["rig", "probe", str(file), "--seconds", "0.2", "--rate", "100Hz"])
+    told = capsys.readouterr().out
+    assert status in (0, 1)
+    assert ("kept" if status == 0 else "not kept: ") in told
+
+
+STRANGE: list[Any] = [
+    None, True, -1, 0, 10**30, -(2**31) - 1, 1e308, float("nan"), float("-inf"), "", "x\x00y", "é" * 300, [], [1, 2],
+    {}, {"a": {"b": 1}}, datetime.date(1, 1, 1), datetime.time(1, 2), b"bytes",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_dice_are_refused_in_words_or_taken(seed: int):
+    dice = random.Random(seed)
+    taken = 0
+    for _ in range(400):
+        given = tables()
+        for _ in range(dice.choice([1, 1, 2, 3])):
+            path = dice.choice(leaves(given))
+            table = given
+            for key in path[:-1]:
+                table = table[key]
+            if not isinstance(table, dict):
+                continue
+            what = dice.random()
+            if what < 0.2:
+                table.pop(path[-1], None)
+            elif what < 0.3:
+                table[path[-1] + dice.choice(["_", "_nm", " ", "é"])] = table.get(path[-1])
+            else:
+                table[path[-1]] = dice.choice(STRANGE)
+        try:
+            rig_file.from_tables(given)
+            taken += 1
+        except InvalidValue as refused:
+            assert str(refused)  # noqa: PT017  some are refused, some not
+    assert taken < 400
