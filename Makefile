@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help demo test fuzz damage corpus heavy bench lint format clean
+.PHONY: help docs docs-links demo test page check fuzz damage corpus heavy bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -14,11 +14,29 @@ demo:  ## touch the built-in grating, or a file: make demo IMAGE=path OUT=folder
 	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") $(if $(OUT),--out "$(OUT)")
 	@echo 'touch it with your own hand: $(VENV)/nanotouch live $(if $(IMAGE),"$(IMAGE)")'
 
+docs:  ## the site, with its gallery and the examples of its pages run; warnings are errors; build/docs/index.html
+	@tools/setup.sh docs
+	@$(VENV)/sphinx-build -q -W --keep-going -b html docs build/docs
+	@$(VENV)/sphinx-build -q -W -b doctest docs build/docs/doctest
+	@echo "written to build/docs/index.html"
+
+docs-links:  ## whether the links of the site lead somewhere; needs the net
+	@tools/setup.sh docs
+	@$(VENV)/sphinx-build -q -b linkcheck docs build/docs/linkcheck
+
 test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@tools/setup.sh test
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev
 	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
+
+page:  ## the touch in one HTML file, build/page/nanotouch-touch.html; needs node and npm
+	@tools/setup.sh page
+	@$(VENV)/python apps/page/build.py build/page/nanotouch-touch.html
+	@cp build/page/nanotouch-touch.html "$$($(VENV)/python -c 'import nanotouch_app.browser as b; print(b.__path__[0])')"
+
+check: page  ## the page in Chromium: touched, changed, offline, attacked; some minutes
+	@node --test --test-concurrency=1 tests/page/test_*.mjs
 
 fuzz:  ## random input to the C library, with sanitizers; about a minute
 	@tools/setup.sh fuzz
@@ -45,7 +63,7 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every
 	@cmake --build --preset dev --target test_session_adversary
-	@$(VENV)/python tests/heavy/guarantee.py --jobs $(JOBS)
+	@$(VENV)/python tests/heavy/guarantee.py
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test

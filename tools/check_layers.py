@@ -20,15 +20,17 @@ USES = {
     "contact": "core",
     "surface": "core",
     "control": "core",
+    "curves": "core",
     "dynamics": "core",
     "hal": "core",
+    "hal/chips": "core hal",
     "scene": "core forces contact surface scene/terms",
     "scene/terms": "core forces contact surface scene",
     "view": "core forces contact surface scene",
     "hal/sim": "core forces contact surface scene dynamics hal",
-    "hal/linux": "core hal",
+    "hal/linux": "core hal hal/chips",
     "session": "core forces contact surface scene dynamics control hal hal/sim",
-    "fit": "core forces contact",
+    "fit": "core forces contact curves",
 }
 
 # The layer that each public header belongs to, where it is not named after it (contact.h, contact_table.h).
@@ -42,7 +44,9 @@ HEADERS = {
     "sim": "hal/sim",
     "faults": "hal/sim",
     **dict.fromkeys(["commands", "frames", "hazard", "observer"], "session"),
-    "hal_linux": "hal/linux",
+    **dict.fromkeys(["chips", "converters"], "hal/chips"),
+    **dict.fromkeys(["hal_linux", "hal_spi", "realtime"], "hal/linux"),
+    "timing": "hal",
 }
 
 # What the portable layers may take from the C library: nothing that allocates, prints or knows an operating system.
@@ -50,25 +54,27 @@ PORTABLE = USES.keys() - {"hal", "hal/linux", "session", "fit"}
 SYSTEM_HEADERS = {
     "complex", "float", "inttypes", "limits", "math", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "string",
 }  # fmt: skip
-HOSTED_FILES = {"hal/load.c", "hal/loop.c"}  # of hal, what is outside the portable core
+HOSTED_FILES = {"hal/load.c", "hal/loop.c", "hal/timed_loop.c"}  # of hal, what is outside the portable core
 PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 
 # The modules and packages of the Python library from the bottom up; each may import what stands before it.
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
-    "what all need": "_core errors columns formats units _arrays _digest _files _words _writing _drawing",
+    "what all need": "extras _core errors columns formats units scratch "
+    "_arrays _digest _files _words _writing _drawing _html",
     "readers": "_transfer _worker _readers",
     "laws": "contact forces geometry materials",
     "devices": "faults frames commands hal _plant",
-    "descriptions": "description _custom scene presets",
-    "measured": "images surface curves",
+    "descriptions": "rig_file description _custom scene presets",
+    "measured": "images _properties surface curves",
     "what is computed": "_plan_terms _plan_text plan interaction view reference",
-    "a touch": "_live _path _control supervisor _recorder record replay margins operator options _open session",
-    "results": "plots fit maps batch",
-    "a process of its own": "_worker_process",
+    "a loop": "_calm _response",
+    "a touch": "_live _told _path _control supervisor _recorder record replay margins operator options _open session",
+    "results": "plots fit maps surface_file batch",
+    "a process of its own": "_worker_process __main__",
 }
 # Methods for convenience, such as Scene.plan, may import what makes their answer: inside a function, or for its type.
-CONVENIENT = {("scene", "plan"), ("scene", "surface"), ("record", "replay")}
+CONVENIENT = {("scene", "plan"), ("scene", "surface"), ("record", "replay"), ("record", "plots"), ("images", "maps")}
 
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|test|lint|fuzz
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|page
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|test|lint|fuzz}
-say() { printf '\033[1m%s\033[0m\n' "-- $*" >&2; }
+profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|page}
+say() {
+  if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then printf '\033[1m%s\033[0m\n' "-- $*" >&2; else echo "-- $*" >&2; fi
+}
 
 packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libceres-dev libegl1 libgl1-mesa-dri"
 extras=all
@@ -13,6 +15,8 @@ if [ "$profile" = test ]; then
   packages="$packages libcmocka-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
     gcc-mingw-w64-x86-64-posix"
   extras=all,test
+elif [ "$profile" = docs ]; then
+  extras=all,docs
 elif [ "$profile" = lint ]; then
   extras=all,test,lint
 elif [ "$profile" = fuzz ]; then
@@ -109,6 +113,19 @@ install_package() {
   pip install -q --no-deps --no-build-isolation --force-reinstall .
 }
 
+# The page's C compiler (ziglang, 100 MB): `make page` needs it; `make test` only where node can run what it made.
+install_zig() {
+  [ "$profile" = page ] || { [ "$profile" = test ] && command -v node >/dev/null; } || return 0
+  key=$(hash_of apps/page/requirements.txt)
+  ! has_stamp "$key" zig || return 0
+  say "Installing zig's C compiler (100 MB)"
+  if pip install -q --no-deps --require-hashes -r apps/page/requirements.txt; then
+    echo "$key" >.venv/stamp-zig
+  elif [ "$profile" = page ]; then
+    exit 1
+  fi
+}
+
 install_packages
 [ "$profile" != fuzz ] || exit 0 # C alone
 make_venv
@@ -117,7 +134,7 @@ fetch_libgpiod
 
 # lint's packages include test's, and test's include demo's.
 key=$(hash_of pyproject.toml)
-case $profile in demo) stamps="demo test lint" ;; test) stamps="test lint" ;; *) stamps=$profile ;; esac
+case $profile in demo | page) stamps="demo page test lint" ;; test) stamps="test lint" ;; *) stamps=$profile ;; esac
 if ! has_stamp "$key" $stamps; then
   install_dependencies
   echo "$key" >".venv/stamp-$profile"
@@ -127,3 +144,4 @@ if ! has_stamp "$key" package; then
   install_package
   echo "$key" >.venv/stamp-package
 fi
+install_zig

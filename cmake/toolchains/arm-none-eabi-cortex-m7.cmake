@@ -6,3 +6,8 @@ set(CMAKE_C_COMPILER arm-none-eabi-gcc)
 set(CMAKE_C_FLAGS_INIT "-mcpu=cortex-m7 -mthumb -mfpu=fpv5-d16 -mfloat-abi=hard -ffunction-sections -fdata-sections")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "--specs=nosys.specs -Wl,--gc-sections")
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+find_program(QEMU_SYSTEM_ARM qemu-system-arm) # Debian: qemu-system-arm; without it what is linked does not run
+if(QEMU_SYSTEM_ARM)
+  set(CMAKE_CROSSCOMPILING_EMULATOR
+      ${QEMU_SYSTEM_ARM} -M mps2-an500 -icount shift=0 -nographic -monitor none -serial none -semihosting-config enable=on,target=native -kernel)
+endif()
