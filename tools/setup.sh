@@ -47,8 +47,8 @@ install_packages() {
     exit 1
   fi
   say "Installing system packages: $missing"
-  $root env DEBIAN_FRONTEND=noninteractive apt-get -qq update
-  $root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends $missing >/dev/null
+  $root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 update
+  $root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 install -y --no-install-recommends $missing >/dev/null
 }
 
 # --- Python ----------------------------------------------------------------------------------------------------------

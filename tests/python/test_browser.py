@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import json
 import threading
 import time
@@ -50,19 +51,28 @@ def desk() -> Iterator[BrowserDesk]:
     made.close()
 
 
+OPENED: list[Any] = []  # the sockets of the present visit
+
+
 def visit(desk: BrowserDesk, call: Call) -> None:
-    """Run a visit; its address is http://127.0.0.1:port."""
+    """Run a visit; its address is http://127.0.0.1:port. Its sockets are closed: an open one warns in a later test."""
 
     async def run() -> None:
         async with aiohttp.ClientSession() as client:
-            await asyncio.wait_for(call(client, f"http://127.0.0.1:{desk.server.port}", desk), LONG)
+            try:
+                await asyncio.wait_for(call(client, f"http://127.0.0.1:{desk.server.port}", desk), LONG)
+            finally:
+                while OPENED:
+                    await OPENED.pop().close()
 
     asyncio.run(run())
+    gc.collect()  # what is left open warns here
 
 
 async def opened(client: Any, address: str, key: str, token: str = "", **headers: str) -> Any:
     """A socket that has said its key."""
     socket = await client.ws_connect(f"{address}/session", headers={"Origin": address, **headers})
+    OPENED.append(socket)
     await socket.send_json({"key": key, "token": token})
     return socket
 
