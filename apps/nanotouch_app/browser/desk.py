@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
-import queue
-import time
 from typing import Any
 
 from nanotouch.images import Topography
 
 from nanotouch_app.browser.server import Server
 from nanotouch_app.browser.update import surface_bytes
-
-TURN, CLOCK = 0.005, 0.2  # of the host's loop; between two reports of the clock [s]
+from nanotouch_app.live.serving import serve
 
 
 class BrowserDesk:
@@ -20,11 +17,16 @@ class BrowserDesk:
 
     def __init__(self, topography: Topography, page: bytes, port: int = 0) -> None:
         self.server = Server(page, port)
+        self.asked = self.server.asked
         self.server.readers.surface = surface_bytes(topography.heights, topography.pixel_size)
 
     def tell(self, message: dict[str, Any]) -> None:
         """To the pages."""
         self.server.tell(message)
+
+    def wait_ready(self) -> str:
+        """There is nothing to wait for."""
+        return self.links()
 
     def links(self) -> str:
         """In words, for the terminal."""
@@ -38,21 +40,7 @@ class BrowserDesk:
     def serve(self, host: Any, first: dict[str, Any] | None = None, until: float | None = None) -> None:
         """Until Ctrl-C, or a time of the monotonic clock: what is asked, what happens by itself, the clock."""
         self.tell(host.world())
-        if first is not None:
-            host.answer(first)
-        due = 0.0
-        while until is None or time.monotonic() < until:
-            try:
-                message = self.server.asked.get(timeout=TURN)
-                while True:
-                    host.answer(message)
-                    message = self.server.asked.get_nowait()
-            except queue.Empty:
-                pass
-            host.tick()
-            if time.monotonic() > due:
-                due = time.monotonic() + CLOCK
-                self.tell(host.clock())
+        serve(self, host, first, until)
 
     def close(self) -> None:
         """End the server."""

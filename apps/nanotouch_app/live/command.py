@@ -5,11 +5,14 @@ keys in another. What was recorded can be looked at again."""
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from nanotouch import record
 from nanotouch.errors import InvalidValue
+from nanotouch.images import Topography
 
 from nanotouch_app import output, properties
 from nanotouch_app.live import display, files
@@ -20,6 +23,7 @@ from nanotouch_app.live.subject import PRESETS, Subject
 from nanotouch_app.quantity import parse_quantity, whole_number
 from nanotouch_app.training import TASKS, named
 
+Front = Callable[[Topography], Any]  # a window or a server, over a surface
 FILMS, RECORDS = (".gif", ".mp4", ".png"), (".mcap",)
 EPILOG = """examples:
   nanotouch live                         silicon in humid air: scroll down until the water snaps
@@ -67,62 +71,67 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     if args.list:
-        for name, preset in PRESETS.items():
-            print(f"{name:16} {preset.title}: {preset.hint}")
-        for name, one in TASKS.items():
-            print(f"--task {name:9} {one.title}")
-        print("--task lesson    predict, touch, explain: five pages")
-        return 0
+        return _list()
     task = None if args.task is None else named(args.task)
     if args.what is None:
         args.what = "silicon_in_air" if task is None else task.preset
+    is_recording = _checked(args)
+    if args.film is not None:
+        return _film(args)
+    front = _browsers(args, is_recording) if args.browser else _window(args)
+    if is_recording:
+        return _play(Path(args.what), args)
+    return _touch(args, front, None if args.task is None else {"do": "task", "name": args.task})
+
+
+def _list() -> int:
+    for name, preset in PRESETS.items():
+        print(f"{name:16} {preset.title}: {preset.hint}")
+    for name, one in TASKS.items():
+        print(f"--task {name:9} {one.title}")
+    print("--task lesson    predict, touch, explain: five pages")
+    return 0
+
+
+def _checked(args: argparse.Namespace) -> bool:
+    """Refuse what cannot be done; whether a recording is named."""
     for option, file, endings in (("--film", args.film, FILMS), ("--record", args.record, RECORDS)):
         if file is not None:
             if Path(file).suffix.lower() not in endings:
                 raise InvalidValue(f"{option} {file}: valid endings are {', '.join(endings)}")
             output.check_free(Path(file), args, option)
-    path = Path(args.what)
     if not properties.given(args):
         files.check_named(args.what)
-    is_recording = path.is_file() and record.is_recording(path)
+    is_recording = Path(args.what).is_file() and record.is_recording(args.what)
     _check_together(args, is_recording)
-    if args.film is not None:
-        return _film(args)
-    if args.browser:
-        return _in_browsers(args, is_recording)
+    return is_recording
+
+
+def _window(args: argparse.Namespace) -> Front:
     display.check()
-    if is_recording:
-        return _play(path, args)
-    subject = _subject(args)
-    desk = Desk(subject.topography, dark=args.dark, hand=args.hand)
-    try:
-        host = Host(subject, desk.tell, args.record)
-        try:
-            desk.wait_ready()
-            host.folder = Path.cwd()
-            desk.serve(host, first=None if args.task is None else {"do": "task", "name": args.task})
-        finally:
-            host.close()
-    finally:
-        desk.close()
-    return 0
+    return partial(Desk, dark=args.dark, hand=args.hand)
 
 
-def _in_browsers(args: argparse.Namespace, is_recording: bool) -> int:
-    """Until Ctrl-C."""
+def _browsers(args: argparse.Namespace, is_recording: bool) -> Front:
     if is_recording:
         raise InvalidValue("--browser shows a running session: a recording is played in a window")
     from nanotouch_app.browser import page  # its server is an extra
     from nanotouch_app.browser.desk import BrowserDesk
 
+    return partial(BrowserDesk, page=page(args.page), port=args.port)
+
+
+def _touch(args: argparse.Namespace, front: Front, first: dict[str, Any] | None) -> int:
+    """Until the person leaves: Q in a window, Ctrl-C in the terminal."""
     subject = _subject(args)
-    desk = BrowserDesk(subject.topography, page(args.page), args.port)
+    desk = front(subject.topography)
     try:
         host = Host(subject, desk.tell, args.record)
         try:
             host.folder = Path.cwd()
-            print(desk.links(), flush=True)
-            desk.serve(host, first=None if args.task is None else {"do": "task", "name": args.task})
+            for line in filter(None, [desk.wait_ready()]):
+                print(line, flush=True)
+            desk.serve(host, first)
         finally:
             host.close()
     finally:

@@ -11,7 +11,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +19,9 @@ from nanotouch.errors import Error, missing
 from nanotouch.images import Topography
 from nanotouch.scratch import Scratch
 
+from nanotouch_app.live.serving import serve
+
 START_TIME = 60.0  # until VTK has drawn its first picture on a loaded machine [s]
-TURN = 0.005  # of the host's loop [s]
-CLOCK = 0.2  # between two reports of the clock [s]
 
 
 class Desk:
@@ -67,8 +66,8 @@ class Desk:
         except (BrokenPipeError, ValueError):
             self.asked.put({"do": "leave"})
 
-    def wait_ready(self) -> None:
-        """Until the first picture is drawn; an error with what VTK has said if there is none."""
+    def wait_ready(self) -> str:
+        """Until the first picture is drawn; an error with what VTK has said if there is none. It says nothing."""
         try:
             first = self.asked.get(timeout=START_TIME)
         except queue.Empty:
@@ -79,6 +78,7 @@ class Desk:
             said = self.said.read_text(errors="replace").strip().splitlines() or [f"it died of {_cause(status)}"]
             self.close()
             raise Error(f"the window could not be opened: {said[-1]}")
+        return ""
 
     def serve(self, host: Any, first: dict[str, Any] | None = None) -> None:
         """Until the person leaves: what is asked, what happens by itself, the clock. ``first`` is asked at once."""
@@ -88,23 +88,8 @@ class Desk:
             path = self.folder.path / "properties.npz"
             np.savez(path, **properties)
             self.tell({"tell": "properties", "path": str(path)})
-        if first is not None:
-            host.answer(first)
-        due = 0.0
-        while True:
-            try:
-                message = self.asked.get(timeout=TURN)
-                while True:
-                    if not host.answer(message):
-                        self._check_end()
-                        return
-                    message = self.asked.get_nowait()
-            except queue.Empty:
-                pass
-            host.tick()
-            if time.monotonic() > due:
-                due = time.monotonic() + CLOCK
-                self.tell(host.clock())
+        serve(self, host, first)
+        self._check_end()
 
     def _check_end(self) -> None:
         """An error where the window has not left by itself."""
