@@ -207,7 +207,6 @@ static inline void draw_errors(plot *p, dice *d)
     p->setup.settings.limits.force *= k;
     p->setup.settings.gains.set_point *= k;
     p->setup.settings.gains.alpha_f /= k;
-    p->setup.rig.probe.range /= S; /* the electronics saturate at a voltage: behind the gain */
     const nt_fault gain = {NT_FAULT_GAIN, NT_CHANNEL_DEFLECTION, 0.0, HUGE_VAL, S};
     const nt_fault zero = {NT_FAULT_DRIFT, NT_CHANNEL_DEFLECTION, 0.0, HUGE_VAL,
                            between(d, -1.0, 1.0) * p->believed.probe.drift};

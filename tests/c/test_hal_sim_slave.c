@@ -105,12 +105,51 @@ static void an_action_that_is_not_a_number_is_refused(void **state)
     }
 }
 
+/* Deflection as read with this fault, pressed as far as the stage goes: far beyond the range. */
+static nt_reading press_with(const nt_fault *fault, double *truth)
+{
+    nt_faults faults = {.count = 0};
+    nt_sim_setup setup = setup_of(3);
+    setup.faults = &faults;
+    assert_int_equal(nt_faults_add(&faults, fault), NT_OK);
+    nt_sim_slave slave;
+    assert_int_equal(nt_sim_slave_init(&slave, &setup), NT_OK);
+    const nt_action action = {.size = sizeof action, .target[NT_Z] = 4e-6};
+    nt_reading reading = {0};
+    for (int i = 0; i < 4000; i++) {
+        assert_int_equal(nt_sim_slave_read(&slave, &reading), NT_OK);
+        *truth = slave.cantilever.deflection;
+        assert_int_equal(nt_sim_slave_write(&slave, &action), NT_OK);
+    }
+    return reading;
+}
+
+/* What an amplifier or a zero does comes before the converter, which clips what it is given: a reading at the end of
+ * its range is not led away from it, and a lost gain is read beyond it. */
+static void faults_of_a_signal_are_clipped_too(void **state)
+{
+    (void)state;
+    const double range = nt_probe_deflection_range(&rig.probe);
+    const nt_fault faults[] = {{NT_FAULT_DRIFT, NT_CHANNEL_DEFLECTION, 0.0, HUGE_VAL, -0.1 * range},
+                               {NT_FAULT_SLIP, NT_CHANNEL_DEFLECTION, 0.0, HUGE_VAL, -0.1 * range},
+                               {NT_FAULT_GAIN, NT_CHANNEL_DEFLECTION, 0.0, HUGE_VAL, 0.5}};
+    double truth = 0.0;
+    for (int i = 0; i < 3; i++) {
+        assert_true(press_with(&faults[i], &truth).felt[NT_Z] == range);
+        assert_true(truth > 3.0 * range);
+    }
+    const nt_fault lost = {NT_FAULT_GAIN, NT_CHANNEL_DEFLECTION, 0.0, HUGE_VAL, 0.05};
+    const double read = press_with(&lost, &truth).felt[NT_Z];
+    assert_true(fabs(read - 0.05 * truth) < rig.probe.sensitivity * (rig.probe.noise + rig.probe.resolution));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_master_takes_no_part),
         cmocka_unit_test(it_stamps_by_its_hosts_clock),
         cmocka_unit_test(an_action_that_is_not_a_number_is_refused),
+        cmocka_unit_test(faults_of_a_signal_are_clipped_too),
     };
     return cmocka_run_group_tests(tests, make_plan, NULL);
 }

@@ -51,6 +51,21 @@ static void no_operator_breaks_the_guarantee(void **state)
     }
 }
 
+/* Seeds that have broken their promise before the cause was mended. */
+static void what_once_broke_it_keeps_it(void **state)
+{
+    (void)state;
+    static const struct {
+        attack kind;
+        long seed;
+    } once[] = {{ATTACK_QUASI_STATIC, 304352}, {ATTACK_FAULT, 644}};
+    for (size_t i = 0; i < sizeof once / sizeof *once; i++) {
+        const closeness found = run_seed(once[i].kind, once[i].seed);
+        assert_true(found.opened);
+        assert_true(found.force > 0.1 && found.force < 1.0);
+    }
+}
+
 static int print_runs(attack kind, long first, long count)
 {
     for (long seed = first; seed < first + count; seed++) {
@@ -187,6 +202,7 @@ int main(int count, char **words)
         return print_runs((attack)kind, strtol(words[2], NULL, 10), strtol(words[3], NULL, 10));
     if (count > 1)
         return 2;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_operator_breaks_the_guarantee)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_operator_breaks_the_guarantee),
+                                       cmocka_unit_test(what_once_broke_it_keeps_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

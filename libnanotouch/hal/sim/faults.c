@@ -132,15 +132,19 @@ static int is_position(nt_channel channel)
 
 static double noise_of(nt_sim_link *link, const nt_fault *fault, const nt_sensor *sensor, double value)
 {
-    const nt_sensor loud = {fault->value * fmax(sensor->noise, sensor->resolution), sensor->resolution, sensor->range};
+    const nt_sensor loud = {fault->value * fmax(sensor->noise, sensor->resolution), sensor->resolution, HUGE_VAL};
     return nt_sensor_read(&loud, value, nt_sim_noise_now(link, NT_SIM_NOISE_FAULT + (int)fault->channel));
+}
+
+/* Of what the converter is given; else of what it gives. */
+static int is_analogue(nt_fault_kind kind)
+{
+    return kind == NT_FAULT_NOISE || kind == NT_FAULT_GAIN || kind == NT_FAULT_DRIFT || kind == NT_FAULT_SLIP;
 }
 
 /* One reading of one sensor. */
 static void spoil_channel(nt_sim_link *link, const nt_sim_sensors *sensors, const nt_fault *fault, nt_reading *reading)
 {
-    if (half_of(fault->channel) != sensors->half)
-        return;
     const int of_position = is_position(fault->channel);
     double *value = of_position ? &reading->position[NT_Z] : &reading->felt[NT_Z];
     const nt_sensor *sensor = of_position ? sensors->position : sensors->felt;
@@ -221,15 +225,26 @@ static void mark(nt_reading *reading)
     }
 }
 
+static void spoil_sensors(nt_sim_link *link, const nt_sim_sensors *sensors, int analogue, nt_reading *reading)
+{
+    for (int i = 0; i < link->faults.count; i++) {
+        const nt_fault *fault = &link->faults.list[i];
+        if ((int)fault->channel < SENSORS && half_of(fault->channel) == sensors->half &&
+            is_analogue(fault->kind) == analogue && is_active(link, fault))
+            spoil_channel(link, sensors, fault, reading);
+    }
+}
+
+void nt_sim_spoil_signals(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading)
+{
+    spoil_sensors(link, sensors, 1, reading);
+}
+
 /* Sensors first, then the link that carries them. */
 int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double *age)
 {
     int stale = 0;
-    for (int i = 0; i < link->faults.count; i++) {
-        const nt_fault *fault = &link->faults.list[i];
-        if ((int)fault->channel < SENSORS && is_active(link, fault))
-            spoil_channel(link, sensors, fault, reading);
-    }
+    spoil_sensors(link, sensors, 0, reading);
     for (int i = 0; i < link->faults.count; i++) {
         const nt_fault *fault = &link->faults.list[i];
         if (fault->channel == NT_CHANNEL_RIG && is_active(link, fault)) {

@@ -62,6 +62,12 @@ static int64_t time_now(const nt_sim_link *link)
     return link->host ? link->host->now(link->host) : llround((double)link->tick * link->period * 1e9);
 }
 
+/* NaN stays. */
+static double within_range(double value, double range)
+{
+    return value > range ? range : value < -range ? -range : value;
+}
+
 void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading)
 {
     double age = link->rig.converters.adc_latency + (double)(link->tick - link->converted) * link->period;
@@ -69,6 +75,10 @@ void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *r
     reading->sequence = link->converted + 1u;
     reading->valid = link->valid;
     reading->lateness = link->lateness;
+    if (link->faults.count > 0)
+        nt_sim_spoil_signals(link, sensors, reading);
+    reading->position[NT_Z] = within_range(reading->position[NT_Z], sensors->position->range);
+    reading->felt[NT_Z] = within_range(reading->felt[NT_Z], sensors->felt->range);
     const int is_stale = link->faults.count > 0 && nt_sim_spoil(link, sensors, reading, &age);
     reading->time = time_now(link) - (age == 0.0 ? 0 : llround(age * 1e9));
     link->last = (nt_sim_memory){reading->position[NT_Z], reading->felt[NT_Z], age, reading->sequence, link->tick};

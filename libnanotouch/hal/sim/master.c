@@ -72,11 +72,6 @@ nt_status nt_sim_master_init(nt_sim_master *master, const nt_sim_setup *setup)
     return NT_OK;
 }
 
-static double convert(nt_sim_master *master, const nt_sensor *sensor, nt_channel channel, double value)
-{
-    return nt_sensor_read(sensor, value, nt_sim_noise_now(&master->link, (int)channel));
-}
-
 nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
 {
     nt_sim_link *link = &master->link;
@@ -85,8 +80,8 @@ nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
     if (nt_sim_is_converted(link)) {
         double seen[2];
         nt_sim_moment_before(link, master->moments, seen);
-        converted->position[NT_Z] = convert(master, &master->position_sensor, NT_CHANNEL_MASTER_POSITION, seen[0]);
-        converted->felt[NT_Z] = convert(master, &master->gauge, NT_CHANNEL_OPERATOR_FORCE, seen[1]);
+        converted->position[NT_Z] = nt_sim_sense(link, &master->position_sensor, NT_CHANNEL_MASTER_POSITION, seen[0]);
+        converted->felt[NT_Z] = nt_sim_sense(link, &master->gauge, NT_CHANNEL_OPERATOR_FORCE, seen[1]);
         for (int i = NT_X; i < NT_Z && link->rig.master.axes > 1.0; i++) /* sideways it is read as it is */
             converted->position[i] = master->arm[i].position;
         link->converted = link->tick;

@@ -24,12 +24,25 @@ static inline int nt_sim_is_converted(const nt_sim_link *link)
         return 1;
     return floor((double)link->tick * per_tick) > floor((double)(link->tick - 1u) * per_tick);
 }
+/* The stream of a channel at the beginning of this tick. */
+static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
+{
+    nt_noise_seek(&link->noise[stream], link->tick);
+    return &link->noise[stream];
+}
 /* The two sensors of a half: of its position, and of what it feels. */
 typedef struct nt_sim_sensors {
     nt_half half;
     const nt_sensor *position, *felt;
 } nt_sim_sensors;
-/* What was converted goes on its way: numbered, spoilt by faults, stamped, kept for a fault that lasts. */
+/* What a sensor gives its converter, in steps. The converter's range ends it where faults have had their say
+ * (nt_sim_give): a zero that drifts, drifts before that. */
+static inline double nt_sim_sense(nt_sim_link *link, const nt_sensor *sensor, nt_channel channel, double value)
+{
+    const nt_sensor endless = {sensor->noise, sensor->resolution, HUGE_VAL};
+    return nt_sensor_read(&endless, value, nt_sim_noise_now(link, (int)channel));
+}
+/* What was sensed goes on its way: spoilt by faults, at its range, numbered, stamped, kept for a fault that lasts. */
 void nt_sim_give(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading);
 /* A pair of values as it was a latency ago: that of this tick, or between two ticks on a straight line. */
 void nt_sim_moment_between(const nt_sim_link *link, double (*moments)[2], double seen[2]);
@@ -57,13 +70,6 @@ static inline int nt_sim_is_finite(const nt_action *action)
     return isfinite(action->target[NT_X]) && isfinite(action->target[NT_Y]) && isfinite(action->target[NT_Z]);
 }
 
-/* The stream of a channel at the beginning of this tick. */
-static inline nt_noise *nt_sim_noise_now(nt_sim_link *link, int stream)
-{
-    nt_noise_seek(&link->noise[stream], link->tick);
-    return &link->noise[stream];
-}
-
 /* --- channels.c: what a half reads and drives; its sensors and delay are known --- */
 
 void nt_sim_list_master(nt_sim_master *master);
@@ -83,6 +89,8 @@ static inline double nt_sim_sum_of(const nt_sim_link *link, nt_fault_kind kind)
     return link->faults.count > 0 ? nt_sim_sum_of_faults(link, kind) : 0.0;
 }
 
+/* What becomes of what a sensor gives its converter. */
+void nt_sim_spoil_signals(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading);
 /* What becomes of a reading on its way; age: of what was measured [s]. 1: the link has brought old news. */
 int nt_sim_spoil(nt_sim_link *link, const nt_sim_sensors *sensors, nt_reading *reading, double *age);
 /* Periods that are lost before this command arrives, of several faults. */

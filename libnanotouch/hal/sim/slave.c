@@ -87,11 +87,6 @@ nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup)
     return status;
 }
 
-static double convert(nt_sim_slave *slave, const nt_sensor *sensor, nt_channel channel, double value)
-{
-    return nt_sensor_read(sensor, value, nt_sim_noise_now(&slave->link, (int)channel));
-}
-
 nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
 {
     nt_sim_link *link = &slave->link;
@@ -100,8 +95,8 @@ nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
     if (nt_sim_is_converted(link)) {
         double seen[2];
         nt_sim_moment_before(link, slave->moments, seen);
-        converted->position[NT_Z] = convert(slave, &slave->stage_sensor, NT_CHANNEL_STAGE_POSITION, seen[0]);
-        converted->felt[NT_Z] = convert(slave, &slave->deflection_sensor, NT_CHANNEL_DEFLECTION, seen[1]);
+        converted->position[NT_Z] = nt_sim_sense(link, &slave->stage_sensor, NT_CHANNEL_STAGE_POSITION, seen[0]);
+        converted->felt[NT_Z] = nt_sim_sense(link, &slave->deflection_sensor, NT_CHANNEL_DEFLECTION, seen[1]);
         link->converted = link->tick;
     }
     *reading = *converted;
