@@ -89,8 +89,10 @@ class ForceGap:
         ends = np.clip(ends, low, high)
         line = np.stack([ends, force + spring * (ends - gap)], axis=1)
         painter.line(axes.at(line[:, 0], line[:, 1]), palette.hold, 1.2)
-        mark = axes.at(line[0, 0], line[0, 1])
-        painter.text(float(mark[0]) + 4, float(mark[1]) + 12, "spring", palette.hold, SMALL)
+        (x, y), (right, up) = (map(float, axes.at(*end)) for end in line)
+        steep = (up - y) / max(right - x, 1e-9)
+        aside = 4.0 if steep < 0.2 else 4.0 + 19.0 / steep  # above a flat line, beside a steep one
+        painter.text(x + aside, y + 12, "spring", palette.hold, SMALL)
 
     @staticmethod
     def _now(painter: Painter, palette: Palette, axes: Axes, seen: Seen) -> None:

@@ -27,6 +27,7 @@ BEND = 0.05  # of the lever under the largest load [scene units]
 SHADOW = 0.05  # radius of the soft shadow [scene units]
 SHADOW_RINGS, SHADOW_ROUND = 6, 33  # of points that lie on the surface
 LIFTED = 0.004  # what is laid on the surface is drawn so much above it [scene units]
+RAISED = 0.08  # of what the camera looks at, over the middle of the surface [scene units]
 VIEWS = {"0": (0.0, 32.0, 1.86), "1": (0.0, 32.0, 1.86), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.86),
          "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
 
@@ -192,7 +193,6 @@ class Stage:
         self.tip = self._actor(self._turned(radius / self.unit, half_angle, kind))
         self.tip.GetProperty().SetSpecular(0.35)
         self.tip.GetProperty().SetSpecularPower(25.0)
-        self.tip.GetProperty().SetOpacity(0.88)
         self.ribbon = self.vtk.vtkPolyData()
         self.lever = self._actor(self.ribbon)
         self.lever.GetProperty().SetSpecular(0.2)
@@ -289,7 +289,7 @@ class Stage:
         """One of the views 0 .. 5; 4 looks at the tip."""
         turn, height, distance = VIEWS[view]
         middle = at if at is not None and view == "4" else self.centre
-        focus = middle + np.array([0.0, 0.0, 0.12])
+        focus = middle + np.array([0.0, 0.0, RAISED])
         turn, height = math.radians(turn), math.radians(height)
         away = distance * np.array([math.sin(turn) * math.cos(height), -math.cos(turn) * math.cos(height),
                                     math.sin(height)])  # fmt: skip
