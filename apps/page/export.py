@@ -47,7 +47,7 @@ def preset(name: str) -> dict[str, Any]:
     return {
         "name": name, "title": subject.title, "hint": subject.hint, "felt": presets.FELT[PRESETS[name].scene or name],
         "scene": subject.scene.to_dict(), "rig": subject.rig.to_dict(), "surface": surface_of(subject.topography),
-        "relief": float(subject.topography.height_range),
+        "accuracy": subject.accuracy, "relief": float(subject.topography.height_range),
     }  # fmt: skip
 
 
@@ -55,7 +55,7 @@ def constants() -> dict[str, Any]:
     """Numbers of the design that both front ends share."""
     taken = {hand: "LATERAL_REACH DOWN_REACH COUPLING SETTLING LOAD_SHARE PRESS_SHARE GLIDE STEPS APPROACH",
              host: "SPEEDS REWIND STEP_TICKS INDENTATION_SHARE",
-             seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS",
+             seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER",
              stage: "RELIEF TIP_HEIGHT LEVER LEVER_POINTS BALL FAR BEND SHADOW LIFTED VIEWS",
              readings: "TIP_STEP HAND_STEPS NOTED"}  # fmt: skip
     return {name: getattr(module, name) for module, names in taken.items() for name in names.split()}

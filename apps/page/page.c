@@ -84,12 +84,19 @@ PAGE_API(page_set) void page_set(int kind, int number, double value)
     nt_field_set(table(kind, NULL) + number, described(kind), value);
 }
 
-/* The paper's scene and rig, and the settings of that rig. */
+/* The paper's scene and rig, the settings of that rig, and the usual accuracy. */
 PAGE_API(page_defaults) void page_defaults(void)
 {
+    world.demand = nt_demand_defaults();
     world.scene = nt_scene_defaults();
     world.rig = nt_rig_defaults();
     world.settings = nt_settings_defaults(&world.rig);
+}
+
+/* What forces are planned for from now on [-]. */
+PAGE_API(page_accuracy) void page_accuracy(double relative)
+{
+    world.demand.relative_accuracy = relative;
 }
 
 PAGE_API(page_check) int page_check(int kind)
@@ -135,7 +142,7 @@ PAGE_API(page_loop_margin) double page_loop_margin(double contact_stiffness)
 PAGE_API(page_plan) int page_plan(void)
 {
     world.problem = (nt_problem){0};
-    const nt_plan_inputs inputs = {.scene = &world.scene, .probe = &world.rig.probe};
+    const nt_plan_inputs inputs = {.scene = &world.scene, .demand = &world.demand, .probe = &world.rig.probe};
     return (int)nt_plan_make(&world.plan, &inputs, &world.problem);
 }
 

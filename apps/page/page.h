@@ -45,6 +45,7 @@ typedef struct page_world {
     nt_scene scene;
     nt_rig rig;
     nt_settings settings;
+    nt_demand demand;
     nt_problem problem;
     nt_plan plan;
 } page_world;
@@ -67,6 +68,7 @@ double page_field_maximum(int kind, int number);
 double page_get(int kind, int number);
 void page_set(int kind, int number, double value);
 void page_defaults(void);
+void page_accuracy(double relative);
 int page_check(int kind);
 const char *page_problem(int status);
 void page_usual_settings(double slave_path, double attraction);
@@ -98,6 +100,7 @@ int page_arm(void);
 int page_change(int kind, int number, double value);
 int page_rewind(double duration);
 double page_own(int what);
+double page_margin_with(int number, double value);
 void page_place(double x, double y, double found[2]);
 
 /* page_curve.c */

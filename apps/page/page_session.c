@@ -41,6 +41,7 @@ PAGE_API(page_open) int page_open(const double *heights, int nx, int ny, const p
     setup.scene = world->scene;
     setup.rig = world->rig;
     setup.settings = world->settings;
+    setup.demand = world->demand;
     if (heights)
         setup.map = (nt_height_map){heights, nx, ny, opening->dx, opening->dy};
     setup.x = opening->x;
@@ -227,20 +228,28 @@ PAGE_API(page_rewind) int page_rewind(double duration)
 
 enum { OWN_MARGIN, OWN_FORCE, OWN_START, OWN_MASTER, OWN_ALPHA_P, OWN_BOUND, OWN_PULL, OWN_DEPTH };
 
-/* The least margin of those that count: 1 is the limit. */
-static double margin(void)
+/* The least margin of those that count, with other settings: 1 is the limit. */
+static double margin_with(const nt_settings *settings)
 {
     const nt_session_setup *setup = nt_session_setup_of(page.session);
     const double stiffness = nt_session_plan(page.session)->maximum_stiffness;
     nt_margins margins;
-    return nt_margins_judge(&setup->rig, &setup->settings, stiffness, setup->mode, &margins).margin;
+    return nt_margins_judge(&setup->rig, settings, stiffness, setup->mode, &margins).margin;
+}
+
+/* The same with one field of the settings changed. */
+PAGE_API(page_margin_with) double page_margin_with(int number, double value)
+{
+    nt_settings settings = nt_session_setup_of(page.session)->settings;
+    nt_field_set(nt_settings_fields(NULL) + number, &settings, value);
+    return margin_with(&settings);
 }
 
 PAGE_API(page_own) double page_own(int what)
 {
     switch (what) {
     case OWN_MARGIN:
-        return margin();
+        return margin_with(&nt_session_setup_of(page.session)->settings);
     case OWN_FORCE:
         return nt_session_guarantee(page.session).force;
     case OWN_START:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Check an installed nanotouch, with numpy and nothing else of its extras imported.
 
-Run by any interpreter that has the package: `python tests/install/wheel.py`.
+Run by any interpreter that has the package: `python tests/install/wheel.py`; with `page`, it must carry the page.
 """
 
 import sys
@@ -27,6 +27,8 @@ def main() -> None:
     files = {str(file) for file in metadata.files("nanotouch") or []}
     for wanted in ("nanotouch/py.typed", "nanotouch/_core.pyi", "nanotouch_app/main.py"):
         assert wanted in files, f"{wanted} is not in the wheel"
+    page = "nanotouch_app/browser/nanotouch-touch.html"
+    assert page in files or "page" not in sys.argv[1:], f"{page} is not in the wheel: make page"
     strays = sorted(f for f in files if f.endswith((".a", ".h", ".cmake", ".cpp")))
     assert not strays, f"the wheel contains {strays}"
     (script,) = metadata.entry_points(group="console_scripts", name="nanotouch")

@@ -33,8 +33,8 @@ def python_with_zig() -> str:
     raise AssertionError
 
 
-def main(native: str, wasm: str) -> int:
-    """Compare."""
+def node_that_runs() -> str:
+    """A new one."""
     node = shutil.which("node")
     if node is None:
         skip("there is no node")
@@ -42,13 +42,19 @@ def main(native: str, wasm: str) -> int:
     version = subprocess.run([node, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     if int(version[1:].split(".")[0]) < OLDEST:
         skip(f"node {version} is older than {OLDEST}")
+    return node
+
+
+def main(native: str, wasm: str) -> int:
+    """Compare."""
+    node = node_that_runs()
     subprocess.run([python_with_zig(), ROOT / "apps/page/build_wasm.py", wasm], check=True)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "native.txt"
         rows.write_bytes(subprocess.run([native], capture_output=True, check=True).stdout)
         told = subprocess.run([node, HERE / "reference.mjs", wasm, rows], capture_output=True, text=True, check=True)
     found = json.loads(told.stdout)
-    print(found, f"node {version}")
+    print(found)
     good = found["rows"] == found["wanted"] == 900 and found["contacts"] > 100 and found["largest"] > 1e-7
     return 0 if good and max(found["force"], found["gap"]) <= ALLOWED and found["time"] == 0.0 else 1
 

@@ -15,6 +15,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
+from nanotouch_app import browser
 from nanotouch_app.browser import access, page
 from nanotouch_app.browser.readers import Reader, Readers
 from nanotouch_app.browser.update import LAYOUT, Summary, message_text
@@ -231,6 +232,18 @@ def test_a_missing_page_is_a_plain_word(tmp_path: Path, capsys: pytest.CaptureFi
         page(tmp_path / "none.html")
     assert main(["live", "--browser", "--page", str(tmp_path / "none.html")]) == 2
     assert "make page" in capsys.readouterr().err
+
+
+def test_a_package_without_the_page_says_so_and_one_with_it_has_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(browser, "__file__", str(tmp_path / "__init__.py"))
+    assert main(["live", "--browser"]) == 2
+    said = capsys.readouterr().err
+    assert "make page" in said
+    assert "--page" in said
+    (tmp_path / browser.NAME).write_bytes(HTML)
+    assert page() == HTML
 
 
 @pytest.mark.parametrize("host", [None, "", "evil.example", "127.0.0.1.evil.example", "[::1", "localhost@evil.example"])

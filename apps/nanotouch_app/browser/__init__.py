@@ -16,6 +16,7 @@ def page(path: str | Path | None = None) -> bytes:
     if not found.is_file():
         wanted = f"{found}: no such file; " if path is not None else ""
         raise Error(
-            f"{wanted}the page is not built: run `make page` in the sources of nanotouch, or name one by --page"
+            f"{wanted}the page is not in this package: wheels from PyPI have it, `make page` in the sources of "
+            "nanotouch builds it, --page names a file"
         )
     return found.read_bytes()

@@ -8,13 +8,14 @@ export class Drawn {
   constructor(core) { this.core = core; }
 
   // The plan of a scene at a place of its own (may be {}), its curve, and how far it is of interest.
-  plan({ scene, rig, here = {} }) {
+  plan({ scene, rig, here = {}, accuracy }) {
     const { core } = this;
     core.c.page_defaults();
     core.take("scene", scene);
     if (rig) core.take("rig", rig);
     for (const [name, value] of Object.entries(here))
       if (PLACE[name] && (name !== "work_of_adhesion" || scene.adhesion.given === name)) core.set("scene", PLACE[name], value);
+    if (accuracy) core.c.page_accuracy(accuracy);
     const facts = core.plan(), load = scene.range.maximum_load;
     const ends = [facts.release_gap, facts.capture_gap].filter(Number.isFinite);
     let reach = Math.max(3 * Math.max(...ends, 0), 0.4 * facts.largest_indentation, 3e-9);

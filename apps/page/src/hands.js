@@ -26,7 +26,7 @@ export class Hands {
 
   #pad(width, feel, elapsed, now) {
     const pad = [...(navigator.getGamepads?.() ?? [])].find((one) => one?.connected);
-    if (!pad) return;
+    if (!pad) return this.#letGo();
     const [lx, ly, , ry] = pad.axes.map(live);
     if (lx || ly || ry) this.#go([lx ?? 0, -(ly ?? 0), ry ?? 0], width, elapsed);
     for (const [number, [what, more]] of Object.entries(BUTTONS)) {
@@ -37,6 +37,16 @@ export class Hands {
       }
       this.buttons[number] = down;
     }
+    this.#rumble(pad, feel, now);
+  }
+
+  // A gamepad that is unplugged presses no more.
+  #letGo() {
+    if (this.buttons[0]) this.ask({ do: "press", on: false });
+    this.buttons = {};
+  }
+
+  #rumble(pad, feel, now) {
     const strength = feel.event ? 1 : feel.level;
     if (strength > 0.01 && now - this.rumbled > 60) {
       this.rumbled = now;
@@ -52,7 +62,15 @@ export class Hands {
     if (!device) return undefined;
     if (!device.opened) await device.open();
     device.addEventListener("inputreport", ({ reportId, data }) => this.#report(reportId, data));
+    navigator.hid.addEventListener("disconnect", (event) => { if (event.device === device) this.#unplugged(device); });
     return this.note(`${device.productName}: move its cap; its buttons press and retract.`);
+  }
+
+  // What it said last holds no longer.
+  #unplugged(device) {
+    this.cap = [0, 0, 0];
+    this.ask({ do: "press", on: false });
+    this.note(`${device.productName} is unplugged`);
   }
 
   #report(id, data) {

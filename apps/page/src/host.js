@@ -4,12 +4,14 @@
 
 import { KINDS, Refused, readUpdate, UPDATE_BYTES } from "./core.js";
 import { Hand } from "./hand.js";
+import { inWords } from "./refusals.js";
 import { extremes, ofPreset } from "./subject.js";
 import { Trainer } from "./trainer.js";
 
 const INDENTATION = 0.3e-6, ATTRACTION = 0.6e-6, USUAL_CLEARANCE = 0.1e-6; // Eq. 21 and the paper's ranges [m], [N], [m]
 const FELT = 0.3, SEEN = 0.93; // a force at the hand that nobody misses [N]; of a pull-off that a loop shows at least
 const LEAST_CLEARANCE = 20e-9; // [m]
+const USUAL_ACCURACY = 0.01, SCALES = ["gains.alpha_p", "gains.alpha_f"];
 const MARGIN = 1.5;
 const LONGEST = 0.03; // of session time that one turn may run [s]: behind that, it slows down visibly
 const OWN = { margin: 0, force: 1, start: 2, master: 3, alpha: 4, bound: 5 };
@@ -28,15 +30,16 @@ export class Host {
 
   // Another sample under another tip: a session of its own.
   lay(subject) {
-    const before = [this.subject, this.scene, this.rig, this.overrides];
+    const before = [this.subject, this.scene, this.rig, this.overrides, this.clearance];
     this.subject = subject;
     this.scene = structuredClone(subject.scene);
     this.rig = structuredClone(subject.rig);
     this.overrides = {};
+    this.clearance = null; // that of the sample as it is laid
     try {
       this.#open();
     } catch (error) {
-      [this.subject, this.scene, this.rig, this.overrides] = before;
+      [this.subject, this.scene, this.rig, this.overrides, this.clearance] = before;
       throw error;
     }
     this.meant = this.opened;
@@ -48,11 +51,15 @@ export class Host {
     this.tell(this.world());
   }
 
+  // What forces are planned for: a little less is asked where a slider leads to what is less well known.
+  get accuracy() { return this.subject.accuracy ?? USUAL_ACCURACY; }
+
   #usual() {
     const { core, constants } = this, { map } = this.subject;
     core.c.page_defaults();
     core.take("scene", this.scene);
     core.take("rig", this.rig);
+    core.c.page_accuracy(this.accuracy);
     const facts = core.plan();
     const load = this.scene.range.maximum_load, pull = facts.pull_off_force;
     const [low, high] = extremes(map.heights);
@@ -67,7 +74,7 @@ export class Host {
     gains.coupling_damping = (gains.coupling_stiffness * constants.SETTLING) / constants.COUPLING;
     const deepest = constants.INDENTATION_SHARE * facts.largest_indentation;
     limits.indentation = Math.max(limits.indentation, deepest);
-    this.clearance = this.#clearance(facts);
+    this.clearance ??= this.#clearance(facts);
     core.take("settings", settings);
     for (const [name, value] of Object.entries(this.overrides)) core.set("settings", name, value);
     const extent = Math.max(map.columns * map.dx, map.rows * map.dy);
@@ -170,7 +177,7 @@ export class Host {
     return { tell: "world", title: subject.title, felt: subject.felt, hint: subject.hint, preset: subject.name,
       scene: this.opened, rig: this.openedRig, settings: this.settings, stiffness: this.hand.stiffness,
       bound: own(OWN.bound), warnings: this.facts.warnings, terms: this.facts.terms, margin: own(OWN.margin),
-      force: own(OWN.force), undo: this.done.length, redo: this.undone.length, start: this.start, size: this.size,
+      force: own(OWN.force), rtol: this.accuracy, undo: this.done.length, redo: this.undone.length, start: this.start, size: this.size,
       clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
   }
 
@@ -280,7 +287,11 @@ export class Host {
     const old = (what === "scene" ? this.opened : what === "rig" ? this.openedRig : this.settings)[section]?.[key];
     if (old === undefined || !Number.isFinite(value)) throw new Refused(`${field} = ${value}: no such number`);
     if (old !== value) {
-      this.#change(what, field, value);
+      try {
+        this.#change(what, field, value);
+      } catch (error) {
+        throw error instanceof Refused ? new Refused(inWords(this, { field, old, value }, error.message)) : error;
+      }
       this.done.push([what, field, old, value]);
       this.undone = [];
     }
@@ -296,6 +307,9 @@ export class Host {
     }
     this.tell(this.world());
   }
+
+  get leastMargin() { return MARGIN; }
+  marginWith(field, value) { return this.core.c.page_margin_with(this.core.field("settings", field).number, value); }
 
   #change(what, field, value) {
     const described = this[what === "rig" ? "rig" : "scene"], [section, key] = field.split(".");
@@ -314,7 +328,7 @@ export class Host {
     const row = this.core.field(what, field);
     this.core.check(this.core.c.page_change(KINDS.indexOf(what), row.number, value));
     if (what === "scene") described[section][key] = value;
-    else this.overrides[field] = value;
+    else if (!SCALES.includes(field)) this.overrides[field] = value; // scales are made for the instrument
     ++this.changes;
     const { place, height, presses } = this.hand;
     this.#learn(this.core.plan());

@@ -62,11 +62,18 @@ export class Input {
   #key(event) {
     const { key, target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (target.matches?.("input[type=text], textarea, select")) return;
+    if (target.matches?.("input[type=text], textarea, select") && !this.#left(key, target)) return;
     const control = target.matches?.("button, a, input, summary");
     if (control && [" ", "Enter", ...Object.keys(ARROWS), "PageUp", "PageDown"].includes(key)) return;
     if (!this.#act(key.length === 1 ? key.toLowerCase() : key, event)) return;
     event.preventDefault();
+  }
+
+  // A field of text keeps all keys but Escape, which leaves it: and the sheet that it is on, if it is on one.
+  #left(key, field) {
+    if (key !== "Escape") return false;
+    this.place.focus({ preventScroll: true });
+    return Boolean(field.closest("#sheet"));
   }
 
   #act(key, event) {

@@ -71,6 +71,7 @@ const RIGHT = {
     core.take("scene", scene);
     core.take("rig", kept.rig);
     core.take("settings", kept.settings);
+    core.c.page_accuracy(host.accuracy);
     return [way(before, after), { before: digits(before, ""), after: digits(after, "") }];
   },
 };

@@ -28,6 +28,7 @@ const framed = window.name === FRAMED && window.parent !== window, key = fragmen
 const state = { own: !framed && !key, fields: null, note: (text) => seen.note(text, true) };
 const counters = { draws: 0, updates: 0, bytes: 0, messages: 0, firstTouch: NaN };
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+const KEPT = 200, asked = []; // of what was asked last
 let dirty = true, palette = null;
 
 // --- the parts ---
@@ -48,6 +49,8 @@ const hands = new Hands(ask, (text) => seen.note(text, false));
 function ask(message) {
   if (message.note) return seen.note(message.note, true);
   if (message.do === "change") seen.waiting.add(message.field);
+  asked.push(message);
+  if (asked.length > KEPT) asked.shift();
   return link.ask(message);
 }
 
@@ -220,5 +223,5 @@ function draw(now) {
 dress(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 const wasm = Uint8Array.from(atob(byId("wasm").textContent), (letter) => letter.charCodeAt(0));
 worked.begin({ wasm, own: state.own, table: { ...table, palettes: null, help: null } });
-window.nanotouch = { seen, counters, stage }; // to look at, as the tests do
+window.nanotouch = { seen, counters, stage, contact, asked }; // to look at, as the tests do
 requestAnimationFrame(draw);

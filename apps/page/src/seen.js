@@ -68,7 +68,8 @@ export class Seen {
 
   async #planFor(here) {
     this.placedAt = performance.now();
-    const { scene, rig } = this.world, made = await this.draw({ draw: "plan", scene, rig, here });
+    const { scene, rig, rtol, bound } = this.world, accuracy = Math.max(rtol, this.constants.LAXER * bound);
+    const made = await this.draw({ draw: "plan", scene, rig, here, accuracy });
     if (made.error || this.world?.scene !== scene) return;
     this.law = made;
     this.pullOff = made.facts.pull_off_force;

@@ -2,7 +2,7 @@
 // Sliders made from the C field tables: unit, valid range, a sentence each; logarithmic over two decades and more
 // (live/sliders.py). A change is asked for when the slider is let go; one that is refused springs back.
 
-import { digits, parseQuantity } from "./units.js";
+import { parseQuantity, quantity } from "./units.js";
 
 const MOST = 8, STEPS = 1000;
 
@@ -59,7 +59,7 @@ export class Sliders {
     Object.assign(slider, { box, range, number });
     range.addEventListener("input", () => {
       slider.held = true;
-      number.value = this.#told(slider, this.#at(slider));
+      number.value = quantity(slider.name, slider.field.unit, this.#at(slider));
     });
     range.addEventListener("change", () => this.#wish(slider, this.#at(slider)));
     number.addEventListener("change", () => {
@@ -96,13 +96,7 @@ export class Sliders {
     const { low, high, logarithmic } = slider;
     const place = logarithmic ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
     slider.range.value = Math.round(STEPS * Math.min(Math.max(place, 0), 1));
-    slider.range.setAttribute("aria-valuetext", this.#told(slider, value));
-    if (document.activeElement !== slider.number) slider.number.value = this.#told(slider, value);
-  }
-
-  #told(slider, value) {
-    if (slider.name.endsWith("humidity")) return `${(100 * value).toFixed(0)} %`;
-    if (slider.field.unit === "N/N") return `${Number((value / 1e6).toPrecision(3))} million`;
-    return digits(value, slider.field.unit).replace("^2", "²").replace("^3", "³");
+    slider.range.setAttribute("aria-valuetext", quantity(slider.name, slider.field.unit, value));
+    if (document.activeElement !== slider.number) slider.number.value = quantity(slider.name, slider.field.unit, value);
   }
 }

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The host of a session stands twice, in Python and in JavaScript: both say the same of each sample, of a change, and
+of one that is refused.
+
+Usage: hosts.py FILE.wasm. Status 77, with a word, where node, zig's compiler or the package is not there."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from reference import ROOT, node_that_runs, python_with_zig, skip
+
+# heights of the page have 16 bits: 1e-5 of the relief, which is a part of the way that the scales are made for
+ALLOWED = 1e-4
+# the sharpest curvature of rounded heights is another; where a line begins is that of the dilated surface there, of the
+# bare one here
+LARGER = {"bound": 5e-3, "force": 5e-3, "zero": 1e-3}
+NUMBERS = ("stiffness", "bound", "margin", "force", "clearance", "zero", "rtol", "undo", "redo")
+CHANGES: list[dict[str, Any]] = [
+    {"do": "change", "what": "scene", "field": "sample.youngs_modulus", "factor": 0.9},
+    {"do": "change", "what": "settings", "field": "gains.alpha_f", "factor": 0.7},
+    {"do": "change", "what": "rig", "field": "probe.spring_constant", "factor": 0.8},
+]
+REFUSED: dict[str, dict[str, Any]] = {
+    "silicon_in_air": {"do": "change", "what": "settings", "field": "gains.alpha_f", "factor": 10.0},
+    "silicon_on_gold": {"do": "change", "what": "scene", "field": "medium.relative_humidity", "value": 0.0},
+    "mica_in_air": {"do": "change", "what": "scene", "field": "adhesion.work_of_adhesion", "value": 2e-3},
+}
+
+
+def of_python(asked: dict[str, list[dict[str, Any]]]) -> dict[str, list[dict[str, Any]]]:
+    """What live/host.py tells."""
+    from nanotouch_app.live.host import Host
+    from nanotouch_app.live.subject import of_preset
+
+    worlds: dict[str, list[dict[str, Any]]] = {}
+    for preset, messages in asked.items():
+        told: list[dict[str, Any]] = []
+        host = Host(of_preset(preset), told.append, stepped=True)
+        host.advance(0.001)
+        worlds[preset] = [host.world()]
+        for message in messages:
+            section, key = message["field"].split(".")
+            value = message.get("value")
+            if value is None:
+                value = message["factor"] * host.world()[message["what"]][section][key]
+            host.answer({**message, "value": value})
+            worlds[preset].append(told[-1])
+        host.close()
+    return worlds
+
+
+def differences(ours: Any, theirs: Any, place: str, allowed: float = ALLOWED) -> list[str]:
+    """In words, of all numbers and words of two descriptions."""
+    if isinstance(ours, dict):
+        return [
+            line
+            for key, value in ours.items()
+            for line in differences(value, theirs.get(key), f"{place}.{key}", allowed)
+        ]
+    if isinstance(ours, list | tuple):
+        return [line for n, value in enumerate(ours) for line in differences(value, theirs[n], f"{place}.{n}", allowed)]
+    if isinstance(ours, float | int) and not isinstance(ours, bool):
+        if theirs is None:
+            return [] if not math.isfinite(ours) else [f"{place}: {ours} and none"]
+        return [] if math.isclose(ours, theirs, rel_tol=allowed, abs_tol=1e-18) else [f"{place}: {ours} and {theirs}"]
+    return [] if ours == theirs else [f"{place}: {ours} and {theirs}"]
+
+
+def compare(ours: dict[str, Any], theirs: dict[str, Any], place: str) -> list[str]:
+    """Of two messages."""
+    if ours["tell"] == "refused":
+        a, b = (message["why"].replace(" of virtual coupling", "") for message in (ours, theirs))
+        return [] if a == b else [f"{place}: {a!r} and {b!r}"]
+    parts = ("title", "felt", "hint", "scene", "rig", "settings", *NUMBERS)
+    return [
+        line
+        for part in parts
+        for line in differences(ours[part], theirs.get(part), f"{place}.{part}", LARGER.get(part, ALLOWED))
+    ]
+
+
+def main(wasm: str) -> int:
+    """Compare."""
+    try:
+        from nanotouch_app.live.subject import PRESETS
+    except ImportError:
+        skip("the package is not installed: tools/setup.sh test")
+    node = node_that_runs()
+    subprocess.run([python_with_zig(), ROOT / "apps/page/build_wasm.py", wasm], check=True)
+    asked = {name: [*CHANGES, *([REFUSED[name]] if name in REFUSED else [])] for name in PRESETS}
+    with tempfile.TemporaryDirectory() as folder:
+        table, questions = Path(folder) / "table.json", Path(folder) / "asked.json"
+        subprocess.run([sys.executable, ROOT / "apps/page/export.py", table], check=True)
+        questions.write_text(json.dumps(asked), encoding="utf-8")
+        told = subprocess.run([node, Path(__file__).with_name("hosts.mjs"), wasm, table, questions],
+                              capture_output=True, text=True, check=True)  # fmt: skip
+    theirs, ours = json.loads(told.stdout), of_python(asked)
+    wrong = [line for name, messages in ours.items() for n, message in enumerate(messages)
+             for line in compare(message, theirs[name][n], f"{name} {n}")]  # fmt: skip
+    refused = sum(message["tell"] == "refused" for messages in ours.values() for message in messages)
+    print(f"{len(ours)} samples, {sum(map(len, ours.values()))} messages, {refused} of them refusals", *wrong, sep="\n")
+    return 0 if not wrong and refused == len(REFUSED) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
