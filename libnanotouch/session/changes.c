@@ -86,6 +86,16 @@ static nt_status check_yes(double value, const char *what, nt_problem *problem)
     return value == 0.0 || value == 1.0 ? NT_OK : nt_problem_set(problem, what, "no|yes", value, 0.0, 1.0);
 }
 
+static nt_status check_held(const nt_session *session, const double value[4], nt_problem *problem)
+{
+    const nt_input input = {.master_position = {value[NT_X], value[NT_Y], value[NT_Z]},
+                            .holds = 1,
+                            .x = NAN,
+                            .y = NAN,
+                            .duration = value[NT_AXES]};
+    return nt_session_check_input(session, &input, problem);
+}
+
 nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_problem *problem)
 {
     const double *value = call->event.value;
@@ -97,6 +107,8 @@ nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_proble
     case NT_EVENT_CLUTCH:
         return check_yes(value[0], "clutch", problem);
     case NT_EVENT_AIM:
+        if (call->event.field == NT_AIM_HAND)
+            return check_held(session, value, problem);
         return nt_session_check_place(session, value[0], value[1], value[2], problem);
     case NT_EVENT_MODE:
         return compose_mode(session, call, problem);

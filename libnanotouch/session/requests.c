@@ -4,6 +4,7 @@
  * ask through the loop: it hands their requests to the thread that prepares, and answers them. */
 #include <math.h>
 
+#include "core/axes.h"
 #include "session/state.h"
 
 static nt_status push_event(nt_session *session, const nt_event *event)
@@ -37,6 +38,13 @@ static void swap(nt_session *session, nt_composition *next)
     atomic_store_explicit(&session->retired, old, memory_order_release);
 }
 
+static void aim_hand(nt_session *session, const double value[4])
+{
+    nt_hand_target target = {.holds = 1, .duration = value[NT_AXES]};
+    copy_axes(target.position, value);
+    nt_sim_aim_hand(&session->sim.master, &target);
+}
+
 static nt_status apply_event(nt_session *session, const nt_event *event)
 {
     nt_touch_state *state = &session->touch_state;
@@ -52,6 +60,10 @@ static nt_status apply_event(nt_session *session, const nt_event *event)
         nt_touch_clutch(state, event->value[0] != 0.0);
         return NT_OK;
     case NT_EVENT_AIM:
+        if (event->field == NT_AIM_HAND) {
+            aim_hand(session, event->value);
+            return NT_OK;
+        }
         return nt_touch_aim(&session->now->touch, state, event->value[0], event->value[1], event->value[2]);
     case NT_EVENT_STOP:
         nt_session_emergency_stop(session, event->value[0] != 0.0);
@@ -89,7 +101,8 @@ static nt_status apply(nt_session *session, const nt_call *call)
     if (call->next)
         swap(session, call->next);
     const nt_status status = apply_event(session, &call->event);
-    return status == NT_OK ? nt_session_keep_event(session, &call->event) : status;
+    const int is_hand = call->event.kind == NT_EVENT_AIM && call->event.field == NT_AIM_HAND;
+    return status == NT_OK && !is_hand ? nt_session_keep_event(session, &call->event) : status;
 }
 
 static void answer(nt_session *session, const nt_call *call, nt_status status)

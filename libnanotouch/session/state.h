@@ -20,6 +20,10 @@ typedef struct nt_composition {
     nt_guarantee guarantee;
 } nt_composition;
 
+/* Field of a client's NT_EVENT_AIM that holds the master of a simulated hand; the records hold what it did, so no event
+ * is kept. */
+enum { NT_AIM_HAND = 1 };
+
 /* A request on its way into the loop; `next` is the composition that goes with it, or NULL. */
 typedef struct nt_call {
     uint64_t id; /* of a client's request; 0: of a caller that waits */

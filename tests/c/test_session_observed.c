@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A session that others watch and ask: what it records does not depend on who watches, and what they ask is prepared,
  * applied and answered. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -142,11 +143,39 @@ static void clients_are_answered(void **state)
     }
 }
 
+/* It goes there, and no event is kept: the records hold what the hand did. */
+static void a_client_leads_the_hand(void **state)
+{
+    (void)state;
+    nt_session_setup setup = nt_session_defaults();
+    nt_session *session = open_session(&setup);
+    nt_client *client = NULL;
+    nt_event event;
+    assert_int_equal(nt_session_publish(session, NULL), NT_OK);
+    assert_int_equal(nt_client_of(&client, nt_session_frames(session)), NT_OK);
+    const double from = nt_session_master_start(session), to = from + 2e-3;
+    nt_request hand = {.kind = NT_EVENT_AIM, .field = 1, .value = {0.0, 0.0, to, 0.01}};
+    assert_int_equal(outcome(session, client, hand).status, NT_OK);
+    run(session, watched, 200);
+    const double resolution = setup.rig.master.resolution;
+    assert_true(fabs(watched[199].master_position[NT_Z] - to) <= resolution);
+    hand.value[0] = 1e-3; /* of a master of one axis */
+    assert_int_equal(outcome(session, client, hand).status, NT_E_RANGE);
+    hand.value[0] = 0.0, hand.value[2] = setup.rig.master.travel; /* half of it lies on either side */
+    assert_int_equal(outcome(session, client, hand).status, NT_E_RANGE);
+    hand.value[2] = to, hand.value[3] = -1.0;
+    assert_int_equal(outcome(session, client, hand).status, NT_E_RANGE);
+    assert_int_equal(nt_session_read_events(session, &event, 1), 0);
+    nt_client_close(client);
+    nt_session_close(session);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(watching_changes_nothing),
         cmocka_unit_test(clients_are_answered),
+        cmocka_unit_test(a_client_leads_the_hand),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

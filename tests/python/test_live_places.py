@@ -44,7 +44,7 @@ def test_law_and_section_are_those_of_the_place(monkeypatch: pytest.MonkeyPatch)
             host.advance(0.1)
         seen.look(host.observer)
         seen.hear(host.clock())
-        here = host.here()
+        here = host.clock()["here"]
         local = host.session.scene.copy()
         local["sample.youngs_modulus"] = here["youngs_modulus"]
         local["adhesion.work_of_adhesion"] = here["work_of_adhesion"]
@@ -63,7 +63,7 @@ def test_a_hollow_pulls_more_than_a_hill() -> None:
     x = y = np.linspace(0.2e-6, 0.8e-6, 60)
     radii = surface.radius_map.radius(*np.meshgrid(x, y)).radius
     assert radii.max() > 1.5 * radii.min()
-    assert host.here()["radius"] > 0.0
+    assert host.clock()["here"]["radius"] > 0.0
     host.close()
 
 

@@ -8,7 +8,7 @@ Such a hand is a master without a motor: no loop closes through it. Its moves ar
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Protocol
 
 import nanotouch as nt
 import numpy as np
@@ -47,7 +47,35 @@ def settings_of(settings: nt.Settings, rig: nt.Rig) -> nt.Settings:
     return made
 
 
-def _ends(session: nt.Session) -> tuple[Any, Any]:
+class Touch(Protocol):
+    """What a hand needs to know of a session, and to ask of it."""
+
+    rig: nt.Rig
+    clearance: float
+    surface: Any
+    core: Any
+
+    @property
+    def scene(self) -> nt.Scene:
+        """That holds."""
+
+    @property
+    def settings(self) -> nt.Settings:
+        """That hold."""
+
+    @property
+    def plan(self) -> nt.Plan:
+        """What is computed."""
+
+    @property
+    def path(self) -> Any:
+        """Where the tip started [m]."""
+
+    def aim(self, to: Hold) -> None:
+        """The hand goes there."""
+
+
+def _ends(session: Touch) -> tuple[Any, Any]:
     """Where the hand may be: within the master's travel, and over the surface."""
     reach = 0.5 * session.rig.master.travel
     low, high = np.full(3, -reach), np.full(3, reach)
@@ -58,10 +86,15 @@ def _ends(session: nt.Session) -> tuple[Any, Any]:
     return low, high
 
 
+def _known(gap: Any) -> float:
+    """0 where nobody knows it."""
+    return float(gap) if math.isfinite(gap) else 0.0
+
+
 class Hand:
     """Where the hand is; ``height`` of the proxy in the tip's frame [m], ``place`` in the master's own lengths."""
 
-    def __init__(self, session: nt.Session) -> None:
+    def __init__(self, session: Touch) -> None:
         self.session = session
         self.ends = _ends(session)
         self.place = np.array([0.0, 0.0, session.core.master_start])
@@ -69,6 +102,8 @@ class Hand:
         self.zero = self.height + float(session.settings.gains.alpha_p) * float(session.core.master_start)
         """where the proxy is when the master reads 0 [m]"""
         self.presses = False
+        self.aimed_at = -math.inf  # session time of the last move [s]
+        self.told_apart = max(5.0 * session.rig.master.resolution, 1e-4 * session.rig.master.travel)
         load = float(session.scene.range.maximum_load)
         self.step = (float(session.plan.explain()["largest_indentation"]) + load / self.stiffness) / STEPS
         self.limit = LOAD_SHARE * float(session.settings.limits.force)
@@ -84,6 +119,20 @@ class Hand:
         spring = float(gains.coupling_stiffness / (gains.alpha_p * gains.alpha_f))
         return spring * lever / (spring + lever) if spring > 0.0 else lever
 
+    def acts(self, frame: Any) -> bool:
+        """Whether it moves by itself now: it presses, or yields."""
+        return self.presses or float(frame["tip_force"][2]) > 1.1 * self.limit
+
+    def _catch_up(self, frame: Any) -> None:
+        """Another program may have led the hand meanwhile: it is where the master is."""
+        if frame["time"] < self.aimed_at + 2.0 * GLIDE:
+            return
+        way = np.asarray(frame["master_position"]) - self.place
+        way[: 2 * (self.session.rig.master.axes != 3.0)] = 0.0
+        if np.abs(way).max() > self.told_apart:
+            self.place = self.place + way
+            self.height -= float(way[2] * self.session.settings.gains.alpha_p)
+
     def follow(self, frame: Any, elapsed: float) -> None:
         """What an arm does by itself, some hundred times a second: it presses, yields, and stays by a stopped tip."""
         force, tip = float(frame["tip_force"][2]), float(frame["tip_position"][2])
@@ -92,33 +141,38 @@ class Hand:
         if frame["state"] != 0:
             self.height, self.presses = tip - force / self.stiffness, False
         elif force > 1.1 * self.limit:
-            self._shift((0.0, 0.0, -(force - self.limit) / self.stiffness))
+            self._shift((0.0, 0.0, -(force - self.limit) / self.stiffness), frame)
         elif self.presses:
             way = 4.0 * elapsed * (self.press_force - force) / self.stiffness
             if not frame["contact_radius"] > 0.0:
-                way = elapsed * max(STEPS * self.step, 2.0 * float(frame["gap"]))
+                way = elapsed * max(STEPS * self.step, 2.0 * _known(frame["gap"]))
             self.move((0.0, 0.0, way), frame)
 
     def lift(self, frame: Any) -> None:
         """Draw back by the clearance, and by what adhesion stretches the springs before it lets go."""
+        self._catch_up(frame)
         stretch = self.session.plan.pull_off_force / self.stiffness
         up = float(frame["tip_position"][2]) + self.session.clearance + 1.2 * stretch - self.height
-        self._shift((0.0, 0.0, -max(up, 0.0)))
+        self._shift((0.0, 0.0, -max(up, 0.0)), frame)
 
     def step_down(self, steps: float, frame: Any) -> None:
         """Go down by steps of the wheel, longer ones far away from the surface; up if below 0."""
-        far = max(float(frame["gap"]), 0.0) / APPROACH if not frame["contact_radius"] > 0.0 else 0.0
+        far = max(_known(frame["gap"]), 0.0) / APPROACH if not frame["contact_radius"] > 0.0 else 0.0
         self.move((0.0, 0.0, steps * max(self.step, far)), frame)
 
     def move(self, way: tuple[float, float, float], frame: Any) -> bool:
         """Move by lengths at the tip [m], the third one + down. False where the force limit has cut the way."""
-        ground = float(frame["tip_position"][2]) - float(frame["gap"])
-        room = self.height - ground + self.reach_down
+        self._catch_up(frame)
+        tip, force = float(frame["tip_position"][2]), float(frame["tip_force"][2])
+        room = self.height - tip + _known(frame["gap"]) + self.reach_down
+        if not math.isfinite(frame["gap"]):  # a real slave says only what its lever feels
+            room = (self.limit - force) / self.stiffness
         down = min(way[2], max(room, 0.0)) if math.isfinite(room) else min(way[2], 0.0)
-        self._shift((way[0], way[1], down))
+        self._shift((way[0], way[1], down), frame)
         return down == way[2]
 
-    def _shift(self, way: tuple[float, float, float]) -> None:
+    def _shift(self, way: tuple[float, float, float], frame: Any) -> None:
+        self.aimed_at = float(frame["time"])
         scale = 1.0 / self.session.settings.gains.alpha_p
         before, self.place = self.place, np.clip(self.place + scale * np.asarray(way), *self.ends)
         self.height -= float(self.place[2] - before[2]) / scale  # no further than the hand has gone

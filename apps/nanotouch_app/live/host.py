@@ -19,9 +19,8 @@ from nanotouch.errors import Error
 from nanotouch.scratch import Scratch
 from nanotouch.session import settings_for_path
 
-from nanotouch_app.live import files, refusals
+from nanotouch_app.live import files, places, refusals
 from nanotouch_app.live.hand import Hand, rig_of, settings_of
-from nanotouch_app.live.look import PROPERTY_NAMES
 from nanotouch_app.live.remote import Lease
 from nanotouch_app.live.subject import Subject, of_preset
 from nanotouch_app.live.trainer import Trainer
@@ -119,12 +118,23 @@ class Host:
         """Some hundred times a second: what hand and recording do."""
         now = time.monotonic()
         frame = self.observer.newest()
-        if frame is not None and not self.paused:
+        if frame is not None and not self.paused and self._drives(frame):
             self.hand.follow(frame, min(now - self.seen, 0.1) * self.speed)
         self.seen = now
         if self.trainer is not None:
             self.trainer.look()
         self._drain()
+
+    def _drives(self, frame: Any) -> bool:
+        """Whether the hand may go on by itself: not while another program holds the lease."""
+        if self.lease is None or not self.hand.acts(frame):
+            return True
+        try:
+            self.lease.take()
+        except Error:
+            self.hand.presses = False
+            return False
+        return True
 
     def advance(self, duration: float) -> None:
         """Of a stepped session: run for a time [s], as far as the hand looks in pieces of 10 ms."""
@@ -159,25 +169,13 @@ class Host:
         progress = self.session.progress
         return {
             "tell": "clock", "speed": self.speed, "paused": self.paused, "slowdown": progress.slowdown,
-            "recorded": self.writer is not None, "height": self.hand.height, "here": self.here(),
+            "recorded": self.writer is not None, "height": self.hand.height,
+            "here": places.here(self.session.surface, self.observer.newest()),
         }  # fmt: skip
-
-    def here(self) -> dict[str, float]:
-        """What the place under the tip has of its own: effective radius [m], and properties where they are given."""
-        surface, frame = self.session.surface, self.observer.newest()
-        if surface is None or frame is None:
-            return {}
-        x, y = (float(part) for part in frame["tip_position"][:2])
-        found = surface.properties(x, y)._asdict()
-        if surface.tip_radius is not None:
-            found["radius"] = surface.radius_map.radius(x, y).radius
-        return {name: float(value) for name, value in found.items() if value is not None}
 
     def properties(self) -> dict[str, Any]:
         """Of each place, for the picture; empty where the scene alone says them."""
-        surface = self.session.surface
-        given = {} if surface is None else {name: getattr(surface, name) for name in PROPERTY_NAMES}
-        return {name: values for name, values in given.items() if values is not None}
+        return places.properties(self.session.surface)
 
     # --- what is asked ---
 

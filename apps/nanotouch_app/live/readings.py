@@ -118,7 +118,7 @@ def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: 
     if seen.stale:
         painter.text(x + 110, upper, f"no frame for {seen.age:.1f} s: nothing is felt", palette.bad)
     elif state:
-        painter.text(x + 110, upper, f"{_reasons(int(seen.frame['reasons']))}. Enter: go on", colour)
+        painter.text(x + 110, upper, _stopped(state, int(seen.frame["reasons"])), colour)
     elif first:
         painter.text(x + 110, upper, first, tint, SMALL)
     else:
@@ -166,9 +166,10 @@ def _facts(seen: Seen) -> str:
     )
 
 
-def _reasons(bits: int) -> str:
+def _stopped(state: int, bits: int) -> str:
     names = [words for number, words in enumerate(REASONS) if bits >> number & 1]
-    return ", ".join(names) or "stopped"
+    waits = STATES[state] == "HOLD" and "loop unstable" not in names
+    return f"{', '.join(names) or 'stopped'}. {'It goes on when that has ended' if waits else 'Enter: go on'}"
 
 
 def help_panel(painter: Painter, palette: Palette, frame: Frame) -> None:

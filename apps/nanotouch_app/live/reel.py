@@ -121,4 +121,5 @@ def world_of(about: Mapping[str, Any], name: str, source: str) -> dict[str, Any]
         "margin": about.get("stability_margin") or np.inf, "undo": 0, "redo": 0,
         "force": about.get("guaranteed_force") or about["settings"]["limits"]["force"],
         "law": plan.contact_law, "warnings": [], "start": list(about.get("path", [(0.0, 0.0)])[0]),
+        "clearance": float(about.get("clearance", 0.0)), "size": about.get("surface_size"),
     }  # fmt: skip

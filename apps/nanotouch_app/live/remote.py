@@ -6,17 +6,21 @@ from __future__ import annotations
 
 import copy
 import json
+import time
 from typing import Any
 
 import nanotouch as nt
 from nanotouch.commands import Answer
 from nanotouch.errors import Error
 
+from nanotouch_app.live.hand import Hand
+from nanotouch_app.live.led import hand_of
 from nanotouch_app.live.reel import world_of
 
 ARM, RESCALE, SETTING, SCENE = 2, 4, 6, 7  # nt_event_kind of session.h
-WATCHED = "watched: its program leads the hand"
+WATCHED, LED = "watched: its program leads the hand", "your hand on the session of another program"
 TAKEN = "another program drives this session; it may be asked again one second after its last request"
+LONGEST = 0.1  # what a hand does by itself in one turn [s]
 Message = dict[str, Any]
 
 
@@ -39,10 +43,12 @@ class Lease:
 
 
 class Remote:
-    """Changes, stop and arm of a session that this window does not lead."""
+    """Changes, stop and arm of a session that this window does not lead; with ``leads`` its hand, too."""
 
-    def __init__(self, name: str, observer: nt.frames.Observer) -> None:
-        self.name, self.observer = name, observer
+    def __init__(self, name: str, observer: nt.frames.Observer, leads: bool = False) -> None:
+        self.name, self.observer, self.leads = name, observer, leads
+        self.hand: Hand | None = None
+        self.turned = time.monotonic()
         self.lease = Lease(name)
         self.asked: dict[int, Message] = {}
         self.described = 0
@@ -53,19 +59,60 @@ class Remote:
         """The world, if it is another one than at the last call: the session has said so, whoever changed it."""
         if self.observer.changes != self.described:
             text, self.described = self.observer.description, self.observer.changes
-            self.world, self._changed = world_of(json.loads(text), self.name, WATCHED), True
+            self.world, self._changed = world_of(json.loads(text), self.name, LED if self.leads else WATCHED), True
+            self.hand = None  # it begins anew where it is, in the world as it is now
         changed, self._changed = self._changed, False
         return copy.deepcopy(self.world) if changed else None
 
-    def ask(self, message: Message) -> None:
+    def ask(self, message: Message, frame: Any = None) -> None:
         """Post a request; what a window without a hand cannot ask is refused."""
         if message["do"] == "stop":
             self.lease.client.stop()
+            return
+        if self.leads and message["do"] in ("move", "wheel", "press", "retract"):
+            self._lead(message, frame)
             return
         kind, field, values = self._request(message)
         self.lease.take()
         first, second = (*values, 0.0)[:2]
         self.asked[self.lease.client.post(kind, field, (first, second, 0.0, 0.0))] = message
+
+    def _lead(self, message: Message, frame: Any) -> None:
+        """Move the hand, from where it is at its first move."""
+        if frame is None or not self.world:
+            return
+        self.lease.take()
+        if self.hand is None:
+            self.hand = hand_of(self.world, frame, self._post)
+        if message["do"] == "move":
+            self.hand.move(message["way"], frame)
+        elif message["do"] == "wheel":
+            self.hand.presses = False
+            self.hand.step_down(message["steps"], frame)
+        else:
+            self.hand.presses = bool(message.get("on", False))
+            if not self.hand.presses:
+                self.hand.lift(frame)
+
+    def _post(self, kind: int, field: int, values: tuple[float, float, float, float]) -> None:
+        self.asked[self.lease.client.post(kind, field, values)] = {"do": "move"}
+
+    def turn(self, frame: Any) -> list[Message]:
+        """Some ten times a second: the hand goes on by itself; what is to be told of answers and of the world."""
+        elapsed, self.turned = time.monotonic() - self.turned, time.monotonic()
+        told: list[Message] = []
+        if self.hand is not None and frame is not None:
+            try:
+                self.hand.follow(frame, min(elapsed, LONGEST))
+            except Error as error:  # another program has taken the lease
+                self.hand = None
+                told.append({"tell": "refused", "why": str(error)})
+        told += [
+            {"tell": "refused", "why": f"refused: {answer.message}", "field": message.get("field")}
+            for message, answer in self.answers() if answer.status
+        ]  # fmt: skip
+        world = self.news()
+        return told if world is None else [*told, world]
 
     def _request(self, message: Message) -> tuple[int, int, list[float]]:
         match message["do"]:

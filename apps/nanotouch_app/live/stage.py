@@ -27,7 +27,7 @@ BEND = 0.05  # of the lever under the largest load [scene units]
 SHADOW = 0.05  # radius of the soft shadow [scene units]
 SHADOW_RINGS, SHADOW_ROUND = 6, 33  # of points that lie on the surface
 LIFTED = 0.004  # what is laid on the surface is drawn so much above it [scene units]
-RAISED = 0.08  # of what the camera looks at, over the middle of the surface [scene units]
+RAISED = 0.1  # of what the camera looks at, over the middle of the surface [scene units]
 VIEWS = {"0": (0.0, 32.0, 1.86), "1": (0.0, 32.0, 1.86), "2": (0.0, 89.0, 1.7), "3": (-55.0, 28.0, 1.86),
          "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
 
@@ -74,6 +74,7 @@ class Stage:
         self.shades: list[Any] = []
         self.shadows = [self._shadow(share) for share in (1.0, 0.7, 0.4)]
         self.trace, self.trace_data = self._line()
+        self.origin = np.zeros(2)  # of the surface in the frame of the tip [m]
         self.camera("0")
 
     # --- made once ---
@@ -222,12 +223,18 @@ class Stage:
 
     def apex(self, seen: Seen) -> Floats:
         """Where the tip is drawn: over the drawn surface, at the gap that is true."""
-        x, y, z = (float(part) for part in seen.frame["tip_position"])
+        x, y = self._place(seen)
+        z = float(seen.frame["tip_position"][2])
         gap = float(seen.frame["gap"])
         ground = float(self._ground(x, y))
         above = (gap if math.isfinite(gap) else max(z - ground, 0.0)) * self.scale[2]
         drawn = FAR * math.tanh(above / FAR) if above > 0.0 else above  # a tip far away stays in the picture
         return np.array([x / self.unit, y / self.unit, (ground - self.lowest) * self.scale[2] + drawn])
+
+    def _place(self, seen: Seen) -> tuple[float, float]:
+        """Of the tip, from the corner of the surface [m]."""
+        x, y = np.asarray(seen.frame["tip_position"][:2]) - self.origin
+        return float(x), float(y)
 
     def _ground(self, x: Any, y: Any) -> Any:
         """Height of the drawn surface [m], linear between its points."""
@@ -245,7 +252,7 @@ class Stage:
         apex = self.apex(seen)
         self.tip.SetPosition(*apex)
         self._bend(apex, seen)
-        ground = (self._ground(*(float(part) for part in seen.frame["tip_position"][:2])) - self.lowest) * self.scale[2]
+        ground = (self._ground(*self._place(seen)) - self.lowest) * self.scale[2]
         above = float(apex[2] - ground)
         self._cast(apex + [0.6 * above, -0.3 * above, 0.0], 1.0 + 3.0 * max(above, 0.0))  # noqa: RUF005  an array
         self._draw_trace(seen)
@@ -266,6 +273,7 @@ class Stage:
         if len(rows) < 2:
             self.trace_data.Initialize()
             return
+        rows[:, 1:3] -= self.origin
         now = rows[-1, 0]
         ground = self._ground(rows[:, 1], rows[:, 2])
         places = np.stack([rows[:, 1], rows[:, 2], ground - self.lowest], axis=1) * self.scale + [0.0, 0.0, LIFTED]

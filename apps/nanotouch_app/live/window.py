@@ -46,16 +46,17 @@ class Window:
 
     def __init__(
         self, surface: str, dark: bool = False, recording: str | None = None, watched: str | None = None,
-        hand: str = "none",
+        hand: str = "none", leads: bool = False,
     ) -> None:  # fmt: skip
         self.vtk = parts.load()
         with np.load(surface) as stored:
-            heights, pixel_size = stored["heights"], stored["pixel_size"]
+            heights, pixel_size, origin = stored["heights"], stored["pixel_size"], stored.get("origin")
         self.window = self.vtk.vtkRenderWindow()
         self.window.SetMultiSamples(0)
         self.window.SetSize(*fitting(*self.window.GetScreenSize()))
         self.window.SetWindowName("nanotouch live")
         self.picture = Picture(self.vtk, self.window, heights, pixel_size)
+        self.picture.stage.origin = np.zeros(2) if origin is None else origin
         if dark:
             self.picture.turn_light()
         self.reel = None if recording is None else Reel(record.read(recording))
@@ -81,8 +82,8 @@ class Window:
         self.leads = recording is None and watched is None
         self.remote: Remote | None = None
         if watched is not None:
-            self.watch(watched)
-        self.held, self.moved_at = Held(hands.opened(hand) if self.leads else []), time.monotonic()
+            self.watch(watched, leads)
+        self.held, self.moved_at = Held(hands.opened(hand) if self.leads or leads else []), time.monotonic()
         self.dragging, self.at = "", np.zeros(2)
         self.pressing, self.lift_at = False, math.inf
         self.open = True
@@ -153,23 +154,16 @@ class Window:
                 self._attach(message["name"])
             self.picture.hear(message)
 
-    def watch(self, name: str) -> None:
-        """Look at a session that this window does not lead."""
+    def watch(self, name: str, leads: bool = False) -> None:
+        """Look at the session of another program; ``leads``: with a hand."""
         self.observer, self.name = nt.frames.attach(name), name
-        self.remote = Remote(name, self.observer)
+        self.remote = Remote(name, self.observer, leads)
         self._hear_remote()
 
     def _hear_remote(self) -> None:
         """What became of what was asked of a watched session, and what it says of itself."""
-        if self.remote is None:
-            return
-        for message, answer in self.remote.answers():
-            if answer.status:
-                why = f"refused: {answer.message}"
-                self.picture.hear({"tell": "refused", "why": why, "field": message.get("field")})
-        world = self.remote.news()
-        if world is not None:
-            self.picture.hear(world)
+        for message in [] if self.remote is None else self.remote.turn(self.picture.seen.frame):
+            self.picture.hear(message)
 
     def _attach(self, name: str) -> None:
         try:
@@ -184,7 +178,7 @@ class Window:
             self.reel.answer(message)
         if self.remote is not None and message["do"] not in ("ready", "leave"):
             try:
-                self.remote.ask(message)
+                self.remote.ask(message, self.picture.seen.frame)
             except Error as error:
                 self.picture.hear({"tell": "refused", "why": str(error), "field": message.get("field")})
             return
@@ -380,10 +374,11 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--dark", action="store_true")
     parser.add_argument("--recording")
     parser.add_argument("--watch")
+    parser.add_argument("--lead", action="store_true")
     parser.add_argument("--hand", default="none")
     args = parser.parse_args(arguments)
     try:
-        Window(args.surface, args.dark, args.recording, args.watch, args.hand).run()
+        Window(args.surface, args.dark, args.recording, args.watch, args.hand, args.lead).run()
     except Error as error:
         print(error, file=sys.stderr)
         return 1

@@ -34,8 +34,9 @@ class Watched(Protocol):
         """Show every tick under a name."""
 
 
-def watch(session: Watched) -> subprocess.Popen[str]:
-    """Open a window that watches this session, in a process of its own; the session never waits for it.
+def watch(session: Watched, hand: bool = False) -> subprocess.Popen[str]:
+    """Open a window that watches this session, in a process of its own; the session never waits for it. With ``hand``
+    its mouse, keys and other devices move the simulated hand, too, while no other program holds the lease.
 
     Returns that process once its first picture is drawn; :class:`~nanotouch.errors.Error` where it cannot be. Not while
     the session runs in its own thread.
@@ -48,13 +49,14 @@ def watch(session: Watched) -> subprocess.Popen[str]:
     folder = Scratch()
     atexit.register(folder.close)
     surface = folder.path / "surface.npz"
-    heights, pixel_size = _surface_of(session)
-    np.savez(surface, heights=heights, pixel_size=np.asarray(pixel_size))
+    heights, pixel_size, origin = _surface_of(session)
+    np.savez(surface, heights=heights, pixel_size=np.asarray(pixel_size), origin=np.asarray(origin))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    options = ["--lead", "--hand", "auto"] if hand else []
     said = folder.path / "said.txt"
     with open(said, "wb") as errors:
         window = subprocess.Popen(
-            [sys.executable, "-m", WINDOW, str(surface), "--watch", name], stdin=subprocess.PIPE,
+            [sys.executable, "-m", WINDOW, str(surface), "--watch", name, *options], stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, stderr=errors, env=environment, text=True,
         )  # fmt: skip
     assert window.stdout is not None
@@ -68,9 +70,12 @@ def watch(session: Watched) -> subprocess.Popen[str]:
     return window
 
 
-def _surface_of(session: Watched) -> tuple[Any, tuple[float, float]]:
-    """Heights and pixel size of its surface; a flat around the path without one."""
+def _surface_of(session: Watched) -> tuple[Any, tuple[float, float], tuple[float, float]]:
+    """Heights, pixel size and lower left corner of its surface; a flat around the path without one."""
     if session.surface is not None:
-        return session.surface.topography.heights, session.surface.topography.pixel_size
-    side = 2.0 * max(1e-6, *(abs(part) for point in session.path for part in point))
-    return np.zeros((16, 16)), (side / 16, side / 16)
+        return session.surface.topography.heights, session.surface.topography.pixel_size, (0.0, 0.0)
+    points = np.asarray(session.path, dtype=float).reshape(-1, 2)
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    side = max(2e-6, 1.5 * float(np.ptp(points, axis=0).max()))
+    corner = middle - 0.5 * side
+    return np.zeros((16, 16)), (side / 16, side / 16), (float(corner[0]), float(corner[1]))

@@ -331,7 +331,7 @@ class Session(Runs, Frozen):
         return {
             "scene": self.scene.to_dict(), "settings": self.settings.to_dict(), "mode": self.mode,
             "stability_margin": margin if math.isfinite(margin) else None, "plan": str(self.plan).splitlines(),
-            "guaranteed_force": self.guarantee().force,
+            "guaranteed_force": self.guarantee().force, "clearance": self.clearance,
         }  # fmt: skip
 
     def _asked(self) -> list[list[Any]]:

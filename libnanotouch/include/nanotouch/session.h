@@ -93,7 +93,7 @@ typedef struct nt_record {
  * needs. */
 typedef enum nt_event_kind {
     NT_EVENT_STOP = NT_REQUEST_STOP, /* value[0]: 1 pressed, 0 released; it shows in the records' flags */
-    NT_EVENT_AIM,                    /* x, y [m], duration [s] */
+    NT_EVENT_AIM,                    /* x, y [m], duration [s]; of field 1: x, y, x_m where a hand holds, duration */
     NT_EVENT_ARM,                    /* confirmed */
     NT_EVENT_MODE,                   /* nt_mode */
     NT_EVENT_RESCALE,                /* alpha_p, alpha_f */
