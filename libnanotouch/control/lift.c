@@ -2,7 +2,8 @@
  * A stop lifts, keeps watching and lifts again: by retract_distance, once more whenever force shows, and as far as
  * travel allows while no force can be read. A stage that did not follow, or that goes the wrong way, stays where it is
  * until the force grows; then the force alone tells. Once the stage should have turned, a lift makes no force grow;
- * where one does, it is no lift and is given up. */
+ * where one does, and the read-out does not show it rising, it is no lift and is given up. A read-out that does show it
+ * says that the frame comes down faster, or a flank passes by below: then lifting is all there is to do. */
 #include "control/lift.h"
 
 #include <math.h>
@@ -26,7 +27,13 @@ static void begin(nt_supervisor_state *state, double force)
     state->growth_run = 0;
 }
 
-int nt_lift_helps(const nt_supervisor *supervisor, nt_supervisor_state *state, double force)
+/* By its read-out, which has told the truth so far. */
+static int shows_rise(const nt_supervisor *supervisor, const nt_supervisor_state *state, double position)
+{
+    return state->lift == NT_LIFT_GOES && position < state->turn_position - supervisor->turn_slack;
+}
+
+int nt_lift_helps(const nt_supervisor *supervisor, nt_supervisor_state *state, double force, double position)
 {
     const int runs = state->state < NT_RETRACT, goes = state->lift == NT_LIFT_GOES;
     if (runs)
@@ -40,7 +47,7 @@ int nt_lift_helps(const nt_supervisor *supervisor, nt_supervisor_state *state, d
         state->lift_force = greater(state->lift_force, force);
     const int grows = has_turned && force > state->lift_force + nt_lift_tolerance(supervisor);
     state->growth_run = grows ? state->growth_run + 1u : 0u;
-    if (state->growth_run < GROWTH_TICKS)
+    if (state->growth_run < GROWTH_TICKS || shows_rise(supervisor, state, position))
         return 1;
     if (state->lift == NT_LIFT_WAITS) {
         state->lift = NT_LIFT_TRIES;

@@ -289,7 +289,8 @@ static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_stat
 
 static nt_state judge_growth(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const int helps = nt_lift_helps(supervisor, state, supervisor->spring_constant * sample->deflection[NT_Z]);
+    const double force = supervisor->spring_constant * sample->deflection[NT_Z];
+    const int helps = nt_lift_helps(supervisor, state, force, sample->stage_position[NT_Z]);
     return helps ? NT_RUN : blame(state, NT_REASON_FOLLOW, NT_LATCHED);
 }
 

@@ -31,6 +31,13 @@ static inline int operators_of(attack kind)
     return kind == ATTACK_QUASI_STATIC ? 5 : 1;
 }
 
+/* A stop lifts at least this fast, whatever hysteresis and creep take of it [m/s]. */
+static inline double lift_speed(const plot *p)
+{
+    const nt_stage *stage = &p->believed.stage;
+    return (1.0 - 2.0 * stage->hysteresis - 4.0 * stage->creep) * p->settings.limits.retract_speed;
+}
+
 /* Any value that the kind may have and that a rig may show; a jump no larger than is reckoned with. */
 static inline double draw_value(const plot *p, dice *d, nt_fault_kind kind, nt_channel channel)
 {
@@ -39,7 +46,9 @@ static inline double draw_value(const plot *p, dice *d, nt_fault_kind kind, nt_c
     case NT_FAULT_GAIN:
         return chance(d, 0.5) ? between(d, 0.0, 1.0) : sign * magnitude(d, 0.01, 20.0);
     case NT_FAULT_DRIFT:
-        return sign * (channel == NT_CHANNEL_OPERATOR_FORCE ? magnitude(d, 0.01, 10.0) : magnitude(d, 1e-9, 1e-5));
+        if (channel == NT_CHANNEL_OPERATOR_FORCE)
+            return sign * magnitude(d, 0.01, 10.0);
+        return sign * magnitude(d, 1e-9, channel == NT_CHANNEL_STAGE ? lift_speed(p) : 1e-5); /* no lift helps beyond */
     case NT_FAULT_NOISE:
         return magnitude(d, 1.0, 300.0);
     case NT_FAULT_JUMP:
@@ -129,11 +138,20 @@ static inline double pass_time(const nt_session *session, closeness *found)
     return time;
 }
 
+/* All travel is used up: nothing lifts from a frame that runs on, and help is needed. */
+static inline int has_no_travel_left(const nt_session *session)
+{
+    const double reference = nt_session_touch_state(session)->supervisor.reference;
+    return reference <= -0.999 * nt_session_touch(session)->stage_end;
+}
+
 static inline void watch(const nt_session *session, const plot *p, closeness *found)
 {
     const nt_truth *truth = &session->sim.slave.truth;
     const nt_guarantee *promised = &p->promised;
     const double time = pass_time(session, found);
+    if (has_no_travel_left(session))
+        return;
     const int fails = p->kind == ATTACK_FAULT && p->sought < NT_FAILURES;
     const double force = promised->force + (fails ? promised->failure[p->sought] : 0.0);
     const double most = force + promised->zero_drift * time + promised->frame_drift * found->idle;

@@ -76,7 +76,7 @@ static const fault_case later_cases[] = {
      NT_REASON_INDENTATION},
     {"stage read-out goes a half", CASE(GAIN, STAGE_POSITION, FOREVER, 0.5), NT_HOLD, 2000, NT_LATCHED,
      NT_REASON_FOLLOW},
-    {"deflection's zero drifts by 1 um/s", CASE(DRIFT, DEFLECTION, FOREVER, 1e-6), NT_RETRACT, 3000, NT_LATCHED,
+    {"deflection's zero drifts by 1 um/s", CASE(DRIFT, DEFLECTION, FOREVER, 1e-6), NT_RETRACT, 3000, NT_RETRACT,
      NT_REASON_FORCE_LIMIT},
     {"deflection's zero drifts by -1 um/s", CASE(DRIFT, DEFLECTION, FOREVER, -1e-6), NT_RETRACT, 6000, NT_RETRACT,
      NT_REASON_INDENTATION},

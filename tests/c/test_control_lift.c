@@ -21,7 +21,7 @@ typedef struct rig {
     nt_command command;
     double surface; /* x_s of first touch [m] */
     double sign;    /* of the stage: the share of its way that it goes */
-    double drift;   /* of surface towards the tip [m/s] */
+    double drift;   /* of surface towards the tip, unseen by the read-out [m/s] */
     double most;    /* deflection so far [m] */
     int blind;      /* the deflection is not a number */
     int64_t ticks;
@@ -138,6 +138,26 @@ static void a_stage_that_did_not_follow_waits(void **state)
     }
 }
 
+/* The frame comes down faster than the tip is lifted at first: the read-out shows that it is, so it goes on. Once the
+ * frame rests, the tip is free. A stage that goes the wrong way, and shows it, is given up. */
+static void a_lift_that_shows_goes_on_while_the_force_grows(void **state)
+{
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        rig r;
+        set_up(&r);
+        stop(&r);
+        r.sign = turned ? -1.0 : 1.0;
+        r.drift = 1.2 * r.touch.settings.limits.retract_speed;
+        run(&r, 300);
+        assert_true(r.most > 104e-9); /* it was 100 nm, and more than the drift that shows as no growth */
+        assert_int_equal(r.state.supervisor.lift == NT_LIFT_GOES, !turned);
+        r.drift = 0.0;
+        run(&r, 10000);
+        assert_int_equal(r.sample.deflection[NT_Z] < 1e-9, !turned);
+    }
+}
+
 /* Hysteresis that is declared takes its share of a lift, for the integral stands still meanwhile. No force can be
  * read, so nothing else tells that it lifts: it goes on all the same, and is no fault. */
 static void declared_hysteresis_stops_no_lift(void **state)
@@ -189,6 +209,7 @@ int main(void)
         cmocka_unit_test(drift_is_lifted_from),
         cmocka_unit_test(what_cannot_be_read_is_lifted_as_far_as_it_goes),
         cmocka_unit_test(a_stage_that_did_not_follow_waits),
+        cmocka_unit_test(a_lift_that_shows_goes_on_while_the_force_grows),
         cmocka_unit_test(declared_hysteresis_stops_no_lift),
         cmocka_unit_test(a_lift_that_nothing_told_of_is_tried_when_the_force_grows),
     };
