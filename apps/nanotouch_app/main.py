@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import importlib
 import io
 import json
@@ -53,9 +54,26 @@ class Parser(argparse.ArgumentParser):
     def _print_message(self, message: str, file: Any = None) -> None:
         (file or sys.stderr).write(message)  # argparse's own passes over errors
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is not None and value not in action.choices:
+            known = [str(choice) for choice in action.choices]
+            near = meant(str(value), known) or ":"
+            raise argparse.ArgumentError(action, f"{value!r}{near} valid are {', '.join(known)}")
+
+    def unknown(self, words: list[str]) -> NoReturn:
+        """Tell of what is no option or argument of this command."""
+        near = meant(words[0].partition("=")[0], list(self._option_string_actions))
+        self.error(f"unrecognized arguments: {' '.join(words)}{near}")
+
     def error(self, message: str) -> NoReturn:
         """Tell what is wrong, without the usage."""
         self.exit(REFUSED, one_line(f"{self.prog}: error: {message} ({self.prog} --help tells more)") + "\n")
+
+
+def meant(word: str, known: Sequence[str]) -> str:
+    """The question whether something known was meant; nothing where none is like it."""
+    near = difflib.get_close_matches(word, known, 1)
+    return f": did you mean {near[0]}?" if near else ""
 
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:
@@ -106,12 +124,24 @@ def _run(arguments: list[str]) -> int:
             raise InvalidValue(f"{name.replace('_', '-')} is empty: is it a variable of the shell that is not set?")
     work = importlib.import_module(f"nanotouch_app.{args.command}").run
     with stop.on_signals():
-        if not getattr(args, "json", False):
-            return int(work(args))
-        with redirect_stdout(io.StringIO()):
-            status = int(work(args))
+        try:
+            if not getattr(args, "json", False):
+                return int(work(args))
+            with redirect_stdout(io.StringIO()):
+                status = int(work(args))
+        except InvalidValue as failure:
+            raise InvalidValue(_of_option(str(failure), args)) from failure
         print(json.dumps(as_json(args.answer), indent=2, allow_nan=False))
         return status
+
+
+def _of_option(message: str, args: argparse.Namespace) -> str:
+    """The message, with the option before it whose value it quotes: ``--rate: '10' has no unit; ...``."""
+    quoted = re.match("'([^']*)' (has|is not) ", message)
+    for name, value in vars(args).items() if quoted else ():
+        if isinstance(value, str) and quoted and quoted[1] in (value, *value.split(",")):
+            return f"--{name.replace('_', '-')}: {message}"
+    return message
 
 
 def _parsed(arguments: list[str]) -> argparse.Namespace:
@@ -121,7 +151,11 @@ def _parsed(arguments: list[str]) -> argparse.Namespace:
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             importlib.import_module("argcomplete").autocomplete(parser)
-    return parser.parse_args(arguments)
+    args, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        commands: Any = next(action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+        commands.choices[args.command].unknown(unknown)
+    return args
 
 
 if __name__ == "__main__":

@@ -72,6 +72,8 @@ def made(path: str | os.PathLike[str] | None) -> Iterator[Path]:
             probe = out / f".nanotouch-{os.getpid()}"
             probe.touch()
             probe.unlink()
+        except FileExistsError as error:
+            raise Error(f"cannot write into {path}: it is a file, not a folder") from error
         except OSError as error:
             raise Error(f"cannot write into {path or DEFAULT}: {error.strerror}") from error
         yield out

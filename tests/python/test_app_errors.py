@@ -69,7 +69,7 @@ CASES: dict[str, tuple[list[str], list[str]]] = {
     "no time": (["touch", "--duration", "0s"], ["--duration 0s", "above 0 s"]),
     "too long": (["touch", "--duration", "1e9s"], ["--duration 1e9s", "600 s"]),
     "bare time": (["touch", "--duration", "20"], ["no unit", "20s"]),
-    "out is a file": (["touch", "--duration", "1s", "--out", "file"], ["cannot write into file", "File exists"]),
+    "out is a file": (["touch", "--duration", "1s", "--out", "file"], ["cannot write into file", "it is a file"]),
     "out is under a file": (["curve", "--out", "file/out"], ["cannot write into file/out", "Not a directory"]),
     "info on prose": (["info", "prose.txt"], ["prose.txt"]),
     "info on nothing": (["info", "nowhere"], ["nowhere", "no such file"]),

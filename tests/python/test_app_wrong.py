@@ -170,3 +170,15 @@ def test_streams_that_fail(line: str, status: int, words: str, unbuffered: str, 
     assert words in done.stderr
     assert done.stderr.count("\n") == bool(words)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_was_cut_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """HDF5 says it in the terms of its own superblock."""
+    h5py = pytest.importorskip("h5py")
+    whole, cut = tmp_path / "whole.h5", tmp_path / "cut.h5"
+    with h5py.File(whole, "w") as file:
+        file["heights"] = range(5000)
+    size = whole.stat().st_size
+    cut.write_bytes(whole.read_bytes()[:3000])
+    assert status_of(["info", str(cut)]) == 2
+    assert f"cut short: 3000 bytes of {size} are there" in capsys.readouterr().err

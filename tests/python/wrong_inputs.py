@@ -172,7 +172,7 @@ plan silicon_in_air --budget ten    | 'ten' | 1 .. 1e+09
 plan silicon_in_air --budget 2e9    | '2e9' | 1 .. 1e+09
 plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 1.8 .. 1e+09
 plan silicon_in_air --budget        | --budget: expected one argument
-plan silicon_in_air --quantity x    | 'x' | 'force', 'stiffness', 'radius', 'folds'
+plan silicon_in_air --quantity x    | 'x' | force, stiffness, radius, folds
 touch --minimum-margin -1           | '-1' | 0 .. 1e+06
 touch --minimum-margin nan          | 'nan' | 0 .. 1e+06
 touch --minimum-margin inf          | 'inf' | 0 .. 1e+06
@@ -202,7 +202,7 @@ touch --duration 100s --rate 1MHz   | 1e+08 steps | up to 6e+06
 touch --seed -1                     | '-1' | 0 .. 2^64 - 1
 touch --seed 1.5                    | '1.5' | whole number
 touch --seed 18446744073709551616   | '18446744073709551616' | 0 .. 2^64 - 1
-touch --at 2.5,3                    | '2.5' has no unit | 2.5um
+touch --at 2.5,3                    | --at: '2.5' has no unit | 2.5um
 touch --at -1um,0um                 | (-1 um, 0 um) | 0 .. 6 um
 touch --at 2.5um                    | 1 lengths instead of 2
 touch --at 1um,30um                 | (1 um, 30 um) is outside | 0 .. 6 um
@@ -212,10 +212,10 @@ touch --mode scan --at 0um,0um      | --at goes with
 touch --mode scan --line 0um,0um    | 2 lengths instead of 4
 touch --mode scan --line 1um,1um,1um,1um | length
 touch --mode scan --line 0um,0um,7um,0um | (7 um, 0 um) is outside | 0 .. 6 um
-touch --mode hover                  | 'hover' | 'point', 'scan'
-touch --surface moon                | 'moon' | 'grating', 'dots', 'flat'
-touch --control mind                | 'mind' | 'paper', 'impedance'
-touch --probe-model rigid           | 'rigid' | 'quasi-static', 'dynamic'
+touch --mode hover                  | 'hover' | point, scan
+touch --surface moon                | 'moon' | grating, dots, flat
+touch --control mind                | 'mind' | paper, impedance
+touch --probe-model rigid           | 'rigid' | quasi-static, dynamic
 touch --scene spring.toml           | spring_constant_N_per_m = 0 | 0.0001 .. 10000
 touch --scene gains.toml            | rate_Hz = 1e+300 | 10 .. 1e+06
 touch --scene gain.toml             | force_gain = nan | ..
@@ -238,7 +238,7 @@ margins --delay -1us --no-map       | --delay -1us | 0 s or more
 margins --path -1um --no-map        | -
 margins --path 1 --no-map           | no unit | 2.5um
 margins --force-range 5 --no-map    | --force-range 5 | -20nN,500nN
-margins --mode hover --no-map       | 'hover' | 'point', 'scan'
+margins --mode hover --no-map       | 'hover' | point, scan
 margins gains.toml --no-map         | rate_Hz = 1e+300 | 10 .. 1e+06
 margins spring.toml --no-map        | spring_constant_N_per_m = 0 | 0.0001 .. 10000
 margins '' --no-map                 | scene is empty
@@ -268,8 +268,8 @@ image prose.txt --pixel-size 10     | no unit | 2.5um
 image prose.txt --pixel-size 10s    | the unit 's' | nm
 info                                | required: FILE
 info a b                            | unrecognized arguments: b
-fit prose.txt --model sneddon       | 'sneddon' | 'hertz', 'dmt', 'jkr', 'maugis'
-fit prose.txt --branch up           | 'up' | 'retract', 'approach'
+fit prose.txt --model sneddon       | 'sneddon' | hertz, dmt, jkr, maugis
+fit prose.txt --branch up           | 'up' | retract, approach
 fit prose.txt --index -1            | '-1' | 0 .. 1000000000
 fit prose.txt --index x             | 'x' | whole number
 fit prose.txt --poisson-ratio 0.6   | '0.6' | -0.99 .. 0.5
@@ -277,7 +277,7 @@ fit prose.txt --poisson-ratio nan   | 'nan' | -0.99 .. 0.5
 fit prose.txt --known-to radius     | 'radius' | radius=10
 fit prose.txt --known-to weight=3   | 'weight' | sensitivity, spring_constant, radius
 fit prose.txt --known-to radius=x   | 'radius=x' | radius=10
-fit prose.txt --spring-constant 8   | no unit | N/m
+fit prose.txt --spring-constant 8   | --spring-constant: '8' has no unit | N/m
 fit prose.txt --spring-constant -8N/m | -8.0 N/m | 0.0001 .. 10000 N/m
 fit prose.txt --sensitivity 40nm    | the unit 'nm' | nm/V
 fit prose.txt --sensitivity 1m/V    | 1.0 m/V | 1e-10 .. 0.0001 m/V
@@ -303,7 +303,7 @@ fit ''                              | curve is empty
 fit                                 | required: CURVE
 map prose.txt --threads -1          | '-1' | 0 .. 1024
 map prose.txt --threads x           | 'x' | whole number
-map prose.txt --model x             | 'x' | 'hertz', 'dmt', 'jkr', 'maugis'
+map prose.txt --model x             | 'x' | hertz, dmt, jkr, maugis
 map                                 | required: FILE
 reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 19
 reproduce --figure -5               | --figure -5 | 5, 6, 9
@@ -318,11 +318,13 @@ tradeoff --out file                 | cannot write into file
 bench --out x.txt                   | --out x.txt | .json
 bench --out nowhere/x.json          | nowhere is not a folder
 doctor now                          | unrecognized arguments: now
+touch --mdoe scan                   | --mdoe | did you mean --mode?
+bench --jason                       | bench: error | did you mean --json?
 latency --rate 0.5Hz                | 0.5Hz | 1.1 Hz
 latency --out wake.txt               | wake.txt | .png
 rig check no.toml                    | no.toml | no such file
 rig check folder.toml                | folder.toml
-touhc                               | 'touhc' | 'touch'
+touhc                               | 'touhc' | did you mean touch?
 --versoin                           | required: COMMAND
 """
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import struct
 import tomllib
 import warnings
@@ -54,10 +55,12 @@ def toml_tables(path: str | PathLike[str]) -> dict[str, Any]:
     file = checked_path(path)
     size = file.stat().st_size
     if size > MAX_TOML_SIZE:
-        raise ReadError(f"{file}: {size >> 10} KiB; TOML files of up to {MAX_TOML_SIZE >> 10} KiB are read")
+        raise ReadError(f"{file}: {size >> 10} KiB; TOML files of up to {MAX_TOML_SIZE >> 10} KiB are read: is it one?")
     try:
         return tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise ReadError(f"{file} is not a TOML file: it is not text in UTF-8") from error
+    except tomllib.TOMLDecodeError as error:
         raise ReadError(f"{file} is not a TOML file: {error}") from error
     except ValueError as error:
         raise ReadError(f"{file}: a whole number of more digits than can be read") from error
@@ -100,6 +103,9 @@ def guarded(file: Path, reader: str) -> Iterator[None]:
         said = " ".join(str(error).split()) or type(error).__name__
         if isinstance(error, KeyError):  # which says no more than the key
             said = f"it lacks {said}"
+        cut = re.search(r"truncated file: eof = (\d+).* stored_eof = (\d+)", said)
+        if cut:  # HDF5's words for it
+            raise ReadError(f"{file}: cut short: {cut[1]} bytes of {cut[2]} are there", reader) from error
         raise ReadError(f"{file}: {reader} cannot read it: {said[:200]}", reader) from error
 
 

@@ -133,7 +133,7 @@ FORMATS: tuple[Format, ...] = (
     _refuses("Nanonis grid of spectra", ".3ds", "curves", _TEXT),
     _refuses("Omicron/Scienta MATRIX", ".mtrx", "curves", _TEXT, (0, b"ONTMATRX")),
     _refuses("WSxM curve", ".cur", "curves", _TEXT, (0, b"WSxM file copyright")),
-    _refuses("Gwyddion", ".gwy", "curves", _TEXT, (0, b"GWYP")),
+    _refuses("Gwyddion", ".gwy", "curves", f"for an image: nanotouch image; for a curve: {_TEXT}", (0, b"GWYP")),
     _refuses("Agilent/Keysight PicoView", ".mi", "curves", _TEXT, (0, b"fileType ")),
 )  # fmt: skip
 
