@@ -118,7 +118,7 @@ def test_a_recording_is_played(tmp_path: Path) -> None:
     assert low.min() == recording.tip_force[: len(recording) - 1].min()
     world = reel.world_of(recording.metadata, "touch", "recording")
     assert nt.Scene(**world["scene"]).plan().pull_off_force > 0.0
-    assert max(reel.surface_of(recording).size) > 0.0
+    assert max(reel.surface_of(recording)[0].size) > 0.0
 
 
 def test_a_scene_file_is_touched(tmp_path: Path) -> None:

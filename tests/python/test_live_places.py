@@ -181,3 +181,20 @@ def test_a_hand_moves_the_tip_and_feels_it(monkeypatch: pytest.MonkeyPatch) -> N
     assert host.session.state == "LATCHED"
     held.close()
     host.close()
+
+
+def test_a_sharp_place_that_would_yield_has_a_law_that_is_drawn() -> None:
+    """Under the largest load a silicon tip yields on a sharp hill: the law is drawn as far as it holds."""
+    host, seen = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True), Seen()
+    seen.hear(host.world())
+    host.close()
+    load = seen.load
+    sharp = {"radius": 2e-9}
+    scene = seen.scene.copy()
+    scene["tip.radius"] = sharp["radius"]
+    with pytest.raises(nt.Error, match="yield"):
+        scene.plan(rtol=0.01)
+    seen.hear({"tell": "clock", "speed": 1.0, "paused": False, "slowdown": 1.0, "recorded": False, "here": sharp})
+    assert float(seen.scene.tip.radius) == sharp["radius"]
+    assert float(seen.scene.range.maximum_load) < load == seen.load
+    assert seen.plan.pull_off_force > 0.0

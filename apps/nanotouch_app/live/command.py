@@ -5,6 +5,7 @@ keys in another. What was recorded can be looked at again."""
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -166,7 +167,12 @@ def _film(args: argparse.Namespace) -> int:
 
 
 def _play(path: Path, args: argparse.Namespace) -> int:
-    desk = Desk(surface_of(record.read(path)), dark=args.dark, recording=path)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        met, corner = surface_of(record.read(path))
+    for warning in caught:
+        print(f"note: {warning.message}")
+    desk = Desk(met, dark=args.dark, recording=path, corner=corner)
     try:
         desk.wait_ready()
         desk.process.wait()

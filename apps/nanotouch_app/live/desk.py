@@ -11,8 +11,9 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from nanotouch.errors import Error, missing
@@ -28,13 +29,16 @@ class Desk:
     """A window and the wires to it."""
 
     def __init__(
-        self, topography: Topography, dark: bool = False, recording: Path | None = None, hand: str = "none"
-    ) -> None:
+        self, topography: Topography, dark: bool = False, recording: Path | None = None, hand: str = "none",
+        corner: tuple[float, float] = (0.0, 0.0),
+    ) -> None:  # fmt: skip
         if importlib.util.find_spec("vtkmodules") is None:
             raise missing("vtk", "view")
         self.folder = Scratch()
         surface = self.folder.path / "surface.npz"
-        np.savez(surface, heights=topography.heights, pixel_size=np.asarray(topography.pixel_size))
+        np.savez(
+            surface, heights=topography.heights, pixel_size=np.asarray(topography.pixel_size), origin=np.asarray(corner)
+        )
         self.said = self.folder.path / "said.txt"
         options = ["--hand", hand, *(["--dark"] if dark else [])]
         options += [] if recording is None else ["--recording", str(recording)]
@@ -75,7 +79,7 @@ class Desk:
             raise Error(f"the window did not open within {START_TIME:g} s") from None
         if first["do"] != "ready":
             status = self.process.wait(5.0)
-            said = self.said.read_text(errors="replace").strip().splitlines() or [f"it died of {_cause(status)}"]
+            said = self._said() or [f"it died of {_cause(status)}"]
             self.close()
             raise Error(f"the window could not be opened: {said[-1]}")
         return ""
@@ -91,6 +95,10 @@ class Desk:
         serve(self, host, first)
         self._check_end()
 
+    def _said(self) -> list[str]:
+        """Its lines, of whatever went wrong."""
+        return self.said.read_text(errors="replace").strip().splitlines()
+
     def _check_end(self) -> None:
         """An error where the window has not left by itself."""
         try:
@@ -98,25 +106,32 @@ class Desk:
         except subprocess.TimeoutExpired:  # it still says goodbye
             return
         if status:
+            said = "".join(f" ({line})" for line in self._said()[-1:])
             raise Error(
-                f"the window died of {_cause(status)}; the session has ended in order, and what was recorded is kept"
+                f"the window died of {_cause(status)}{said}; the session has ended in order, and what was recorded is "
+                "kept"
             )
 
     def close(self) -> None:
         """End the window."""
+        wires = [wire for wire in (self.process.stdin, self.process.stdout) if wire is not None]
         if self.process.poll() is None:
-            if self.process.stdin is not None:
-                self.process.stdin.close()
+            _let_go(wires[0])
             try:
                 self.process.wait(3.0)
             except subprocess.TimeoutExpired:
                 self.process.kill()
                 self.process.wait()
         self.listener.join(1.0)
-        for wire in (self.process.stdin, self.process.stdout):
-            if wire is not None:
-                wire.close()
+        for wire in wires:
+            _let_go(wire)
         self.folder.close()
+
+
+def _let_go(wire: IO[str]) -> None:
+    """Close it, whether or not somebody still hears what was said last."""
+    with suppress(BrokenPipeError):
+        wire.close()
 
 
 def _cause(status: int) -> str:

@@ -43,7 +43,7 @@ def scene_of(result: FitResult) -> tuple[nt.Scene, str]:
     scene = known.to_scene()
     scene["range.maximum_load"] = max(float(scene.range.maximum_load), ABOVE * pull)
     seen = f"pull-off {in_words(pull, 'N', 3)}" if pull else "no pull-off"
-    return scene, f"Your curve: {seen}, {', '.join(assumed)}"
+    return scene, f"Your curve: {seen}, {', '.join(assumed)}".replace("^2", "²")
 
 
 def _work(radius: float, values: dict[str, float], pull: float) -> float:

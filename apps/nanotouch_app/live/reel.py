@@ -90,13 +90,16 @@ class Reel:
                 "recorded": False}  # fmt: skip
 
 
-def surface_of(recording: Recording) -> nt.Topography:
-    """What is known of the surface: the heights that the tip has met, along x; a flat where it met none."""
+def surface_of(recording: Recording) -> tuple[nt.Topography, tuple[float, float]]:
+    """What is known of the surface, around the path: the heights that the tip has met, along x; a flat where it met
+    none. And its lower left corner [m]."""
     x, y = (recording.columns[name] if name in recording else np.zeros(len(recording)) for name in ("x", "y"))
     height = recording.columns.get("surface_height", np.zeros(len(recording)))
-    size = max(float(x.max()), float(y.max()), 25.0 * float(recording.metadata["scene"]["tip"]["radius"])) * 1.2
-    line = np.interp((np.arange(64) + 0.5) * size / 64, *_sorted(x, height))
-    return nt.Topography(heights=np.tile(line, (64, 1)), pixel_size=(size / 64, size / 64), name="what was met")
+    size = 1.2 * max(float(np.ptp(x)), float(np.ptp(y)), 25.0 * float(recording.metadata["scene"]["tip"]["radius"]))
+    left, low = (0.5 * float(along.min() + along.max() - size) for along in (x, y))
+    line = np.interp(left + (np.arange(64) + 0.5) * size / 64, *_sorted(x, height))
+    met = nt.Topography(heights=np.tile(line, (64, 1)), pixel_size=(size / 64, size / 64), name="what was met")
+    return met, (left, low)
 
 
 def _sorted(x: Any, height: Any) -> tuple[Any, Any]:

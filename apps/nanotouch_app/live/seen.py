@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from contextlib import suppress
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
 from nanotouch import view
+from nanotouch.errors import Error
 from numpy.typing import NDArray
 
 from nanotouch_app.live.energy import Balance
@@ -29,6 +31,7 @@ READINGS = 0.2  # numbers in words are renewed this often [s]
 
 PLACE = {"radius": "tip.radius", "youngs_modulus": "sample.youngs_modulus",
          "work_of_adhesion": "adhesion.work_of_adhesion"}  # fmt: skip
+LOADS = (1.0, 0.5, 0.25, 0.1, 0.03)  # of the largest load, for a place
 LAXER = 1.5  # than the session's plan: its surface, and each place, may err by a little more than a flat
 DIFFERS, REPLACED = 0.03, 0.5  # a place is another one from this relative difference on; looked at so often [s]
 
@@ -105,14 +108,18 @@ class Seen:
         for name, field in PLACE.items():
             if name in here and (name != "work_of_adhesion" or self.world["scene"]["adhesion"]["given"] == name):
                 scene[field] = here[name]
-        self._plan_for(scene)
+        for share in LOADS:  # a sharp place would yield under the largest load: its law is drawn as far as it holds
+            scene["range.maximum_load"] = share * self.load
+            with suppress(Error):
+                self._plan_for(scene)
+                break
 
     def _plan_for(self, scene: nt.Scene) -> None:
+        self.plan = scene.plan(rtol=max(float(self.world["rtol"]), LAXER * float(self.world["bound"])))
         self.scene = scene
-        self.plan = self.scene.plan(rtol=max(float(self.world["rtol"]), LAXER * float(self.world["bound"])))
         facts = self.plan.explain()
         self.facts = facts
-        self.load = float(self.scene.range.maximum_load)
+        self.load = float(self.world["scene"]["range"]["maximum_load"])
         self.depth = float(facts["largest_indentation"])
         ends = [float(facts[key]) for key in ("release_gap", "capture_gap")]
         self.reach = max(3.0 * max(end for end in ends if np.isfinite(end)), 0.4 * self.depth, 3e-9)
