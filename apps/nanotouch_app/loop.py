@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import nanotouch as nt
 from nanotouch import margins, record
@@ -12,6 +12,9 @@ from nanotouch.margins import ForceRange
 from nanotouch.session import CONTROLS, choose_control
 
 from nanotouch_app.quantity import parse_quantity
+
+if TYPE_CHECKING:
+    from nanotouch.options import Gains
 
 
 def add_options(group: Any) -> None:
@@ -50,7 +53,7 @@ def scale_force(text: str | None, plan: nt.Plan, rig: nt.Rig, settings: nt.Setti
         settings.gains.alpha_f = margins.heuristic_alpha_f(rig, _force_range(text, plan, settings))
 
 
-def felt(tables: dict[str, Any], text: str | None, scene: nt.Scene, rig: nt.Rig) -> dict[str, float]:
+def felt(tables: dict[str, Any], text: str | None, scene: nt.Scene, rig: nt.Rig) -> Gains:
     """The gains of a first touch, whose pull-off is clearly felt; none if file or option say how it is scaled."""
     if text is not None or any(key.startswith("alpha_f_N") for key in tables.get("gains", {})):
         return {}

@@ -147,7 +147,8 @@ def _of_option(message: str, args: argparse.Namespace) -> str:
 def _parsed(arguments: list[str]) -> argparse.Namespace:
     """The arguments; for a shell that asks what may come next, the answer instead."""
     asked = os.environ.get("COMP_LINE", "").split()[1:2] if "_ARGCOMPLETE" in os.environ else arguments[:1]
-    parser = build_parser(asked if asked and asked[0] in COMMANDS else COMMANDS)
+    needed = () if asked == ["--version"] else asked if asked and asked[0] in COMMANDS else COMMANDS
+    parser = build_parser(needed)
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             importlib.import_module("argcomplete").autocomplete(parser)

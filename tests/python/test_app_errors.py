@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.extras import ADDS, advice
@@ -183,3 +184,13 @@ def test_reader_of_the_output_goes_away(tmp_path: Path) -> None:
         command, shell=True, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
     )
     assert done.stderr == ""
+
+
+def test_the_version_loads_no_command() -> None:
+    code = "from nanotouch_app.main import main\ntry: main(['--version'])\nexcept SystemExit: pass\n"
+    code += "import sys; print(*sorted(name for name in sys.modules if name.startswith('nanotouch_app.')))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    version, loaded = done.stdout.splitlines()
+    assert version == f"nanotouch {nt.__version__}"
+    assert "nanotouch_app.main" in loaded.split()
+    assert not {f"nanotouch_app.{command}" for command in COMMANDS} & set(loaded.split())

@@ -10,6 +10,7 @@ import numpy as np
 from nanotouch import presets
 from nanotouch.margins import CLEARLY_FELT
 from nanotouch.operator import Input
+from nanotouch.session import Control
 
 from nanotouch_app.reproduce import paper, touching
 from nanotouch_app.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
@@ -47,7 +48,7 @@ WATER = 0.0728
 
 
 def session(
-    alpha_p: float, rate: float, control: str, minimum_margin: float = 1.5, alpha_f: float = ALPHA_F.value,
+    alpha_p: float, rate: float, control: Control, minimum_margin: float = 1.5, alpha_f: float = ALPHA_F.value,
     height: float = HEIGHT.value,
 ) -> nt.Session:  # fmt: skip
     """The paper's silicon under the given scales, rate and law, from a height [m]."""

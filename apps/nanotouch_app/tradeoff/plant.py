@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from nanotouch import Input, Plan, Rig, Session
-from nanotouch.session import ProbeModel, settings_for_path
+from nanotouch.session import Options, ProbeModel, settings_for_path
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
@@ -75,11 +75,12 @@ class Touch(NamedTuple):
 def touch(rate: float, model: ProbeModel, substep: float, duration: float, rtol: float | None = None) -> Touch:
     """One touch without thermal motion: the same every time."""
     rig = Rig(probe={"temperature": 0.0})
-    demand = {} if rtol is None else {"rtol": rtol}
-    session = Session(
-        rig=rig, settings=settings_for_path(rig, clearance=CLEARANCE), rate=rate, clearance=CLEARANCE, preflight=False,
-        probe_model=model, **({} if model == "quasi-static" else {"substep": substep}), **demand,
-    )  # fmt: skip
+    options: Options = {"rate": rate, "clearance": CLEARANCE, "preflight": False, "probe_model": model}
+    if model != "quasi-static":
+        options["substep"] = substep
+    if rtol is not None:
+        options["rtol"] = rtol
+    session = Session(rig=rig, settings=settings_for_path(rig, clearance=CLEARANCE), **options)
     push = Input(1.0, *session.path[0], 0.1 * duration)
     start = time.process_time()
     columns = session.advance(duration, push)

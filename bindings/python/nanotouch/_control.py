@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal, get_args
 
 from nanotouch import _core
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Settings
 
-CONTROLS = ("default", "paper", "impedance")
+Control = Literal["default", "paper", "impedance"]
+CONTROLS: tuple[Control, ...] = get_args(Control)
 #: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
 Law = Callable[[_core.Signals], tuple[float, float]]
 

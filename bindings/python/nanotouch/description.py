@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -70,13 +70,15 @@ class Section:
             raise AttributeError(f"{self._name} has no field {key!r}; it has {', '.join(self.__dir__())}")
         return name
 
-    def __getattr__(self, key: str) -> Any:
-        if key.startswith("_"):  # copying and pickling ask before there is an owner
-            raise AttributeError(key)
-        return self._owner.plain(self._field(key))
+    if not TYPE_CHECKING:  # type checkers know the fields from _fields.pyi, and refuse others
 
-    def __setattr__(self, key: str, value: float | str) -> None:
-        self._owner[self._field(key)] = value
+        def __getattr__(self, key: str) -> float | str:
+            if key.startswith("_"):  # copying and pickling ask before there is an owner
+                raise AttributeError(key)
+            return self._owner.plain(self._field(key))
+
+        def __setattr__(self, key: str, value: float | str) -> None:
+            self._owner[self._field(key)] = value
 
     def __reduce__(self) -> Any:
         return Section, (self._owner, self._name)
@@ -104,7 +106,7 @@ class Description(Mapping[str, float]):
     core: Any
     _instead: str | None
 
-    def __init__(self, **sections: Mapping[str, float | str]) -> None:
+    def __init__(self, **sections: object) -> None:
         self._take(self._core_type())
         for section, values in sections.items():
             if section not in self.sections():
@@ -235,14 +237,17 @@ class Description(Mapping[str, float]):
         field.check(number, name, number)
         self.core.set(name, number)
 
-    def __getattr__(self, name: str) -> Section:
-        if name in type(self).sections():
-            return Section(self, name)
-        raise AttributeError(f"{type(self).__name__} has no section {name!r}; it has {', '.join(self.sections())}")
+    if not TYPE_CHECKING:  # type checkers know the sections from _fields.pyi, and refuse others
 
-    def __setattr__(self, name: str, value: object) -> None:
-        first = next((field for field in self.fields if field.startswith(f"{name}.")), next(iter(self.fields)))
-        raise AttributeError(f"{type(self).__name__}: set a field of a section, such as {first}, not {name!r} itself")
+        def __getattr__(self, name: str) -> Section:
+            if name in type(self).sections():
+                return Section(self, name)
+            raise AttributeError(f"{type(self).__name__} has no section {name!r}; it has {', '.join(self.sections())}")
+
+        def __setattr__(self, name: str, value: object) -> None:
+            first = next((field for field in self.fields if field.startswith(f"{name}.")), next(iter(self.fields)))
+            said = f"{type(self).__name__}: set a field of a section, such as {first}, not {name!r} itself"
+            raise AttributeError(said)
 
     def __delattr__(self, name: str) -> None:
         raise AttributeError(f"{type(self).__name__}: {name!r} cannot be deleted")

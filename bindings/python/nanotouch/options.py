@@ -6,11 +6,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from operator import index
-from typing import Any, Literal, NamedTuple, TypedDict, get_args
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypedDict, get_args
 
 from nanotouch import _core, margins
 from nanotouch._arrays import check_between
-from nanotouch._control import Law
+from nanotouch._control import Control, Law
 from nanotouch._plant import ProbeModel
 from nanotouch._words import told
 from nanotouch.errors import InvalidValue
@@ -19,6 +19,11 @@ from nanotouch.hal import Master, SharedObject, Slave
 from nanotouch.margins import ForceRange
 from nanotouch.rig_file import Converters
 from nanotouch.scene import Rig, Settings
+
+if TYPE_CHECKING:
+    from nanotouch._fields import SettingsGainsValues
+
+    Gains = SettingsGainsValues
 
 INDENTATION_RANGE = 0.3e-6  # delta_max of Eq. 21 [m]
 ATTRACTION_RANGE = 0.6e-6  # the paper's largest attraction [N]
@@ -31,14 +36,14 @@ PACES: tuple[Pace, ...] = get_args(Pace)
 class Options(TypedDict, total=False):
     """What a session may be given besides scene, rig, surface, mode, path and settings."""
 
-    rate: float
+    rate: float | None
     """of the force loop [Hz]; by default that of the settings, 10 kHz"""
-    control: str | Law
+    control: Control | Law
     """the control law (docs/control.md): "default", "paper", "impedance"; or one's own, a function of the signals of a
     period (:class:`nanotouch._core.Signals`) that returns the motor force [N] and where the stage shall be [m], under
     the same supervisor and limits. It is tried before the session opens, to know its margins (``minimum_margin=0`` arms
     without, and leaves it alone). A rig without a gauge has "impedance" as its default"""
-    gains: Mapping[str, float]
+    gains: Gains
     """fields of ``settings.gains`` in SI that differ, such as ``{"force_gain": 10}``"""
     delay: float
     """of the link between hand and probe, beside the rig's own [s]"""
@@ -142,9 +147,9 @@ def check_options(options: Mapping[str, Any]) -> None:
             raise InvalidValue(f"{name} = {told(options[name])}: valid are True and False")
 
 
-def _choose(settings: Settings, rate: float | None, gains: Mapping[str, float] | None, delay: float) -> None:
+def _choose(settings: Settings, rate: float | None, gains: Gains | None, delay: float) -> None:
     """What was given beside the settings goes into them."""
-    for name, value in (gains or {}).items():
+    for name, value in dict[str, Any](gains or {}).items():
         if f"gains.{name}" not in settings.fields:
             raise InvalidValue(f"gains has no field {name!r}; it has {', '.join(settings.keys_of('gains'))}")
         settings[f"gains.{name}"] = value

@@ -197,8 +197,11 @@ def paper_mica() -> tuple[Scene, Rig]:
 
 def paper_polyester() -> tuple[Scene, Rig]:
     """Silicon tip on polyester (2 GPa) in humid air: Fig. 11."""
-    sample = {"youngs_modulus": 2e9, "poisson_ratio": 0.4}  # Poisson ratio: handbook
-    return Scene(sample=sample, range={"maximum_load": PAPER_LOAD}), Rig()
+    scene = Scene(
+        sample={"youngs_modulus": 2e9, "poisson_ratio": 0.4},  # Poisson ratio: handbook
+        range={"maximum_load": PAPER_LOAD},
+    )
+    return scene, Rig()
 
 
 def paper_silicone_rubber() -> tuple[Scene, Rig]:

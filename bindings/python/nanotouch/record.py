@@ -35,13 +35,16 @@ from nanotouch.columns import checked
 from nanotouch.errors import Error, InvalidValue, ReadError, require
 
 if TYPE_CHECKING:  # a recording is read without a reader of curves
+    from nanotouch._fields import Columns
     from nanotouch.curves import ForceCurve
+else:
+    Columns = object
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 HDF5_STORAGE = {"chunks": True, "compression": "gzip", "shuffle": True, "fletcher32": True}
 
 
-class Recording:
+class Recording(Columns):
     """Named columns of equal length, and what they were recorded with.
 
     Parameters
@@ -62,12 +65,14 @@ class Recording:
         self.columns = checked(columns)
         self.metadata = dict(metadata or {})
 
-    def __getattr__(self, name: str) -> NDArray[Any]:
-        columns = self.__dict__.get("columns", {})
-        if name in columns:
-            return columns[name]  # type: ignore[no-any-return]
-        recorded = ", ".join(columns)
-        raise AttributeError(f"the recording has no column {name!r}; recorded: {recorded}")
+    if not TYPE_CHECKING:  # type checkers know the columns from _fields.pyi, and refuse others
+
+        def __getattr__(self, name: str) -> NDArray[Any]:
+            columns = self.__dict__.get("columns", {})
+            if name in columns:
+                return columns[name]
+            recorded = ", ".join(columns)
+            raise AttributeError(f"the recording has no column {name!r}; recorded: {recorded}")
 
     def __len__(self) -> int:
         return len(self.columns["time"])

@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, Unpack
 
 from nanotouch import _core, materials
 from nanotouch._custom import CustomTerm, find
@@ -17,17 +17,22 @@ from nanotouch._custom import register as register
 from nanotouch._custom import registered as registered
 from nanotouch._files import toml_tables
 from nanotouch._words import told
-from nanotouch.description import Description, as_table
+from nanotouch.description import as_table
 from nanotouch.errors import InvalidValue
 
 if TYPE_CHECKING:
+    from nanotouch._fields import DemandFields, RigFields, SceneFields, SceneSections, SettingsFields
     from nanotouch.plan import Plan
     from nanotouch.surface import Surface
+else:
+    from nanotouch.description import Description
+
+    SceneFields = DemandFields = RigFields = SettingsFields = Description
 
 Quantity = Literal["force", "stiffness", "radius", "folds"]
 
 
-class Scene(Description, core_type=_core.Scene):
+class Scene(SceneFields, core_type=_core.Scene):
     """Tip, sample, medium and adhesion; by default the paper's silicon tip of 20 nm on silicon in humid air.
 
     ``terms`` are laws of one's own, by the name of :func:`register` and with their parameters:
@@ -37,7 +42,9 @@ class Scene(Description, core_type=_core.Scene):
     beside = ("terms", "surface")  # the second one is read by nanotouch.surface_file
     _terms: dict[str, tuple[CustomTerm, dict[str, float | str]]]
 
-    def __init__(self, *, terms: Mapping[str, Mapping[str, Any]] | None = None, **sections: Any) -> None:
+    def __init__(
+        self, *, terms: Mapping[str, Mapping[str, Any]] | None = None, **sections: Unpack[SceneSections]
+    ) -> None:
         super().__init__(**sections)
         for name, values in (terms or {}).items():
             self.add_term(name, **values)
@@ -198,7 +205,7 @@ class Scene(Description, core_type=_core.Scene):
         return Plan.make(self, demand, probe, surface)
 
 
-class Demand(Description, core_type=_core.Demand):
+class Demand(DemandFields, core_type=_core.Demand):
     """How true the felt force must be and what it may cost; by default 1 % of the force."""
 
     @classmethod
@@ -207,7 +214,7 @@ class Demand(Description, core_type=_core.Demand):
         return cls.from_tables(read_tables(path))
 
 
-class Rig(Description, core_type=_core.Rig):
+class Rig(RigFields, core_type=_core.Rig):
     """Probe, stage and master. The defaults are the paper's rig (k_c = 8 N/m)."""
 
     @classmethod
@@ -216,7 +223,7 @@ class Rig(Description, core_type=_core.Rig):
         return cls.from_tables(read_tables(path))
 
 
-class Settings(Description, core_type=_core.Settings):
+class Settings(SettingsFields, core_type=_core.Settings):
     """Gains and limits of the loop. The defaults follow a rig: :meth:`for_rig`."""
 
     @classmethod
@@ -241,7 +248,7 @@ class Settings(Description, core_type=_core.Settings):
         return made
 
 
-def _restore(sections: dict[str, dict[str, Any]]) -> Scene:
+def _restore(sections: dict[str, Any]) -> Scene:
     return Scene(**sections)
 
 

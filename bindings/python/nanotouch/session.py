@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch import _core, _live, _told, margins
-from nanotouch._control import CONTROLS, Law, choose_control
+from nanotouch._control import CONTROLS, Control, Law, choose_control
 from nanotouch._open import TOLD, Frozen, Runs, as_now
 from nanotouch._path import MODES, Mode, checked_path, core_mode
 from nanotouch._plant import ProbeModel, plant_options
@@ -32,8 +32,8 @@ from nanotouch.supervisor import REASONS, Guarantee
 from nanotouch.surface import Surface
 
 __all__ = [
-    "CONTROLS", "MODES", "REASONS", "Calm", "Columns", "Law", "Margins", "Mode", "Options", "Pace", "ProbeModel",
-    "Progress", "Session", "choose_control", "settings_for_path",
+    "CONTROLS", "MODES", "REASONS", "Calm", "Columns", "Control", "Law", "Margins", "Mode", "Options", "Pace",
+    "ProbeModel", "Progress", "Session", "choose_control", "settings_for_path",
 ]  # fmt: skip
 
 BLOCK_TICKS = 500  # rows that a killed process may lose

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import importlib
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from numpy.typing import ArrayLike
 
@@ -137,7 +137,12 @@ def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> La
     return as_law(_core.punch_eval(effective_modulus, radius, as_floats(indentation, "indentation")))
 
 
-def __getattr__(name: str) -> Any:
-    if name in ("bank", "reduced"):
-        return importlib.import_module(f"nanotouch.contact.{name}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if TYPE_CHECKING:
+    from nanotouch.contact import bank as bank
+    from nanotouch.contact import reduced as reduced
+else:
+
+    def __getattr__(name: str) -> Any:
+        if name in ("bank", "reduced"):
+            return importlib.import_module(f"nanotouch.contact.{name}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
