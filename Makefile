@@ -12,7 +12,7 @@ help:  ## what there is to make
 demo:  ## touch the built-in grating, or a file: make demo IMAGE=path OUT=folder
 	@tools/setup.sh demo
 	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") $(if $(OUT),--out "$(OUT)")
-	@echo 'touch it with your own hand: $(VENV)/nanotouch live $(if $(IMAGE),"$(IMAGE)")'
+	@$(VENV)/python -m nanotouch_app.live.offer $(if $(IMAGE),"$(IMAGE)")
 
 docs:  ## the site, with its gallery and the examples of its pages run; warnings are errors; build/docs/index.html
 	@tools/setup.sh docs

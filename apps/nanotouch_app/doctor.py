@@ -10,6 +10,7 @@ import os
 import platform
 import shutil
 import sys
+import warnings
 from importlib import metadata
 from typing import Any
 
@@ -88,7 +89,9 @@ def _extra(name: str, packages: dict[str, str]) -> tuple[str, str, str]:
 def _broken(module: str) -> str:
     """Why the module does not load; empty if it does."""
     try:
-        importlib.import_module(module)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what a module says of itself
+            importlib.import_module(module)
     except Exception as error:  # whatever a damaged installation raises
         return f"{module} ({type(error).__name__}: {error})"
     return ""
@@ -172,7 +175,7 @@ def _pace() -> tuple[str, str, str]:
     """A session at the pace of a clock needs threads and shared memory."""
     if sys.platform != "linux":
         return "wall pace", MISSING, "threads and frames in shared memory need Linux"
-    return "wall pace", OK, "a simulated slave; a real one runs at hard pace in a program of your own (docs/session.md)"
+    return "wall pace", OK, "a simulated slave; a real one runs at hard pace in a program of your own (docs/live.md)"
 
 
 def _hands() -> list[tuple[str, str, str]]:

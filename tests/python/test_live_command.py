@@ -12,6 +12,7 @@ import pytest
 
 pytest.importorskip("vtkmodules")
 from nanotouch_app.live import desk as desks
+from nanotouch_app.live import offer
 from nanotouch_app.main import main
 
 
@@ -91,3 +92,36 @@ def test_a_window_that_is_killed_while_it_opens_says_by_what(monkeypatch: pytest
     desk = desks.Desk(nt.surface.grating())
     with pytest.raises(nt.Error, match="could not be opened: it died of SIGKILL"):
         desk.wait_ready()
+
+
+@pytest.mark.parametrize(
+    ("terminal", "display", "told"),
+    [
+        (False, "", "not at a terminal"),
+        (True, "no display: DISPLAY is not set", "no display: DISPLAY is not set"),
+        (True, "", "now with your own hand"),
+    ],
+)
+def test_the_demo_ends_in_the_live_view_where_somebody_is_there(
+    terminal: bool, display: str, told: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("vtkmodules")
+    begun: list[list[str]] = []
+
+    def check() -> None:
+        if display:
+            raise nt.Error(display)
+
+    def command(arguments: list[str]) -> int:
+        begun.append(arguments)
+        return 0
+
+    monkeypatch.setattr("sys.stdin.isatty", lambda: terminal)
+    monkeypatch.setattr("sys.stdout.isatty", lambda: terminal)
+    monkeypatch.setattr("nanotouch_app.live.display.check", check)
+    monkeypatch.setattr("nanotouch_app.main.main", command)
+    assert offer.main(["my image.gwy"]) == 0
+    said = capsys.readouterr().out
+    assert told in said
+    assert 'nanotouch live "my image.gwy"' in said
+    assert begun == ([["live", "my image.gwy"]] if terminal and not display else [])
