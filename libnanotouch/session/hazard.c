@@ -26,6 +26,7 @@
 #define BISECTIONS 60
 #define BOLTZMANN 1.380649e-23
 #define THERMAL 18.0 /* times k_B T: 6 sigma of an amplitude */
+#define RADII 5      /* of places, from the sharpest to the bluntest */
 
 /* Sample and lever. */
 typedef struct well {
@@ -36,6 +37,7 @@ typedef struct well {
     double stage_rate; /* w_n of the stage [rad/s] */
     double base;       /* z_b [m] */
     double outside;    /* gap from which the tip falls [m] */
+    double taken;      /* what adhesion dissipates when it takes hold [J] */
 } well;
 
 /* On the way in. */
@@ -44,7 +46,7 @@ static nt_law_value law_at(const well *w, double gap)
     const nt_interaction_state never = {0};
     nt_law_value law = nt_interaction_eval_gap(w->plan, &never, &w->place, gap);
     if (gap <= w->plan->capture_gap && w->outside > w->plan->capture_gap)
-        law.U += w->plan->capture_energy;
+        law.U += w->taken;
     return law;
 }
 
@@ -54,10 +56,10 @@ static double potential(const well *w, double gap)
     return law_at(w, gap).U + 0.5 * w->spring * stretch * stretch;
 }
 
-/* A place of a modulus and the largest work of adhesion, of a surface with properties. */
-static nt_place place_of(const nt_plan *plan, int stiffest)
+/* A place of a radius, a modulus and the largest work of adhesion, of a surface that has them. */
+static nt_place place_of(const nt_plan *plan, double radius, int stiffest)
 {
-    nt_place place = {.radius = {.radius = plan->contact.radius}};
+    nt_place place = {.radius = {.radius = radius}};
     if (!plan->properties)
         return place;
     const nt_surface *moduli = &plan->properties->youngs_modulus;
@@ -70,7 +72,7 @@ static nt_place place_of(const nt_plan *plan, int stiffest)
  * threshold, because a reading may be off by all of it [m]. */
 static double unseen_indentation(const nt_plan *plan, double free_force)
 {
-    const nt_place place = place_of(plan, 0);
+    const nt_place place = place_of(plan, plan->contact.radius, 0);
     const nt_interaction_state attached = {.attached = 1};
     double shallow = 0.0, deep = DEEPEST;
     for (int i = 0; i < BISECTIONS; ++i) {
@@ -196,33 +198,51 @@ static double stiffened(const well *w, double force, double stiffness)
     return sqrt(fmax(1.0, (w->spring + law_at(w, rest).k) / (w->spring + stiffness)));
 }
 
-static void add_snap_in(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_guarantee *still)
+/* U falls by this where adhesion takes hold [J]. */
+static double taken_at(const nt_plan *plan, const nt_place *place)
+{
+    const nt_interaction_state never = {0};
+    const double inside = plan->capture_gap, outside = nextafter(inside, HUGE_VAL);
+    return fmax(0.0, nt_interaction_eval_gap(plan, &never, place, outside).U -
+                         nt_interaction_eval_gap(plan, &never, place, inside).U);
+}
+
+static void add_snap_in(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_guarantee *still,
+                        double radius)
 {
     const nt_probe *probe = &rig->probe;
     well w = {.plan = plan,
-              .place = place_of(plan, 1),
+              .place = place_of(plan, radius, 1),
               .spring = probe->spring_constant / cos(probe->tilt),
               .rate = 2.0 * NT_PI * probe->resonance,
               .stage_rate = 2.0 * NT_PI * rig->stage.resonance,
               .outside = HUGE_VAL};
+    w.taken = taken_at(plan, &w.place);
     const double forces[] = {0.0, still->force}, thermal = THERMAL * BOLTZMANN * probe->temperature;
     double stiffness, found[2], depth;
     const double energy = energy_of_jump(&w, probe, still->speed, &stiffness);
-    const double blunter = plan->pull_off_force > 0.0 ? plan->largest_pull_off_force / plan->pull_off_force : 1.0;
     for (int i = 0; i < 2; ++i) {
         const double swing = sqrt(energy * stiffened(&w, forces[i], stiffness)) + sqrt(thermal); /* in step */
-        found[i] = blunter * peak_over(&w, forces[i], swing * swing, &depth);
-        hazard->snap_in_depth = fmax(hazard->snap_in_depth, blunter * depth);
+        found[i] = peak_over(&w, forces[i], swing * swing, &depth);
+        hazard->snap_in_depth = fmax(hazard->snap_in_depth, depth);
     }
     hazard->arrival = fmax(hazard->arrival, found[0]);
     hazard->snap_in = fmax(hazard->snap_in, found[1]);
-    hazard->thermal = fmax(hazard->thermal, blunter * peak_over(&w, still->force, thermal, &depth));
+    hazard->thermal = fmax(hazard->thermal, peak_over(&w, still->force, thermal, &depth));
+}
+
+/* At places from the sharpest to the bluntest: what a jump brings grows with the radius, but not as it. */
+static void add_places(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_guarantee *still)
+{
+    const double sharpest = plan->least.radius, blunter = plan->most.radius / sharpest;
+    for (int i = 0; i < (blunter > 1.0 ? RADII : 1); ++i)
+        add_snap_in(hazard, plan, rig, still, sharpest * pow(blunter, i / (RADII - 1.0)));
 }
 
 /* How far a force presses where the sample is softest; not known where each place has a radius of its own [m]. */
 static double deepest_under(const nt_plan *plan, double force)
 {
-    const well soft = {.plan = plan, .place = place_of(plan, 0)};
+    const well soft = {.plan = plan, .place = place_of(plan, plan->contact.radius, 0)};
     return plan->radii ? HUGE_VAL : -gap_of_force(&soft, force, 0.0);
 }
 
@@ -240,7 +260,7 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
     for (int side = -1; side <= 1; side += 2) { /* k_c as it may be */
         nt_rig real = *rig;
         real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
-        add_snap_in(&hazard, plan, &real, &still);
+        add_places(&hazard, plan, &real, &still);
     }
     hazard.deepest = deepest_under(plan, still.force + fmax(hazard.snap_in, hazard.pull_off_force));
     return hazard;
