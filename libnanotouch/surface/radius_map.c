@@ -41,7 +41,7 @@ static nt_status inputs_check(const nt_surface *dilated, double tip_radius, cons
 
 nt_radius_limits nt_radius_limits_defaults(void)
 {
-    return (nt_radius_limits){.minimum = 0.1, .maximum = 10.0};
+    return (nt_radius_limits){.minimum = 0.1, .maximum = 3.0};
 }
 
 nt_status nt_radius_map_init(nt_radius_map *map, const nt_surface *dilated, double tip_radius,

@@ -100,7 +100,7 @@ static void bounds_are_kept_and_counted(void **state)
     for (int b = 0; b < 3; b++) {
         nt_surface surface;
         const nt_radius_map map = map_of(bodies[b], &surface);
-        assert_true(map.minimum >= 0.1 * R && map.maximum <= 10.0 * R);
+        assert_true(map.minimum >= 0.1 * R && map.maximum <= 3.0 * R);
         for (int k = 0; k < 20000; k++) {
             const double x = (1.2 * nt_random_uniform(&random) - 0.1) * NX * DX;
             const nt_radius_value at = nt_radius_map_eval(&map, x, NY * DY * nt_random_uniform(&random));

@@ -170,7 +170,7 @@ class RadiusMap:
         Limits of the ratio of effective to tip radius: an edge that is sharper than a pixel has none.
     """
 
-    def __init__(self, surface: Surface, minimum: float = 0.1, maximum: float = 10.0) -> None:
+    def __init__(self, surface: Surface, minimum: float = 0.1, maximum: float = 3.0) -> None:
         if surface.tip_radius is None:
             raise InvalidValue("a radius map needs a surface that was dilated by a tip: give it a tip_radius [m]")
         self.core = _core.RadiusMap(surface.core, surface.tip_radius, minimum, maximum)

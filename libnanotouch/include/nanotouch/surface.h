@@ -76,12 +76,12 @@ NT_API nt_status nt_surface_dilate(const nt_height_map *map, const nt_tip_shape 
  * as a flat touches a sphere of the radius R sqrt((1 - R k1)(1 - R k2)): smaller on a bump, larger in a hollow. */
 
 /* Kept between these ratios of effective to tip radius: an edge that is sharper than a pixel has none, and a hollow as
- * narrow as the tip is no paraboloid. */
+ * narrow as the tip is no paraboloid. A ball rests on three flanks at most, none of which pulls more than a flat. */
 typedef struct nt_radius_limits {
     double minimum; /* 1e-3 .. 1 [-] */
     double maximum; /* 1 .. 1e3 [-] */
 } nt_radius_limits;
-/* 0.1 and 10. */
+/* 0.1 and 3. */
 NT_API nt_radius_limits nt_radius_limits_defaults(void);
 
 /* The effective radius over a map. Immutable after nt_radius_map_init; the coefficients stay the caller's. */
