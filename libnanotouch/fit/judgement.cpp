@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // White noise has the same standard deviation from point to point as about its mean (von Neumann 1941); what a wrong
-// model leaves over is smooth, and is larger about the mean.
+// model leaves over is smooth, and is larger about the mean: in all of the points, or where noise hides it there, in
+// the medians of parts of them.
 #include "judgement.hpp"
 
 #include <algorithm>
@@ -17,8 +18,12 @@ namespace
 {
 
 constexpr double at_most = 1.5, of_few = 4.0; // ratio of the two; both are estimates: + of_few/sqrt(points)
-constexpr double exact = 1e-9;                // of the largest force: residuals of a computed curve
-constexpr double mad_sigma = 1.4826;          // standard deviation over median absolute deviation, Gaussian
+// Medians of so many parts, of so many points each at least, are within smooth + by_part/sqrt(points) of the noise,
+// RMS; those of white noise are, but for 2 in 10 000.
+constexpr long parts = 16, of_part = 4;
+constexpr double smooth = 0.2, by_part = 2.5;
+constexpr double exact = 1e-9;       // of the largest force: residuals of a computed curve
+constexpr double mad_sigma = 1.4826; // standard deviation over median absolute deviation, Gaussian
 
 // The residuals [N] in the order of position, in which neighbours have the same error of the model.
 std::vector<double> in_order(const nt_fit_data &data, const Residuals &residuals)
@@ -46,6 +51,28 @@ double typical_size(std::vector<double> values)
     return mad_sigma * *middle;
 }
 
+double median_of(std::vector<double> values)
+{
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// Whether a wave lies under the noise: each part's median has an error of 1.25/sqrt(points), and what is left of a law
+// that is nearly right goes to and fro.
+bool has_smooth_part(const std::vector<double> &left, double noise)
+{
+    const std::ptrdiff_t size = static_cast<std::ptrdiff_t>(left.size()) / parts;
+    if (size < of_part)
+        return false;
+    double squares = 0.0;
+    for (std::ptrdiff_t i = 0; i < parts; i++) {
+        const double median = median_of({left.begin() + i * size, left.begin() + (i + 1) * size});
+        squares += median * median / parts;
+    }
+    return std::sqrt(squares) > noise * (smooth + by_part / std::sqrt(double(size)));
+}
+
 double largest_force(const nt_fit_data &data)
 {
     double largest = 0.0;
@@ -66,8 +93,9 @@ void judge_residuals(const nt_fit_options &options, const nt_fit_data &data, con
     const double limit = at_most + of_few / std::sqrt(double(data.count));
     const bool stated = options.force_noise > 0.0;
     result->residual_noise = noise;
-    result->residuals_are_noise = size <= exact * largest_force(data) ||
-                                  (size <= limit * noise && (!stated || size <= limit * options.force_noise));
+    result->residuals_are_noise =
+        size <= exact * largest_force(data) ||
+        (size <= limit * noise && (!stated || size <= limit * options.force_noise) && !has_smooth_part(left, noise));
 }
 
 } // namespace nanotouch

@@ -166,3 +166,25 @@ def test_arrays_that_never_leave_contact_have_no_baseline(share: float) -> None:
     held = nt.fit.fit_points(x, f, "dmt", radius=R, spring_constant=k_c, fit_offset=False)
     assert held.status == "ok"
     assert abs(held.values["work_of_adhesion"] - w) < 5.0 * held.sigma["work_of_adhesion"]
+
+
+def test_a_baseline_that_is_not_level_is_a_misfit() -> None:
+    """Tilt and bow of the free part bend E* by 60 sigma and were no part of the residuals, which end at the tear."""
+    X, F = retraction(1.0, 1000, 50e-12, np.random.default_rng(6), tilt=2e-3)
+    fit = nt.fit.fit_points(X, F, "jkr", radius=RADIUS, spring_constant=1.0)
+    assert fit.status == "misfit"
+    assert nt.fit.fit_points(X, F, "jkr", radius=RADIUS, spring_constant=1.0, fit_tilt=True).status == "ok"
+    X, F = retraction(1.0, 1000, 50e-12, np.random.default_rng(6))
+    bowed = F + 4e-9 * ((X - X[-1]) / np.ptp(X)) ** 2
+    assert nt.fit.fit_points(X, bowed, "jkr", radius=RADIUS, spring_constant=1.0, fit_tilt=True).status == "misfit"
+
+
+def test_a_law_that_is_wrong_by_less_than_the_noise_is_a_misfit() -> None:
+    """A cone fitted to a sphere leaves a wave of 0.8 times the noise, and was "ok"; a sphere leaves noise."""
+    X = np.linspace(60e-9, -60e-9, 1000)
+    F = hertzian(X)
+    F += F.max() / 160.0 * np.random.default_rng(7).standard_normal(X.size)
+    cone = nt.fit.fit_points(X, F, "cone", spring_constant=0.1)
+    assert cone.status == "misfit"
+    assert cone.residual_rms < 1.63 * cone.residual_noise  # in all of the points it looks like noise
+    assert nt.fit.fit_points(X, F, "hertz", radius=RADIUS, spring_constant=0.1).status == "ok"

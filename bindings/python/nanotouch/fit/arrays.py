@@ -40,8 +40,9 @@ class PointsFit:
     torn : bool
         Whether the arrays hold a tear: the force jumps from below back to its straight end.
     status : {"ok", "undetermined", "misfit", "not converged"}
-        ``"misfit"``: the residuals are not noise, or the way there and the way back differ, so the model does not
-        describe these points and sigma is too small. ``"undetermined"``: `identifiable` holds a parameter that the
+        ``"misfit"``: the residuals are not noise, or a baseline is not level (straight: ``fit_tilt``), or the way
+        there and the way back differ: the model does not describe these points and sigma is too small.
+        ``"undetermined"``: `identifiable` holds a parameter that the
         points do not determine, as w of an adhesion that drowns in the noise.
     """
 
@@ -114,7 +115,7 @@ def fit_points(
     contact = contact_of(X, F, noise, offset=fit_offset, tilt=fit_tilt) if usable else None
     if contact is not None:
         found, options = _run_contact(compiled, setup, contact)
-        found["residuals_are_noise"] &= not 0.0 < noise < found["residual_rms"] / _MISFIT
+        found["residuals_are_noise"] &= contact.is_level and not 0.0 < noise < found["residual_rms"] / _MISFIT
     else:
         options = setup.options(compiled)
         options.force_noise = noise

@@ -22,6 +22,8 @@ _RETURN = 0.75  # part of its depth that the force makes up within two points
 _FLAT, _FLAT_PART = 3.0, 0.1  # scatter of the free part, over the noise and over the jump
 _SURE = 2.0  # standard deviations of a slope
 _SPREAD_OF_STEP = 12.0**-0.5  # standard deviation of what is equally likely anywhere in a step of 1
+_PARTS, _OF_PART = 8, 5  # of the free part, and points of each, in which it is compared with its baseline
+_SMOOTH, _SURELY = 0.5, 5.0  # of the noise, and standard deviations of a mean of it
 _DIGITS = 1e-9  # of the largest force: a computed curve has no less noise than this
 
 
@@ -29,13 +31,15 @@ _DIGITS = 1e-9  # of the largest force: a computed curve has no less noise than 
 class Contact:
     """The points up to where contact ends, and the baseline taken off them.
 
-    `level` [N] is that at ``points.baseline_z``, `tilt` in N/m; `torn`: the force jumps from below back to it.
+    `level` [N] is that at ``points.baseline_z``, `tilt` in N/m; `torn`: the force jumps from below back to it;
+    `is_level`: nothing but noise is left of the free part.
     """
 
     points: Points
     level: float
     tilt: float
     torn: bool
+    is_level: bool
 
 
 def contact_of(position: Floats, force: Floats, noise: float, *, offset: bool, tilt: bool) -> Contact | None:
@@ -63,7 +67,7 @@ def contact_of(position: Floats, force: Floats, noise: float, *, offset: bool, t
         level_sigma=baseline.level_sigma,
         tilt_sigma=baseline.tilt_sigma,
     )
-    return Contact(points, baseline.level, baseline.tilt, torn)
+    return Contact(points, baseline.level, baseline.tilt, torn, baseline.is_all(scatter))
 
 
 def _end(force: Floats, noise: float) -> tuple[int, float, bool] | None:
@@ -123,5 +127,12 @@ class _Level:
         self.level_sigma = noise / z.size**0.5 if offset else 0.0
         self.tilt_sigma = noise / float(spread @ spread) ** 0.5 if tilt else 0.0
 
+        self.left = force - self.at(z)
+
     def at(self, z: Floats) -> Floats:
         return self.level + self.tilt * (z - self.middle)
+
+    def is_all(self, noise: float) -> bool:
+        """Whether the free part holds no tilt, bow or wave beside it: its parts have the mean of noise."""
+        parts = np.array_split(self.left, min(_PARTS, max(1, self.left.size // _OF_PART)))
+        return all(abs(float(part.mean())) < noise * (_SMOOTH + _SURELY / part.size**0.5) for part in parts)
