@@ -9,7 +9,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch_app import reproduce
-from nanotouch_app.reproduce import figure16, figure17, figure18, touching
+from nanotouch_app.reproduce import figure16, figure17, figure18, figure19, touching
 from nanotouch_app.reproduce.statement import Statement
 
 pytest.importorskip("matplotlib")
@@ -74,6 +74,10 @@ def test_dots_are_followed_at_constant_force(statements: dict[int, list[Statemen
     assert all(entry.verdict == "holds" for entry in statements[19])
     assert find(statements[19], "just the surface").number < 0.5e-9  # half a step of the stage
     assert find(statements[19], "the z position").number < 2e-9
+    drawn = find(
+        statements[19], "quantum dots of 10 to 30 nm"
+    ).number  # 3000 N/m over 7.1 nm/3e-6, at most the motor's 5 N
+    assert drawn == pytest.approx(min(3000.0 * 7.13e-9 / figure19.SCALE.value, 5.0), rel=0.01)
 
 
 def test_what_figure_17_lets_a_hand_feel(statements: dict[int, list[Statement]]) -> None:
@@ -81,6 +85,7 @@ def test_what_figure_17_lets_a_hand_feel(statements: dict[int, list[Statement]])
     printed = find(statements[17], "the attractive forces are large enough")
     assert printed.verdict == "does not hold"
     assert printed.number == pytest.approx(2e6 * 17.3e-9, rel=0.05)
+    assert find(statements[17], "sticking is small").verdict == "does not hold"  # very large: 35 mN
     assert find(statements[17], "the figure's -1 to -2 N").number == pytest.approx(547e-9, rel=1e-3)
     ours = find(statements[17], "the sticking of this tip can be felt")
     assert ours.verdict == "holds"

@@ -139,11 +139,14 @@ def _attractions(recording: nt.Recording) -> tuple[float, float]:
 
 def _sticking(recording: nt.Recording) -> Statement:
     snap_in, pull_off = _attractions(recording)
+    at_hand = [quantity(ALPHA_F.value * force, "N") for force in (snap_in, pull_off)]
     return Statement(
         "sticking is small during the approach and very large when retracting", "VI-B, Fig. 17",
-        holds(pull_off > 2.0 * snap_in), "pull-off over snap-in in the loop", pull_off / snap_in, "",
-        f"{quantity(snap_in, 'N')} and {quantity(pull_off, 'N')} at the tip. At the hand both are less than the "
-        f"{quantity(CLEARLY_FELT, 'N')} that are clearly felt.",
+        holds(pull_off > 2.0 * snap_in and ALPHA_F.value * pull_off > CLEARLY_FELT),
+        "pull-off over snap-in in the loop", pull_off / snap_in, "",
+        f"{quantity(snap_in, 'N')} and {quantity(pull_off, 'N')} at the tip: larger it is. At the hand it is "
+        f"{at_hand[0]} and {at_hand[1]}, both less than the {quantity(CLEARLY_FELT, 'N')} that are clearly felt, and "
+        "neither very large.",
     )  # fmt: skip
 
 

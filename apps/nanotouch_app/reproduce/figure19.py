@@ -7,7 +7,7 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch import presets
+from nanotouch import margins, presets
 
 from nanotouch_app.reproduce import drawing, paper, touching
 from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
@@ -62,7 +62,7 @@ def reproduce() -> Reproduction:
         "slave force [N]": np.interp(distance, recording.x, recording.tip_force),
         "motor force [N]": np.interp(distance, recording.x, recording.motor_force),
     }
-    statements = (_felt(recording), _smallest(recording), _constant(recording), _servo(margin))
+    statements = (_felt(recording), _smallest(recording, touched), _constant(recording), _servo(margin))
     return Reproduction(
         19, "quantum dots, topography only", PARAMETERS, columns, statements, lambda figure: _draw(figure, columns)
     )
@@ -78,14 +78,19 @@ def _felt(recording: nt.Recording) -> Statement:
     )  # fmt: skip
 
 
-def _smallest(recording: nt.Recording) -> Statement:
+def _smallest(recording: nt.Recording, touched: nt.Session) -> Statement:
+    """Felt as everywhere: by a force at the hand, here that which draws one that stands."""
     truth, felt = heights(recording)
-    noise = touching.rms((felt - truth)[np.abs(truth) < 0.1 * float(np.ptp(truth))])
+    height = float(np.ptp(truth))
+    noise = touching.rms((felt - truth)[np.abs(truth) < 0.1 * height])
+    way, gains = height / SCALE.value, touched.settings.gains
+    force = min(gains.height_stiffness * way, touched.settings.limits.motor_force)
     return Statement(
         "quantum dots of 10 to 30 nm are felt along the line", "VI-C, Fig. 19",
-        holds(float(np.ptp(truth)) > 5.0 * noise), "RMS error of the height on the flat", noise, "m",
-        f"10 to 30 nm is their diameter, {quantity(float(np.ptp(truth)), 'm')} their height. The tip of "
-        f"{quantity(paper.TIP.value, 'm')} widens them: the dilated dots are what the hand follows.",
+        holds(height > 5.0 * noise and force > margins.CLEARLY_FELT), "force on a hand that stays behind", force, "N",
+        f"10 to 30 nm is their diameter, {quantity(height, 'm')} their height: {quantity(way, 'm')} of the hand, which "
+        f"is drawn there by up to the motor's limit. The height errs by {quantity(noise, 'm')} RMS on the flat. The "
+        f"tip of {quantity(paper.TIP.value, 'm')} widens them: the dilated dots are what the hand follows.",
     )  # fmt: skip
 
 
