@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import ctypes.util
 import os
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,6 +21,7 @@ from nanotouch_app.live.host import Host
 from nanotouch_app.live.picture import Layout
 from nanotouch_app.live.subject import of_preset
 
+XDND = Path(__file__).with_name("xdnd.py")
 PATIENCE = 60.0  # of a loaded machine that draws in software [s]
 
 
@@ -179,6 +182,27 @@ def test_a_window_that_dies_ends_the_session_in_words(screen: str, monkeypatch: 
         live.desk.process.kill()
         with pytest.raises(nt.Error, match="the window died of SIGKILL"):
             live.desk.serve(live.host)
+    finally:
+        live.host.close()
+        live.desk.close()
+
+
+def test_a_file_that_is_dropped_on_the_window_is_touched(
+    screen: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the protocol of X11's desktops, with a name that has to be quoted there."""
+    if ctypes.util.find_library("X11") is None:
+        pytest.skip("libX11 is not installed: apt-get install libx11-6")
+    image = tmp_path / "my image.gwy"
+    nt.images.write(image, nt.surface.dots(size=400e-9, pixels=64, count=6, seed=4))
+    live = Live(screen, monkeypatch)
+    try:
+        search = ["xdotool", "search", "--name", "nanotouch live"]
+        window = subprocess.run(search, capture_output=True, text=True, check=True).stdout.split()[-1]
+        with subprocess.Popen([sys.executable, XDND, window, str(image)]) as source:
+            live.serve(lambda frame: live.host.subject.name == image.stem)
+            assert source.wait(PATIENCE) == 0
+        live.serve(lambda frame: frame["tip_position"][0] > 100e-9)  # the middle of it
     finally:
         live.host.close()
         live.desk.close()
