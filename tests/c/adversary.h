@@ -16,6 +16,7 @@ typedef struct closeness {
     double force, indentation;
     double worst_force, promised_force; /* [N] */
     double worst_time;                  /* since the tare began [s] */
+    double stopped;                     /* the first stop, 0: none [s] */
     double last_time, idle;             /* of it, a stop has not lifted for so long [s] */
     int worst_pulls;                    /* 1: at the end of that tick the tip was drawn to the sample */
     int stops, opened;
@@ -74,24 +75,51 @@ static inline double draw_value(const plot *p, dice *d, nt_fault_kind kind, nt_c
     }
 }
 
-/* Of any kind, or of the failure that is sought. */
-static inline void draw_fault(plot *p, dice *d, closeness *found)
+/* The nth fault that is this failure; 0: there are fewer. */
+static inline int find_fault(nt_failure failure, int nth, nt_fault_kind *kind, nt_channel *channel)
+{
+    int count = 0;
+    const nt_fault_description *kinds = nt_fault_descriptions(&count);
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j <= NT_CHANNEL_RIG; j++)
+            if (kinds[i].channels & (1u << j) && failure_of((nt_fault_kind)i, (nt_channel)j) == failure && nth-- == 0) {
+                *kind = (nt_fault_kind)i;
+                *channel = (nt_channel)j;
+                return 1;
+            }
+    return 0;
+}
+
+static inline void draw_kind(dice *d, nt_fault_kind *kind, nt_channel *channel)
 {
     int count = 0;
     const nt_fault_description *kinds = nt_fault_descriptions(&count);
     int pair = choose(d, count * (NT_CHANNEL_RIG + 1));
-    nt_fault_kind kind;
-    nt_channel channel;
     do {
         pair = (pair + 1) % (count * (NT_CHANNEL_RIG + 1));
-        kind = (nt_fault_kind)(pair / (NT_CHANNEL_RIG + 1));
-        channel = (nt_channel)(pair % (NT_CHANNEL_RIG + 1));
-    } while (!(kinds[kind].channels & (1u << channel)) || (p->known && failure_of(kind, channel) != p->sought));
-    const double start = between(d, 0.2, 1.2), duration = magnitude(d, 1e-4, 3.0);
+        *kind = (nt_fault_kind)(pair / (NT_CHANNEL_RIG + 1));
+        *channel = (nt_channel)(pair % (NT_CHANNEL_RIG + 1));
+    } while (!(kinds[*kind].channels & (1u << *channel)));
+}
+
+/* Of any kind at any time; a search: that which it is about, at any time or about when a stop comes. */
+static inline void draw_fault(plot *p, dice *d, closeness *found)
+{
+    nt_fault_kind kind;
+    nt_channel channel;
+    if (!p->known)
+        draw_kind(d, &kind, &channel);
+    else if (!find_fault(p->sought, p->nth, &kind, &channel))
+        return;
+    double start = between(d, 0.2, 1.2);
+    const double duration = magnitude(d, 1e-4, 3.0);
+    if (p->known && chance(d, 0.5) && p->stopped > 0.03)
+        start = p->stopped + (chance(d, 0.5) ? -1.0 : 1.0) * magnitude(d, 1e-4, 0.03);
     const int lasts = chance(d, 0.6);
     const nt_fault fault = {kind, channel, start, lasts ? HUGE_VAL : duration, draw_value(p, d, kind, channel)};
-    (void)!nt_faults_add(&p->faults, &fault);
-    found->fault = kinds[kind].name;
+    if (!p->rehearses)
+        (void)!nt_faults_add(&p->faults, &fault);
+    found->fault = nt_fault_descriptions(NULL)[kind].name;
     found->channel = channel;
     found->value = fault.value;
     p->sought = failure_of(kind, channel);
@@ -150,6 +178,8 @@ static inline void watch(const nt_session *session, const plot *p, closeness *fo
     const nt_truth *truth = &session->sim.slave.truth;
     const nt_guarantee *promised = &p->promised;
     const double time = pass_time(session, found);
+    if (found->stopped == 0.0 && nt_session_touch_state(session)->supervisor.state >= NT_RETRACT)
+        found->stopped = time;
     if (has_no_travel_left(session))
         return;
     const int fails = p->kind == ATTACK_FAULT && p->sought < NT_FAILURES;
@@ -179,6 +209,7 @@ typedef struct temper {
     double sideways;    /* share of blows that lead elsewhere */
     double holds;       /* share of blows that take the master somewhere, whatever it pushes back with */
     double reach;       /* so far at the tip, at most [m] */
+    double regrips;     /* share of blows before which the master is taken back, uncoupled: a search */
 } temper;
 
 static inline temper draw_temper(const plot *p, dice *d)
@@ -189,7 +220,8 @@ static inline temper draw_temper(const plot *p, dice *d)
                     .quickest = magnitude(d, 1e-4, 0.03),
                     .sideways = throw_dice(d),
                     .holds = chance(d, 0.5) ? 0.0 : throw_dice(d),
-                    .reach = magnitude(d, 1e-9, 3e-6)};
+                    .reach = magnitude(d, 1e-9, 3e-6),
+                    .regrips = p->known && chance(d, 0.5) ? 0.3 * throw_dice(d) : 0.0};
 }
 
 /* A blow: any force at any time, and anywhere on a relief. */
@@ -229,6 +261,23 @@ static inline void request(nt_session *session, dice *d)
         (void)!nt_session_set_mode(session, (nt_mode)choose(d, 4), NULL);
 }
 
+/* Uncoupled, the master goes back to where it began: a hand that presses farther than the travel allows at once. 0: the
+ * session has ended. */
+static inline int regrip(nt_session *session, const plot *p, long *tick, closeness *found)
+{
+    const nt_input back = {
+        .holds = 1, .master_position[NT_Z] = -0.4 * p->setup.rig.master.travel, .duration = 0.02, .x = NAN, .y = NAN};
+    (void)!nt_session_clutch(session, 1);
+    (void)!nt_session_aim(session, &back, NULL);
+    for (const double end = (double)*tick + 0.03 / nt_session_touch(session)->period; (double)*tick < end; ++*tick) {
+        if (nt_session_advance(session, 1) != NT_OK)
+            return 0;
+        watch(session, p, found);
+    }
+    (void)!nt_session_clutch(session, 0);
+    return 1;
+}
+
 /* One operator's blows; whatever stops is armed again, but after a fault. 0: the session has ended. */
 static inline int strike(nt_session *session, const plot *p, dice *d, long end, closeness *found)
 {
@@ -237,6 +286,8 @@ static inline int strike(nt_session *session, const plot *p, dice *d, long end, 
     const long pause = (long)(0.2 / period);
     long tick = (long)nt_session_touch_state(session)->ticks, asked = tick;
     while (tick < end) {
+        if (is.regrips > 0.0 && chance(d, is.regrips) && !regrip(session, p, &tick, found))
+            return 0;
         aim(session, p, d, tick == 0 ? NULL : &is); /* the first brings the tip down */
         if (tick - asked > pause && !p->known) {
             request(session, d);

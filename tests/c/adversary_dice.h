@@ -45,6 +45,9 @@ typedef struct plot {
     attack kind;
     const struct known_rig *known; /* of a search; NULL: all is drawn */
     nt_failure sought;             /* by a search; then the failure that was drawn */
+    int nth;                       /* of the faults that are this failure, in a search */
+    int rehearses;                 /* a search: without the fault, to know when a stop comes */
+    double stopped;                /* by a rehearsal: when that was, NAN: never [s] */
     nt_session_setup setup;
     double rate; /* of the loop [Hz] */
     nt_rig believed;
