@@ -23,7 +23,7 @@ def sources() -> list[Path]:
     text = (LIBRARY / "sources.cmake").read_text(encoding="utf-8")
     groups = re.findall(r"set\(nanotouch_sources_(\w+)\s+([^)]*)\)", text)
     listed = [LIBRARY / name for group, names in groups if group not in LEFT_OUT for name in names.split()]
-    return [*listed, PAGE / "page.c", PAGE / "page_session.c", PAGE / "page_curve.c"]
+    return [*listed, *sorted(PAGE.glob("page*.c"))]
 
 
 def is_fresh(target: Path) -> bool:

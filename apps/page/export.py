@@ -57,7 +57,7 @@ def constants() -> dict[str, Any]:
              host: "SPEEDS REWIND STEP_TICKS INDENTATION_SHARE",
              seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER",
              stage: "RELIEF TIP_HEIGHT LEVER LEVER_POINTS BALL FAR BEND SHADOW LIFTED VIEWS",
-             readings: "TIP_STEP HAND_STEPS NOTED"}  # fmt: skip
+             readings: "TIP_STEP HAND_STEPS NOTED", look: "PROPERTY_COLOURS PROPERTY_NAMES"}  # fmt: skip
     return {name: getattr(module, name) for module, names in taken.items() for name in names.split()}
 
 

@@ -101,7 +101,14 @@ int page_change(int kind, int number, double value);
 int page_rewind(double duration);
 double page_own(int what);
 double page_margin_with(int number, double value);
-void page_place(double x, double y, double found[2]);
+int page_properties(const double *youngs_modulus, const double *work_of_adhesion, int nx, int ny);
+void page_place(double x, double y, double found[4]);
+
+/* page_energy.c */
+void page_weigh(double spring, double zero, double alpha_p, double load);
+void page_weigh_anew(void);
+void page_weigh_tick(const nt_frame *frame);
+void page_energies(double found[4]);
 
 /* page_curve.c */
 int page_read_curve(const double *z, const double *force, int in_count, int out_count, double spring_constant);

@@ -16,6 +16,8 @@ static struct {
     double kept_at[KEPT];
     int newest; /* of kept; -1: none */
     int touches;
+    double *properties[2], *given[2]; /* of each place, of the session and of the next one: modulus, work of adhesion */
+    nt_properties *of_places;
 } page = {.newest = -1};
 
 static void forget(void)
@@ -30,6 +32,43 @@ static void forget(void)
 static void clear_update(void)
 {
     page.update = (page_update){.version = PAGE_VERSION, .least = INFINITY, .largest = -INFINITY};
+}
+
+/* Properties of each place for the next page_open, on the pixels of its heights: E_s [Pa] and w [J/m^2]; NULL: those of
+ * the scene everywhere. */
+PAGE_API(page_properties)
+int page_properties(const double *youngs_modulus, const double *work_of_adhesion, int nx, int ny)
+{
+    const double *const values[] = {youngs_modulus, work_of_adhesion};
+    const size_t size = sizeof(double) * (size_t)nx * (size_t)ny;
+    for (int i = 0; i < 2; ++i) {
+        free(page.given[i]);
+        page.given[i] = NULL;
+        if (values[i] && !(page.given[i] = malloc(size)))
+            return NT_E_NO_MEMORY;
+        if (values[i])
+            memcpy(page.given[i], values[i], size);
+    }
+    return NT_OK;
+}
+
+/* Those that were given, for a session on a map. */
+static nt_status take_properties(nt_session_setup *setup, nt_properties *made, nt_problem *problem)
+{
+    if (!page.given[0] && !page.given[1])
+        return NT_OK;
+    const nt_surface grid = {setup->map.heights, setup->map.nx, setup->map.ny, setup->map.dx, setup->map.dy, 0.0, 0.0};
+    setup->properties = made;
+    return nt_properties_init(made, &grid, page.given[0], page.given[1], problem);
+}
+
+static void keep_properties(void)
+{
+    for (int i = 0; i < 2; ++i) {
+        free(page.properties[i]);
+        page.properties[i] = page.given[i];
+        page.given[i] = NULL;
+    }
 }
 
 /* A session over ny rows of nx heights of a body [m] (freed by the caller), with scene, rig and settings as they are.
@@ -53,12 +92,21 @@ PAGE_API(page_open) int page_open(const double *heights, int nx, int ny, const p
     setup.ring_capacity = 0;
     world->problem = (nt_problem){0};
     nt_session *session = NULL;
-    const nt_status status = nt_session_open(&session, &setup, &world->problem);
-    if (status != NT_OK)
+    nt_properties *of_places = malloc(sizeof *of_places);
+    nt_status status = of_places ? take_properties(&setup, of_places, &world->problem) : NT_E_NO_MEMORY;
+    if (status == NT_OK)
+        status = nt_session_open(&session, &setup, &world->problem);
+    if (status != NT_OK) {
+        free(of_places);
         return (int)status;
+    }
     forget();
     nt_session_close(page.session);
     page.session = session;
+    keep_properties();
+    free(page.of_places);
+    page.of_places = of_places;
+    page_weigh_anew();
     page.touches = 0;
     clear_update();
     return NT_OK;
@@ -123,6 +171,7 @@ PAGE_API(page_run) int page_run(int ticks)
         if (status != NT_OK)
             return (int)status;
         page_sum_up(&page.update, &frame);
+        page_weigh_tick(&frame);
         const int touches = frame.contact_radius > 0.0;
         if (touches != page.touches)
             page.update.events |= touches ? PAGE_SNAP : PAGE_TEAR;
@@ -221,6 +270,7 @@ PAGE_API(page_rewind) int page_rewind(double duration)
             page.kept[i] = NULL;
         }
     page.newest = best;
+    page_weigh_anew();
     return page_run(1);
 }
 
@@ -269,10 +319,12 @@ PAGE_API(page_own) double page_own(int what)
     }
 }
 
-/* Height [m] and effective radius [m] at a place of what is touched. */
-PAGE_API(page_place) void page_place(double x, double y, double found[2])
+/* Height [m], effective radius [m], E_s [Pa] and w [J/m^2] at a place of what is touched; 0: not given there. */
+PAGE_API(page_place) void page_place(double x, double y, double found[4])
 {
     const nt_place place = nt_interaction_place(nt_session_plan(page.session), x, y);
     found[0] = place.surface.z;
     found[1] = place.radius.radius;
+    found[2] = place.youngs_modulus.value;
+    found[3] = place.work_of_adhesion.value;
 }

@@ -40,6 +40,15 @@ export async function visit(context, address) {
 }
 
 // Until something that the page counts is so; on a loaded machine that may take long.
-export const until = (page, what, argument) => page.waitForFunction(what, argument, { timeout: 120000, polling: 100 });
+export function until(page, what, argument) {
+  const broken = page.waitForEvent("pageerror", { timeout: 0 }).then((error) => { throw error; }); // a page that fails is not waited for
+  broken.catch(() => {});
+  return Promise.race([page.waitForFunction(what, argument, { timeout: 120000, polling: 100 }), broken]);
+}
 export const touched = (page) => until(page, () => window.nanotouch?.seen.now && window.nanotouch.seen.law && window.nanotouch.counters.draws > 2);
+// The page has drawn again, so many times.
+export async function later(page, draws) {
+  const before = await value(page, () => window.nanotouch.counters.draws);
+  await until(page, (wanted) => window.nanotouch.counters.draws >= wanted, before + draws);
+}
 export const value = (page, what, argument) => page.evaluate(what, argument);

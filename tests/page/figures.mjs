@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page weighs and how soon it can be touched, here; a picture of each sample. Prints JSON; nothing passes or fails.
+// What the page weighs and how soon it can be touched, here; pictures of each sample, light, dark and on a phone. Prints
+// JSON; nothing passes or fails.
 // Usage: node tests/page/figures.mjs [FOLDER]
 import fs from "node:fs";
 import path from "node:path";
 import zlib from "node:zlib";
-import { FILE, open, PAGE, touched, value, visit } from "./browser.mjs";
+import { FILE, later, open, PAGE, touched, until, value, visit } from "./browser.mjs";
 
 const folder = process.argv[2], html = fs.readFileSync(PAGE);
 const report = { "size [MB]": html.length / 1e6, "compressed [MB]": zlib.gzipSync(html).length / 1e6, "first touch [ms]": {} };
@@ -18,13 +19,18 @@ for (const name of names) {
   await touched(page);
   report["first touch [ms]"][name] = Math.round((await value(page, () => window.nanotouch.counters)).firstTouch);
   if (folder) {
-    await page.mouse.move(400, 300);
-    for (let i = 0; i < 14; ++i) {
-      await page.mouse.wheel(0, 250);
-      await page.waitForTimeout(100);
-    }
-    await page.waitForTimeout(1500);
-    await page.screenshot({ path: path.join(folder, `${name}.png`) });
+    await page.focus("#view");
+    await page.keyboard.down(" "); // presses with a steady force
+    await until(page, () => window.nanotouch.seen.now.force > 0.2 * window.nanotouch.seen.load);
+    const shot = (kind) => page.screenshot({ path: path.join(folder, `${name}_${kind}.png`) });
+    await shot("light");
+    await page.keyboard.press("l");
+    await later(page, 3);
+    await shot("dark");
+    await page.setViewportSize({ width: 390, height: 844 });
+    await later(page, 3);
+    await shot("phone");
+    await page.keyboard.up(" ");
   }
   await page.close();
 }

@@ -17,4 +17,22 @@ for (const [preset, messages] of Object.entries(JSON.parse(fs.readFileSync(asked
     worlds[preset].push(told.at(-1));
   }
 }
+// A touch in steps of 10 ms: pressed, then let go.
+await host.answer({ do: "preset", name: "silicon_in_air" });
+const touch = [];
+for (const on of [true, false]) {
+  await host.answer({ do: "press", on });
+  for (let i = 0; i < 150; ++i) host.turn(0.01);
+  touch.push({ energies: host.clock().energies, force: host.now.force, contact: host.now.contact });
+}
+worlds.touch = touch;
+
+// Properties of each place: half of the surface is softer, and adheres less.
+const map = { rows: 1, columns: 2, heights: [1e9, 1e11] };
+await host.answer({ do: "property", name: "youngs_modulus", map, title: "a map" });
+host.turn(0.01);
+const { properties } = told.findLast(({ tell }) => tell === "laid").surface;
+worlds.property = { here: host.clock().here, ends: [properties.youngs_modulus[0], properties.youngs_modulus.at(-1)] };
+await host.answer({ do: "property", name: "work_of_adhesion", map: { ...map, heights: [0.5, -1] }, title: "a map" });
+worlds.property.refused = told.at(-1);
 console.log(JSON.stringify(worlds));

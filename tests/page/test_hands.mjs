@@ -2,7 +2,7 @@
 // Gamepad, SpaceMouse, touch screen and sound in Chromium: the devices are played here, by what the browser would say.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { FILE, open, touched, until, value, visit } from "./browser.mjs";
+import { FILE, later, open, touched, until, value, visit } from "./browser.mjs";
 
 let chromium;
 before(async () => { chromium = await open({ offline: true, touch: true, width: 900, height: 640 }); });
@@ -45,12 +45,6 @@ function devices() {
 }
 
 const times = (page) => value(page, () => window.nanotouch.asked.length);
-// The page has looked at its hands again, so many times.
-async function later(page, turns = 6) {
-  const { draws } = await value(page, () => window.nanotouch.counters);
-  await until(page, (wanted) => window.nanotouch.counters.draws >= wanted, draws + turns);
-}
-
 async function ready() {
   const { page, said } = await visit(chromium.context, "about:blank");
   await page.addInitScript(devices);
@@ -68,7 +62,7 @@ test("a gamepad moves, presses, retracts, stops and arms; it rumbles by the forc
   await value(page, () => { window.pad.axes = [0.05, -0.1, 0, 0]; }); // it does not rest at 0: that is no wish
   await later(page, 1);
   const rests = await times(page);
-  await later(page);
+  await later(page, 6);
   assert.equal(await times(page), rests);
   await value(page, () => { window.pad.buttons[0].pressed = true; });
   await until(page, () => window.nanotouch.seen.now.force > 5e-8);
@@ -89,7 +83,7 @@ test("a gamepad moves, presses, retracts, stops and arms; it rumbles by the forc
   await value(page, () => { window.pad.connected = false; window.pad.axes = [1, 1, 1, 1]; }); // unplugged while it presses
   await until(page, () => window.nanotouch.asked.at(-1).on === false);
   const [last, silent] = [await times(page), await value(page, () => window.pad.rumbles.length)];
-  await later(page);
+  await later(page, 6);
   assert.deepEqual([await times(page), await value(page, () => window.pad.rumbles.length)], [last, silent]);
   assert.deepEqual(said.filter((words) => !/GL Driver|WebGL/.test(words)), []);
   await page.close();
@@ -120,7 +114,7 @@ test("a SpaceMouse is asked for by G, moves the tip by its cap, presses and retr
   await until(page, () => window.nanotouch.seen.notes.some(({ text }) => /unplugged/.test(text)));
   await later(page, 1);
   const last = await times(page);
-  await later(page);
+  await later(page, 6);
   assert.equal(await times(page), last, "its last word holds no longer");
   await page.close();
 });

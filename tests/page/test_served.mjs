@@ -2,10 +2,10 @@
 // `nanotouch live --browser` in Chromium: one page touches, others watch; also through a tunnel with another port.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import net from "node:net";
 import path from "node:path";
 import { after, before, test } from "node:test";
 import { open, PAGE, touched, until, value, visit } from "./browser.mjs";
+import { tunnel } from "./tunnel.mjs";
 
 const NANOTOUCH = path.resolve(import.meta.dirname, "../../.venv/bin/nanotouch");
 let chromium, server, links;
@@ -40,15 +40,12 @@ async function scroll(page, what) {
 const pressed = () => window.nanotouch.seen.now.force > 5e-8;
 const noted = (page, words) => until(page, (wanted) => window.nanotouch.seen.notes.some(({ text }) => text.includes(wanted)), words);
 
-test("one page touches through a tunnel, the other watches the same", async () => {
+test("one page touches through a tunnel, the other watches the same", async (context) => {
   const port = Number(new URL(links[0]).port);
-  const tunnel = net.createServer((near) => {
-    const far = net.connect(port, "127.0.0.1");
-    near.pipe(far).pipe(near);
-    for (const end of [near, far]) end.on("error", () => { near.destroy(); far.destroy(); });
-  });
-  await new Promise((done) => tunnel.listen(0, "127.0.0.1", done));
-  const through = links[0].replace(/\/\/[^/]+/, `//localhost:${tunnel.address().port}`);
+  const way = await tunnel(port);
+  context.diagnostic(`through ${way.kind}`);
+  context.after(() => way.close());
+  const through = links[0].replace(/\/\/[^/]+/, `//localhost:${way.port}`);
   const { page, requests } = await visit(chromium.context, through);
   await touched(page);
   const watching = await visit(chromium.context, links[1]);
@@ -82,7 +79,6 @@ test("one page touches through a tunnel, the other watches the same", async () =
   await page.locator("[data-own=c]").click();
   await page.locator(".cards button", { hasText: "Mica in dry air" }).click();
   await until(watching.page, () => window.nanotouch.seen.world?.title === "Mica in dry air" && window.nanotouch.seen.law);
-  tunnel.close();
 
   server.removeAllListeners("exit");
   server.kill("SIGINT");

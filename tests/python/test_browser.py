@@ -18,7 +18,7 @@ import pytest
 from nanotouch_app import browser
 from nanotouch_app.browser import access, page
 from nanotouch_app.browser.readers import Reader, Readers
-from nanotouch_app.browser.update import LAYOUT, Summary, message_text
+from nanotouch_app.browser.update import LAYOUT, SURFACE, Summary, message_text, stored_surface, surface_bytes
 
 aiohttp = pytest.importorskip("aiohttp", reason="pip install 'nanotouch[browser]'")
 from nanotouch_app.browser.desk import BrowserDesk  # noqa: E402
@@ -225,6 +225,38 @@ def test_the_summary_of_one_block_is_that_of_its_parts() -> None:
         touched = bool(block[-1]["contact_radius"] > 0)
     alone = Summary.of(whole, False)
     assert (parts.least, parts.largest, parts.ticks, parts.events) == (alone.least, alone.largest, 100, alone.events)
+
+
+def test_a_surface_takes_what_is_known_of_each_place_along(tmp_path: Path) -> None:
+    heights, modulus = np.arange(12.0).reshape(3, 4), np.full((3, 4), 2e9)
+    plain, given = surface_bytes(heights, (1.0, 2.0)), surface_bytes(heights, (1.0, 2.0), {"work_of_adhesion": modulus})
+    assert SURFACE.unpack_from(plain)[:4] == (2, 3, 4, 0)
+    assert SURFACE.unpack_from(given)[:4] == (2, 3, 4, 0b10)
+    assert given[SURFACE.size :] == plain[SURFACE.size :] + modulus.astype("<f4").tobytes()
+    np.savez(tmp_path / "laid.npz", heights=heights, pixel_size=(1.0, 2.0), work_of_adhesion=modulus)
+    assert stored_surface(str(tmp_path / "laid.npz")) == given
+
+
+def test_readers_are_told_where_the_work_of_the_hand_goes() -> None:
+    told: list[Any] = []
+    host = Host(of_preset("silicon_in_air"), told.append, stepped=True)
+    readers = Readers()
+    readers.all.append(Reader(lambda data: None, True))
+    readers.hear(host.world())
+    for on in (True, False):
+        host.answer({"do": "press", "on": on})
+        for _ in range(100):
+            host.advance(0.01)
+            readers.look()
+    readers.all[0].free = True  # it has taken its update
+    ((_, text),) = readers.hear(host.clock())
+    readers.close()
+    host.close()
+    assert readers.balance is not None
+    energies = readers.balance.energies
+    assert energies.hand == pytest.approx(energies.stored + energies.tip + energies.heat, rel=1e-6)
+    assert energies.heat > 0.0
+    assert json.loads(text)["energies"] == pytest.approx(list(energies))
 
 
 def test_a_missing_page_is_a_plain_word(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

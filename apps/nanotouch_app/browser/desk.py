@@ -18,6 +18,7 @@ class BrowserDesk:
     def __init__(self, topography: Topography, page: bytes, port: int = 0) -> None:
         self.server = Server(page, port)
         self.asked = self.server.asked
+        self.topography = topography
         self.server.readers.surface = surface_bytes(topography.heights, topography.pixel_size)
 
     def tell(self, message: dict[str, Any]) -> None:
@@ -39,6 +40,8 @@ class BrowserDesk:
 
     def serve(self, host: Any, first: dict[str, Any] | None = None, until: float | None = None) -> None:
         """Until Ctrl-C, or a time of the monotonic clock: what is asked, what happens by itself, the clock."""
+        if properties := host.properties():
+            self.server.readers.surface = surface_bytes(self.topography.heights, self.topography.pixel_size, properties)
         self.tell(host.world())
         serve(self, host, first, until)
 

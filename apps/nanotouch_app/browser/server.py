@@ -10,13 +10,12 @@ import threading
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-import numpy as np
 from nanotouch.errors import Error
 from nanotouch.errors import missing as missing_extra
 
 from nanotouch_app.browser.access import LOOPBACK, Keys, Refused, checked, host_is_ours, origin_is_ours
 from nanotouch_app.browser.readers import Reader, Readers
-from nanotouch_app.browser.update import message_text, surface_bytes
+from nanotouch_app.browser.update import message_text, stored_surface
 
 try:
     from aiohttp import WSMsgType, web
@@ -156,10 +155,7 @@ class Server:
 
     def tell(self, message: Message) -> None:
         """To all readers, or to the one that operates; never waits."""
-        surface = b""
-        if message["tell"] == "laid":
-            with np.load(message["path"]) as stored:
-                surface = surface_bytes(stored["heights"], stored["pixel_size"])
+        surface = stored_surface(message["path"]) if message["tell"] == "laid" else b""
 
         def send() -> None:
             for reader, data in self.readers.hear(message, surface):

@@ -6,9 +6,12 @@ from __future__ import annotations
 import json
 import math
 import struct
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+
+from nanotouch_app.live.look import PROPERTY_NAMES
 
 VERSION, LAID = 1, 2  # first byte of a binary message
 SNAP, TEAR = 1, 2
@@ -59,13 +62,19 @@ class Summary:
         return made
 
 
-def surface_bytes(heights: Any, pixel_size: Any) -> bytes:
-    """A surface, its rows upwards."""
+def surface_bytes(heights: Any, pixel_size: Any, properties: Mapping[str, Any] | None = None) -> bytes:
+    """A surface, its rows upwards; then what else is known of each place, of the names in PROPERTY_NAMES."""
     rows, columns = heights.shape
-    return (
-        SURFACE.pack(LAID, rows, columns, 0, float(pixel_size[1]), float(pixel_size[0]))
-        + np.asarray(heights, dtype="<f4").tobytes()
-    )
+    held = [(bit, properties[name]) for bit, name in enumerate(PROPERTY_NAMES) if properties and name in properties]
+    mask = sum(1 << bit for bit, _ in held)
+    head = SURFACE.pack(LAID, rows, columns, mask, float(pixel_size[1]), float(pixel_size[0]))
+    return head + b"".join(np.asarray(part, dtype="<f4").tobytes() for part in (heights, *(part for _, part in held)))
+
+
+def stored_surface(path: str) -> bytes:
+    """The same of the file that a host has written of what was laid."""
+    with np.load(path) as stored:
+        return surface_bytes(stored["heights"], stored["pixel_size"], stored)
 
 
 def finite(value: Any) -> Any:

@@ -18,14 +18,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from nanotouch.errors import Error
 from nanotouch.errors import missing as missing_extra
 
 from nanotouch_app.browser import page as page_of
 from nanotouch_app.browser.access import checked
 from nanotouch_app.browser.readers import Reader, Readers
-from nanotouch_app.browser.update import finite, surface_bytes
+from nanotouch_app.browser.update import finite, stored_surface, surface_bytes
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.subject import Subject, of_preset
 
@@ -51,11 +50,12 @@ class Touch(anywidget.AnyWidget):
         subject = of_preset(what) if isinstance(what, str) else what
         self._asked: queue.Queue[Any] = queue.Queue()
         self._readers = Readers()
-        self._readers.surface = surface_bytes(subject.topography.heights, subject.topography.pixel_size)
         self._reader = Reader(lambda data: None, True)
         self._readers.all.append(self._reader)
         self._ends = threading.Event()
         self._host = Host(subject, self._tell)
+        topography = subject.topography
+        self._readers.surface = surface_bytes(topography.heights, topography.pixel_size, self._host.properties())
         self.on_msg(self._heard)
         self._thread = threading.Thread(target=self._run, name="nanotouch-widget", daemon=True)
         self._thread.start()
@@ -63,10 +63,7 @@ class Touch(anywidget.AnyWidget):
     # --- to the page ---
 
     def _tell(self, message: dict[str, Any]) -> None:
-        surface = b""
-        if message["tell"] == "laid":
-            with np.load(message["path"]) as stored:
-                surface = surface_bytes(stored["heights"], stored["pixel_size"])
+        surface = stored_surface(message["path"]) if message["tell"] == "laid" else b""
         if self._readers.hear(message, surface):
             self._show(message, surface)
 

@@ -62,6 +62,16 @@ export class ForceGap {
   }
 }
 
+// Where the work of the hand has gone in this touch: parts of a sum, each to the third digit of the largest.
+export function balance(energies) {
+  const most = Math.max(Math.abs(energies[0]), Math.abs(energies[1])), [unit, factor] = most > 1e-15 ? ["fJ", 1e15] : ["aJ", 1e18];
+  const scaled = energies.map((value) => value * factor), largest = Math.max(...scaled.map(Math.abs));
+  const step = largest > 0 ? 10 ** (Math.floor(Math.log10(largest)) - 2) : 1;
+  const [hand, ...parts] = scaled.map((value) => `${Number((Math.round(value / step) * step).toPrecision(3)) + 0}`);
+  const told = ["spring", "tip", "heat"].map((name, i) => `${name} ${parts[i]}`).join(" + ");
+  return `work of the hand ${hand} ${unit} = ${told}`.replaceAll(/\+ (\w+) -/g, "- $1 ");
+}
+
 export class History {
   constructor(painter, constants) {
     Object.assign(this, { painter, constants, high: new Follower(), low: new Follower() });
@@ -78,12 +88,14 @@ export class History {
     const low = this.low.of(1.1 * Math.max(-Math.min(...rows.map((row) => row.low)) * scale, 0.05 * high), now);
     const axes = new Axes(painter, [-HISTORY, 0], [-low, high]);
     axes.draw(palette, ["time", "force at the hand"], ["s", "N"]);
+    if (seen.clock.energies) painter.text(painter.width < 520 ? 58 : painter.width - 14, painter.width < 520 ? painter.height - 12 : 16,
+      balance(seen.clock.energies), palette.ink, { align: painter.width < 520 ? "left" : "right" });
     const least = axes.width / this.constants.SLICES;
     rows.forEach((row, i) => { // each sums up all since the one before
       const start = i ? axes.at(rows[i - 1].time - now, 0)[0] : 0;
       const part = (from, to, colour, opacity) => {
         const [x, y] = axes.at(row.time - now, from * scale), [, other] = axes.at(row.time - now, to * scale);
-        const left = Math.max(i ? start : x, x - 40 * least) - 0.5;
+        const left = (i ? start : x - least) - 0.5;
         painter.area([[left, y - 0.8], [x + 0.5, y - 0.8], [x + 0.5, other + 0.8], [left, other + 0.8]], colour, opacity);
       };
       if (row.high > 0) {

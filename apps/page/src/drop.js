@@ -32,6 +32,7 @@ export class Drop {
     try {
       if (!this.state.own) throw new Error("files are opened where the session runs: name them on its command line");
       if (file.size > LARGEST) throw new Error(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB; valid are ${LARGEST / 1e6} MB`);
+      if (/\.mcap$/i.test(file.name)) throw new Error(`a recording is played in a window: nanotouch live ${file.name}`);
       if (/\.toml$/i.test(file.name)) this.scene(await file.text(), file.name);
       else if (/\.(png|jpe?g|gsf)$/i.test(file.name)) await this.#image(file);
       else await this.#curve(file);
@@ -57,11 +58,17 @@ export class Drop {
   async #image(file) {
     const map = await readImage(file), { scene, rig } = this.#usual();
     const lay = (made) => this.#lay(file.name, { scene, rig, map: made, hint: "Your own surface, as silicon in air." });
+    if (map.of && map.of !== "heights") return this.#property(file.name, map);
     if (!map.asks) return lay(map);
     const length = (text) => parseQuantity(text, "m", this.table.units);
     return this.words.form(file.name, [element("p", { textContent: "A picture knows no lengths. How wide is it, and how high is white?" })],
       [["width", "width", "1 um"], ["height", "height of white", "20 nm"]], ({ width, height }) => this.#tried(() =>
         lay(scaled(map, length(width), length(height)))));
+  }
+
+  #property(title, map) {
+    this.words.close();
+    this.link.ask({ do: "property", name: map.of, map, title });
   }
 
   async #curve(file) {

@@ -4,6 +4,7 @@
 const FACTORS = { m: 1, mm: 1e-3, um: 1e-6, "µm": 1e-6, nm: 1e-9, pm: 1e-12, N: 1, mN: 1e-3, uN: 1e-6, "µN": 1e-6, nN: 1e-9,
   pN: 1e-12, V: 1 };
 const FEWEST = 32;
+const ABOVE = 2; // times the pull-off is the least load that is planned for: a limit below it would stop each pull
 
 // Two columns of numbers, height of the base and force, with their units from the header: "z (nm), force (nN)".
 export function readText(text) {
@@ -51,7 +52,8 @@ function sceneOf(core, { radius, modulus, pull, largest }) {
   const { tip, sample } = core.get("scene");
   const tipCompliance = (1 - tip.poisson_ratio ** 2) / tip.youngs_modulus, rest = 1 / modulus - tipCompliance;
   const youngs = rest > 0 ? (1 - sample.poisson_ratio ** 2) / rest : 1e12; // stiffer than the tip can tell
-  const adhesion = pull > 0 ? { given: "pull_off_force", pull_off_force: pull } : { work_of_adhesion: 0, hamaker_constant: 0 };
-  return { tip: { radius }, sample: { youngs_modulus: youngs }, adhesion, range: { maximum_load: largest },
+  const measured = pull > 0 ? { given: "pull_off_force", pull_off_force: pull } : { work_of_adhesion: 0 };
+  const adhesion = { ...measured, hamaker_constant: 0 }; // what pulls is in the pull-off; its tail is not known
+  return { tip: { radius }, sample: { youngs_modulus: youngs }, adhesion, range: { maximum_load: Math.max(largest, ABOVE * (pull || 0)) },
     medium: { relative_humidity: 0, film_thickness: 0 } };
 }

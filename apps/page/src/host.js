@@ -5,7 +5,7 @@
 import { KINDS, Refused, readUpdate, UPDATE_BYTES } from "./core.js";
 import { Hand } from "./hand.js";
 import { inWords } from "./refusals.js";
-import { extremes, ofPreset } from "./subject.js";
+import { edged, extremes, ofPreset, PROPERTIES, stretched } from "./subject.js";
 import { Trainer } from "./trainer.js";
 
 const INDENTATION = 0.3e-6, ATTRACTION = 0.6e-6, USUAL_CLEARANCE = 0.1e-6; // Eq. 21 and the paper's ranges [m], [N], [m]
@@ -46,8 +46,9 @@ export class Host {
     this.done = [];
     this.undone = [];
     this.#endTask();
-    const { heights, rows, columns, dx, dy } = subject.map;
-    this.tell({ tell: "laid", surface: { heights: Float32Array.from(heights), rows, columns, dx, dy } });
+    const { heights, rows, columns, dx, dy } = subject.map, properties = {};
+    for (const [name, values] of Object.entries(subject.properties ?? {})) properties[name] = Float32Array.from(values);
+    this.tell({ tell: "laid", surface: { heights: Float32Array.from(heights), rows, columns, dx, dy, properties } });
     this.tell(this.world());
   }
 
@@ -96,15 +97,13 @@ export class Host {
   #open() {
     const facts = this.#usual(), { map } = this.subject, { core } = this;
     const rows = map.rows + 1, columns = map.columns + 1; // the extent is that of the pixels
-    const padded = new Float64Array(rows * columns);
-    for (let j = 0; j < rows; ++j)
-      for (let i = 0; i < columns; ++i)
-        padded[j * columns + i] = map.heights[Math.min(j, map.rows - 1) * map.columns + Math.min(i, map.columns - 1)];
+    const padded = edged(map.heights, map);
     this.size = [map.columns * map.dx, map.rows * map.dy];
     this.start = [0.5 * this.size[0], 0.5 * this.size[1]];
     const line = Array.from({ length: 200 }, (_, i) => padded[(map.rows >> 1) * columns +
       Math.floor((0.5 + (0.1 * i) / 199) * map.columns)]);
     const rise = Math.max(...line) - line[0];
+    this.#giveProperties(rows, columns);
     core.withDoubles(padded.length + 8, null, (at) => {
       const all = core.doubles(at, padded.length + 8);
       all.set([...this.start, this.clearance, rise, map.dx, map.dy, 1, MARGIN]);
@@ -118,15 +117,25 @@ export class Host {
     this.#look();
   }
 
+  #giveProperties(rows, columns) {
+    const { core, subject: { map, properties = {} } } = this, count = rows * columns;
+    const given = PROPERTIES.map((name) => properties[name] && edged(properties[name], map));
+    core.withDoubles(2 * count, null, (at) => {
+      given.forEach((values, i) => { if (values) core.doubles(at + 8 * count * i, count).set(values); });
+      core.check(core.c.page_properties(...given.map((values, i) => (values ? at + 8 * count * i : 0)), columns, rows));
+    });
+  }
+
   // What hand and front end need of the session as it is now.
   #learn(facts) {
     const own = (what) => this.core.c.page_own(what);
     Object.assign(this, { facts, settings: this.core.get("settings"), opened: this.core.get("scene"),
       openedRig: this.core.get("rig") });
-    const law = (limit) => this.#sunk(limit);
+    const law = (limit) => this.#sunk(limit), { alpha_p } = this.settings.gains;
     this.hand = new Hand({ scene: this.opened, rig: this.openedRig, settings: this.settings, facts, start: this.start,
       size: this.size, clearance: this.clearance, startHeight: own(OWN.start), masterStart: own(OWN.master),
       sunk: law }, this.constants, (place, duration) => this.core.check(this.core.c.page_hold(...place, duration)));
+    this.core.c.page_weigh(this.hand.stiffness, this.hand.zero, alpha_p, this.opened.range.maximum_load);
   }
 
   // How deep a force presses [m].
@@ -182,12 +191,19 @@ export class Host {
   }
 
   clock() {
-    const here = this.core.withDoubles(2, null, (at) => {
-      this.core.c.page_place(this.now.tip[0], this.now.tip[1], at);
-      return this.core.doubles(at, 2)[1];
+    const { core } = this, given = this.subject.properties ?? {};
+    const [, radius, ...places] = core.withDoubles(4, null, (at) => {
+      core.c.page_place(this.now.tip[0], this.now.tip[1], at);
+      return [...core.doubles(at, 4)];
+    });
+    const here = { radius };
+    PROPERTIES.forEach((name, i) => { if (given[name]) here[name] = places[i]; });
+    const energies = core.withDoubles(4, null, (at) => {
+      core.c.page_energies(at);
+      return [...core.doubles(at, 4)];
     });
     return { tell: "clock", speed: this.speed, paused: this.paused, slowdown: this.slowdown, recorded: false,
-      height: this.hand.height, here: { radius: here } };
+      height: this.hand.height, here, energies };
   }
 
   // --- what is asked ---
@@ -250,6 +266,11 @@ export class Host {
   }
   async do_preset({ name }) { await this.layPreset(name); }
   do_lay({ subject }) { this.lay(subject); }
+  // A map of a property is stretched over the surface that is shown.
+  do_property({ name, map, title }) {
+    const properties = { ...this.subject.properties, [name]: stretched(map, this.subject.map) };
+    this.lay({ ...this.subject, properties, hint: `${title}: K colours by it. Drag from a low place to a high one at a steady force.` });
+  }
 
   // --- tasks ---
 

@@ -4,6 +4,8 @@
 const MOST = 1024; // pixels to a side: a larger one is drawn smaller
 const GSF = "Gwyddion Simple Field 1.0\n";
 
+const HOLDS = { m: "heights", Pa: "youngs_modulus", "J/m^2": "work_of_adhesion", "J/m2": "work_of_adhesion", "N/m": "work_of_adhesion" };
+
 export async function readImage(file) {
   const head = new TextDecoder("latin1").decode(await file.slice(0, GSF.length).arrayBuffer());
   if (head === GSF) return readGsf(await file.arrayBuffer());
@@ -20,7 +22,8 @@ export function readGsf(buffer) {
   const columns = Number(fields.xres), rows = Number(fields.yres), start = 4 * Math.floor((end + 4) / 4);
   if (!(columns >= 4 && rows >= 4 && columns <= 8192 && rows <= 8192)) throw new Error(`a field of ${fields.xres} x ${fields.yres} pixels`);
   if (buffer.byteLength < start + 4 * rows * columns) throw new Error("the file is shorter than its header says");
-  if ((fields.zunits ?? "m") !== "m") throw new Error(`the field holds ${fields.zunits}, not heights in m`);
+  const unit = fields.zunits || "m", of = HOLDS[unit.replace(/\s+/g, "")];
+  if (!of) throw new Error(`the field holds ${unit}; valid are m (heights), Pa (modulus), J/m^2 or N/m (work of adhesion)`);
   const view = new DataView(buffer, start), heights = new Float64Array(rows * columns);
   for (let j = 0; j < rows; ++j)
     for (let i = 0; i < columns; ++i) { // row 0 of the file is the top
@@ -29,7 +32,7 @@ export function readGsf(buffer) {
       heights[(rows - 1 - j) * columns + i] = value;
     }
   const size = (name) => (Number(fields[name]) > 0 ? Number(fields[name]) : 1);
-  return smaller({ heights, rows, columns, dx: size("xreal") / columns, dy: size("yreal") / rows });
+  return { ...smaller({ heights, rows, columns, dx: size("xreal") / columns, dy: size("yreal") / rows }), of };
 }
 
 async function readPicture(file) {

@@ -88,7 +88,7 @@ export function lessonPage(trainer, page) {
     said += ` ${filled(text("explain"), figures)}`;
     if (page.key === "stick")
       said += filled(texts.measured, { first: digits(pulls[0], "N"), second: digits(pulls[1], "N") });
-    trainer.end(good, good ? 100 : 0, said);
+    trainer.end(good, good ? 100 : 0, said, Object.fromEntries(pulls.map((pull, i) => [`pull-off ${i + 1}`, [pull, "N"]])));
   };
   const change = () => {
     const [what, field, factor] = page.then, [section, key] = field.split(".");

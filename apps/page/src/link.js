@@ -3,6 +3,7 @@
 // kernel. All give updates and messages, and take what is asked. An update is taken before the next one is sent.
 
 import { readUpdate } from "./core.js";
+import { PROPERTIES } from "./subject.js";
 
 // The worker: always there for what is drawn; with `own` the session runs in it, too.
 export class Worked {
@@ -46,8 +47,10 @@ export function hearBytes(buffer, { hear, take, ack }) {
     return ack();
   }
   const view = new DataView(buffer), rows = view.getUint32(4, true), columns = view.getUint32(8, true);
-  const heights = new Float32Array(buffer.slice(32, 32 + 4 * rows * columns));
-  return hear({ tell: "laid", surface: { heights, rows, columns, dx: view.getFloat64(16, true), dy: view.getFloat64(24, true) } });
+  const part = (number) => new Float32Array(buffer.slice(32 + 4 * rows * columns * number, 32 + 4 * rows * columns * (number + 1)));
+  const heights = part(0), properties = {}, held = PROPERTIES.filter((_, bit) => (view.getUint32(12, true) >>> bit) & 1);
+  held.forEach((name, i) => { properties[name] = part(i + 1); });
+  return hear({ tell: "laid", surface: { heights, properties, rows, columns, dx: view.getFloat64(16, true), dy: view.getFloat64(24, true) } });
 }
 
 export class Socketed {

@@ -132,9 +132,15 @@ const OWN = {
   m: () => hands.turnSound(),
   g: () => hands.connectSpaceMouse().catch((error) => seen.note(error.message, true)),
   s: savePicture,
+  k: () => {
+    if (stage.grid) seen.note(stage.colourByNext() === "height" && Object.keys(stage.maps).length === 1
+      ? "each place has the properties of the scene: drop a GSF of Pa or J/m^2 to give them others" : `coloured by ${named(stage.shown)}`, false);
+  },
   n: () => byId("answer")?.focus(),
   e: () => seen.world && words.scene(sceneText(), (text) => taken(text), copyLink),
 };
+
+const named = (what) => table.constants.PROPERTY_NAMES[what]?.[0] ?? what;
 
 function own(name, event) {
   if (/^[0-5]$/.test(name)) stage.camera(name, seen.now && stage.apex(seen.now));

@@ -4,6 +4,7 @@
 import { digits, stepUp } from "./units.js";
 
 const BAND = 0.15, RING = 13; // of the picture's height: the band under the largest planned force; [pixels]
+const NARROW = 480; // a phone's [pixels]
 const squeezed = (share) => Math.sign(share) * Math.sqrt(Math.min(Math.abs(share), 1));
 
 export class Overlay {
@@ -31,25 +32,29 @@ export class Overlay {
     const pixels = Math.hypot(b[0] - a[0], b[1] - a[1]), y = painter.height - 22;
     painter.line([[18, y], [18 + pixels, y]], palette.ink, 3);
     painter.text(28 + pixels, y, digits(length, "m", 1), palette.ink);
-    if (!(grid.relief > 0)) return;
-    const table = palette.heights;
+    const { table, ends, shown } = stage, isHeight = shown === "height";
+    if (isHeight && !(grid.relief > 0)) return;
     for (let part = 0; part < 24; ++part) {
       const place = (part / 24) * (table.length - 1), i = Math.floor(place), share = place - i;
       const colour = table[i].map((low, k) => Math.round((1 - share) * low + share * table[Math.min(i + 1, table.length - 1)][k]));
       painter.area([[18 + 5 * part, y - 31], [24 + 5 * part, y - 31], [24 + 5 * part, y - 21], [18 + 5 * part, y - 21]], colour);
     }
-    const drawn = grid.factor === 1 ? "" : `, drawn ${grid.factor} times as high`;
-    painter.text(148, y - 26, `heights 0 to ${digits(grid.relief, "m")}${drawn}`, palette.ink);
+    const narrow = painter.width < NARROW;
+    const drawn = grid.factor === 1 ? "" : narrow ? `, x ${grid.factor}` : `, drawn ${grid.factor} times as high`;
+    const [name, unit] = isHeight ? [] : this.constants.PROPERTY_NAMES[shown];
+    painter.text(148, y - 26, isHeight ? `heights 0 to ${digits(grid.relief, "m")}${drawn}`
+      : `${name} ${ends.map((end) => digits(end, unit)).join(" to ")}`, palette.ink);
   }
 
   // Force at the tip and at the hand, signed, with ticks at what can just be told apart.
   #bars(seen, palette) {
     const { painter, constants } = this, { probe } = seen.world.rig, width = Math.min(220, 0.4 * painter.width);
     const noise = (probe.spring_constant * probe.sensitivity * probe.noise) / 6, scale = seen.world.settings.gains.alpha_f;
-    const full = Math.max(seen.load, 1.2 * seen.pullOff), left = painter.width - width - 12, low = painter.height - 136;
+    const full = Math.max(seen.load, 1.2 * seen.pullOff), left = painter.width - width - 12;
+    const narrow = painter.width < NARROW, low = narrow ? 12 : painter.height - 136; // above, where there is no room below
     painter.area([[left, low], [left + width, low], [left + width, low + 124], [left, low + 124]], palette.panel, 0.86);
     const told = seen.reading && !seen.stale ? seen.reading.force : 0;
-    const rows = [["at the tip", 1, constants.TIP_STEP * noise], ["at the hand", scale, constants.HAND_STEPS[1]]];
+    const rows = [[narrow ? "tip" : "at the tip", 1, constants.TIP_STEP * noise], [narrow ? "hand" : "at the hand", scale, constants.HAND_STEPS[1]]];
     rows.forEach(([name, factor, step], number) => {
       const y = low + 20 + 58 * number, a = left + 12, b = left + width - 12, middle = 0.5 * (a + b), half = 0.5 * (b - a);
       painter.text(a, y, name, palette.quiet);

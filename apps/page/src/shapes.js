@@ -34,7 +34,7 @@ export function grid({ heights, rows, columns, dx, dy }, most, relief) {
   }
   const factor = exaggeration((high - low) / unit, relief);
   const made = { heights: mean, rows: ny, columns: nx, unit, low, dx: (size * dx) / unit, dy: (size * dy) / unit, factor,
-    scale: factor / unit, ends: [low, Math.max(high, low + 1e-12)], relief: high - low };
+    scale: factor / unit, ends: [low, Math.max(high, low + Math.max(1e-12, 1e-9 * Math.abs(low)))], relief: high - low };
   made.width = nx * made.dx;
   made.height = ny * made.dy;
   // height of the drawn surface [m], linear between its points
@@ -63,6 +63,13 @@ export function tile(map, row, column, size) {
       normals.set([-slopeX / length, -slopeY / length, 1 / length], 3 * at);
     }
   return { points, normals, heights, cells: quads(rows, columns) };
+}
+
+// What another map of the same grid holds at the points of a tile.
+export function tileValues(map, [row, column], size) {
+  const rows = Math.min(size, map.rows - row), columns = Math.min(size, map.columns - column);
+  return Float32Array.from({ length: rows * columns }, (_, at) =>
+    map.heights[(row + Math.floor(at / columns)) * map.columns + column + (at % columns)]);
 }
 
 // A tip: a sphere that goes over into a cone, or a ball on a stem; its apex at 0.

@@ -12,7 +12,7 @@ import vtkOpenGLRenderWindow from "@kitware/vtk.js/Rendering/OpenGL/RenderWindow
 import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkRenderWindow from "@kitware/vtk.js/Rendering/Core/RenderWindow";
 import vtkRenderer from "@kitware/vtk.js/Rendering/Core/Renderer";
-import { grid, laidOn, ribbon, tile, turned } from "./shapes.js";
+import { grid, laidOn, ribbon, tile, tileValues, turned } from "./shapes.js";
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
 const unit = (colour) => colour.map((part) => part / 255);
@@ -66,10 +66,16 @@ export class Stage {
     for (const actor of [...this.tiles, ...(this.others ?? [])]) this.renderer.removeActor(actor);
     this.grid = grid(surface, MOST, this.constants.RELIEF);
     this.colours = vtkColorTransferFunction.newInstance();
-    this.tiles = [];
+    this.maps = { height: this.grid };
+    for (const [name, heights] of Object.entries(surface.properties ?? {}))
+      this.maps[name] = grid({ ...surface, heights }, MOST, this.constants.RELIEF);
+    this.shown = "height";
+    Object.assign(this, { tiles: [], places: [] });
     for (let row = 0; row < this.grid.rows - 1; row += TILE - 1)
-      for (let column = 0; column < this.grid.columns - 1; column += TILE - 1)
+      for (let column = 0; column < this.grid.columns - 1; column += TILE - 1) {
         this.tiles.push(this.#tile(row, column));
+        this.places.push([row, column]);
+      }
     this.rebuilt += this.grid.heights.byteLength;
     this.shadowData = [1, 0.7, 0.4].map(() => vtkPolyData.newInstance());
     this.shadows = this.shadowData.map((data) => {
@@ -108,11 +114,29 @@ export class Stage {
     this.palette = palette;
     this.renderer.setBackground(...unit(palette.panel), 1);
     if (!this.grid) return;
-    const [low, high] = this.grid.ends, table = palette.heights;
+    const [low, high] = this.ends, { table } = this;
     this.colours.removeAllPoints();
     table.forEach((colour, i) => this.colours.addRGBPoint(low + ((high - low) * i) / (table.length - 1), ...unit(colour)));
     this.colours.setMappingRange(low, high);
     for (const actor of [this.tip, this.lever]) actor?.getProperty().setColor(...unit(palette.tip));
+  }
+
+  // Of what is shown by colour; its colours from low to high.
+  get ends() { return this.maps[this.shown].ends; }
+  get table() { return this.constants.PROPERTY_COLOURS[this.shown] ?? this.palette.heights; }
+
+  // Height, then each property there is; what is shown now.
+  colourByNext() {
+    const names = Object.keys(this.maps);
+    this.shown = names[(names.indexOf(this.shown) + 1) % names.length];
+    this.tiles.forEach((actor, i) => {
+      const data = actor.getMapper().getInputData();
+      data.getPointData().setScalars(vtkDataArray.newInstance({ name: this.shown,
+        values: tileValues(this.maps[this.shown], this.places[i], TILE) }));
+      data.modified();
+    });
+    this.paint(this.palette);
+    return this.shown;
   }
 
   lights(on) {

@@ -18,6 +18,26 @@ export async function unpack(surface) {
   return { heights, rows, columns, dy: surface.pixel_size[0], dx: surface.pixel_size[1] };
 }
 
+export const PROPERTIES = ["youngs_modulus", "work_of_adhesion"]; // of each place, in the order of page.h
+
+// A row and a column more, as the last ones: the extent of a session's map is that of its pixels.
+export function edged(values, { rows, columns }) {
+  const made = new Float64Array((rows + 1) * (columns + 1));
+  for (let j = 0, at = 0; j <= rows; ++j)
+    for (let i = 0; i <= columns; ++i, ++at)
+      made[at] = values[Math.min(j, rows - 1) * columns + Math.min(i, columns - 1)];
+  return made;
+}
+
+// The values of a map at the pixels of another one that shows the same place: the nearest.
+export function stretched(map, { rows, columns }) {
+  const made = new Float64Array(rows * columns);
+  for (let j = 0, at = 0; j < rows; ++j)
+    for (let i = 0; i < columns; ++i, ++at)
+      made[at] = map.heights[Math.floor(((j + 0.5) * map.rows) / rows) * map.columns + Math.floor(((i + 0.5) * map.columns) / columns)];
+  return made;
+}
+
 export function extremes(heights) {
   let low = Infinity, high = -Infinity;
   for (const value of heights) {

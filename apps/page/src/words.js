@@ -10,6 +10,12 @@ export function element(name, about = {}, ...children) {
   return made;
 }
 
+function download(name, text) {
+  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+  element("a", { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 1000);
+}
+
 const STATES = ["good", "hold", "bad", "bad"];
 
 export class Words {
@@ -71,13 +77,19 @@ export class Words {
     const score = "score" in task && !task.name.startsWith("lesson")
       ? [element("p", { textContent: `${task.passed ? "passed" : "not passed"}, ${task.score.toFixed(0)} of 100` })] : [];
     board.replaceChildren(element("h2", { textContent: task.title }), ...score, element("p", { textContent: task.words }),
-      element("p", { textContent: task.now, className: "now quiet" }), this.#choices(task.choices), ...this.#answer(task),
+      element("p", { textContent: task.now, className: "now quiet" }), this.#choices(task.choices), ...this.#answer(task), ...this.#saved(task),
       element("button", { textContent: "End", onclick: () => this.ask({ do: "task", name: "" }) }));
   }
 
   #choices(choices) {
     return element("div", { className: "choices" }, ...choices.map((words, number) =>
       element("button", { onclick: () => this.ask({ do: "choose", number }) }, element("kbd", { textContent: `F${number + 1}` }), words)));
+  }
+
+  // The file of the result: here it is offered, elsewhere it has been written.
+  #saved({ name, csv, saved }) {
+    if (csv) return [element("button", { textContent: "Save the result (CSV)", onclick: () => download(`nanotouch-${name}.csv`, csv) })];
+    return saved ? [element("p", { className: "quiet", textContent: saved })] : [];
   }
 
   #answer({ asked }) {
@@ -131,7 +143,7 @@ export class Words {
 
   help() {
     this.#sheet("h", element("h2", { textContent: "Mouse, touch screen and keys" }),
-      element("dl", {}, ...[...this.table.help.filter(([key]) => !["Q", "K"].includes(key)), ["one finger, two fingers", "over the surface; down and up"],
+      element("dl", {}, ...[...this.table.help.filter(([key]) => key !== "Q"), ["one finger, two fingers", "over the surface; down and up"],
         ["E", "the scene as text and as a link"], ["G", "connect a SpaceMouse"]].flatMap(([key, does]) =>
         [element("dt", { textContent: key }), element("dd", { textContent: does })])));
   }
