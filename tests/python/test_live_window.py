@@ -169,6 +169,27 @@ def test_a_session_opens_a_window_that_watches(screen: str, monkeypatch: pytest.
     assert window.returncode == 0
 
 
+def test_a_window_leads_the_session_of_this_program(screen: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its wheel goes through the queue: the tip comes down, touches and presses."""
+    monkeypatch.setenv("DISPLAY", screen)
+    session = nt.Session(rig=nt.Rig(master={"motor": "no", "gauge": "no"}), seed=1, recorded=False)
+    window = session.live(hand=True)
+    environment, end = {**os.environ, "DISPLAY": screen}, time.monotonic() + PATIENCE
+    observer = nt.frames.attach(session._name)
+    try:
+        session.start("wall")
+        subprocess.run(["xdotool", "mousemove", "440", "380"], env=environment, check=True)
+        while observer.newest() is None or not observer.newest()["tip_force"][2] > 2e-8:
+            assert time.monotonic() < end, "the hand does not press"
+            subprocess.run(["xdotool", "click", "5"], env=environment, check=True)
+            time.sleep(0.02)
+        assert session.state == "RUN"
+    finally:
+        session.halt()
+        window.communicate(timeout=PATIENCE)
+        observer.close()
+
+
 def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("vtkmodules")
     monkeypatch.setattr("nanotouch._live.WINDOW", "nanotouch_app.live.nothing")

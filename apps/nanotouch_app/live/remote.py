@@ -60,6 +60,7 @@ class Remote:
         if self.observer.changes != self.described:
             text, self.described = self.observer.description, self.observer.changes
             self.world, self._changed = world_of(json.loads(text), self.name, LED if self.leads else WATCHED), True
+            self.world["hint"] = "Scroll down until you feel it." if self.leads else ""
             self.hand = None  # it begins anew where it is, in the world as it is now
         changed, self._changed = self._changed, False
         return copy.deepcopy(self.world) if changed else None
