@@ -113,15 +113,17 @@ static nt_status check_halves(const nt_session *session, nt_problem *problem)
     if (slave->period > 1.001 * period)
         return nt_problem_set(problem, "gains.rate", "Hz", 1.0 / period, 0.0, 1.0 / slave->period);
     if (session->now->setup.rig.stage.axes > 1.0 && slave->axes < 2)
-        return nt_problem_set(problem, "stage.axes", "", session->now->setup.rig.stage.axes, 1.0, slave->axes);
+        return nt_problem_set(problem, "stage.axes (this slave has fewer)", "", session->now->setup.rig.stage.axes, 1.0,
+                              slave->axes);
     if (!(slave->can & NT_CAN_FEEL))
         return nt_problem_set(problem, "slave that measures its deflection", "no|yes", 0.0, 1.0, 1.0);
     if (described->gauge != 0.0 && !(master->can & NT_CAN_FEEL))
-        return nt_problem_set(problem, "master.gauge", "no|yes", described->gauge, 0.0, 0.0);
+        return nt_problem_set(problem, "master.gauge (this master measures no force)", "no|yes", described->gauge, 0.0,
+                              0.0);
     if (described->motor != 0.0 && !(master->can & NT_CAN_PUSH))
-        return nt_problem_set(problem, "master.motor", "no|yes", described->motor, 0.0, 0.0);
+        return nt_problem_set(problem, "master.motor (this master has none)", "no|yes", described->motor, 0.0, 0.0);
     if (described->axes > master->axes)
-        return nt_problem_set(problem, "master.axes", "", described->axes, 1.0, master->axes);
+        return nt_problem_set(problem, "master.axes (this master has fewer)", "", described->axes, 1.0, master->axes);
     return NT_OK;
 }
 

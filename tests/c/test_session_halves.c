@@ -268,8 +268,8 @@ static void halves_that_do_not_fit_the_rig_are_refused(void **state)
         const char *field;
     } cases[] = {
         {{.can = NT_CAN_PUSH | NT_CAN_FEEL, .axes = 1, .period = 1e-2}, "master.rate (of the loop where it is 0)"},
-        {{.can = NT_CAN_PUSH, .axes = 1}, "master.gauge"},
-        {{.can = NT_CAN_FEEL, .axes = 1}, "master.motor"},
+        {{.can = NT_CAN_PUSH, .axes = 1}, "master.gauge (this master measures no force)"},
+        {{.can = NT_CAN_FEEL, .axes = 1}, "master.motor (this master has none)"},
     };
     nt_session_setup setup = nt_session_defaults();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -281,7 +281,7 @@ static void halves_that_do_not_fit_the_rig_are_refused(void **state)
     device d = {.describes_itself = 1, .says = {.can = NT_CAN_PUSH | NT_CAN_FEEL, .axes = 1}};
     setup.master = (nt_hal_choice){&hand, &d};
     setup.rig.master.axes = 3.0;
-    expect_refusal(&setup, NT_E_RANGE, "master.axes");
+    expect_refusal(&setup, NT_E_RANGE, "master.axes (this master has fewer)");
     setup = nt_session_defaults();
     device e = {.describes_itself = 1, .says = {.can = NT_CAN_FEEL, .axes = 3, .period = 1e-3}};
     setup.slave = (nt_hal_choice){&probe, &e};

@@ -86,7 +86,7 @@ static void what_a_stage_of_one_axis_cannot_do_is_refused(void **state)
     setup = bumpy_setup(3.0);
     setup.slave = (nt_hal_choice){&probe, &d};
     assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_RANGE); /* the rig says more than it has */
-    assert_string_equal(problem.field, "stage.axes");
+    assert_string_equal(problem.field, "stage.axes (this slave has fewer)");
 }
 
 int main(void)
