@@ -16,7 +16,7 @@ height = truth["contact_point"] - nt.contact.indentation("jkr", force, contact) 
 z = np.linspace(height[0], height[-1] + 300e-9, 1500)
 measured = np.interp(z, height, force, right=0.0) + NOISE * np.random.default_rng(1).standard_normal(z.size)
 
-time = np.arange(z.size) * 1e-4
+time = np.linspace(0.0, 1e-4 * (z.size - 1), z.size)
 retract = Segment("retract", time, z, "height (measured)", measured, measured / STIFFNESS)
 curve = ForceCurve((retract,), {"spring constant": STIFFNESS}, "synthetic")
 result = nt.fit.fit_curve(curve, "jkr", radius=20e-9)

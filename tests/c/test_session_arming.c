@@ -94,7 +94,7 @@ static void an_own_law_is_judged_by_what_it_does(void **state)
     expect_refusal(&setup, NT_E_NOT_FINITE, "stability margin (own law, of no kind that can be judged)");
 }
 
-static void setups_are_refused_by_name(void **state)
+static void setups_without_a_margin_are_refused(void **state)
 {
     (void)state;
     const nt_session_setup good = nt_session_defaults();
@@ -109,7 +109,13 @@ static void setups_are_refused_by_name(void **state)
     nt_session *session = open_session(&bad);
     assert_true(nt_session_margins(session).margin < 1.0);
     nt_session_close(session);
-    bad = good;
+}
+
+static void fields_out_of_range_are_refused_by_name(void **state)
+{
+    (void)state;
+    const nt_session_setup good = nt_session_defaults();
+    nt_session_setup bad = good;
     bad.minimum_margin = NAN;
     expect_refusal(&bad, NT_E_NOT_FINITE, "minimum_margin");
     bad.minimum_margin = -1.0;
@@ -192,7 +198,8 @@ static void the_promise_adds_what_cannot_be_seen(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(setups_are_refused_by_name),
+        cmocka_unit_test(setups_without_a_margin_are_refused),
+        cmocka_unit_test(fields_out_of_range_are_refused_by_name),
         cmocka_unit_test(modes_and_scales_are_judged_while_running),
         cmocka_unit_test(an_own_law_is_judged_by_what_it_does),
         cmocka_unit_test(the_promise_adds_what_cannot_be_seen),

@@ -68,9 +68,9 @@ class Options(TypedDict, total=False):
     20 000 of them in a period [rad]"""
     faults: Faults
     """what fails in the simulated halves, and when"""
-    master: Master | SharedObject | Converters
+    master: Master | SharedObject | Converters | None
     """one's own half instead of the simulated hand and master (:mod:`nanotouch.hal`, docs/hal.md)"""
-    slave: Slave | SharedObject | Converters
+    slave: Slave | SharedObject | Converters | None
     """one's own half instead of the simulated stage, probe and sample"""
     recorded: bool
     """False: no records are kept; for :meth:`Session.step`"""

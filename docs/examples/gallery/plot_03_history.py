@@ -14,7 +14,7 @@ import numpy as np
 contact = nt.Contact(radius=1e-6, effective_modulus=5e6, work_of_adhesion=0.05, range=1e-9)
 gap = np.linspace(150e-9, -60e-9, 1500)
 figure, axes = plt.subplots()
-for branch, label in (("approach", "in"), ("stable", "out")):
-    axes.plot(gap * 1e9, nt.contact.force("maugis", -gap, contact, branch) * 1e9, label=label)
+axes.plot(gap * 1e9, nt.contact.force("maugis", -gap, contact, "approach") * 1e9, label="in")
+axes.plot(gap * 1e9, nt.contact.force("maugis", -gap, contact, "stable") * 1e9, label="out")
 axes.set(xlabel="gap (nm)", ylabel="force on the tip (nN)")
 axes.legend()

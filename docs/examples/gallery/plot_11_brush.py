@@ -11,9 +11,9 @@ import nanotouch as nt
 import numpy as np
 
 gap = np.linspace(5e-9, 70e-9, 300)
-brush = {"radius": 1e-6, "thickness": 50e-9, "spacing": 5e-9}
 figure, axes = plt.subplots()
-axes.semilogy(gap * 1e9, nt.forces.steric(gap, **brush).F * 1e9, label="Alexander - de Gennes")
-axes.semilogy(gap * 1e9, nt.forces.steric(gap, **brush, exponential=True).F * 1e9, ":", label="exponential")
+for exponential, line, label in ((False, "-", "Alexander - de Gennes"), (True, ":", "exponential")):
+    law = nt.forces.steric(gap, radius=1e-6, thickness=50e-9, spacing=5e-9, exponential=exponential)
+    axes.semilogy(gap * 1e9, law.F * 1e9, line, label=label)
 axes.set(xlabel="gap (nm)", ylabel="repulsion (nN)", ylim=(1e-3, None))
 axes.legend()

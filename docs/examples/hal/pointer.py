@@ -8,6 +8,7 @@ import struct
 import time
 import zlib
 from collections import deque
+from typing import Any
 
 import nanotouch as nt
 
@@ -35,7 +36,7 @@ class Pointer(nt.hal.Master):
 
     def __init__(self, port: int) -> None:
         self.address = ("127.0.0.1", port)
-        self.link: socket.socket | None = None
+        self.link: Any = None  # a socket while it is open
         self.refused = 0  # datagrams
 
     def describe(self):
