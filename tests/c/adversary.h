@@ -17,6 +17,7 @@ typedef struct closeness {
     double worst_force, promised_force; /* [N] */
     double worst_time;                  /* since the tare began [s] */
     double stopped;                     /* the first stop, 0: none [s] */
+    double rehearsed;                   /* the worst force without the fault [N] */
     double last_time, idle;             /* of it, a stop has not lifted for so long [s] */
     int worst_pulls;                    /* 1: at the end of that tick the tip was drawn to the sample */
     int stops, opened;
@@ -145,11 +146,12 @@ static inline void draw_plot(plot *p, dice *d, closeness *found)
     const double quick = p->settings.gains.alpha_p / p->setup.rig.master.damping;
     const double seconds = p->kind == ATTACK_DYNAMIC ? between(d, 0.001, 0.02) : between(d, 0.01, 0.1);
     p->setup.clearance = smaller(larger(seconds * quick, 1e-9), 100e-9);
+    dice fault_dice = {.genes = d->genes ? d->genes + GENES - FAULT_GENES : NULL};
     p->believed = p->setup.rig;
     p->setup.settings = p->settings;
     draw_errors(p, d);
     if (p->kind == ATTACK_FAULT)
-        draw_fault(p, d, found);
+        draw_fault(p, d->genes ? &fault_dice : d, found);
     p->setup.faults = &p->faults;
     p->setup.probe_model = p->kind == ATTACK_DYNAMIC ? NT_PROBE_DYNAMIC : NT_PROBE_QUASI_STATIC;
     p->setup.seed = (uint64_t)(1e9 * throw_dice(d));

@@ -10,7 +10,7 @@
 
 typedef enum attack { ATTACK_QUASI_STATIC, ATTACK_DYNAMIC, ATTACK_FAULT, ATTACKS } attack;
 
-enum { GENES = 400, MAP = 40 };
+enum { GENES = 400, FAULT_GENES = 10, MAP = 40 }; /* the last ones are the fault's */
 typedef struct dice {
     nt_random random;
     double *genes; /* NULL: random numbers */
