@@ -125,3 +125,15 @@ def test_the_demo_ends_in_the_live_view_where_somebody_is_there(
     assert told in said
     assert 'nanotouch live "my image.gwy"' in said
     assert begun == ([["live", "my image.gwy"]] if terminal and not display else [])
+
+
+def test_a_window_that_has_left_may_still_be_told_something(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What it did not hear any more is no error, neither then nor when the wire is closed."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    desk = desks.Desk(nt.surface.grating())
+    desk.process.kill()
+    desk.process.wait()
+    desk.tell({"tell": "note", "text": "nobody hears it"})
+    assert desk.process.stdin is not None
+    desk.close()
+    assert desk.process.stdin.closed
