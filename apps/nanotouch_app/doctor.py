@@ -19,7 +19,7 @@ from nanotouch import hal
 from nanotouch.errors import Error
 from nanotouch.extras import ADDS, EXTRAS, advice
 
-from nanotouch_app import view
+from nanotouch_app import output, view
 from nanotouch_app.live import display, hands
 
 OK, MISSING = "ok", "--"
@@ -39,7 +39,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the findings; status 0 whatever they are."""
-    found = sections()
+    with output.busy("looking"):
+        found = sections()
     args.answer = {
         "version": nanotouch.__version__, "python": platform.python_version(), "prefix": sys.prefix,
         "findings": {

@@ -15,6 +15,8 @@ from nanotouch_app import output
 
 _META = (("instrument", ""), ("date", ""), ("spring constant", "N/m"), ("sensitivity", "m/V"), ("setpoint", "N"))
 _LISTED = 20  # curves of a map that are listed one by one
+Answer = tuple[list[str], dict[str, Any]]
+"""lines for a reader, and the same as data, SI"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -34,18 +36,25 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print what ``args.file`` holds; raises :class:`nanotouch.errors.Error` where it is none of them."""
     with output.busy("reading"):
-        lines = describe(args.file, args.untrusted)
-    args.answer = {"file": str(args.file), "lines": lines}
+        lines, facts = _described(args.file, args.untrusted)
+    args.answer = {"file": str(args.file), **facts}
     print("\n".join(lines))
     return 0
 
 
 def describe(file: Path, untrusted: bool = False) -> list[str]:
-    """The lines of the answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
+    """What a file holds, in lines."""
+    return _described(file, untrusted)[0]
+
+
+def _described(file: Path, untrusted: bool) -> Answer:
+    """The answer. Some endings serve both kinds (.ibw, .h5), so what the file is decided by reading it."""
     if record.is_recording(file):
         return _describe_recording(file)
     if file.suffix.lower() == ".tnd":
         return _describe_thermal(file)
+    if file.suffix.lower() == ".toml" and file.is_file():
+        raise ReadError(f"{file}: a TOML file: nanotouch plan reads a scene, nanotouch rig check a rig")
     problems: list[ReadError | MissingExtra] = []
     for kind in (_describe_curves, _describe_image):
         try:
@@ -61,7 +70,7 @@ def describe(file: Path, untrusted: bool = False) -> list[str]:
     raise ReadError(f"{file}: as a force curve: {reasons[0]}; as an image: {reasons[1]}")
 
 
-def _describe_recording(file: Path) -> list[str]:
+def _describe_recording(file: Path) -> Answer:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of damage: it is told as what the recording lacks
         recording = record.read(file)
@@ -72,10 +81,13 @@ def _describe_recording(file: Path) -> list[str]:
         "  " + ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in facts.items()),
         f"  columns: {', '.join(recording.columns)}",
     ]
-    return lines if recording.incomplete is None else [*lines, f"  INCOMPLETE: {recording.incomplete}"]
+    lines += [] if recording.incomplete is None else [f"  INCOMPLETE: {recording.incomplete}"]
+    times = [float(recording.time[0]), float(recording.time[-1])] if len(recording) else None
+    known = {"kind": "recording", "rows": len(recording), "time_s": times, "incomplete": recording.incomplete}
+    return lines, known | {name: recording.metadata.get(name) for name in facts} | {"columns": list(recording.columns)}
 
 
-def _describe_thermal(file: Path) -> list[str]:
+def _describe_thermal(file: Path) -> Answer:
     found = curves.thermal_spectrum(file)
     lines = [f"{file.name}: thermal spectrum, {found.frequency.size} points up to {found.frequency[-1] / 1e3:.4g} kHz"]
     for name, value, unit in (
@@ -83,10 +95,14 @@ def _describe_thermal(file: Path) -> list[str]:
         ("spring constant", found.spring_constant, "N/m"),
     ):
         lines.append(f"  {name}: {'not stated' if value is None else f'{value:.4g} {unit}'}")
-    return lines
+    return lines, {
+        "kind": "thermal spectrum", "points": int(found.frequency.size),
+        "highest_frequency_Hz": float(found.frequency[-1]),
+        "sensitivity_m_per_V": found.sensitivity, "spring_constant_N_per_m": found.spring_constant,
+    }  # fmt: skip
 
 
-def _describe_image(file: Path, untrusted: bool) -> list[str]:
+def _describe_image(file: Path, untrusted: bool) -> Answer:
     listed = images.channels(file, untrusted=untrusted)
     lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
     for channel in listed:
@@ -95,19 +111,34 @@ def _describe_image(file: Path, untrusted: bool) -> list[str]:
         unit = channel.unit or "not stated"
         mark = "  <- read by default" if channel.default else ""
         lines.append(f"  {channel.name:24} {channel.kind:11} {shape}, {size}, unit {unit}{mark}")
+    facts: dict[str, Any] = {"kind": "image", "channels": [_channel(channel) for channel in listed]}
     try:
         topography = images.read(file, untrusted=untrusted)
     except ReadError as error:
-        return [*lines, f"  cannot be touched as it is: {str(error).removeprefix(f'{file}: ')}"]
+        reason = str(error).removeprefix(f"{file}: ")
+        return [*lines, f"  cannot be touched as it is: {reason}"], facts | {"cannot_be_touched": reason}
     low, high = topography.heights.min() * 1e9, topography.heights.max() * 1e9
     dy, dx = topography.pixel_size
     lines.append(f"  heights {low:.4g} .. {high:.4g} nm, pixel {dx * 1e9:.4g} x {dy * 1e9:.4g} nm, {topography.source}")
     if topography.masked_pixels:
         lines.append(f"  {topography.masked_pixels} missing pixels, filled from their neighbours")
-    return lines + [f"  note: {note}" for note in topography.notes]
+    facts |= {
+        "heights_m": [low * 1e-9, high * 1e-9], "pixel_size_m": [dx, dy], "reader": topography.source,
+        "missing_pixels": int(topography.masked_pixels), "notes": list(topography.notes),
+    }  # fmt: skip
+    return lines + [f"  note: {note}" for note in topography.notes], facts
 
 
-def _describe_curves(file: Path, untrusted: bool) -> list[str]:
+def _channel(channel: images.Channel) -> dict[str, Any]:
+    """x before y, as the lines have it."""
+    return {
+        "name": channel.name, "kind": channel.kind, "unit": channel.unit or None, "default": channel.default,
+        "pixels": None if channel.shape is None else [int(count) for count in channel.shape[::-1]],
+        "size_m": None if channel.size is None else [float(side) for side in channel.size[::-1]],
+    }  # fmt: skip
+
+
+def _describe_curves(file: Path, untrusted: bool) -> Answer:
     found = curves.read(file, untrusted=untrusted)
     first = found[0]
     lines = [f"{file.name}: {len(found)} force curve{'s' if len(found) > 1 else ''}, {first.meta.get('format', '')}"]
@@ -120,7 +151,22 @@ def _describe_curves(file: Path, untrusted: bool) -> list[str]:
         lines.append(f"  curve {curve.meta.get('enum', 0)}: " + "; ".join(_segment(s) for s in curve.segments))
     if len(found) > _LISTED:
         lines.append(f"  and {len(found) - _LISTED} more")
-    return lines
+    names = {f"{key} {unit}".strip().replace(" ", "_").replace("/", "_per_"): key for key, unit in _META}
+    return lines, {
+        "kind": "force curves", "curves": len(found), "format": first.meta.get("format"),
+        **{name: first.meta.get(key) for name, key in names.items()},
+        "notes": list(first.meta.get("notes", ())),
+        "segments": [[_facts(segment) for segment in curve.segments] for curve in found],
+    }  # fmt: skip
+
+
+def _facts(segment: curves.Segment) -> dict[str, Any]:
+    force = segment.force
+    return {
+        "role": segment.role, "points": len(segment), "z_channel": segment.z_channel,
+        "z_m": [float(segment.z[0]), float(segment.z[-1])],
+        "force_N": None if force is None else [float(force.min()), float(force.max())],
+    }  # fmt: skip
 
 
 def _segment(segment: curves.Segment) -> str:

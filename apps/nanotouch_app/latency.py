@@ -46,7 +46,8 @@ def measured(args: argparse.Namespace) -> rig_file.Latency:
     rate = parse_quantity(args.rate, "Hz")
     if not 1.1 <= rate <= 1e6:
         raise InvalidValue(f"--rate {args.rate}: valid is 1.1 Hz .. 1 MHz")
-    return rig_file.latency(1.0 / rate, args.seconds, priority=args.priority, processor=args.processor)
+    with output.busy(f"waking up for {args.seconds:g} s"):
+        return rig_file.latency(1.0 / rate, args.seconds, priority=args.priority, processor=args.processor)
 
 
 def tell(found: rig_file.Latency, priority: int) -> None:

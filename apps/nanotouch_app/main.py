@@ -29,7 +29,7 @@ COMMANDS = (
 )  # fmt: skip
 EPILOG = """exit status:
   0    done
-  1    done, and the answer is no (margins: refused; fit: no curve), or nobody read it
+  1    done, and the answer is no (margins: refused; rig probe: too slow; fit: no curve), or nobody read it
   2    refused, with the reason
   70   a bug of nanotouch; NANOTOUCH_DEBUG=1 shows its traceback
   130  stopped by Ctrl-C (128 and the number of the signal)

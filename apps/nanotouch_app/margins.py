@@ -94,8 +94,9 @@ def _recorded(args: argparse.Namespace) -> int:
     given = [name for name in ("rate", "delay", "force_range", "path") if getattr(args, name) is not None]
     if given or args.control != "default" or args.mode != "point":
         raise InvalidValue(f"{args.scene}: a recording holds its own rate, law, mode, delay and scales")
-    recording = record.read(args.scene)
-    felt = margins.of_recording(recording)
+    with output.busy("reading"):
+        recording = record.read(args.scene)
+        felt = margins.of_recording(recording)
     with output.folder(args, FILES) as out:
         print(_felt(felt))
         facts = {

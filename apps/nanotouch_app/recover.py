@@ -9,6 +9,8 @@ from typing import Any
 
 from nanotouch import record
 
+from nanotouch_app import output
+
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
@@ -21,7 +23,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    out, recording = record.recover(args.file, args.out)
+    with output.busy("reading"):
+        out, recording = record.recover(args.file, args.out)
     args.answer = {"file": str(out), "rows": len(recording), "until_s": float(recording.time[-1]),
                    "incomplete": recording.incomplete}  # fmt: skip
     print(f"{out}: {len(recording)} rows up to {recording.time[-1]:.6g} s, incomplete: {recording.incomplete}")

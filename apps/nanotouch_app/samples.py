@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     require("gwyfile", "images")
     require("mcap", "record")
-    with output.folder(args, FILES) as out:
+    with output.folder(args, FILES) as out, output.busy("writing"):
         images.write(out / "scan.gwy", _image(), title="Height")
         nt.curves.write(out / "curve.h5", [_curve(1)])
         nt.curves.write(out / "map.h5", _map())

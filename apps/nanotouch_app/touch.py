@@ -145,11 +145,12 @@ def _session(args: argparse.Namespace) -> nt.Session:
         "surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed,
         "control": args.control, "probe_model": args.probe_model,
     }  # fmt: skip
-    session = nt.Session(
-        scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),
-        delay=loop.delay_of(args.delay), minimum_margin=0.0,
-        gains=loop.felt(tables, args.force_range, scene, rig), **what,
-    )  # fmt: skip
+    with output.busy("planning"):
+        session = nt.Session(
+            scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),
+            delay=loop.delay_of(args.delay), minimum_margin=0.0,
+            gains=loop.felt(tables, args.force_range, scene, rig), **what,
+        )  # fmt: skip
     found = session.margins()
     if not found.least >= args.minimum_margin:
         raise InvalidValue(

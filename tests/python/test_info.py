@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ for module in ("SurfaceTopography", "cv2", "afmformats"):
 
 from nanotouch.errors import ReadError  # noqa: E402
 from nanotouch_app import info  # noqa: E402
+from nanotouch_app.main import main  # noqa: E402
 
 
 def answer(file: Path, capsys: pytest.CaptureFixture[str]) -> str:
@@ -23,6 +25,26 @@ def answer(file: Path, capsys: pytest.CaptureFixture[str]) -> str:
     args = parser.parse_args(["info", str(file)])
     assert args.run(args) == 0
     return capsys.readouterr().out
+
+
+def test_as_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    heights = synthetic.asymmetric()
+    path = synthetic.write_ibw_image(tmp_path / "image.ibw", {"PhaseTrace": heights, "HeightTrace": heights}, 1.25e-7)
+    assert main(["info", str(path), "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert [(row["name"], row["default"]) for row in facts["channels"]] == [
+        ("PhaseTrace", False),
+        ("HeightTrace", True),
+    ]
+    assert facts["channels"][1]["pixels"] == [32, 24]  # along x, along y
+    assert facts["channels"][1]["size_m"] == pytest.approx([4e-6, 3e-6], rel=1e-6)  # 32-bit numbers in the file
+    assert facts["heights_m"] == pytest.approx([0.0, 40e-9], rel=1e-6)
+
+
+def test_a_scene_is_sent_to_its_command(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text("[tip]\nradius_nm = 20\n")
+    with pytest.raises(ReadError, match="nanotouch plan"):
+        info.describe(tmp_path / "scene.toml")
 
 
 def test_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
