@@ -49,7 +49,7 @@ class Calm(NamedTuple):
         return self.least >= 1.0
 
     def facts(self) -> dict[str, float | str]:
-        """All of it in one level, for a file; the parts by the field behind them."""
+        """All numbers in one flat dict, for a file; each part under the name of the field that causes it."""
         facts: dict[str, float | str] = {name: value for name, value in self._asdict().items() if name != "parts"}
         return facts | {f"ripple of {source[1]}": part for source, part in zip(SOURCES, self.parts, strict=True)}
 

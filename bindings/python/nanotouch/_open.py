@@ -117,7 +117,7 @@ class Runs:
         return Progress(**self.core.progress)
 
     def rewind(self, duration: float) -> None:
-        """Of a simulated session that runs: back by a time [s], to the nearest quarter of a second before that."""
+        """Take a running simulation back by a time [s], to the last quarter of a second before that moment."""
         if not 0.0 <= duration < math.inf:
             raise InvalidValue(f"rewind: {duration} s: it must be a time of 0 s or more")
         self.core.rewind(duration)
@@ -131,7 +131,7 @@ class Runs:
         self.describe()
 
     def describe(self) -> None:
-        """Renew what observers read of this session: how it is now. Its changes do so by themselves; what an observer
+        """Renew the description that observers read. Changes of this session renew it by themselves; what an observer
         has changed is told at the next :meth:`read`, or by this."""
         if self._is_published:
             about = {name: value for name, value in self.metadata().items() if name != "events"} | self._now()

@@ -220,7 +220,7 @@ class Description(Mapping[str, float]):
         return nested
 
     def plain(self, name: str) -> float | str:
-        """The value of a field, of a choice its name."""
+        """The value of a field; for a choice, its name."""
         choices = self.fields[name].choices
         return choices[int(self[name])] if choices else self[name]
 

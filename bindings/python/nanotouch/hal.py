@@ -33,7 +33,7 @@ NONE = (math.nan, math.nan, math.nan)
 
 
 class Channel(NamedTuple):
-    """One channel of a half, read or driven; all numbers in its unit."""
+    """One channel of a half, read or driven. All its numbers are in its own unit; latency is in seconds."""
 
     name: str
     unit: str
@@ -90,7 +90,7 @@ class Half(NamedTuple):
     channels: tuple[Channel, ...]
 
     def channel(self, name: str) -> Channel:
-        """The one of this name."""
+        """The channel of this name."""
         for row in self.channels:
             if row.name == name:
                 return row
@@ -164,11 +164,11 @@ class _Half:
         session logs it as a warning of the logger ``nanotouch.hal``."""
 
     def describe(self) -> Capabilities:
-        """What it can do."""
+        """Say what this half can do; unless overridden, a position device of one axis."""
         return Capabilities()
 
     def configure(self, configuration: Configuration) -> None:
-        """Take what the loop says."""
+        """Take the loop's period, the lift and the user's option; may wait."""
 
     def arm(self) -> None:
         """Get ready: the next :meth:`read` has a position."""
@@ -188,11 +188,17 @@ class _Half:
 
 
 class Master(_Half):
-    """Base of a master written in Python: a mouse, a haptic device, a script."""
+    """Base of a master written in Python: a mouse, a haptic device, a script.
+
+    Override :meth:`describe` and :meth:`read`; with motors :meth:`write`, too. docs/devices.md has a whole one.
+    """
 
 
 class Slave(_Half):
-    """Base of a slave written in Python: a stage and a probe."""
+    """Base of a slave written in Python: a stage and a probe.
+
+    Override :meth:`describe`, :meth:`read` and :meth:`write`, and :meth:`disarm`, which lifts the tip.
+    """
 
     def describe(self) -> Capabilities:
         """What it can do: by default all three axes and the deflection."""

@@ -22,7 +22,7 @@ _Kind = TypeVar("_Kind", bound="Interaction")
 
 
 class State(NamedTuple):
-    """The history of one contact."""
+    """What a contact remembers: whether it holds, and the energy that it has lost and been given."""
 
     attached: bool = False
     """in contact, or held by a meniscus or by the attraction that contact has left"""
@@ -75,7 +75,7 @@ class Interaction:
         return _value(self._core.eval(rows), single)
 
     def advance(self, pose: ArrayLike) -> Value:
-        """Go to a pose, or through poses in their order, and commit history; returns what :meth:`eval` gives there."""
+        """Move to a pose, or through poses in order, and keep the history; returns what :meth:`eval` gives there."""
         rows, single = _rows(pose)
         return _value(self._core.run(rows), single)
 

@@ -175,7 +175,7 @@ def resolution(rig: Rig, settings: Settings, slave_path: float) -> Resolution:
 
 
 class ForceRange(NamedTuple):
-    """Forces on the tip [N], + repulsive."""
+    """The forces on the tip [N], + repulsive, that shall fill the range of the hand."""
 
     lowest: float
     highest: float

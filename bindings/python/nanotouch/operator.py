@@ -87,7 +87,7 @@ def _along(value: object, name: str) -> float | tuple[float, float, float]:
 
 
 class Touch(Protocol):
-    """What a script needs to know of a session."""
+    """The part of a session that a script of the hand needs: path, rig, scales and plan."""
 
     rig: Rig
     clearance: float

@@ -167,7 +167,7 @@ class Plan:
         return self.core.stable_step(mass)
 
     def explain(self) -> dict[str, Any]:
-        """The plan as data, SI: numbers, names, lists and dicts of one's own; ``nanotouch plan --json`` writes it."""
+        """The plan as a new dict of numbers, names and lists, SI; ``nanotouch plan --json`` writes it."""
         facts = copy.deepcopy(self._facts)
         facts["terms"] = [term._asdict() for term in self._all_terms()]
         facts["warnings"] = [warning._asdict() for warning in self.warnings]

@@ -67,14 +67,14 @@ class Scene(SceneFields, core_type=_core.Scene):
         self._describe_terms()
 
     def remove_term(self, name: str) -> None:
-        """Take a law of one's own out."""
+        """Remove a law that :meth:`add_term` has added."""
         if name not in self._terms:
             raise InvalidValue(f"terms.{name}: the scene has {', '.join(self._terms) or 'no law of one own'}")
         del self._terms[name]
         self._describe_terms()
 
     def term_force(self, name: str, gap: float) -> float:
-        """Force of a law of one's own [N] at a gap [m], by its own function."""
+        """Force of an added law [N] at a gap [m], computed by the function that was added."""
         term = self._terms[name][0]
         return float(term.force(gap, **self._term_values(name)))
 

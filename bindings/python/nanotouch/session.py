@@ -340,7 +340,7 @@ class Session(Runs, Frozen):
         return [[tick, name, numbers] for tick, name, numbers in self._events]
 
     def arm(self, confirmed: bool = False) -> None:
-        """Back to RUN after RETRACT; after LATCHED only with ``confirmed``."""
+        """Go back to RUN after RETRACT. After LATCHED this needs ``confirmed``: somebody has looked at the rig."""
         self.core.arm(confirmed)
 
     def set_mode(self, mode: Mode) -> None:
@@ -352,9 +352,9 @@ class Session(Runs, Frozen):
         self.describe()
 
     def rescale(self, alpha_p: float | None = None, alpha_f: float | None = None) -> None:
-        """Change the scales [m/m], [N/N] while running: without a bump, and as far as it is passive (docs/control.md).
+        """Change the scales [m/m], [N/N] while running. The stage does not jump, and the loop stays passive.
 
-        Refused where the loop would run closer to its stability limit than the session's minimum.
+        A rise may wait until the hand has paid its energy (docs/control.md). Refused where the loop would run closer to its stability limit than the session's minimum.
         """
         now = self.settings.gains
         self.core.rescale(now.alpha_p if alpha_p is None else alpha_p, now.alpha_f if alpha_f is None else alpha_f)

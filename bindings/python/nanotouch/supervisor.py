@@ -172,5 +172,5 @@ class Supervisor:
         return Verdict(STATES[state], tuple(name for bit, name in enumerate(REASONS) if reasons >> bit & 1))
 
     def arm(self, confirmed: bool = False) -> None:
-        """Back to RUN after RETRACT; after LATCHED only with ``confirmed``."""
+        """Go back to RUN after RETRACT. After LATCHED this needs ``confirmed``: somebody has looked at the rig."""
         self._core.arm(confirmed)
