@@ -65,38 +65,45 @@ typedef struct nt_chip_span {
     double low, high; /* [V] */
 } nt_chip_span;
 
-/* How many chips are known, and each of them. NULL beyond the last one. */
+/* How many chips are known. */
 NT_API int nt_chip_count(void);
+/* The chip of an index, 0 .. nt_chip_count() - 1; NULL for any other. */
 NT_API const nt_chip *nt_chip_at(int index);
 /* By its name, as it is written on the chip. NULL if it is not known. */
 NT_API const nt_chip *nt_chip_find(const char *name);
 
-/* The voltage of a code, and the step between two codes [V]. Real-time safe. */
+/* The voltage of a code [V]. Real-time safe. */
 NT_API NT_REALTIME double nt_chip_volts(const nt_chip *chip, const nt_chip_span *span, int32_t code);
+/* The step between two codes [V], > 0. Real-time safe. */
 NT_API NT_REALTIME double nt_chip_step(const nt_chip *chip, const nt_chip_span *span);
 /* The lowest and the highest code that are used. A DAC's two end codes are left out: a bus that hangs at 0 or 1 reads
  * back as one of them. */
 NT_API NT_REALTIME int32_t nt_chip_lowest(const nt_chip *chip);
+/* The highest code that is used; nt_chip_lowest says what is left out. */
 NT_API NT_REALTIME int32_t nt_chip_highest(const nt_chip *chip);
 /* The code nearest to a voltage. NT_E_NOT_FINITE, or NT_E_RANGE outside those codes; *code is then left alone. */
 NT_API NT_REALTIME nt_status nt_chip_code(const nt_chip *chip, const nt_chip_span *span, double volts, int32_t *code);
 
 /* --- frames of a DAC; channel and code must be ones that it has --- */
 
+/* The frame that sets a channel to a code. */
 NT_API NT_REALTIME nt_chip_frame nt_chip_write(const nt_chip *chip, int channel, int32_t code);
 /* The question for what a channel holds. The answer comes with the next frame. */
 NT_API NT_REALTIME nt_chip_frame nt_chip_ask(const nt_chip *chip, int channel);
+/* A frame that changes nothing: it fetches the answer to the one before. */
 NT_API NT_REALTIME nt_chip_frame nt_chip_nothing(const nt_chip *chip);
 /* The code in an answer; its bits above the code are not looked at. */
 NT_API NT_REALTIME int32_t nt_chip_code_of(const nt_chip *chip, const uint8_t *bytes);
 /* The control register for such a span: 1 if the chip has one, else 0 and nothing is written. */
 NT_API int nt_chip_control(const nt_chip *chip, const nt_chip_span *span, nt_chip_frame *set, nt_chip_frame *ask);
-/* Of the answer to that question: is it what was set, and is the output off (at ground)? */
+/* Of the answer to that question: is it what was set (1), or not (0)? */
 NT_API int nt_chip_is_set(const nt_chip *chip, const nt_chip_span *span, const uint8_t *bytes);
+/* Of the same answer: is the output off, at ground (1), or not (0)? */
 NT_API int nt_chip_is_off(const nt_chip *chip, const uint8_t *bytes);
 
 /* --- frames of an ADC --- */
 
+/* The frame that fetches a sample, of the channel that the chip has. */
 NT_API NT_REALTIME nt_chip_frame nt_chip_poll(const nt_chip *chip);
 
 /* What is wrong with an answer. */

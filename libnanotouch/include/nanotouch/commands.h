@@ -24,7 +24,7 @@ extern "C" {
 typedef struct nt_request {
     uint64_t id; /* given by nt_client_post; unique within the session */
     uint32_t kind, field;
-    double value[4];
+    double value[4]; /* [SI, by kind] */
 } nt_request;
 
 /* 24 bytes. */
@@ -49,12 +49,14 @@ typedef struct nt_client nt_client;
 
 /* As nt_observer_attach and nt_observer_of. */
 NT_API nt_status nt_client_attach(nt_client **client, const char *name);
+/* The same for frames of this process; as nt_observer_of. */
 NT_API nt_status nt_client_of(nt_client **client, nt_frames *frames);
 /* Gives the lease back. Accepts NULL. */
 NT_API void nt_client_close(nt_client *client);
 
 /* Takes or renews the lease, for NT_LEASE_TERM from now. NT_E_STATE while another client holds it. */
 NT_API nt_status nt_client_lease(nt_client *client);
+/* Gives the lease back, so that another client may take it; nothing where this client has none. */
 NT_API void nt_client_release(nt_client *client);
 
 /* Posts a request, writes its id and renews the lease. NT_E_STATE without the lease, NT_E_CAPACITY if NT_REQUESTS wait

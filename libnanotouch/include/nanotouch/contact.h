@@ -39,12 +39,14 @@ typedef enum nt_branch {
 
 /* --- Hertz, 1881 (paper, Eq. 4): F = 4/3 E* sqrt(R) delta^1.5, a = sqrt(R delta); all 0 for delta <= 0. --- */
 NT_API nt_law_value nt_hertz_eval(const nt_contact *contact, double indentation);
+/* Its force alone [N], without the rest of the law; indentation [m]. */
 NT_API double nt_hertz_force(const nt_contact *contact, double indentation);
 /* delta(F) for F >= 0; NaN for F < 0. */
 NT_API double nt_hertz_indentation(const nt_contact *contact, double force);
 
 /* --- DMT, Derjaguin, Muller, Toporov 1975 (paper, Eq. 9): Hertz - 2 pi R w; all 0 for delta < 0. --- */
 NT_API nt_law_value nt_dmt_eval(const nt_contact *contact, double indentation);
+/* Its force alone [N], without the rest of the law; indentation [m]. */
 NT_API double nt_dmt_force(const nt_contact *contact, double indentation);
 /* delta(F) for F >= -2 pi R w; NaN below. */
 NT_API double nt_dmt_indentation(const nt_contact *contact, double force);
@@ -68,13 +70,13 @@ NT_API double nt_jkr_pull_off_indentation(const nt_contact *contact);
 /* Where a branch ends or turns, in Maugis' units: load in pi w R, radius in (pi w R^2/K)^(1/3),
  * indentation in (pi^2 w^2 R/K^2)^(1/3). */
 typedef struct nt_maugis_folds {
-    double pull_off_load, pull_off_radius, pull_off_indentation; /* load fold: dead weight falls off */
-    double grip_load, grip_radius, grip_indentation;             /* displacement fold: grips let go */
+    double pull_off_load, pull_off_radius, pull_off_indentation; /* load fold: dead weight falls off [reduced] */
+    double grip_load, grip_radius, grip_indentation;             /* displacement fold: grips let go [reduced] */
     int grip_in_contact; /* 1: the displacement fold lies on the contact branch (lambda > 0.9379); 0: on the non-contact
                             one */
-    double zero_load_radius, zero_load_indentation;
-    double touch_load, touch_indentation; /* the a = 0 end of the contact branch */
-    double onset_indentation;             /* where attraction starts on approach: -2/(pi lambda) (gap = h0) */
+    double zero_load_radius, zero_load_indentation; /* [reduced] */
+    double touch_load, touch_indentation;           /* the a = 0 end of the contact branch [reduced] */
+    double onset_indentation; /* where attraction starts on approach: -2/(pi lambda) (gap = h0) [reduced] */
 } nt_maugis_folds;
 
 /* A Maugis-Dugdale contact made ready: scales and folds. Immutable after nt_maugis_init; may be shared and copied. */
@@ -84,8 +86,8 @@ typedef struct nt_maugis {
     double radius_scale;      /* (pi w R^2/K)^(1/3) [m] */
     double indentation_scale; /* (pi^2 w^2 R/K^2)^(1/3) [m] */
     nt_maugis_folds folds;    /* reduced */
-    double fold_y;            /* branch parameter y of the displacement fold, 0 if it is not in contact */
-    double load_fold_y;       /* branch parameter y of the load fold */
+    double fold_y;            /* branch parameter y of the displacement fold, 0 if it is not in contact [-] */
+    double load_fold_y;       /* branch parameter y of the load fold [-] */
     nt_contact contact;
 } nt_maugis;
 
@@ -115,9 +117,10 @@ NT_API double nt_maugis_onset_gap(const nt_maugis *maugis);
 /* The contact branch at its parameter y in (0, inf): reduced radius, load, indentation, energy, and the derivatives
  * dP/dy, dd/dy. The basis of everything above; for fits and continuation. */
 typedef struct nt_maugis_point {
-    double a, P, d, U;   /* reduced */
-    double dP_dy, dd_dy; /* reduced */
+    double a, P, d, U;   /* [reduced] */
+    double dP_dy, dd_dy; /* [reduced] */
 } nt_maugis_point;
+/* NT_E_NOT_FINITE, or NT_E_RANGE unless lambda > 0 and y >= 0; *point is then left alone. */
 NT_API nt_status nt_maugis_at(double lambda, double y, nt_maugis_point *point);
 
 /* --- Sneddon 1965, non-adhesive --- */
@@ -139,7 +142,9 @@ typedef struct nt_contact_law {
     nt_model model;
     nt_maugis maugis; /* prepared for NT_MAUGIS; .contact holds the parameters for every model */
 } nt_contact_law;
+/* Checks the contact and prepares what the law needs; returns what the check refuses. */
 NT_API nt_status nt_contact_law_init(nt_contact_law *law, nt_model model, const nt_contact *contact);
+/* {U, F, k, a} at an indentation [m] on a branch; fails as the law that was chosen. */
 NT_API nt_status nt_contact_law_eval(const nt_contact_law *law, double indentation, nt_branch branch,
                                      nt_law_value *value);
 /* Pull-off force under load control, positive [N]; 0 for Hertz. */
@@ -147,6 +152,7 @@ NT_API double nt_contact_law_pull_off_force(const nt_contact_law *law);
 /* The last indentation that the STABLE branch holds under grips [m]; below it the bodies are apart. */
 NT_API double nt_contact_law_grip_indentation(const nt_contact_law *law);
 
+/* The same over arrays of indentations [m], by the rule of all arrays above. */
 NT_API nt_status nt_contact_law_eval_n(const nt_contact_law *law, nt_branch branch, const nt_strided *arrays);
 
 #ifdef __cplusplus

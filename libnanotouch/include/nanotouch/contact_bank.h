@@ -19,31 +19,31 @@ extern "C" {
 
 /* Coefficients of a cell (contact_table.h), each a cubic in t, the place in the panel. */
 typedef struct nt_maugis_bank_cell {
-    double F[4][4], a[4][4], U[4]; /* U and F above what they are at a = 0, below 0.9379 */
+    double F[4][4], a[4][4], U[4]; /* U and F above what they are at a = 0, below 0.9379 [reduced] */
 } nt_maugis_bank_cell;
 
 /* How far a bank is from the exact law over some lambda, away from folds; measured when it was made, between the
  * lambdas and indentations that it was made from. */
 typedef struct nt_bank_error {
     double force;      /* over max(|F|, the pull-off force) [-] */
-    double stiffness;  /* over max(|k|, 1), reduced */
-    double radius;     /* over max(a, 1), reduced */
-    double fold_shift; /* of the grip indentation, reduced */
+    double stiffness;  /* over max(|k|, 1) [reduced] */
+    double radius;     /* over max(a, 1) [reduced] */
+    double fold_shift; /* of the grip indentation [reduced] */
 } nt_bank_error;
 
 typedef struct nt_maugis_panel {
-    double low, high; /* of the distance max(lambda/0.9379, 0.9379/lambda) - 1; t = 0 .. 1 */
-    double start[8];  /* the fold above 0.9379: divided differences */
-    double rate, u_end;
-    int first, count; /* its cells */
+    double low, high;   /* of the distance max(lambda/0.9379, 0.9379/lambda) - 1; t = 0 .. 1 [-] */
+    double start[8];    /* the fold above 0.9379: divided differences [-] */
+    double rate, u_end; /* [-] */
+    int first, count;   /* its cells */
     nt_bank_error error;
 } nt_maugis_panel;
 
 typedef struct nt_maugis_bank_options {
-    double lambda_min, lambda_max;
-    double largest_indentation; /* reduced */
-    int panels_per_octave;      /* of the distance from 0.9379; 1, 2, 4 .. 64 */
-    int cells_per_octave;       /* as in a table */
+    double lambda_min, lambda_max; /* [-] */
+    double largest_indentation;    /* [reduced] */
+    int panels_per_octave;         /* of the distance from 0.9379; 1, 2, 4 .. 64 */
+    int cells_per_octave;          /* as in a table */
 } nt_maugis_bank_options;
 /* lambda 0.01 .. 100, indentation up to 100, 4 panels and 4 cells per octave. */
 NT_API nt_maugis_bank_options nt_maugis_bank_defaults(void);
@@ -90,6 +90,7 @@ typedef struct nt_bank_value {
     nt_law_value law;
     double dU_dR; /* [J/m] */
 } nt_bank_value;
+/* nt_maugis_bank_eval, with how the energy changes with the radius; fails as that does. */
 NT_API nt_status nt_maugis_bank_eval_radius(const nt_maugis_bank *bank, const nt_contact *contact, double indentation,
                                             nt_branch branch, nt_bank_value *value);
 /* Where the STABLE branch of nt_maugis_bank_eval_* ends under grips [m]: apart below it. 0 for w = 0; NaN for a contact

@@ -36,9 +36,10 @@ NT_API nt_status nt_contact_law_at_load(const nt_contact_law *law, double force,
 /* How reduced load and radius change with indentation (at constant lambda) and with lambda (at constant indentation):
  * what fits need. Explicit in y. */
 typedef struct nt_maugis_partials {
-    double P_d, P_lambda;
-    double a_d, a_lambda;
+    double P_d, P_lambda; /* [reduced] */
+    double a_d, a_lambda; /* [reduced] */
 } nt_maugis_partials;
+/* At the parameter y of nt_maugis_at, and failing as that does. */
 NT_API nt_status nt_maugis_partials_at(double lambda, double y, nt_maugis_partials *partials);
 
 /* The last equilibrium before the pull-off under a spring k_c >= 0 [N/m], INFINITY for grips. */
@@ -46,9 +47,9 @@ NT_API nt_status nt_maugis_spring_fold(const nt_maugis *maugis, double spring, n
 
 /* Both jumps under a spring. Gaps are those of the stage, -D [m]: what is read off a force curve. */
 typedef struct nt_jump {
-    double jump_in_gap;      /* where approach jumps; the force is 0 until there */
+    double jump_in_gap;      /* where approach jumps; the force is 0 until there [m] */
     nt_contact_state landed; /* just after it */
-    double pull_off_gap;     /* where retraction loses the contact; NaN for a dead weight, which has no stage */
+    double pull_off_gap;     /* where retraction loses the contact; NaN for a dead weight, which has no stage [m] */
     nt_contact_state last;   /* just before it; -last.value.F is the pull-off force */
 } nt_jump;
 /* Of every law. Hertz does not jump: everything is at its first touch. NT_E_RANGE for a spring < 0. */

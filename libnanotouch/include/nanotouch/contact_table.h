@@ -48,7 +48,7 @@ typedef struct nt_maugis_table {
     double start;                /* lowest tabulated indentation: the fold, or a = 0 where that is no fold [m] */
     double largest_indentation;  /* [m] */
     double rate;                 /* 1/Zs [m^-1/2] */
-    double u_end;                /* start of the cell beyond the end */
+    double u_end;                /* start of the cell beyond the end [-] */
     nt_accuracy accuracy[2];     /* of NT_TIER_TABLE and NT_TIER_POLISHED, measured when it was made */
 } nt_maugis_table;
 
@@ -73,6 +73,7 @@ NT_API nt_status nt_maugis_table_eval(const nt_maugis_table *table, nt_tier tier
 /* Force alone on the stable branch [N], from the table and polished; NaN for NaN and +infinity, 0 for
  * -infinity (apart). */
 NT_API double nt_maugis_table_force(const nt_maugis_table *table, double indentation);
+/* The same polished; away from the folds at rounding level. */
 NT_API double nt_maugis_table_polish(const nt_maugis_table *table, double indentation);
 
 /* Arrays. force[i] from indentation[i], contiguous, the same array allowed; bit for bit what nt_maugis_table_force and

@@ -33,7 +33,7 @@ typedef struct nt_curve {
     double spring_constant; /* k_c [N/m]; NaN: unknown */
     /* How far drag puts the free retraction below the free approach, 2 D of a lever that moves with +-v [N]. It cannot
      * be told from two free branches; lever and medium, or curves at two speeds, bound it. most_drag 0: unknown. */
-    double least_drag, most_drag;
+    double least_drag, most_drag; /* [N] */
 } nt_curve;
 
 /* Doubles of work that a curve of so many points, both branches together, needs. */
@@ -43,7 +43,7 @@ NT_API long nt_curve_work_size(long points);
 
 /* The mean of n neighbouring points has the variance white/n + flicker [N^2]. */
 typedef struct nt_curve_noise {
-    double white, flicker;
+    double white, flicker; /* [N^2] */
 } nt_curve_noise;
 
 /* Standard deviation of white noise from differences of neighbours, so that no shape of the curve enters [N]: 1.4826
@@ -107,12 +107,13 @@ NT_API nt_status nt_curve_fit_baseline(const nt_curve_segment *segment, const nt
                                        nt_curve_baseline *baseline, nt_problem *problem);
 /* Its force at z [N], and the standard uncertainty of that [N]. */
 NT_API double nt_curve_baseline_at(const nt_curve_baseline *baseline, double z);
+/* The standard uncertainty of that force [N], at the same z [m]. */
 NT_API double nt_curve_baseline_sigma(const nt_curve_baseline *baseline, double z);
 
 /* --- Events of a branch --- */
 
 typedef struct nt_curve_measured {
-    double value, sigma; /* SI; NaN where the curve does not show it */
+    double value, sigma; /* [SI]; NaN where the curve does not show it */
 } nt_curve_measured;
 
 /* A branch with its baseline taken off, from the deepest point outwards. */

@@ -17,8 +17,8 @@ extern "C" {
  * x).
  */
 typedef struct nt_oscillator {
-    double xv, vv, xf, vf;
-    double k; /* k [N/m] */
+    double xv, vv, xf, vf; /* [s], [-], [m/N], [m/(N s)] */
+    double k;              /* k [N/m] */
 } nt_oscillator;
 
 /* --- probe: the force that it feels --- */
@@ -37,6 +37,7 @@ typedef struct nt_cantilever_state {
     double speed;        /* zeta' [m/s]; 0 in the quasi-static model */
     uint64_t unresolved; /* sub-steps of the dynamic model that were coarser than its accuracy asks for */
 } nt_cantilever_state;
+/* At rest with its base at a height [m]. */
 NT_API nt_cantilever_state nt_cantilever_at(double base_height);
 
 /* --- probe: quasi-static cantilever (Eq. 2-3 at rest): k_c zeta = F(z_t), z_t = z_b + zeta cos(alpha) --- */
@@ -65,7 +66,7 @@ enum { NT_CANTILEVER_LEVELS = 20 }; /* a period is halved at most this often */
 typedef struct nt_cantilever_substep {
     nt_oscillator oscillator;
     double length;   /* h [s] */
-    double noise[3]; /* Cholesky factor of the thermal motion over h: zeta; zeta' with zeta; zeta' alone */
+    double noise[3]; /* Cholesky factor of the thermal motion over h: zeta [m]; zeta' with zeta, zeta' alone [m/s] */
 } nt_cantilever_substep;
 typedef struct nt_cantilever_model {
     nt_probe probe;
@@ -97,9 +98,10 @@ typedef struct nt_stage_state {
 typedef struct nt_stage_model {
     nt_oscillator oscillator;           /* of x_s over one period, k = 1 */
     double period;                      /* [s] */
-    double creep_rate[NT_STAGE_CREEPS]; /* share of the way that is crept per period */
+    double creep_rate[NT_STAGE_CREEPS]; /* share of the way that is crept per period [-] */
     nt_stage stage;
 } nt_stage_model;
+/* Prepares one period [s] of the stage's motion. NT_E_RANGE or NT_E_NOT_FINITE for a period that is not above 0. */
 NT_API nt_status nt_stage_model_init(nt_stage_model *model, const nt_stage *stage, double period);
 /* The plays as they stand at this command on the way through the middle of the loop: P[u] = u. */
 NT_API NT_REALTIME void nt_stage_set_plays(nt_stage_state *state, double command);
@@ -108,6 +110,7 @@ typedef struct nt_stage_load {
     double force;     /* f where the stage is [N] */
     double stiffness; /* k >= 0 [N/m] */
 } nt_stage_load;
+/* One period under a command x_s [m] and what the probe pulls with. */
 NT_API NT_REALTIME void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double command,
                                       const nt_stage_load *load);
 
@@ -126,6 +129,7 @@ typedef struct nt_hand_state {
     double rest;         /* where the hand's spring is at rest [m] */
     double random_force; /* of the adversary, now [N] */
 } nt_hand_state;
+/* Sets a new target from where the hand is now, so that nothing jumps. */
 NT_API void nt_hand_aim(nt_hand_state *hand, const nt_hand_target *target);
 /* Where the hand is now (duration unused): the force is the script's. */
 NT_API NT_REALTIME nt_hand_target nt_hand_now(const nt_hand_state *hand);
@@ -160,9 +164,9 @@ NT_API NT_REALTIME double nt_master_grip_force(const nt_master_model *model, con
 
 /* --- sensor: gain 1, white noise, range, steps --- */
 typedef struct nt_sensor {
-    double noise;      /* standard deviation, in the unit of the value */
-    double resolution; /* step, 0 for none */
-    double range;      /* saturates at +- this */
+    double noise;      /* standard deviation [unit of the value] */
+    double resolution; /* step, 0 for none [unit of the value] */
+    double range;      /* saturates at +- this [unit of the value] */
 } nt_sensor;
 /* Noise, then steps, then saturation. NaN in, NaN out. noise may be NULL where noise is 0. */
 NT_API NT_REALTIME double nt_sensor_read(const nt_sensor *sensor, double value, nt_noise *noise);

@@ -50,7 +50,7 @@ typedef struct nt_fault {
     nt_channel channel;
     double start;    /* on the rig's clock [s] */
     double duration; /* [s], > 0; infinite: it stays */
-    double value;    /* by kind: see the table */
+    double value;    /* by kind: see the table [unit of the kind] */
 } nt_fault;
 
 enum { NT_FAULTS_MAX = 16 };
@@ -63,12 +63,12 @@ typedef struct nt_faults {
 
 /* One kind. */
 typedef struct nt_fault_description {
-    const char *name; /* "nan", "stuck", ...; static storage */
-    const char *unit; /* of the value, "" if it has none or takes that of the channel */
-    const char *doc;  /* what it does */
-    double value;     /* usual */
-    double minimum;   /* of the value */
-    double maximum;
+    const char *name;  /* "nan", "stuck", ...; static storage */
+    const char *unit;  /* of the value, "" if it has none or takes that of the channel */
+    const char *doc;   /* what it does */
+    double value;      /* usual [unit of the kind] */
+    double minimum;    /* of the value [unit of the kind] */
+    double maximum;    /* [unit of the kind] */
     int row;           /* of the fault table in docs/safety.md */
     unsigned channels; /* bit 1 << nt_channel where it may be */
 } nt_fault_description;

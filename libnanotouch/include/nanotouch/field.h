@@ -16,7 +16,7 @@ extern "C" {
 typedef struct nt_field {
     const char *name;        /* dotted, "probe.spring_constant"; static storage */
     const char *unit;        /* SI, "" if none; "no|yes": a choice, of which the field holds the number 0, 1, .. */
-    double minimum, maximum; /* valid range, both ends included */
+    double minimum, maximum; /* valid range, both ends included [unit] */
     unsigned offset;         /* of the double inside the description [byte] */
     const char *doc;         /* what it is, in a few words, with the paper's symbol */
 } nt_field;
@@ -31,6 +31,8 @@ NT_API nt_status nt_field_check(const nt_field *fields, int count, const void *o
 
 /* Reads and writes one field of an object; no range check. */
 NT_API double nt_field_get(const nt_field *field, const void *object);
+/* Writes a value in the field's SI unit, of a choice its number. It is not checked: that is for the object's own check.
+ */
 NT_API void nt_field_set(const nt_field *field, void *object, double value);
 
 #ifdef __cplusplus

@@ -60,7 +60,7 @@ enum { NT_FIT_OWN = NT_FIT_CONTACT_POINT };
  * logarithm. */
 typedef struct nt_fit_quantity {
     const char *name, *unit;
-    double initial, minimum, maximum; /* initial NaN: guessed from the data */
+    double initial, minimum, maximum; /* initial NaN: guessed from the data [unit] */
 } nt_fit_quantity;
 
 /* A law of the user's own. force fills force[i] [N] at indentation[i] [m] for i < count, NaN where there is none, and
@@ -75,9 +75,9 @@ typedef struct nt_fit_law {
 } nt_fit_law;
 
 typedef struct nt_fit_start {
-    double initial;          /* SI; NaN: guessed from the data (not possible for a fixed one) */
-    double minimum, maximum; /* bounds, SI */
-    double sigma;            /* > 0: initial is a datum of this standard uncertainty, SI; needs force_noise */
+    double initial;          /* [SI]; NaN: guessed from the data (not possible for a fixed one) */
+    double minimum, maximum; /* bounds, [SI] */
+    double sigma;            /* > 0: initial is a datum of this standard uncertainty, [SI]; needs force_noise */
     int fixed;               /* 1: stays at initial */
 } nt_fit_start;
 
@@ -126,9 +126,9 @@ typedef struct nt_fit_data {
 enum { NT_FIT_MESSAGE = 300 };
 
 typedef struct nt_fit_result {
-    double value[NT_FIT_PARAMETERS]; /* SI; those of the model that are fixed too; NaN for those not in the model */
-    double sigma[NT_FIT_PARAMETERS]; /* standard uncertainty, SI; 0 if fixed, +infinity in the null space */
-    double covariance[NT_FIT_PARAMETERS][NT_FIT_PARAMETERS]; /* SI; 0 if fixed, NaN beside an infinite variance */
+    double value[NT_FIT_PARAMETERS]; /* [SI]; those of the model that are fixed too; NaN for those not in the model */
+    double sigma[NT_FIT_PARAMETERS]; /* standard uncertainty, [SI]; 0 if fixed, +infinity in the null space */
+    double covariance[NT_FIT_PARAMETERS][NT_FIT_PARAMETERS]; /* [SI]; 0 if fixed, NaN beside an infinite variance */
     double from_tear[NT_FIT_PARAMETERS]; /* part of the variance that comes from the tear's position [-] */
     int identifiable[NT_FIT_PARAMETERS];
     double residual_rms;     /* of the force [N] */
@@ -136,8 +136,8 @@ typedef struct nt_fit_result {
     int residuals_are_noise; /* 0: the model does not describe the points, and sigma is too small. Looked for at a ratio
                                 of residual_rms (from the median with a robust loss) to residual_noise or force_noise
                                 above 1.5 + 4/sqrt(count) */
-    double misfit;           /* reduced chi^2 against force_noise; NaN if that is 0. The covariance is scaled up by it
-                                if > 1 */
+    double misfit; /* reduced chi^2 against force_noise [-]; NaN if that is 0. The covariance is scaled up by it
+                      if > 1 */
     double transition_parameter; /* Maugis' lambda [-]; NaN for other models */
     double pull_off_force;       /* of the fitted contact, positive [N]; NaN for NT_FIT_CUSTOM, as the next two */
     double contact_radius;       /* a at the deepest point [m] */
@@ -156,7 +156,7 @@ NT_API nt_status nt_fit_run(const nt_fit_options *options, const nt_fit_data *da
 typedef struct nt_fit_point {
     double force;                       /* as measured: F0 + G (X - X_b) + F/s [N] */
     double indentation;                 /* delta [m] */
-    double gradient[NT_FIT_PARAMETERS]; /* d force/d parameter, SI */
+    double gradient[NT_FIT_PARAMETERS]; /* d force/d parameter, [SI] */
     int held;                           /* 1: on the branch; 0: where the cantilever has (almost) torn the tip off */
 } nt_fit_point;
 /* The model at every position of data (data->force is not read) into point[i], i < data->count; parameter values in SI
@@ -191,7 +191,7 @@ typedef struct nt_fit_recipe {
     int fit_offset;                     /* 1: the force offset is free; 0: known as well as the baseline is */
     int held[NT_FIT_PARAMETERS];        /* 1: of sensitivity, offset, tilt, stays at its value in options */
     double lowest_force, highest_force; /* only points between these are fitted [N]; -inf, inf: all */
-    double sensitivity_uncertainty;     /* of the deflection, relative; 0: exact */
+    double sensitivity_uncertainty;     /* of the deflection, relative [-]; 0: exact */
 } nt_fit_recipe;
 /* The retraction for adhesive models, else the approach; all its points, a sensitivity known to 3 %. */
 NT_API nt_fit_recipe nt_fit_recipe_defaults(nt_fit_model model);
@@ -229,7 +229,7 @@ typedef struct nt_fit_outcome {
     nt_fit_reading reading; /* NaN where the curve could not be read */
     nt_fit_result fit;      /* value, sigma, rms, ... NaN and identifiable 0 where status is not NT_OK */
     unsigned flags;         /* nt_fit_flag */
-    double rating;          /* nt_fit_rating; NaN where status is not NT_OK */
+    double rating;          /* nt_fit_rating; NaN where status is not NT_OK [-] */
 } nt_fit_outcome;
 
 /* Fits count curves in up to `threads` threads (0: one per processor). Every outcome is written; none depends on
@@ -239,6 +239,7 @@ typedef struct nt_fit_curves {
     long count;
     int threads;
 } nt_fit_curves;
+/* Fits all of them as told above, by one recipe. */
 NT_API nt_status nt_fit_batch(const nt_fit_recipe *recipe, const nt_fit_curves *curves, nt_fit_outcome *outcome);
 
 #ifdef __cplusplus

@@ -66,6 +66,7 @@ typedef struct nt_jkr_shape {
     double effective_modulus; /* E* [Pa], > 0 */
     double work_of_adhesion;  /* w [J/m^2], >= 0 */
 } nt_jkr_shape;
+/* NT_OK, or the first field that is wrong, in *problem; NT_E_UNSUPPORTED for another shape. */
 NT_API nt_status nt_jkr_shape_check(const nt_jkr_shape *contact, nt_problem *problem);
 /* {U, F, k, a} on a branch. A punch has none that is UNSTABLE (NT_E_NO_SOLUTION): it lets go with its whole face. */
 NT_API nt_status nt_jkr_shape_eval(const nt_jkr_shape *contact, double indentation, nt_branch branch,

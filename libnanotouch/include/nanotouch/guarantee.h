@@ -55,6 +55,7 @@ typedef struct nt_guarantee {
     double frame_drift;          /* ... a stop that cannot lift is pressed by this much more in a second [N/s] */
     int moves_sideways; /* 0: the stage has one axis, and all this holds at the place where the session starts */
 } nt_guarantee;
+/* The sums above for a rig, settings and what the path holds ready; nothing is simulated. */
 NT_API nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard);
 
 #ifdef __cplusplus

@@ -32,7 +32,9 @@ typedef struct nt_hal_choice {
  * its open says. host may be NULL. */
 NT_API nt_status nt_hal_open(nt_hal *hal, nt_half half, const nt_hal_choice *choice, const nt_host *host,
                              nt_problem *problem);
+/* Tells an open half period and limits. NT_E_STATE if it is not open; else what its backend says. */
 NT_API nt_status nt_hal_configure(nt_hal *hal, const nt_configuration *configuration, nt_problem *problem);
+/* Lets the half move from now on. NT_E_STATE if it is not open; else what its backend says. */
 NT_API nt_status nt_hal_arm(nt_hal *hal);
 /* A new reading into hal->reading, or the last one held. A half that is gone, whose sequence runs backwards or that
  * gives what it does not call valid shows that in hal->reading.flags and as NaN: NT_OK. So does one that fails with any

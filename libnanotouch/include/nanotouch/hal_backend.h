@@ -25,12 +25,12 @@ typedef struct nt_channel_row {
     const char *unit; /* SI: "m", "N" */
     int driven;       /* 0: it is read; 1: it is driven */
     int axis;         /* NT_X, NT_Y, NT_Z */
-    double minimum;   /* of its range */
-    double maximum;
-    double step;    /* of its converter, 0: none is known */
-    double noise;   /* standard deviation */
-    double latency; /* from the moment measured to the reading, or from the write to its effect [s] */
-    double safe;    /* driven: what disarm leaves it at, NaN: a position that stays where it is; read: NaN */
+    double minimum;   /* of its range [unit] */
+    double maximum;   /* [unit] */
+    double step;      /* of its converter, 0: none is known [unit] */
+    double noise;     /* standard deviation [unit] */
+    double latency;   /* from the moment measured to the reading, or from the write to its effect [s] */
+    double safe;      /* driven: what disarm leaves it at, NaN: a position that stays where it is; read: NaN [unit] */
 } nt_channel_row;
 
 /* What a half can do. */

@@ -67,6 +67,7 @@ NT_API nt_status nt_gpio_laser(nt_gpio *gpio, int on);
 /* The next edge of the watchdog; a pulse of the conversion line. NT_E_STATE if it is not wired, NT_E_DEVICE if it is
  * gone. */
 NT_API nt_status nt_gpio_beat(nt_gpio *gpio);
+/* A pulse of the conversion line; fails as nt_gpio_beat. */
 NT_API nt_status nt_gpio_convert(nt_gpio *gpio);
 /* The lines of a half on converters: what is not wired is left alone. A lost input is an emergency stop; a lost laser
  * or watchdog line counts in lost_outputs of nt_gpio_state. */

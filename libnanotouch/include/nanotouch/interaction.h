@@ -40,6 +40,7 @@ NT_API NT_REALTIME nt_law_value nt_interaction_eval_gap(const nt_plan *plan, con
 /* Commits history once per accepted step: captured (contact, meniscus formed) or let go (pull-off, meniscus ruptured),
  * with what that dissipates. A pose that is not a number changes nothing. */
 NT_API NT_REALTIME void nt_interaction_advance(const nt_plan *plan, nt_interaction_state *state, const nt_pose *pose);
+/* The same at a place of the surface and a gap [m], for callers that have both. */
 NT_API NT_REALTIME void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state,
                                                    const nt_place *place, double gap);
 

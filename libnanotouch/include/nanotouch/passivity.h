@@ -38,6 +38,7 @@ typedef struct nt_passivity_state {
     uint32_t trips;
 } nt_passivity_state;
 #define NT_PASSIVITY_STORE 10.0
+/* What the observer needs of a rig and its gains; both have been checked. */
 NT_API nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains);
 /* hand: (f_m, x_m), in; where there is no gauge (-tau_m, x_m), of the motor force that has been held since the last
  * step; tip: (alpha_f f_s, x_s/alpha_p), out. Returns the gain factor. */

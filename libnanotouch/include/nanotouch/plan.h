@@ -32,7 +32,9 @@ typedef struct nt_demand {
 } nt_demand;
 /* 1 % of the force, no floor, no budget. */
 NT_API nt_demand nt_demand_defaults(void);
+/* The table of the demand's fields, with units and ranges; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_demand_fields(int *count);
+/* NT_OK, or the first field that is out of its range, in *problem (NULL allowed). */
 NT_API nt_status nt_demand_check(const nt_demand *demand, nt_problem *problem);
 
 /* One term of the plan, in or out. */
@@ -51,7 +53,7 @@ typedef struct nt_plan_term {
 typedef struct nt_plan_warning {
     const char *text;    /* what; static storage */
     const char *unit;    /* of the two numbers */
-    double value, limit; /* limit: NaN where it is not a matter of size */
+    double value, limit; /* limit: NaN where it is not a matter of size [unit] */
 } nt_plan_warning;
 enum { NT_PLAN_WARNINGS_MAX = 26 };
 
@@ -173,6 +175,7 @@ NT_API nt_status nt_plan_make(nt_plan *plan, const nt_plan_inputs *inputs, nt_pr
 /* The same in two steps, from the same inputs, for a bank that is made between them: nt_plan_begin finds the contact
  * and does not read inputs->bank, nt_plan_decide chooses. Each fails as nt_plan_make. */
 NT_API nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
+/* The second step; of a plan that nt_plan_begin has left with NT_OK. */
 NT_API nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
 /* Of a plan that was begun: 1 and the options of the bank that serves its contact at every place of the surface, 0 if
  * none could be of use (a flat, or adhesion that is none or has no range). The range of lambda is that of all
@@ -180,6 +183,7 @@ NT_API nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_
  * factor of 1.5 to spare; twice as fine below a demand of 1e-4. */
 NT_API int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options);
 
+/* A copy that stands by itself: its pointers lead into the copy. Both share scene, bank and surface. */
 NT_API void nt_plan_copy(nt_plan *copy, const nt_plan *plan);
 
 /* One law of the scene in its fullest form, in the plan or not, at a gap [m]; of contact what holds on retraction. Zero

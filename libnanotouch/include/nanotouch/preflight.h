@@ -45,8 +45,9 @@ typedef struct nt_preflight_state {
     nt_tare sums[2];     /* of the halves */
     nt_tare tare;        /* found; valid from PASSED on */
     double rest, lifted; /* sums of the read-out before the move and after it [m] */
-    double measure;      /* what the verdict is about, in the unit of its limit */
+    double measure;      /* what the verdict is about [unit of its limit] */
 } nt_preflight_state;
+/* What preflight does and allows on this rig, from its noise, ranges and rate. */
 NT_API nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings);
 /* One period. The command leaves motor and lateral position alone. */
 NT_API NT_REALTIME nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflight_state *state,

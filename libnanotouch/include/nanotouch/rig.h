@@ -104,6 +104,7 @@ NT_API nt_rig nt_rig_with_steps(const nt_rig *rig);
 /* The stage without its own servo: steps of 1 nm, hysteresis 15 %, creep 1 % per decade (usual for PZT, not in the
  * paper); and behind its servo: steps of 10 nm, neither (Sec. IV-C). */
 NT_API nt_stage nt_stage_open_loop(void);
+/* The same stage behind its own servo: steps of 10 nm, no hysteresis, no creep (Sec. IV-C). */
 NT_API nt_stage nt_stage_closed_loop(void);
 
 /* Effective mass of the cantilever's end, 0.24 m_c = k_c/(2 pi f_0)^2 [kg]. */

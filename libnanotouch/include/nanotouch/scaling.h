@@ -20,6 +20,7 @@ typedef struct nt_scaling {
 NT_API nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction);
 /* Goldfarb's rules for l = alpha_p << 1: structure dominated 1/l, surface dominated 1/l^2 (Sec. IV-C). */
 NT_API nt_scaling nt_scaling_structure(double alpha_p);
+/* The surface dominated rule: alpha_f = 1/alpha_p^2. */
 NT_API nt_scaling nt_scaling_surface(double alpha_p);
 
 /* --- changes while running. At the operator's scale the contact holds the energy (alpha_f/alpha_p) S, S the work that
@@ -45,7 +46,9 @@ typedef struct nt_rescale_state {
     double tank;          /* [J] */
     double last_position; /* x_s [m] */
 } nt_rescale_state;
+/* What scales may change by on this rig, from its damping and rate; both have been checked. */
 NT_API nt_rescale nt_rescale_make(const nt_rig *rig, const nt_settings *settings);
+/* At these scales, free of contact, with an empty tank. */
 NT_API nt_rescale_state nt_rescale_start(const nt_rescale *rescale, const nt_scaling *scaling);
 /* One period: the tip's force [N], the stage [m], the master's speed [m/s]. Moves `now` towards `wanted` and region. */
 NT_API NT_REALTIME void nt_rescale_step(const nt_rescale *rescale, nt_rescale_state *state, double slave_force,

@@ -117,6 +117,7 @@ typedef enum nt_adhesion_source {
     NT_ADHESION_SOLID,   /* atoms against atoms: w, over the range of the atomic potential */
     NT_ADHESION_MENISCUS /* water bridge: w = 2 gamma_L over h0 = 2 r1, the Laplace pressure (erratum E12) */
 } nt_adhesion_source;
+/* Of a scene that has been checked: by its medium, its adhesion and whether a meniscus forms. */
 NT_API nt_adhesion_source nt_scene_adhesion_source(const nt_scene *scene);
 /* r1: as given, or by the Kelvin equation from humidity and temperature [m]. */
 NT_API double nt_scene_meniscus_radius(const nt_scene *scene);

@@ -59,6 +59,7 @@ typedef struct nt_servo_shape {
     nt_gains gains;
     double contact_stiffness; /* [N/m] */
 } nt_servo_shape;
+/* For a contact of this stiffness [N/m], >= 0, by the law that the settings choose. */
 NT_API nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness);
 /* Of the loop that the virtual tool closes by itself (force, tool, stage), over a delay [s]: below 1 it oscillates, and
  * no observer sees it; infinite without a coupling. */

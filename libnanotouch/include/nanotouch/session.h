@@ -37,10 +37,10 @@ typedef struct nt_session_setup {
     double clearance; /* L, height of the tip above the surface at the start [m] */
     double rise; /* how far the master shall be able to draw back from a rising surface [m]; NaN: what is reached */
     uint64_t seed;
-    long ring_capacity; /* records held between two reads, rounded up to a power of two; 0: nothing is recorded */
-    double
-        minimum_margin; /* refuse to open below this stability margin; 0: never, and a law of one's own is not tried */
-    int preflight;      /* 1: tare and sign test before the first tick (preflight.h) */
+    long ring_capacity;    /* records held between two reads, rounded up to a power of two; 0: nothing is recorded */
+    double minimum_margin; /* refuse to open below this stability margin; 0: never, and a law of one's own is not tried
+                              [-] */
+    int preflight;         /* 1: tare and sign test before the first tick (preflight.h) */
     nt_probe_model probe_model;
     double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_faults *faults; /* of the simulated halves from their switching on, before preflight; NULL: none */
@@ -110,7 +110,7 @@ typedef struct nt_event {
     uint64_t tick;
     uint32_t kind; /* nt_event_kind */
     uint32_t field;
-    double value[4];
+    double value[4]; /* [SI, by kind] */
 } nt_event;
 
 /* Opens a session, its halves armed. On failure *problem names what is wrong: a field of the setup, nt_verdict.field if
@@ -141,7 +141,9 @@ NT_API nt_status nt_session_arm(nt_session *session, int confirmed);
 /* NT_E_RANGE with the rule and the margin in *problem (NULL allowed) where the loop would run closer to its limit than
  * minimum_margin. */
 NT_API nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *problem);
+/* The scales [m/m], [N/N] that the operator wants; reached without a bump. Refused as nt_session_set_mode. */
 NT_API nt_status nt_session_rescale(nt_session *session, const nt_scaling *scaling, nt_problem *problem);
+/* Lets go of the stage (1), to move the master alone, or couples both again from where they stand (0). */
 NT_API nt_status nt_session_clutch(nt_session *session, int open);
 /* Changes one field of nt_settings_fields (NT_EVENT_SETTING) or nt_scene_fields (NT_EVENT_SCENE), by its name. Plan,
  * bank, margins and guarantee are made anew outside the loop, which runs on meanwhile, and take the place of the old
@@ -199,21 +201,26 @@ NT_API nt_status nt_session_pause(nt_session *session, int paused);
 /* Of a paused one: so many more ticks, at full speed; up to 1e9 may wait. A pause, or its end, takes back what waits.
  */
 NT_API nt_status nt_session_step_on(nt_session *session, long ticks);
+/* Seconds of the session in one of the clock, 1e-3 .. 1e3, while it runs; NT_E_RANGE outside, and for one that a half
+ * leads. */
 NT_API nt_status nt_session_set_speed(nt_session *session, double speed, nt_problem *problem);
 /* Of a session whose halves are simulated, while it runs: back by a duration [s], to the nearest quarter of a second
  * before that, half a minute at most. NT_E_NO_SOLUTION if that is too long ago or before a change; NT_E_UNSUPPORTED
  * with a half that is not simulated. Kept as NT_EVENT_REWIND. */
 NT_API nt_status nt_session_rewind(nt_session *session, double duration, nt_problem *problem);
+/* What the run has been so far; from any thread. */
 NT_API nt_progress nt_session_progress(const nt_session *session);
 
 /* --- out --- */
 
 /* Moves up to `count` records, or events, out of their ring; returns how many. One reader each. */
 NT_API NT_REALTIME long nt_session_read(nt_session *session, nt_record *records, long count);
+/* The same of events: what was asked of the session, in the order of its ticks. */
 NT_API NT_REALTIME long nt_session_read_events(nt_session *session, nt_event *events, long count);
 /* From now on each tick is published as a frame, in shared memory under this name or, with NULL, in private memory.
  * Clients of these frames may post requests: the kinds of nt_event_kind. As nt_frames_create; not while it runs. */
 NT_API nt_status nt_session_publish(nt_session *session, const char *name);
+/* The frames that it publishes; NULL before nt_session_publish. */
 NT_API nt_frames *nt_session_frames(nt_session *session); /* NULL: none */
 
 /* --- state of a session whose halves are simulated --- */
@@ -236,10 +243,15 @@ NT_API const nt_capabilities *nt_session_capabilities(const nt_session *session,
 
 /* Read-only views: valid until the next change or close, from the thread that makes requests. */
 NT_API const nt_session_setup *nt_session_setup_of(const nt_session *session); /* as it runs now */
+/* The plan of the forces that it computes. */
 NT_API const nt_plan *nt_session_plan(const nt_session *session);
+/* The touch step: law, observer, supervisor and limits as they run. */
 NT_API const nt_touch *nt_session_touch(const nt_session *session);
+/* Its state after the last tick: targets, scales, reasons. */
 NT_API const nt_touch_state *nt_session_touch_state(const nt_session *session);
+/* The margins in this mode and at these scales; 1 is the limit. */
 NT_API nt_margins nt_session_margins(const nt_session *session);
+/* What of the surface it can reach, on its path or in its area. */
 NT_API nt_reach nt_session_reach(const nt_session *session);
 /* What holds whatever the operator does; to be read before the first tick. */
 NT_API nt_guarantee nt_session_guarantee(const nt_session *session);

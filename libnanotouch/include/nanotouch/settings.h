@@ -85,6 +85,7 @@ NT_API nt_settings nt_settings_defaults(const nt_rig *rig);
 NT_API void nt_settings_keep_to(nt_settings *settings, double load);
 /* The table of gains and limits; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_settings_fields(int *count);
+/* NT_OK, or the first field that is out of its range, in *problem (NULL allowed). */
 NT_API nt_status nt_settings_check(const nt_settings *settings, nt_problem *problem);
 
 #ifdef __cplusplus

@@ -62,15 +62,15 @@ typedef enum nt_sim_noise {
 
 /* What a lasting fault goes back to, along NT_Z. */
 typedef struct nt_sim_memory {
-    double position, felt;
-    double age; /* [s] */
+    double position, felt; /* [m]; force [N] of the master, deflection [m] of the slave */
+    double age;            /* [s] */
     uint64_t sequence, tick;
 } nt_sim_memory;
 
 /* What both halves have: their clock, converters, delay and faults. */
 typedef struct nt_sim_link {
     nt_rig rig;
-    double period;
+    double period; /* [s] */
     uint64_t tick;
     double per_tick; /* measurements in a period, 0: one [-] */
     int delay;       /* whole periods until a command acts ... */
@@ -119,7 +119,7 @@ typedef struct nt_sim_slave {
     int was_off;                    /* without power, and not yet back where it is told to be */
     nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
-    double x, y;
+    double x, y;                           /* [m] */
     double pending[NT_SIM_SLOTS][NT_AXES]; /* stage commands [m] */
     double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */
     nt_reading converted;
@@ -138,22 +138,29 @@ typedef struct nt_sim {
 
 /* Halves at rest, the tip clear of the surface. */
 NT_API nt_status nt_sim_master_init(nt_sim_master *master, const nt_sim_setup *setup);
+/* The slave's half; fails as nt_sim_master_init. */
 NT_API nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup);
+/* Both halves from one setup, for loops of one's own. */
 NT_API nt_status nt_sim_init(nt_sim *sim, const nt_sim_setup *setup);
 /* The operation tables; the context is a nt_sim_master, a nt_sim_slave. */
 NT_API const nt_backend *nt_sim_master_backend(void);
+/* The slave's table; its context is a nt_sim_slave. */
 NT_API const nt_backend *nt_sim_slave_backend(void);
+/* What master and gauge read at this tick, with noise and resolution. Real-time safe. */
 NT_API NT_REALTIME nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading);
+/* What stage and probe read at this tick, with noise and resolution. Real-time safe. */
 NT_API NT_REALTIME nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading);
 /* Takes what it shall do and lets one period pass; it acts `delay` periods later, within the motor's force or the
  * stage's travel and speed. NT_E_NOT_FINITE, with no time passed, for what is not a number; NT_E_NO_CONVERGENCE if the
  * probe does not come to rest. */
 NT_API NT_REALTIME nt_status nt_sim_master_write(nt_sim_master *master, const nt_action *action);
+/* The same of the stage. */
 NT_API NT_REALTIME nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action);
 /* Another scene from now on; the plan is borrowed as the first one. */
 NT_API NT_REALTIME void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan);
 /* Both halves by hand, as one rig: for tests, and for loops of one's own. */
 NT_API NT_REALTIME nt_status nt_sim_read(nt_sim *sim, nt_sample *sample);
+/* One command to both halves; lets one period pass. NT_E_NOT_FINITE, with no time passed, for what is not a number. */
 NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command);
 /* What the simulated operator does next. */
 NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim_master *master, const nt_hand_target *target);

@@ -17,7 +17,9 @@ typedef struct nt_stage_loop_state {
     double w[2];       /* filter memory [m] */
     double correction; /* integral of the error [m] */
 } nt_stage_loop_state;
+/* Notch and gain for a stage and gains that have been checked. */
 NT_API nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *gains);
+/* One period: reference and read-out [m] in, the command to the stage [m] out. */
 NT_API NT_REALTIME double nt_stage_loop_step(const nt_stage_loop *loop, nt_stage_loop_state *state, double reference,
                                              double measured);
 

@@ -45,8 +45,8 @@ NT_API const char *nt_status_message(nt_status status);
 typedef struct nt_problem {
     const char *field;       /* dotted name, "tip.radius"; static storage */
     const char *unit;        /* SI unit of value, minimum, maximum; "" if none */
-    double value;            /* the value found */
-    double minimum, maximum; /* the valid range, both ends included */
+    double value;            /* the value found [unit of the field] */
+    double minimum, maximum; /* the valid range, both ends included [unit of the field] */
 } nt_problem;
 
 /* The unit of a problem that is no value out of range but a reason in words, its field: `value` is then the error that

@@ -101,6 +101,7 @@ typedef struct nt_situation {
     int unstable;       /* the passivity observer has used up what it had */
 } nt_situation;
 
+/* Thresholds of a rig and its settings; both have been checked. */
 NT_API nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings);
 /* In RUN, nothing seen yet. */
 NT_API nt_supervisor_state nt_supervisor_start(void);

@@ -117,8 +117,8 @@ typedef struct nt_properties {
 
 /* A property at a point and its slope. */
 typedef struct nt_property_value {
-    double value;  /* 0: not given */
-    double dx, dy; /* per metre */
+    double value;  /* 0: not given [SI] */
+    double dx, dy; /* [SI/m] */
 } nt_property_value;
 
 /* From values at the pixels of `grid`, row-major as its heights; either may be NULL. youngs_modulus: 1e2 .. 1e13 Pa;
@@ -151,6 +151,7 @@ typedef struct nt_grating {
 } nt_grating;
 /* 3 um period, 480 nm, 0.5, 0.75 um. */
 NT_API nt_grating nt_grating_defaults(void);
+/* Height at a place [m]: 0 or the grating's; NaN for NaN. */
 NT_API double nt_grating_height(const nt_grating *grating, double x, double y);
 
 /* Quantum dots: spherical caps on a flat (the paper's second sample: 10 .. 30 nm). */
@@ -166,6 +167,7 @@ typedef struct nt_dots {
 /* `count` (1 .. NT_DOTS_MAX) dots of 10 .. 30 nm diameter, height a third of it, scattered without overlap over
  * width x width, the same for the same seed. NT_E_CAPACITY if they do not fit. */
 NT_API nt_status nt_dots_scatter(nt_dots *dots, int count, double width, uint64_t seed);
+/* Height of the dots at a place [m]; 0 beside them, NaN for NaN. */
 NT_API double nt_dots_height(const nt_dots *dots, double x, double y);
 
 #ifdef __cplusplus

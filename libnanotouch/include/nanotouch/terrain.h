@@ -38,9 +38,12 @@ NT_API void nt_terrain_close(nt_terrain *terrain);
 
 /* Read-only views, valid until close; NULL where there is none. */
 NT_API const nt_surface *nt_terrain_surface(const nt_terrain *terrain); /* dilated; NULL: a flat at z = 0 */
+/* The radius of each of its places; NULL where none is asked for. */
 NT_API const nt_radius_map *nt_terrain_radii(const nt_terrain *terrain);
+/* The bank that its plan evaluates contact with; NULL where none is of use. */
 NT_API const nt_maugis_bank *nt_terrain_bank(const nt_terrain *terrain);
-NT_API const nt_plan *nt_terrain_plan(const nt_terrain *terrain); /* of scene, demand and probe; never NULL */
+/* The plan of scene, demand and probe; never NULL. */
+NT_API const nt_plan *nt_terrain_plan(const nt_terrain *terrain);
 
 /* What of a surface can be reached. Each number is a bound between the pixels, too: never below the truth (to the
  * rounding of doubles), rise and relief at most 2e-6 of the map's height range above it, slope at most 0.1 %. */

@@ -41,7 +41,7 @@ typedef struct nt_accuracy {
 /* What an iterative solver did; every solver takes an optional pointer to one. */
 typedef struct nt_solve_info {
     int iterations;  /* function evaluations */
-    double residual; /* last residual, dimensionless */
+    double residual; /* last residual [-] */
 } nt_solve_info;
 
 /* A point in the world frame. */
