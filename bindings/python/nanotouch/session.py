@@ -354,7 +354,7 @@ class Session(Runs, Frozen):
     def rescale(self, alpha_p: float | None = None, alpha_f: float | None = None) -> None:
         """Change the scales [m/m], [N/N] while running. The stage does not jump, and the loop stays passive.
 
-        A rise may wait until the hand has paid its energy (docs/control.md). Refused where the loop would run closer to its stability limit than the session's minimum.
+        A rise may wait until the hand has paid its energy (docs/control.md). Refused below the least stability margin.
         """
         now = self.settings.gains
         self.core.rescale(now.alpha_p if alpha_p is None else alpha_p, now.alpha_f if alpha_f is None else alpha_f)
