@@ -91,7 +91,8 @@ export class ContactPanel {
     for (const end of [left, right]) painter.line([[end, 12], [end, 20]], palette.ink, 2);
     painter.text(left - 8, 16, digits(length, "m", 1), palette.ink, { align: "right" });
     if (section.a > 0) {
-      const at = Math.min(level + 26, painter.height - 34), half = section.a * scale, middle = painter.width / 2;
+      const deepest = level - scale * section.rows[1]; // below what is pressed in
+      const at = Math.min(Math.max(level, deepest) + 22, painter.height - 34), half = section.a * scale, middle = painter.width / 2;
       painter.line([[middle - half, at], [middle + half, at]], palette.ink);
       painter.text(middle, at + 12, `2a = ${digits(2 * section.a, "m")}`, palette.ink, { align: "center" });
     }
