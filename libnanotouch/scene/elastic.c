@@ -170,6 +170,28 @@ static double more_of_w(const nt_plan *plan)
     return share_of(plan, &s) * tail / (2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion);
 }
 
+/* Laws around a contact that are no tail: where they are held, and their net force at a gap [N]. */
+static nt_elastic_sum others_at_hold(const nt_plan *plan)
+{
+    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0};
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure) {
+            const double F = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F;
+            s.F += F;
+            s.all_F += fabs(F);
+        }
+    return s;
+}
+
+static double others_at(const nt_plan *plan, double gap)
+{
+    double F = 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure)
+            F += nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap).F;
+    return F;
+}
+
 static double shift_of(const nt_plan *plan, int tails)
 {
     const double more = tails ? more_of_w(plan) : 0.0;
@@ -185,8 +207,8 @@ double nt_plan_rigid_shift(const nt_plan *plan)
     return shift_of(plan, plan->yield.count == 0); /* of a table the tail is right */
 }
 
-/* The radius of an adhesive contact with another w, at an indentation; NaN beyond its fold. */
-static double radius_with(const nt_plan *plan, double more, double indentation)
+/* Of an adhesive contact with another w, at an indentation; NaN beyond its fold. */
+static nt_law_value contact_with(const nt_plan *plan, double more, double indentation)
 {
     nt_contact contact = plan->contact;
     contact.work_of_adhesion *= 1.0 + more;
@@ -195,7 +217,34 @@ static double radius_with(const nt_plan *plan, double more, double indentation)
     nt_law_value value = {NAN, NAN, NAN, NAN};
     if (nt_maugis_init(&maugis, &contact) == NT_OK)
         (void)nt_maugis_eval(&maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
-    return value.a;
+    return value;
+}
+
+static double radius_with(const nt_plan *plan, double more, double indentation)
+{
+    return contact_with(plan, more, indentation).a;
+}
+
+/* A contact that is pulled out has a neck, and beside it the gap is far less than that of undeformed bodies: laws of
+ * short range act there in full, as a part of w. By how much the force is off then, at most [N]. */
+static double error_of_neck(const nt_plan *plan)
+{
+    enum { SAMPLES = 48 };
+    const nt_elastic_sum held = others_at_hold(plan);
+    const double full = 2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion;
+    const double beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan), fold = beside - plan->release_gap;
+    double worst = 0.0;
+    if (held.all_F == 0.0 || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+        return 0.0;
+    for (int i = 0; i <= SAMPLES && fold < 0.0; ++i) {
+        const double t = (double)i / SAMPLES, d = fold * (1.0 - t * t * t);
+        const nt_law_value alone = contact_with(plan, 0.0, d);
+        if (!(alone.a > 0.0))
+            continue;
+        const double F = contact_with(plan, -held.F / full, d).F - alone.F;
+        worst = fmax(worst, isnan(F) ? (double)INFINITY : fabs(F - others_at(plan, -d)));
+    }
+    return NT_SAMPLED * worst;
 }
 
 /* What the pressure around an adhesive contact and a w that is not quite right do to its radius, from where the bound
@@ -227,15 +276,12 @@ static double error_of_radius(const nt_plan *plan, int tails)
 double nt_plan_around_error(const nt_plan *plan, int tails)
 {
     const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
-    double all = 0.0;
     if (quantity == NT_QUANTITY_FOLDS)
         return shift_of(plan, tails) / plan->scale;
     if (quantity == NT_QUANTITY_RADIUS)
         return error_of_radius(plan, tails);
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure)
-            all += fabs(nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F);
-    const double lost = fmin(plan->maximum_stiffness * under_all(plan, 0), HALF * all) * bluntest(plan);
+    const double pressed = fmin(plan->maximum_stiffness * under_all(plan, 0), HALF * others_at_hold(plan).all_F);
+    const double lost = fmax(pressed, error_of_neck(plan)) * bluntest(plan);
     return quantity == NT_QUANTITY_STIFFNESS ? SLOPE * lost / plan->length / plan->scale : lost / plan->scale;
 }
 

@@ -94,16 +94,27 @@ static nt_status count_from_fold(nt_plan *plan)
     return NT_OK;
 }
 
+/* Whether a law that is no tail presses on the sample. */
+static int has_others(const nt_plan *plan)
+{
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (nt_term_rows[term]->pressure && !nt_term_rows[term]->words.tail &&
+            nt_plan_full_form(plan, term) != NT_FORM_OFF)
+            return 1;
+    return 0;
+}
+
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
 {
     const double demanded = plan->demand.relative_accuracy;
-    const int wet = plan->source == NT_ADHESION_SOLID && scene->medium.kind == NT_MEDIUM_LIQUID;
+    const int solid = plan->source == NT_ADHESION_SOLID;
     const int known = scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF && scene->sample.thickness == 0.0 &&
                       nt_plan_contact_form(plan) == NT_FORM_EXACT;
-    return wet && known && demanded > 0.0 && plan->around_error > FELT * demanded;
+    return solid && known && has_others(plan) && demanded > 0.0 && plan->around_error > FELT * demanded;
 }
 
-/* Laws act from where adhesion ends, there as at the interatomic distance: inside they keep their force. */
+/* Laws act from where adhesion ends, there as at the interatomic distance: inside they keep their force. Adhesion has
+ * all of w, also what a tail on rigid bodies would take of it. */
 nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yield_range *range)
 {
     const nt_contact *contact = &plan->contact;
@@ -112,7 +123,7 @@ nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yiel
     const nt_yield_terms in = {plan, scene->adhesion.equilibrium_distance - h0, 1};
     nt_yield_sample sample = nt_yield_sample_of(&in, scene, range->farthest);
     nt_yield_range held = *range;
-    sample.stress = contact->cohesive_stress;
+    sample.stress = (contact->work_of_adhesion + plan->tail) / h0;
     sample.range = h0;
     held.nearest = -INFINITY;
     return nt_yield_table_hold(&plan->yield, &sample, &held, radius);

@@ -70,13 +70,15 @@ static int edges_of(const nt_yield_solver *s, double a, double e, nt_yield_edges
     return octaves < WIDEST * OUTER;
 }
 
+/* No gap outside adhesion is below h0, but on the way: there the law stays, since it may have a pole. */
 static nt_pressure law_of(const nt_yield_solver *s, int node)
 {
     if (node < N)
         return (nt_pressure){0.0, -s->sample->stress, 0.0};
-    nt_pressure p = nt_yield_law(s, s->gap[node]);
+    const int inside = s->gap[node] < s->sample->range;
+    nt_pressure p = nt_yield_law(s, inside ? s->sample->range : s->gap[node]);
     p.pressure *= s->share;
-    p.slope *= s->share;
+    p.slope *= inside ? 0.0 : s->share;
     return p;
 }
 

@@ -14,6 +14,7 @@ import argparse
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 
 import nanotouch as nt
 import numpy as np
@@ -109,17 +110,32 @@ def wet_scene_of(rng: np.random.Generator) -> nt.Scene:
     return scene
 
 
-def compare_wet(rng: np.random.Generator) -> tuple[str, float, float]:
+def charged_scene_of(rng: np.random.Generator) -> nt.Scene:
+    """Adhesive contact in vacuum at a potential, with or without van der Waals, from 10 MPa to 10 GPa."""
+    scene = nt.Scene(medium={"kind": "vacuum"}, adhesion={"hamaker_constant": 0.0})
+    scene.tip.radius = 10.0 ** rng.uniform(-8, -5.5)
+    scene.sample.youngs_modulus = 10.0 ** rng.uniform(7, 10)
+    scene.sample.poisson_ratio = rng.uniform(0.2, 0.5)
+    work = scene.adhesion.work_of_adhesion = 10.0 ** rng.uniform(-2.5, -1)
+    if rng.random() < 0.5:
+        distance = scene.adhesion.equilibrium_distance
+        scene.adhesion.hamaker_constant = 12.0 * np.pi * work * distance**2 * rng.uniform(0.1, 0.9)
+    scene.adhesion.contact_potential = 10.0 ** rng.uniform(-1.3, 0.3)
+    scene.range.maximum_load = 5.0 * work * scene.tip.radius
+    return scene
+
+
+def compare_wet(rng: np.random.Generator, made: Callable[[np.random.Generator], nt.Scene]) -> tuple[str, float, float]:
     """Contact with what acts around it: force or contact radius on the way out, and both folds."""
-    scene, demand = wet_scene_of(rng), 10.0 ** rng.uniform(-3.0, -1.0)
+    scene, demand = made(rng), 10.0 ** rng.uniform(-3.0, -1.0)
     quantity = str(rng.choice(["force", "radius", "folds"]))
     try:
         plan = scene.plan(demand, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
-        return f"wet, refused: {str(refusal).split(' = ')[0]}", 0.0, 0.0
+        return f"around, refused: {str(refusal).split(' = ')[0]}", 0.0, 0.0
     facts = plan.explain()
     if facts["lambda"] < 1.0:  # is let go with no radius of contact, which the reference does not know
-        return "wet: too hard for the reference", 0.0, plan.bound
+        return "around: too hard for the reference", 0.0, plan.bound
     try:
         truth = reference.yielded_scene(scene, 1e-5)
         around = truth.surrounded
@@ -127,7 +143,7 @@ def compare_wet(rng: np.random.Generator) -> tuple[str, float, float]:
         assert around.release is not None
         release, deepest = around.release.gap, -0.9 * facts["largest_indentation"]
         off = max(abs(facts["release_gap"] - release), abs(facts["capture_gap"] - truth.capture_gap))
-        kind = "wet, yields" if facts["yields"] else "wet, rigid"
+        kind = "around, yields" if facts["yields"] else "around, rigid"
         if off > plan.fold_shift_m + 1e-9 * abs(release):
             return f"{kind}, folds", np.inf, plan.bound
         if quantity == "folds":
@@ -136,7 +152,7 @@ def compare_wet(rng: np.random.Generator) -> tuple[str, float, float]:
         gaps = np.linspace(first, deepest, 5)
         true = [around.at(gap) for gap in gaps]
     except (SolverError, np.linalg.LinAlgError, ValueError):
-        return "wet: reference failed", 0.0, plan.bound
+        return "around: reference failed", 0.0, plan.bound
     value = nt.Interaction(plan, "retract").eval(np.column_stack([0.0 * gaps, 0.0 * gaps, gaps]))
     planned = value.Fz if quantity == "force" else value.a
     exact = np.array([t.force if quantity == "force" else t.contact_radius for t in true])
@@ -150,7 +166,7 @@ def compare(seed: int, count: int = 6) -> tuple[str, float, float]:
     if seed % 3 == 2:
         return compare_sticky(rng)
     if seed % 3 == 1:
-        return compare_wet(rng)
+        return compare_wet(rng, charged_scene_of if seed % 6 == 4 else wet_scene_of)
     scene, demand = scene_of(rng), 10.0 ** rng.uniform(-4.0, -1.0)
     quantity = str(rng.choice(["force", "stiffness", "radius"]))
     try:

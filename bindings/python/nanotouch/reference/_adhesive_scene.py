@@ -23,7 +23,7 @@ from nanotouch import contact as contacts
 from nanotouch import forces as laws
 from nanotouch._arrays import Floats, as_floats
 from nanotouch.reference._pressures import Pressure
-from nanotouch.reference._scene import History, _capture_gap, _contact, _less, _touch, _work
+from nanotouch.reference._scene import History, _capture_gap, _contact, _has_meniscus, _less, _potential, _touch, _work
 from nanotouch.reference._soft_scene import _laws, _modulus
 from nanotouch.reference._surrounded import Surrounded
 from nanotouch.reference._yielding import Yielded, Yielding
@@ -168,10 +168,18 @@ def _tail(scene: Scene, distance: Floats) -> Any:
 
 
 def _beside(scene: Scene) -> list[Any]:
-    """Laws that are no tail, without their hold; in a liquid those of soft scenes."""
+    """Laws that are no tail, without their hold; in a liquid those of soft scenes, else that of a potential."""
     bare = scene.copy()
     bare.adhesion.hamaker_constant = 0.0
-    return _laws(bare) if scene.medium.kind == "liquid" else []
+    if scene.medium.kind == "liquid":
+        return _laws(bare)
+    potential = _potential(scene)
+    if potential == 0.0 or _has_meniscus(scene):  # with a bridge the laws add
+        return []
+    tip, common = scene.tip, {"radius": scene.tip.radius, "potential": potential, "minimum_gap": _CLOSE}
+    if tip.height > 0.0:
+        return [lambda g: laws.electrostatic_tip(g, half_angle=tip.half_angle, height=tip.height, **common)]
+    return [lambda g: laws.electrostatic(g, **common)]
 
 
 def _others(scene: Scene, gaps: Floats) -> Floats:

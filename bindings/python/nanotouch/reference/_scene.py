@@ -210,13 +210,20 @@ def _vdw(scene: Scene, gaps: ArrayLike, hold: float) -> Any:
     return laws.vdw(gaps, **common).F
 
 
-def _electrostatic(scene: Scene, gaps: Floats) -> Any:
+def _potential(scene: Scene) -> float:
+    """Between bodies that conduct and are connected [V]."""
     tip, sample = scene.tip, scene.sample
     connected = tip.conducting == "yes" and sample.conducting == "yes" and sample.grounded == "yes"
     if not connected or scene.medium.kind == "liquid":
-        return np.zeros(gaps.shape)
+        return 0.0
     known = tip.work_function > 0.0 and sample.work_function > 0.0
-    potential = scene.adhesion.contact_potential + (tip.work_function - sample.work_function if known else 0.0)
+    return float(scene.adhesion.contact_potential + (tip.work_function - sample.work_function if known else 0.0))
+
+
+def _electrostatic(scene: Scene, gaps: Floats) -> Any:
+    tip, potential = scene.tip, _potential(scene)
+    if potential == 0.0:
+        return np.zeros(gaps.shape)
     common: dict[str, Any] = {
         "radius": tip.radius, "potential": potential, "minimum_gap": scene.adhesion.equilibrium_distance,
     }  # fmt: skip
