@@ -15,6 +15,7 @@
 
 #define INSIDE 0.01   /* of what a cycle can lose: at least so much is lost at either jump */
 #define FELT 0.2      /* of the demand: what laws around a contact err by on the undeformed gap */
+#define SOFT 2.0      /* elastic number: a dry contact that is stiffer can seldom be solved with what is around it */
 #define STRONGEST 0.9 /* of w: what a tail may pull of it */
 
 /* What acts beside contact and has nothing to do with w, on the undeformed gap. */
@@ -107,7 +108,8 @@ static int has_others(const nt_plan *plan)
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene)
 {
     const double demanded = plan->demand.relative_accuracy;
-    const int solid = plan->source == NT_ADHESION_SOLID;
+    const int solid =
+        plan->source == NT_ADHESION_SOLID && (scene->medium.kind == NT_MEDIUM_LIQUID || plan->elastic_number > SOFT);
     const int known = scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF && scene->sample.thickness == 0.0 &&
                       nt_plan_contact_form(plan) == NT_FORM_EXACT;
     return solid && known && has_others(plan) && demanded > 0.0 && plan->around_error > FELT * demanded;
