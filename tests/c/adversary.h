@@ -117,7 +117,9 @@ static inline void draw_fault(plot *p, dice *d, closeness *found)
     if (p->known && chance(d, 0.5) && p->stopped > 0.03)
         start = p->stopped + (chance(d, 0.5) ? -1.0 : 1.0) * magnitude(d, 1e-4, 0.03);
     const int lasts = chance(d, 0.6);
-    const nt_fault fault = {kind, channel, start, lasts ? HUGE_VAL : duration, draw_value(p, d, kind, channel)};
+    const double value = draw_value(p, d, kind, channel);
+    const int runs = kind == NT_FAULT_GAIN && channel == NT_CHANNEL_STAGE && !(value >= 0.0 && value <= 1.0);
+    const nt_fault fault = {kind, channel, start, lasts || runs ? HUGE_VAL : duration, value}; /* it would jump back */
     if (!p->rehearses)
         (void)!nt_faults_add(&p->faults, &fault);
     found->fault = nt_fault_descriptions(NULL)[kind].name;
