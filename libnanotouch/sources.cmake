@@ -135,6 +135,7 @@ set(nanotouch_sources_dynamics
     dynamics/stage.c)
 set(nanotouch_sources_control
     control/calm.c
+    control/felt.c
     control/guarantee.c
     control/impedance.c
     control/lift.c

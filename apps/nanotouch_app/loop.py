@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import nanotouch as nt
 from nanotouch import margins, record
@@ -12,9 +12,6 @@ from nanotouch.margins import ForceRange
 from nanotouch.session import CONTROLS, choose_control
 
 from nanotouch_app.quantity import parse_quantity
-
-if TYPE_CHECKING:
-    from nanotouch.options import Gains
 
 
 def add_options(group: Any) -> None:
@@ -53,12 +50,9 @@ def scale_force(text: str | None, plan: nt.Plan, rig: nt.Rig, settings: nt.Setti
         settings.gains.alpha_f = margins.heuristic_alpha_f(rig, _force_range(text, plan, settings))
 
 
-def felt(tables: dict[str, Any], text: str | None, scene: nt.Scene, rig: nt.Rig) -> Gains:
-    """The gains of a first touch, whose pull-off is clearly felt; none if file or option say how it is scaled."""
-    if text is not None or any(key.startswith("alpha_f_N") for key in tables.get("gains", {})):
-        return {}
-    pull_off, load = scene.plan().pull_off_force, scene.range.maximum_load
-    return {"alpha_f": margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), pull_off, load)}
+def says_scale(tables: dict[str, Any], text: str | None) -> bool:
+    """Whether file or option say how forces are scaled."""
+    return text is not None or any(key.startswith("alpha_f_N") for key in tables.get("gains", {}))
 
 
 def _force_range(text: str, plan: nt.Plan, settings: nt.Settings) -> ForceRange:

@@ -54,10 +54,11 @@ def run(args: argparse.Namespace) -> int:
     scene, rig, tables = scenes.read(args.scene)
     settings = settings_for_path(rig, clearance=CLEARANCE, load=scene.range.maximum_load)
     plan = scene.plan()
-    settings.gains.alpha_f = loop.felt(tables, args.force_range, scene, rig).get("alpha_f", settings.gains.alpha_f)
     loop.scale_force(args.force_range, plan, rig, settings)
     settings.update_from_tables(tables)
     loop.close(settings, args)
+    if not loop.says_scale(tables, args.force_range):
+        settings.gains.alpha_f = margins.felt_alpha_f(rig, settings, plan, scene.range.maximum_load)
     path = CLEARANCE + INDENTATION_RANGE if args.path is None else parse_quantity(args.path, "m")
     stiffness = plan.maximum_stiffness
     found, budget = margins.compute(rig, settings, stiffness, args.mode), margins.resolution(rig, settings, path)

@@ -148,8 +148,7 @@ def _session(args: argparse.Namespace) -> nt.Session:
     with output.busy("planning"):
         session = nt.Session(
             scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),
-            delay=loop.delay_of(args.delay), minimum_margin=0.0,
-            gains=loop.felt(tables, args.force_range, scene, rig), **what,
+            delay=loop.delay_of(args.delay), minimum_margin=0.0, **what,
         )  # fmt: skip
     found = session.margins()
     if not found.least >= args.minimum_margin:
@@ -170,6 +169,11 @@ def _settings(
     settings = scaled.settings.copy()
     loop.scale_force(args.force_range, scaled.plan, rig, settings)
     settings.update_from_tables(tables)
+    if not loop.says_scale(tables, args.force_range):
+        closed = settings.copy()
+        closed.gains.alpha_f = nt.Settings.for_rig(rig).gains.alpha_f
+        loop.close(closed, args)
+        settings.gains.alpha_f = margins.felt_alpha_f(rig, closed, scaled.plan, scene.range.maximum_load)
     return settings
 
 

@@ -262,10 +262,9 @@ def test_a_display_that_does_not_answer_is_given_up(monkeypatch: pytest.MonkeyPa
 
 def test_forces_are_scaled_as_in_a_first_touch(host: Host) -> None:
     scene, rig = nt.presets.silicon_in_air()
-    load, pull_off = float(scene.range.maximum_load), scene.plan().pull_off_force
-    wanted = nt.margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), pull_off, load)
+    wanted = nt.margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), scene.plan(), scene.range.maximum_load)
     assert host.session.settings.gains.alpha_f == pytest.approx(wanted)
-    assert wanted * pull_off >= 0.1  # [N]: felt
+    assert wanted * scene.plan().pull_off_force >= 0.1  # [N]: felt
 
 
 def test_the_shadow_lies_on_the_surface() -> None:

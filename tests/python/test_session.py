@@ -143,7 +143,7 @@ def test_pull_off_is_the_plans(pressed: tuple[Session, Recording]) -> None:
     session, recording = pressed
     assert 0.92 < -recording.tip_force.min() / session.plan.pull_off_force < 1.0
     assert (recording.state == RUN).all()
-    assert recording.tip_force.max() > 0.2e-6
+    assert recording.tip_force.max() > 0.1e-6  # 2 N at the hand over alpha_f = 1.8e7
     assert recording.gap[0] == pytest.approx(session.clearance, rel=1e-3)
     assert recording.gap[-1] > 0.5 * session.clearance
 
@@ -154,7 +154,7 @@ def test_deflection_balances_the_force(pressed: tuple[Session, Recording]) -> No
     sigma = 8.0 * 0.033e-6 * 50e-3 / 6
     error = recording.slave_force - recording.tip_force
     still = np.abs(np.gradient(recording.tip_force)) < 0.1 * sigma
-    assert np.mean(still) > 0.7
+    assert np.mean(still) > 0.6
     assert np.std(error[still]) == pytest.approx(sigma, rel=0.1)
     assert abs(np.mean(error[still])) < 0.1 * sigma
 

@@ -63,7 +63,8 @@ class Host:
         load = float(self.scene.range.maximum_load)
         usual = settings_for_path(self.rig, self.subject.topography.height_range, load=load)
         plan = self.scene.plan(rtol=self.subject.accuracy)
-        usual["gains.alpha_f"] = margins.felt_alpha_f(self.rig, usual, plan.pull_off_force, load)
+        touched = self.scene.plan(rtol=self.subject.accuracy, surface=surface)
+        usual["gains.alpha_f"] = margins.felt_alpha_f(self.rig, usual, touched, load)
         settings = settings_of(usual, self.rig)
         deepest = INDENTATION_SHARE * float(plan.explain()["largest_indentation"])
         way_down = self.subject.clearance() + self.subject.topography.height_range + deepest

@@ -21,15 +21,13 @@ from nanotouch.record import Recording
 from nanotouch.scene import Rig, Settings
 
 __all__ = [
-    "CLEARLY_FELT", "HAND_BAND", "MINIMUM", "RINGING_MOST", "SEEN", "UNKNOWN", "Calm", "Felt", "ForceRange", "Margins",
+    "CLEARLY_FELT", "HAND_BAND", "MINIMUM", "RINGING_MOST", "UNKNOWN", "Calm", "Felt", "ForceRange", "Margins",
     "Resolution", "Response", "Width", "calm", "compute", "felt_alpha_f", "force_range", "heuristic_alpha_f",
     "of_own_law", "of_recording", "resolution", "response", "z_width",
 ]  # fmt: skip
 Floats = NDArray[np.float64]
 MINIMUM = 1.5
 """a loop closer to its limit than this is refused, unless told otherwise"""
-SEEN = 0.93
-"""of a plan's pull-off that a loop shows at least: the tear lies between two of its steps"""
 HAND_BAND = 33.0
 """the paper's bandwidth of the haptic device [Hz]"""
 
@@ -203,14 +201,14 @@ def heuristic_alpha_f(rig: Rig, span: ForceRange) -> float:
     return 2.0 * reach / (span.highest - span.lowest)
 
 
-def felt_alpha_f(rig: Rig, settings: Settings, pull_off_force: float, load: float) -> float:
-    """alpha_f at which a pull-off [N] is clearly felt, CLEARLY_FELT at the hand; for a first touch of a sample.
+def felt_alpha_f(rig: Rig, settings: Settings, plan: Plan, load: float) -> float:
+    """alpha_f at which the sample's pull-off is clearly felt, CLEARLY_FELT at the hand: that of a session that is told
+    nothing about it.
 
-    Never above Eq. 19 for forces from the pull-off to ``load`` [N], nor below that of the settings.
+    As much as leaves a margin of 3 and calm at the plan's stiffest contact. Never above Eq. 19 for forces from the
+    pull-off to ``load`` [N], nor below that of the settings.
     """
-    full = heuristic_alpha_f(rig, ForceRange(-pull_off_force, load))
-    wanted = CLEARLY_FELT / (SEEN * pull_off_force) if pull_off_force > 0.0 else math.inf
-    return max(float(settings.gains.alpha_f), min(wanted, full))
+    return _core.felt_alpha_f(rig.core, settings.core, plan.pull_off_force, load, plan.maximum_stiffness)
 
 
 class Felt(NamedTuple):
@@ -347,11 +345,11 @@ def _bins(recording: Recording) -> tuple[Floats, Floats, Floats, Floats]:
 
 def _steepest(recording: Recording, rig: Rig) -> float:
     """The largest slope of slave force over travel while pressed [N/m], 0 if it never was: chords over five times the
-    noise, or a fifth of the largest force."""
+    noise, or two fifths of the largest force: the steps of a short one would count as slope."""
     _, _, travel, force = _bins(recording)
     peak = float(np.max(force, initial=0.0))
     noise = rig.probe.spring_constant * rig.probe.sensitivity * rig.probe.noise / 6.0
-    chord = max(5.0 * noise, 0.2 * peak)
+    chord = max(5.0 * noise, 0.4 * peak)
     if peak < 2.0 * chord:
         return 0.0
     best = 0.0

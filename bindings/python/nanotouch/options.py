@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypedDict, get_args
 
 from nanotouch import _core, margins
 from nanotouch._arrays import check_between
-from nanotouch._control import Control, Law
+from nanotouch._control import Control, Law, choose_control
 from nanotouch._plant import ProbeModel
 from nanotouch._words import told
 from nanotouch.errors import InvalidValue
@@ -18,7 +18,8 @@ from nanotouch.faults import Faults
 from nanotouch.hal import Master, SharedObject, Slave
 from nanotouch.margins import ForceRange
 from nanotouch.rig_file import Converters
-from nanotouch.scene import Rig, Settings
+from nanotouch.scene import Rig, Scene, Settings
+from nanotouch.surface import Surface
 
 if TYPE_CHECKING:
     from nanotouch._fields import SettingsGainsValues
@@ -51,7 +52,8 @@ class Options(TypedDict, total=False):
     """of all that is random in the simulated halves; 1"""
     force_range: tuple[float, float]
     """lowest and highest force on the tip [N] that alpha_f is to fill the hand's range with (Eq. 19), where no settings
-    are given"""
+    are given; without it, and without ``gains={"alpha_f": ...}``, the sample's pull-off is to be clearly felt
+    (:func:`nanotouch.margins.felt_alpha_f`)"""
     clearance: float
     """height of the tip above the surface at the start; 0.1 um [m]"""
     rtol: float
@@ -117,16 +119,24 @@ def settings_for_path(
     return settings
 
 
-def settings_with(rig: Rig, relief: float, load: float, settings: Settings | None, options: Options) -> Settings:
-    """The settings that are given, or those for a path with this relief [m] and largest load [N], with what the options
-    say beside them."""
-    force_range = options.get("force_range")
+def settings_with(
+    scene: Scene, rig: Rig, surface: Surface | None, relief: float, settings: Settings | None, options: Options
+) -> Settings:
+    """The settings that are given, or those for a path with this relief [m] up to the scene's largest load, with what
+    the options say beside them; where neither says how forces are scaled, so that the sample's pull-off is felt."""
+    force_range, gains = options.get("force_range"), options.get("gains") or {}
     if settings is not None and force_range is not None:
         raise InvalidValue("force_range sets alpha_f, which the settings hold already: give one of them")
+    load = float(scene.range.maximum_load)
+    is_scaled = settings is not None or force_range is not None or "alpha_f" in gains
     if settings is None:
         settings = settings_for_path(rig, relief, options.get("clearance", 0.1e-6), force_range, load)
     wanted = settings.copy()
-    _choose(wanted, options.get("rate"), options.get("gains"), options.get("delay", 0.0))
+    _choose(wanted, options.get("rate"), gains, options.get("delay", 0.0))
+    choose_control(wanted, options.get("control", "default"))
+    if not is_scaled:
+        plan = scene.plan(rtol=float(options.get("rtol", 0.01)), surface=surface)
+        wanted.gains.alpha_f = margins.felt_alpha_f(rig, wanted, plan, load)
     return wanted
 
 

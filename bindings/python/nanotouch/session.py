@@ -59,8 +59,9 @@ class Session(Runs, Frozen):
         Where the tip goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By default the
         middle of the surface, or a line across it at mid-height.
     settings : Settings, optional
-        Gains and limits; by default those of :func:`settings_for_path` for the relief along the path, and
-        up to the largest load of the scene.
+        Gains and limits; by default those of :func:`settings_for_path` for the relief along the path and up to the
+        largest load of the scene, with forces scaled so that the sample's pull-off is clearly felt
+        (:func:`nanotouch.margins.felt_alpha_f`).
     **options
         See :class:`Options`.
 
@@ -93,7 +94,7 @@ class Session(Runs, Frozen):
         self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
         self.relief = float(np.ptp(heights))
-        wanted = settings_with(self.rig, self.relief, self._scene.range.maximum_load, settings, options)
+        wanted = settings_with(self._scene, self.rig, surface, self.relief, settings, options)
         control = options.get("control", "default")
         self.control = choose_control(wanted, control)
         self._settings = wanted.frozen(FROZEN.format("settings"))

@@ -89,6 +89,10 @@ void bind_margins(py::module_ &module)
     module.def("calm", &calm);
     module.attr("CLEARLY_FELT") = NT_CLEARLY_FELT;
     module.attr("RINGING_MOST") = NT_RINGING_MOST;
+    module.def("felt_alpha_f",
+               [](const Rig &rig, const Settings &settings, double pull_off, double load, double stiffness) {
+                   return nt_margins_felt_alpha_f(&rig.value, &settings.value, pull_off, load, stiffness);
+               });
     module.def("loop_response", &response);
     module.def("resolution", &resolution);
     module.def("jury_limit",

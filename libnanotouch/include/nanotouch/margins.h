@@ -88,6 +88,12 @@ typedef struct nt_calm {
  * how near that comes. A millisecond. */
 NT_API nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double contact_stiffness);
 
+/* alpha_f of a first touch: the pull-off of the sample [N] is NT_CLEARLY_FELT at the hand, or as much of it as leaves a
+ * margin of 3 and calm at the contact stiffness [N/m]. Never above Eq. 19 for forces from the pull-off to `load` [N],
+ * nor below that of the settings. Some milliseconds. */
+NT_API double nt_margins_felt_alpha_f(const nt_rig *rig, const nt_settings *settings, double pull_off_force,
+                                      double load, double contact_stiffness);
+
 /* The loop at one frequency. */
 typedef struct nt_loop_response {
     double path[2]; /* C, real and imaginary: from x_m to the force at the motor, held and delayed, 1 at rest [-] */
