@@ -26,6 +26,7 @@
 #define BACK 0.05        /* if no more than this of the swing there comes back, |L_q| */
 #define FINE 0.01        /* of a walk along the circle */
 #define SHARE_OF_LIMIT 0.25
+#define ARMED 1.5 /* margin at which sessions are; near 1 the observer sees the energy that is given */
 
 /* Errors, each with a step and noise of its own. */
 typedef struct source {
@@ -120,14 +121,14 @@ static void list(const nt_rig *rig, const nt_gains *gains, double contact_stiffn
             (source){0.0, hypot(rig->master.gauge_noise, rig->master.gauge_resolution / sqrt(12.0)), 0.0, 0.0, 0};
 }
 
-static void judge(nt_calm *calm)
+static void judge(nt_calm *calm, double needed)
 {
     const struct {
         double margin;
         const char *rule;
     } verdicts[] = {{calm->felt / calm->ripple, "ripple"},
                     {NT_RINGING_MOST / calm->ringing, "ringing"},
-                    {calm->slewing, "slewing"}};
+                    {calm->slewing / needed, "slewing"}};
     calm->margin = INFINITY;
     calm->rule = "ripple";
     for (int i = 0; i < 3; i++) {
@@ -144,7 +145,7 @@ nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double c
                     .slewing = INFINITY};
     source sources[NT_RIPPLE_SOURCES];
     if (rig->master.motor == 0.0 || contact_stiffness == 0.0) {
-        judge(&calm);
+        judge(&calm, 1.0);
         return calm;
     }
     const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
@@ -165,6 +166,6 @@ nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double c
     const double step = shape.gains.alpha_p * shape.rig.master.resolution / settings->limits.stage_speed;
     const double slew = fmax(0.0, step - 1.0 / shape.gains.rate);
     calm.slewing = margins.margin * margins.loop_delay / (margins.loop_delay + slew);
-    judge(&calm);
+    judge(&calm, slew > 0.0 ? ARMED : 1.0);
     return calm;
 }

@@ -15,9 +15,9 @@ import sys
 SHORT, LONG = 10_000, 30_000
 
 
-def count(program: str, scene: str, periods: int) -> int:
+def count(program: str, scene: str, periods: int, *options: str) -> int:
     """Count the instructions of one run."""
-    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, scene, str(periods)]
+    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *options, program, scene, str(periods)]
     said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     found = re.search(r"Collected : (\d+)", said)
     if found is None:
@@ -26,12 +26,14 @@ def count(program: str, scene: str, periods: int) -> int:
 
 
 def main() -> None:
-    """Print one line for each scene."""
+    """Print one line for each scene, and one for the touch step."""
     if shutil.which("valgrind") is None:
         sys.exit("valgrind is not here: instructions are not counted")
     for scene in ("hertz", "default"):
         difference = count(sys.argv[1], scene, LONG) - count(sys.argv[1], scene, SHORT)
         print(f"instructions of a period, scene {scene:<8}{difference / (LONG - SHORT):8.0f}")
+    inside = [count(sys.argv[1], "hertz", periods, "--toggle-collect=nt_touch_step") for periods in (SHORT, LONG)]
+    print(f"of them the touch step                {(inside[1] - inside[0]) / (LONG - SHORT):8.0f}")
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ class Calm(NamedTuple):
     slewing: float
     """R1's margin, counting the time in which the stage answers one step of the master"""
     least: float
-    """felt over ripple, RINGING_MOST over ringing, or slewing, the smallest; calm at 1 and above"""
+    """felt over ripple, RINGING_MOST over ringing, or slewing over 1.5, the smallest; calm at 1 and above"""
     rule: str
     """which one: ripple, ringing, slewing"""
     change: str
@@ -74,7 +74,7 @@ def _felt(found: Calm) -> str:
         return f"the contact rings, {found.ringing:.2g} times the force of the hand ({RINGING_MOST:g} is felt)"
     return (
         "the stage takes too long for one step of the master (limits.stage_speed): with that the margin is "
-        f"{found.slewing:.2g}"
+        f"{found.slewing:.2g}, where 1.5 is needed"
     )
 
 

@@ -60,8 +60,7 @@ class Session(Runs, Frozen):
         middle of the surface, or a line across it at mid-height.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path and up to the
-        largest load of the scene, with forces scaled so that the sample's pull-off is clearly felt
-        (:func:`nanotouch.margins.felt_alpha_f`).
+        scene's largest load, with the sample's pull-off clearly felt (:func:`nanotouch.margins.felt_alpha_f`).
     **options
         See :class:`Options`.
 

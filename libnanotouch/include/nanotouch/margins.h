@@ -66,8 +66,9 @@ typedef enum nt_ripple_source {
 
 /* A force at the hand that nobody misses [N]. */
 #define NT_CLEARLY_FELT 0.3
-/* A contact that answers a slow oscillation of the hand with more than so many times its force rings. */
-#define NT_RINGING_MOST 2.0
+/* A contact that answers a slow oscillation of the hand with more than so many times its force rings: near twice it, a
+ * hand that lands with its whole push bounces. */
+#define NT_RINGING_MOST 1.75
 
 /* Whether a loop that is stable is calm, too: three numbers, each as a margin that is 1 where it begins to be felt. */
 typedef struct nt_calm {
@@ -78,7 +79,7 @@ typedef struct nt_calm {
     double ringing;                  /* largest force at the contact over that of a hand that oscillates [-] */
     double slewing;                  /* R1's margin, counting that the stage takes a while for one step of the master,
                                         for it goes no faster than limits.stage_speed [-] */
-    double margin;                   /* the least of felt/ripple, NT_RINGING_MOST/ringing and slewing [-] */
+    double margin;                   /* the least of felt/ripple, NT_RINGING_MOST/ringing and slewing/1.5 [-] */
     const char *rule;                /* which one: "ripple", "ringing", "slewing"; static */
 } nt_calm;
 /* In touch, at the contact stiffness [N/m]; of the law that the settings name, a law of one's own as the default one.
