@@ -116,7 +116,7 @@ def section(found: list[Point], planned: list[plant.Planned]) -> str:
 {sentences(found)}
 
 `tradeoff.png` draws both beside the laws in arrays and in single calls. Felt is the force that the loop hands to the
-hand, beside the same touch with everything exact, over the whole run, jump-in included:
+hand, beside the same touch with everything exact, over the whole run, jump-in included.
 
 {chr(10).join(lines)}"""
 

@@ -127,9 +127,10 @@ def section(rows: list[Row]) -> str:
     return f"""## Plans: accuracy demanded against cost reached
 
 Every preset with no topography, its force asked for with {RTOLS[0]:g} to {RTOLS[-1]:g} of max(|F|, pull-off force)
-(docs/plan.md): what the plan computes, what an evaluation costs in Hertz evaluations (`make bench`), the bound it
-states, and its largest error against `nanotouch.reference`, away from folds, from 1 cm to the largest load on approach
-and retraction. A plan serves all demands of its row. `plans.png` shows the same, `plans.csv` all demands.
+(docs/plan.md). A row says what the plan computes, what an evaluation costs in Hertz evaluations (`make bench`), and the
+bound that it states. The error is the largest against `nanotouch.reference`, on approach and retraction, from 1 cm to
+the largest load, away from folds (where the force jumps). A plan serves all demands of its row. `plans.png` shows the
+same, `plans.csv` all demands.
 
 {table}"""
 
