@@ -112,7 +112,8 @@ def test_a_touch_from_air_to_air(name: str) -> None:
     recording = session.run()
     limit = session.settings.limits.force
     assert not recording.columns["state"].any()
-    assert 0.4 * limit < np.max(recording.tip_force) < limit
+    pressed = 2.0 / session.settings.gains.alpha_f  # the script's push at the hand, where half the limit is not less
+    assert min(0.4 * limit, 0.9 * pressed) < np.max(recording.tip_force) < limit
     assert -np.min(recording.tip_force) == pytest.approx(session.plan.pull_off_force, rel=0.05)
     assert abs(recording.tip_force[-1]) < 1e-3 * limit
 
