@@ -261,13 +261,10 @@ def test_a_display_that_does_not_answer_is_given_up(monkeypatch: pytest.MonkeyPa
 
 
 def test_forces_are_scaled_as_in_a_first_touch(host: Host) -> None:
-    """As much as leaves the loop calm: the relief of the subject takes a larger alpha_p than a flat."""
-    scene, load = host.session.scene, float(host.session.scene.range.maximum_load)
-    usual = nt.session.settings_for_path(host.rig, host.subject.topography.height_range, load=load)
-    plan = scene.plan(rtol=host.subject.accuracy, surface=host.session.surface)
-    wanted = nt.margins.felt_alpha_f(host.rig, usual, plan, load)
+    scene, rig = nt.presets.silicon_in_air()
+    wanted = nt.margins.felt_alpha_f(rig, nt.Settings.for_rig(rig), scene.plan(), scene.range.maximum_load)
     assert host.session.settings.gains.alpha_f == pytest.approx(wanted)
-    assert wanted * plan.pull_off_force >= 0.1  # [N]: felt
+    assert wanted * scene.plan().pull_off_force >= 0.1  # [N]: felt
 
 
 def test_the_shadow_lies_on_the_surface() -> None:

@@ -12,8 +12,10 @@ from typing import Any, Protocol
 
 import nanotouch as nt
 import numpy as np
+from nanotouch import margins
 from nanotouch.operator import Hold
 
+SEEN = 0.93  # of a plan's pull-off that a loop shows at least
 LATERAL_REACH = 1.5  # travel of the master over the size of the surface
 DOWN_REACH = 1.5  # and over what lies below where it starts
 COUPLING = 0.25  # spring between proxy and tip over the lever's
@@ -35,6 +37,14 @@ def rig_of(rig: nt.Rig, settings: nt.Settings, extent: float, way_down: float) -
     made["master.travel"] = min(10.0, max(rig.master.travel, 2.0 * reach / settings.gains.alpha_p))
     made["master.resolution"] = 1e-7
     return made
+
+
+def felt_scale(rig: nt.Rig, usual: nt.Settings, pull_off_force: float, load: float) -> float:
+    """alpha_f at which a pull-off [N] would be clearly felt (:func:`nanotouch.margins.felt_alpha_f`); no loop closes
+    that could be less than calm. The browser's is the same (apps/page/src/host.js)."""
+    wanted = margins.CLEARLY_FELT / (SEEN * pull_off_force) if pull_off_force > 0.0 else math.inf
+    full = margins.heuristic_alpha_f(rig, margins.ForceRange(-pull_off_force, load))
+    return max(float(usual.gains.alpha_f), min(wanted, full))
 
 
 def settings_of(settings: nt.Settings, rig: nt.Rig) -> nt.Settings:

@@ -14,13 +14,13 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch import margins, record
+from nanotouch import record
 from nanotouch.errors import Error
 from nanotouch.scratch import Scratch
 from nanotouch.session import settings_for_path
 
 from nanotouch_app.live import files, places, refusals
-from nanotouch_app.live.hand import Hand, rig_of, settings_of
+from nanotouch_app.live.hand import Hand, felt_scale, rig_of, settings_of
 from nanotouch_app.live.remote import Lease
 from nanotouch_app.live.subject import Subject, of_preset
 from nanotouch_app.live.trainer import Trainer
@@ -63,8 +63,7 @@ class Host:
         load = float(self.scene.range.maximum_load)
         usual = settings_for_path(self.rig, self.subject.topography.height_range, load=load)
         plan = self.scene.plan(rtol=self.subject.accuracy)
-        touched = self.scene.plan(rtol=self.subject.accuracy, surface=surface)
-        usual["gains.alpha_f"] = margins.felt_alpha_f(self.rig, usual, touched, load)
+        usual["gains.alpha_f"] = felt_scale(self.rig, usual, plan.pull_off_force, load)
         settings = settings_of(usual, self.rig)
         deepest = INDENTATION_SHARE * float(plan.explain()["largest_indentation"])
         way_down = self.subject.clearance() + self.subject.topography.height_range + deepest
