@@ -23,7 +23,9 @@ BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 
 
 def _evaluate(law: Callable[[Floats, Floats], _core.LawColumns], gap: ArrayLike, **parameters: ArrayLike) -> Law:
-    """A law over the gaps; its parameters in the order of the C struct: one row for all gaps, or one for each."""
+    """A law over the gaps; its parameters in the order of the C struct: one row for all gaps, or one for each.
+
+    A function whose signature has that order hands on ``locals()``, all of what it was given."""
     gaps = as_floats(gap, "gap")
     numbers = [as_floats(value, name) for name, value in parameters.items()]
     if all(number.ndim == 0 for number in numbers):
@@ -41,14 +43,7 @@ def vdw(
     minimum_gap: ArrayLike = 0.2e-9,
 ) -> Law:
     """Van der Waals, exact Hamaker sphere: -2 H R^3/(3 s^2 (s + 2R)^2), s = max(gap, minimum_gap) + roughness/2."""
-    return _evaluate(
-        _core.vdw_eval,
-        gap,
-        radius=radius,
-        hamaker_constant=hamaker_constant,
-        roughness=roughness,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.vdw_eval, **locals())
 
 
 def vdw_derjaguin(
@@ -60,14 +55,7 @@ def vdw_derjaguin(
     minimum_gap: ArrayLike = 0.2e-9,
 ) -> Law:
     """Van der Waals, the paper's form -H R/(6 s^2), for s << R only: +36 % at 10 nm for R = 30 nm (erratum E1)."""
-    return _evaluate(
-        _core.vdw_derjaguin_eval,
-        gap,
-        radius=radius,
-        hamaker_constant=hamaker_constant,
-        roughness=roughness,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.vdw_derjaguin_eval, **locals())
 
 
 def vdw_tip(
@@ -84,16 +72,7 @@ def vdw_tip(
 
     A cone without end is Argento and French, J. Appl. Phys. 80 (1996) 6081.
     """
-    return _evaluate(
-        _core.vdw_tip_eval,
-        gap,
-        radius=radius,
-        hamaker_constant=hamaker_constant,
-        half_angle=half_angle,
-        height=height,
-        roughness=roughness,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.vdw_tip_eval, **locals())
 
 
 def capillary(
@@ -105,14 +84,7 @@ def capillary(
     film_thickness: ArrayLike = 0.0,
 ) -> Law:
     """Force of a standing meniscus: -4 pi gamma R [1 - (gap - 2e)/(2 r1)], the bracket held in 0..1 (erratum E3)."""
-    return _evaluate(
-        _core.capillary_eval,
-        gap,
-        radius=radius,
-        surface_tension=surface_tension,
-        meniscus_radius=meniscus_radius,
-        film_thickness=film_thickness,
-    )
+    return _evaluate(_core.capillary_eval, **locals())
 
 
 class CapillaryPath(NamedTuple):
@@ -145,14 +117,14 @@ def capillary_path(
 
 def electrostatic(gap: ArrayLike, *, radius: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> Law:
     """Conducting sphere at a potential [V] against a plane: -pi eps0 U^2 R^2/(h (h + R)) (Hudlet; erratum E5)."""
-    return _evaluate(_core.electrostatic_eval, gap, radius=radius, potential=potential, minimum_gap=minimum_gap)
+    return _evaluate(_core.electrostatic_eval, **locals())
 
 
 def electrostatic_plate(
     gap: ArrayLike, *, area: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9
 ) -> Law:
     """Parallel plates of an area [m^2], -eps0 S U^2/(2 h^2): the paper's form, whose S = 4 pi R r1 is E5's mistake."""
-    return _evaluate(_core.electrostatic_plate_eval, gap, area=area, potential=potential, minimum_gap=minimum_gap)
+    return _evaluate(_core.electrostatic_plate_eval, **locals())
 
 
 def electrostatic_tip(
@@ -168,20 +140,12 @@ def electrostatic_tip(
 
     In place of :func:`electrostatic`; the cone's integral is taken over its finite height.
     """
-    return _evaluate(
-        _core.electrostatic_tip_eval,
-        gap,
-        radius=radius,
-        half_angle=half_angle,
-        height=height,
-        potential=potential,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.electrostatic_tip_eval, **locals())
 
 
 def point_charge(gap: ArrayLike, *, radius: ArrayLike, charge: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> Law:
     """Charge [C] trapped under a grounded sphere (image charge, exact): -q^2 R (R + h)/(4 pi eps0 (h (h + 2R))^2)."""
-    return _evaluate(_core.point_charge_eval, gap, radius=radius, charge=charge, minimum_gap=minimum_gap)
+    return _evaluate(_core.point_charge_eval, **locals())
 
 
 def electrostatic_lever(
@@ -198,16 +162,7 @@ def electrostatic_lever(
 
     -eps0 U^2 w l cos(b) (sin(b)/b)^2/(2 D (D + l sin(b))), D = tip_height + gap; edges are neglected.
     """
-    return _evaluate(
-        _core.electrostatic_lever_eval,
-        gap,
-        length=length,
-        width=width,
-        tilt=tilt,
-        tip_height=tip_height,
-        potential=potential,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.electrostatic_lever_eval, **locals())
 
 
 def lennard_jones(
@@ -222,14 +177,7 @@ def lennard_jones(
 
     ``gap`` is measured between the surface atoms: -2 pi w R at h = z0.
     """
-    return _evaluate(
-        _core.lennard_jones_eval,
-        gap,
-        radius=radius,
-        work_of_adhesion=work_of_adhesion,
-        equilibrium_distance=equilibrium_distance,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.lennard_jones_eval, **locals())
 
 
 def double_layer(
@@ -277,16 +225,7 @@ def hydration(
 
     Amplitudes W_i are energies of plates at gap 0 [J/m^2] (Israelachvili 2011, ch. 15).
     """
-    return _evaluate(
-        _core.hydration_eval,
-        gap,
-        radius=radius,
-        amplitude=amplitude,
-        decay_length=decay_length,
-        second_amplitude=second_amplitude,
-        second_decay_length=second_decay_length,
-        minimum_gap=minimum_gap,
-    )
+    return _evaluate(_core.hydration_eval, **locals())
 
 
 def steric(
