@@ -201,8 +201,10 @@ set(nanotouch_sources_fit
     fit/outcome.cpp
     fit/points.cpp
     fit/problem.cpp
+    fit/profile.cpp
     fit/rating.cpp
     fit/reserve.cpp
     fit/run.cpp
     fit/solve.cpp
+    fit/solving.cpp
     fit/uncertainty.cpp)

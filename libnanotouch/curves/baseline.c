@@ -29,16 +29,26 @@ static nt_curve_free outside(const nt_curve_segment *segment, double far, double
     return free;
 }
 
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static double off_line(const nt_curve_segment *segment, const nt_curve_baseline *line, long i)
+{
+    return segment->force[i] - line->force - line->slope * (segment->z[i] - line->z_mean);
+}
+
 /* z beyond which the line explains every point; -infinity if it explains all. */
 static double outermost_event(const nt_curve_segment *segment, const nt_curve_baseline *line, double noise)
 {
     double largest = 0.0, start = -INFINITY;
     for (long i = 0; i < segment->count; i++)
-        largest = fmax(largest, fabs(segment->force[i] - nt_curve_baseline_at(line, segment->z[i])));
+        largest = larger(largest, fabs(off_line(segment, line, i)));
     const double limit = fmax(NT_CURVE_EVENT * noise, NT_CURVE_SCATTERED * line->scatter) + 0.1 * largest;
     for (long i = 0; i < segment->count; i++)
-        if (fabs(segment->force[i] - nt_curve_baseline_at(line, segment->z[i])) > limit)
-            start = fmax(start, segment->z[i]);
+        if (fabs(off_line(segment, line, i)) > limit)
+            start = larger(start, segment->z[i]);
     return start;
 }
 
@@ -48,10 +58,12 @@ static nt_curve_baseline straight(const nt_curve_segment *segment, double *work,
     const double travel = highest - nt_curve_lowest(segment->z, segment->count), far = highest - far_part * travel;
     const double noise = nt_curve_point_noise(segment->force, segment->count, work);
     *free = outside(segment, far, INFINITY, work);
-    const nt_curve_baseline first = nt_curve_line(free);
+    nt_curve_baseline first = nt_curve_robust_line(free);
     const double start = outermost_event(segment, &first, noise);
-    if (!isfinite(start))
+    if (!isfinite(start)) {
+        nt_curve_judge(free, &first);
         return first;
+    }
     *free = outside(segment, far, start + margin * travel, work);
     return nt_curve_line(free);
 }

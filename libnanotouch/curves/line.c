@@ -32,7 +32,7 @@ static void weighted_line(const nt_curve_free *free, nt_curve_baseline *line)
     line->force = force - line->slope * x;
 }
 
-nt_curve_baseline nt_curve_line(nt_curve_free *free)
+nt_curve_baseline nt_curve_robust_line(nt_curve_free *free)
 {
     const double travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
     nt_curve_baseline line = {.z_mean = free->z_mean};
@@ -48,6 +48,12 @@ nt_curve_baseline nt_curve_line(nt_curve_free *free)
             break;
         nt_curve_weigh(free->rest, free->count, line.scatter, free->weight);
     }
+    return line;
+}
+
+nt_curve_baseline nt_curve_line(nt_curve_free *free)
+{
+    nt_curve_baseline line = nt_curve_robust_line(free);
     nt_curve_judge(free, &line);
     return line;
 }

@@ -17,6 +17,8 @@ typedef struct nt_curve_free {
 } nt_curve_free;
 
 /* A robust line through them: iterated least squares with Tukey's weights. Leaves residuals and weights behind. */
+nt_curve_baseline nt_curve_robust_line(nt_curve_free *free);
+/* The same, judged. */
 nt_curve_baseline nt_curve_line(nt_curve_free *free);
 /* What the residuals say of the noise, and so of level and slope. */
 void nt_curve_judge(nt_curve_free *free, nt_curve_baseline *baseline);

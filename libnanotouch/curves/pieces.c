@@ -54,17 +54,18 @@ static void sum_up(const double x[], const double y[], int blocks, sums *s)
 /* from[j]: where the last piece of the best cut of the first j blocks begins. */
 static void cut(const sums *s, int blocks, double variance, int from[NT_PIECE_BLOCKS + 1])
 {
-    double cost[NT_PIECE_BLOCKS + 1] = {0.0};
+    double cost[NT_PIECE_BLOCKS + 1] = {0.0}, least[NT_PIECE_BLOCKS + 1] = {0.0}; /* least: cost of the piece from i on,
+                                                                                     which only grows with its length */
     cost[1] = INFINITY;
     from[1] = 0;
     for (int j = 2; j <= blocks; j++) {
         cost[j] = INFINITY;
         for (int i = 0; i + 2 <= j; i++) {
-            if (!(cost[i] + price < cost[j]))
+            if (!(cost[i] + price + least[i] < cost[j]))
                 continue;
-            const double tried = cost[i] + price + line_of(s, i, j).squares / variance;
-            if (tried < cost[j]) {
-                cost[j] = tried;
+            least[i] = line_of(s, i, j).squares / variance;
+            if (cost[i] + price + least[i] < cost[j]) {
+                cost[j] = cost[i] + price + least[i];
                 from[j] = i;
             }
         }

@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <string.h>
 
+enum { SAMPLE = 63, MIDDLE = 10, MANY = 256 }; /* MIDDLE: 2.5 standard deviations of the rank of a sample's median */
+
 static void swap(double *a, double *b)
 {
     const double kept = *a;
@@ -57,8 +59,36 @@ double nt_curve_lowest(const double values[], long count)
     return lowest;
 }
 
+/* Of many values: those between two of a sample's ranks come first, and the median is looked for among them. */
+static long gather_middle(double values[], long count, long *below)
+{
+    double sample[SAMPLE];
+    for (long i = 0; i < SAMPLE; i++)
+        sample[i] = values[i * (count / SAMPLE)];
+    nt_curve_sort_values(sample, SAMPLE);
+    const double low = sample[SAMPLE / 2 - MIDDLE], high = sample[SAMPLE / 2 + MIDDLE];
+    long inside = 0;
+    *below = 0;
+    for (long i = 0; i < count; i++) { /* without a branch */
+        const double value = values[i];
+        values[i] = values[inside];
+        values[inside] = value;
+        inside += (value >= low) & (value <= high);
+        *below += value < low;
+    }
+    return inside;
+}
+
 double nt_curve_median(double values[], long count)
 {
+    if (count >= MANY) {
+        long below;
+        const long inside = gather_middle(values, count, &below), rank = count / 2 - below;
+        if (rank >= 1 && rank < inside) {
+            const double upper = select(values, inside, rank);
+            return count % 2 ? upper : 0.5 * (nt_curve_highest(values, rank) + upper);
+        }
+    }
     const double upper = select(values, count, count / 2);
     return count % 2 ? upper : 0.5 * (nt_curve_highest(values, count / 2) + upper);
 }
@@ -72,9 +102,10 @@ double nt_curve_median_size(const double values[], long count, double scratch[])
 
 void nt_curve_weigh(const double rest[], long count, double scatter, double weight[])
 {
+    const double unit = 1.0 / (NT_TUKEY * scatter);
     for (long i = 0; i < count; i++) {
-        const double u = rest[i] / (NT_TUKEY * scatter), inside = fmax(0.0, 1.0 - u * u);
-        weight[i] = inside * inside;
+        const double u = rest[i] * unit, inside = 1.0 - u * u;
+        weight[i] = inside > 0.0 ? inside * inside : 0.0;
     }
 }
 

@@ -138,6 +138,12 @@ void ContactModel::add_background(double position, Point *point) const
 
 nt_status ContactModel::prepare(const Parameters &value)
 {
+    if (prepared_ && std::equal(value.begin(), value.begin() + NT_FIT_OWN, value_.begin()) &&
+        value[NT_FIT_SENSITIVITY] == value_[NT_FIT_SENSITIVITY]) { // only place or background: the same law
+        value_ = value;
+        return NT_OK;
+    }
+    prepared_ = false;
     const double E = value[NT_FIT_EFFECTIVE_MODULUS];
     if (is_cone(options_.model)) {
         const int sides = options_.model == NT_FIT_PYRAMID ? 4 : 0;
@@ -164,6 +170,7 @@ nt_status ContactModel::prepare(const Parameters &value)
     end_base_ = end.indentation + compliance_ * end.F;
     end_slope_ = stiffness / (1.0 + compliance_ * stiffness);
     differentiate(end, stiffness, &end_point_);
+    prepared_ = true;
     return NT_OK;
 }
 

@@ -46,6 +46,7 @@ class ContactModel : public Model
     Parameters value_{};
     double compliance_ = 0.0; // 1/k_c [m/N]; 0 without a spring constant
     double end_ = 0.0;        // s at which the straight continuation begins
+    bool prepared_ = false;   // for the law of value_
     double end_base_ = 0.0;   // X - delta0 there [m]
     double end_slope_ = 0.0;  // dF/dX there [N/m]
     Point end_point_{};

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One recorded curve: read it, take the points that the law describes, fit. The procedure of nanotouch/fit in Python.
+// One recorded curve: read it, take the points that the law describes, fit (solving.cpp).
 //
 // Adhesive laws: from the deepest point to where the tip is torn off, which is one more datum; others: as far as the
-// force is repulsive. Sensitivity, level and tilt of the baseline are data of their own uncertainty. Fitted with the
-// noise of the free cantilever, its 1/f part included, then once more with the scatter that is left where that is
-// more: so a law that does not describe the curve gets wide sigmas instead of a bent calibration. A last fit with any
-// sensitivity shows whether the curve contradicts its calibration.
+// force is repulsive.
 #include "curve.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "points.hpp"
+#include "solving.hpp"
 
 namespace nanotouch
 {
@@ -19,309 +18,51 @@ namespace nanotouch
 namespace
 {
 
-constexpr double loss_scale = 3.0;     // times the noise
-constexpr double stiff = 5.0;          // contact stiffness over spring constant
-constexpr double wide = 0.5;           // a/R up to which a paraboloid on a half-space is believed
-constexpr double misfitting = 3.0;     // residual over noise
-constexpr double wrong = 0.05;         // residual over the span of the force
-constexpr double as_given = 0.05;      // relative difference of scatter and noise that changes nothing
-constexpr double torn_elsewhere = 2.5; // standard deviations of the place of the tear
-constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
-constexpr int steep_places = 100;      // where the model is asked how close to the tear it is only continued
-constexpr double nearest = 1e-13, farthest = 1e-7; // m, from the tear
-constexpr double much_better = 0.7;                // ratio of residuals
-constexpr double moved = 0.5;                      // of ln E*
-constexpr double computed = 1e-9;                  // noise over force of a curve in which nothing is to be weighed
-constexpr double least_loss_scale = 1e-18;         // N
-constexpr double largest_spring_constant = 1e6;    // N/m
+constexpr double loss_scale = 3.0;              // times the noise
+constexpr double least_loss_scale = 1e-18;      // N
+constexpr double largest_spring_constant = 1e6; // N/m
 
-// Standard deviation of one point such that N independent ones would scatter as the mean of these N does [N].
-double scatter_of(const Fitted &fitted, const std::vector<nt_fit_point> &points)
+nt_fit_known known_of(const nt_fit_recipe &recipe, const nt_curve_branch &branch, const Fitted &fitted)
 {
-    std::vector<double> rest(points.size());
-    double squares = 0.0;
-    for (std::size_t i = 0; i < rest.size(); i++) {
-        rest[i] = fitted.force[i] - points[i].force;
-        squares += rest[i] * rest[i];
-    }
-    const double mean_square = squares / double(rest.size());
-    return std::sqrt(mean_square * nt_curve_residual_correlation(rest.data(), static_cast<long>(rest.size())));
+    nt_fit_known known{};
+    known.noise = branch.noise;
+    known.free = branch.baseline.noise;
+    known.baseline_position = -branch.baseline.z_mean;
+    known.level_sigma = std::sqrt(branch.baseline.force_variance);
+    known.tilt_sigma = std::sqrt(branch.baseline.slope_variance);
+    known.tear_position = fitted.tear_position;
+    known.tear_sigma = fitted.tear_sigma;
+    known.sensitivity_sigma = recipe.sensitivity_uncertainty;
+    known.fit_offset = recipe.fit_offset;
+    std::copy_n(recipe.held, NT_FIT_PARAMETERS, known.held);
+    return known;
 }
 
-// What a fit is made with and what it found.
-struct Solution {
-    nt_fit_options options;
-    nt_fit_result result;
-    std::vector<nt_fit_point> points;
-    double scatter;
-};
-
-// A recorded curve on its way.
-class Curve
+nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const nt_curve_branch &branch,
+                     nt_fit_outcome *outcome)
 {
-  public:
-    Curve(const nt_fit_recipe &recipe, double spring_constant, const nt_curve_branch &branch, nt_fit_outcome *outcome)
-        : recipe_(recipe), spring_constant_(spring_constant), branch_(branch), outcome_(*outcome)
-    {
+    if (!(spring_constant > 0.0 && spring_constant < largest_spring_constant)) {
+        outcome->problem = {"spring_constant", "N/m", spring_constant, 0.0, largest_spring_constant};
+        return std::isnan(spring_constant) ? NT_E_NOT_FINITE : NT_E_RANGE;
     }
-    nt_status fit();
-
-  private:
-    nt_status steep_part(double *width) const;
-    nt_status leave_steep_part();
-    void let_vary(nt_fit_options *options) const;
-    void know(nt_fit_options *options, nt_fit_parameter parameter, double value, double sigma) const;
-    nt_status run();
-    nt_status run_with_scatter();
-    nt_status contradicts_tear(bool *contradicts) const;
-    nt_status solve();
-    bool is_exact() const;
-    double correlated_noise() const;
-    double noise() const; // of the free cantilever, as far as the fitted points are worth independent ones [N]
-    nt_status doubt_calibration();
-    double rating() const;
-    void judge();
-
-    const nt_fit_recipe &recipe_;
-    const double spring_constant_;
-    const nt_curve_branch &branch_;
-    nt_fit_outcome &outcome_;
-    Fitted fitted_;
-    Solution solution_{};
-};
-
-void Curve::know(nt_fit_options *options, nt_fit_parameter parameter, double value, double sigma) const
-{
-    nt_fit_start &start = options->parameter[parameter];
-    if (sigma > 0.0 && !recipe_.held[parameter])
-        start = {value, start.minimum, start.maximum, sigma, 0};
-}
-
-// What is known to some uncertainty becomes a datum.
-void Curve::let_vary(nt_fit_options *options) const
-{
-    options->force_noise = noise();
-    options->tilt_position = -branch_.baseline.z_mean;
-    know(options, NT_FIT_SENSITIVITY, 1.0, recipe_.sensitivity_uncertainty);
-    if (recipe_.fit_offset)
-        options->parameter[NT_FIT_FORCE_OFFSET].fixed = 0;
-    else
-        know(options, NT_FIT_FORCE_OFFSET, 0.0, std::sqrt(branch_.baseline.force_variance));
-    know(options, NT_FIT_FORCE_TILT, 0.0, std::sqrt(branch_.baseline.slope_variance));
-    if (fitted_.torn) {
-        options->tear_position = fitted_.tear_position;
-        options->tear_sigma = fitted_.tear_sigma;
-    }
-}
-
-nt_status Curve::run()
-{
-    const nt_fit_data data = fitted_.data();
-    Solution &found = solution_;
-    nt_status status = nt_fit_run(&found.options, &data, &found.result, &outcome_.problem);
+    Fitted fitted;
+    nt_status status = take_points(recipe, branch, &fitted, &outcome->problem);
     if (status != NT_OK)
         return status;
-    found.points.resize(fitted_.position.size());
-    status = nt_fit_model_n(&found.options, found.result.value, &data, found.points.data());
-    if (status == NT_OK)
-        found.scatter = std::max(scatter_of(fitted_, found.points), correlated_noise());
-    return status;
-}
-
-// Whether the tip was torn off elsewhere than where such a contact lets go: by a shock, or it is another contact.
-nt_status Curve::contradicts_tear(bool *contradicts) const
-{
-    *contradicts = false;
-    const nt_fit_options &options = solution_.options;
-    if (options.tear_sigma == 0.0)
-        return NT_OK;
-    double position;
-    const nt_status status = nt_fit_tear_position(&options, solution_.result.value, &position);
-    if (status == NT_OK)
-        *contradicts = std::fabs(position - options.tear_position) > torn_elsewhere * options.tear_sigma;
-    return status;
-}
-
-double Curve::correlated_noise() const
-{
-    return nt_curve_correlated_noise(branch_.noise, &branch_.baseline.noise,
-                                     static_cast<long>(fitted_.position.size()));
-}
-
-double Curve::noise() const
-{
-    return std::max(branch_.noise, correlated_noise());
-}
-
-bool Curve::is_exact() const
-{
-    return solution_.scatter < computed * fitted_.largest();
-}
-
-// With the noise from point to point; then once more with the scatter that was found.
-nt_status Curve::run_with_scatter()
-{
-    const nt_status status = run();
-    double *used = &solution_.options.force_noise;
-    const bool as_known = std::fabs(solution_.scatter / noise() - 1.0) <= as_given;
-    if (status != NT_OK || is_exact() || *used == 0.0 || as_known)
-        return status;
-    *used = solution_.scatter;
-    return run();
-}
-
-nt_status Curve::solve()
-{
-    nt_fit_options &options = solution_.options;
-    options = recipe_.options;
-    options.spring_constant = spring_constant_;
+    nt_fit_options options = recipe.options;
+    options.spring_constant = spring_constant;
     if (!(options.loss_scale > 0.0))
-        options.loss_scale = std::max(loss_scale * outcome_.reading.noise, least_loss_scale);
-    if (noise() > computed * fitted_.largest())
-        let_vary(&options);
-    nt_status status = run_with_scatter();
-    bool contradicts = false;
-    if (status == NT_OK)
-        status = contradicts_tear(&contradicts);
-    if (!contradicts)
-        return status;
-    options.tear_sigma = 0.0;
-    options.force_noise = noise();
-    return run_with_scatter();
-}
-
-// How far before the tear the model is only a straight continuation [m]; 0 where the tear is not used.
-nt_status Curve::steep_part(double *width) const
-{
-    *width = 0.0;
-    if (solution_.options.tear_sigma == 0.0)
-        return NT_OK;
-    double tear;
-    nt_status status = nt_fit_tear_position(&solution_.options, solution_.result.value, &tear);
-    double distance[steep_places], position[steep_places];
-    for (int i = 0; i < steep_places; i++) {
-        distance[i] = nearest * std::pow(farthest / nearest, double(i) / (steep_places - 1));
-        position[i] = tear + distance[i];
-    }
-    nt_fit_point points[steep_places];
-    const nt_fit_data data{position, nullptr, steep_places, 1, 1};
-    if (status == NT_OK)
-        status = nt_fit_model_n(&solution_.options, solution_.result.value, &data, points);
+        options.loss_scale = std::max(loss_scale * outcome->reading.noise, least_loss_scale);
+    const nt_fit_known known = known_of(recipe, branch, fitted);
+    Solving solving(options, known, fitted.data(), &outcome->problem);
+    status = solving.run();
     if (status != NT_OK)
         return status;
-    const auto held = std::find_if(points, points + steep_places, [](const nt_fit_point &p) { return p.held != 0; });
-    *width = distance[held == points + steep_places ? 0 : held - points];
-    return NT_OK;
-}
-
-// What was measured there is left out, by its distance from the measured tear: the model must not choose its points.
-nt_status Curve::leave_steep_part()
-{
-    double width;
-    nt_status status = steep_part(&width);
-    if (status != NT_OK || !fitted_.torn || !(width > fitted_.position.back() - fitted_.tear_position))
-        return status;
-    const auto far = [&](double position) { return position - fitted_.tear_position > width; };
-    const auto kept = std::find_if(fitted_.position.rbegin(), fitted_.position.rend(), far);
-    const auto count = static_cast<std::size_t>(fitted_.position.rend() - kept);
-    fitted_.position.resize(count);
-    fitted_.force.resize(count);
-    status = check_count(fitted_, &outcome_.problem);
-    return status == NT_OK ? solve() : status;
-}
-
-// A sensitivity far from the one given, or a much better fit with one that may be anything, puts E* in doubt.
-nt_status Curve::doubt_calibration()
-{
-    nt_fit_result &fit = solution_.result;
-    nt_fit_options options = solution_.options;
-    nt_fit_start &sensitivity = options.parameter[NT_FIT_SENSITIVITY];
-    if (options.parameter[NT_FIT_EFFECTIVE_MODULUS].fixed || sensitivity.fixed || is_exact() ||
-        recipe_.sensitivity_uncertainty == 0.0)
-        return NT_OK;
-    const double asked = std::log(fit.value[NT_FIT_SENSITIVITY]);
-    bool doubtful = std::fabs(asked) > contradiction * recipe_.sensitivity_uncertainty;
-    if (doubtful)
-        fit.identifiable[NT_FIT_WORK_OF_ADHESION] = 0;
-    if (!doubtful && fit.residual_rms / branch_.noise >= 1.0 / much_better) {
-        sensitivity.initial = 1.0;
-        sensitivity.sigma = 0.0;
-        const nt_fit_data data = fitted_.data();
-        nt_fit_result any;
-        const nt_status status = nt_fit_run(&options, &data, &any, &outcome_.problem);
-        if (status != NT_OK)
-            return status;
-        const double change = std::log(any.value[NT_FIT_EFFECTIVE_MODULUS] / fit.value[NT_FIT_EFFECTIVE_MODULUS]);
-        doubtful = any.residual_rms <= much_better * fit.residual_rms && std::fabs(change) >= moved;
-    }
-    if (doubtful) {
-        fit.identifiable[NT_FIT_EFFECTIVE_MODULUS] = 0;
-        outcome_.flags |= NT_FIT_CALIBRATION;
-    }
-    return NT_OK;
-}
-
-double Curve::rating() const
-{
-    std::vector<double> indentation(solution_.points.size()), fitted(solution_.points.size());
-    for (std::size_t i = 0; i < fitted.size(); i++) {
-        indentation[i] = solution_.points[i].indentation;
-        fitted[i] = solution_.points[i].force;
-    }
-    const nt_fit_rated rated{indentation.data(), fitted_.force.data(), fitted.data(), static_cast<long>(fitted.size()),
-                             branch_.noise};
-    return nt_fit_rating(&rated);
-}
-
-void Curve::judge()
-{
-    nt_fit_result &fit = solution_.result;
-    const nt_fit_options &options = solution_.options;
-    const auto [lowest, highest] = std::minmax_element(fitted_.force.begin(), fitted_.force.end());
-    const double misfit = fit.residual_rms / branch_.noise; // infinite without noise
-    const bool modulus_known =
-        options.parameter[NT_FIT_EFFECTIVE_MODULUS].fixed || fit.identifiable[NT_FIT_EFFECTIVE_MODULUS];
-    const bool round = options.model != NT_FIT_CONE && options.model != NT_FIT_PYRAMID;
-    unsigned flags = fit.converged ? 0U : unsigned(NT_FIT_NOT_CONVERGED);
-    if (!modulus_known && fit.contact_stiffness > stiff * spring_constant_)
-        flags |= NT_FIT_STIFF;
-    if (round && fit.contact_radius > wide * options.radius)
-        flags |= NT_FIT_WIDE;
-    if (std::hypot(branch_.baseline.wave.cosine, branch_.baseline.wave.sine) > 0.0)
-        flags |= NT_FIT_WAVES;
-    const bool tear_unused =
-        fitted_.torn && !options.parameter[NT_FIT_WORK_OF_ADHESION].fixed && options.tear_sigma == 0.0;
-    if (tear_unused && !is_exact())
-        flags |= NT_FIT_TORN_ELSEWHERE;
-    outcome_.rating = rating();
-    if (misfit > misfitting && std::isfinite(misfit)) {
-        if (outcome_.rating < NT_FIT_GOOD)
-            flags |= NT_FIT_MISFIT;
-        if (tear_unused || fit.residual_rms > wrong * (*highest - *lowest)) {
-            flags |= NT_FIT_WRONG_MODEL;
-            std::fill_n(fit.identifiable, NT_FIT_PARAMETERS, 0);
-        }
-    }
-    outcome_.flags |= flags;
-}
-
-nt_status Curve::fit()
-{
-    if (!(spring_constant_ > 0.0 && spring_constant_ < largest_spring_constant)) {
-        outcome_.problem = {"spring_constant", "N/m", spring_constant_, 0.0, largest_spring_constant};
-        return std::isnan(spring_constant_) ? NT_E_NOT_FINITE : NT_E_RANGE;
-    }
-    nt_status status = take_points(recipe_, branch_, &fitted_, &outcome_.problem);
-    if (status == NT_OK)
-        status = solve();
-    if (status == NT_OK)
-        status = leave_steep_part();
-    if (status == NT_OK)
-        status = doubt_calibration();
-    if (status != NT_OK)
-        return status;
-    judge();
-    outcome_.fit = solution_.result;
+    outcome->fit = solving.solution().fit;
+    outcome->rating = solving.solution().rating;
+    outcome->flags = solving.solution().flags;
+    if (std::hypot(branch.baseline.wave.cosine, branch.baseline.wave.sine) > 0.0)
+        outcome->flags |= NT_FIT_WAVES;
     return NT_OK;
 }
 
@@ -341,10 +82,12 @@ void fit_recorded(const nt_fit_recipe &recipe, const nt_curve &curve, nt_fit_out
 {
     *outcome = failed(NT_OK);
     const nt_curve_segment &fitted = recipe.approach ? curve.approach : curve.retract;
-    std::vector<double> work(static_cast<std::size_t>(nt_curve_work_size(curve.approach.count + curve.retract.count)));
+    // not cleared: that alone would cost a twentieth of the whole
+    const std::unique_ptr<double[]> work(
+        new double[static_cast<std::size_t>(nt_curve_work_size(curve.approach.count + curve.retract.count))]);
     nt_curve_reading read;
     if (curve.approach.count >= NT_CURVE_FEWEST || curve.retract.count >= NT_CURVE_FEWEST) {
-        outcome->status = nt_curve_read(&curve, &recipe.baseline, work.data(), &read, &outcome->problem);
+        outcome->status = nt_curve_read(&curve, &recipe.baseline, work.get(), &read, &outcome->problem);
         for (const nt_curve_segment *segment : {&curve.approach, &curve.retract})
             if (outcome->status == NT_OK)
                 outcome->status = check_span(*segment, &outcome->problem);
@@ -359,7 +102,7 @@ void fit_recorded(const nt_fit_recipe &recipe, const nt_curve &curve, nt_fit_out
         return;
     }
     outcome->status =
-        Curve(recipe, curve.spring_constant, recipe.approach ? read.approach : read.retract, outcome).fit();
+        fit_branch(recipe, curve.spring_constant, recipe.approach ? read.approach : read.retract, outcome);
     if (outcome->status != NT_OK)
         outcome->flags = 0;
 }

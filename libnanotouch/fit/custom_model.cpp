@@ -50,8 +50,8 @@ struct Root {
 nt_status CustomModel::force_at(const Parameters &value, const Array &indentation, Array *force) const
 {
     force->resize(indentation.size());
-    return options_.law->force(options_.law->context, value.data(), static_cast<long>(indentation.size()),
-                               indentation.data(), force->data());
+    return options_.law->force(&options_, value.data(), static_cast<long>(indentation.size()), indentation.data(),
+                               force->data());
 }
 
 nt_status CustomModel::prepare(const Parameters &value)

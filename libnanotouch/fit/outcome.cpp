@@ -50,7 +50,7 @@ nt_fit_outcome failed(nt_status status)
     std::fill_n(fit.from_tear, NT_FIT_PARAMETERS, not_a_number);
     std::fill_n(&fit.covariance[0][0], NT_FIT_PARAMETERS * NT_FIT_PARAMETERS, not_a_number);
     fit.residual_rms = fit.residual_noise = fit.misfit = fit.transition_parameter = fit.pull_off_force = not_a_number;
-    fit.contact_radius = fit.contact_stiffness = not_a_number;
+    fit.contact_radius = fit.contact_stiffness = fit.chi_square = not_a_number;
     return outcome;
 }
 

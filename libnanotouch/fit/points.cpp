@@ -16,14 +16,6 @@ bool is_adhesive(nt_fit_model model)
     return model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
 }
 
-} // namespace
-
-double Fitted::largest() const
-{
-    const auto [low, high] = std::minmax_element(force.begin(), force.end());
-    return std::max(std::fabs(*low), std::fabs(*high));
-}
-
 nt_status check_count(const Fitted &fitted, nt_problem *problem)
 {
     if (fitted.position.size() >= NT_CURVE_FEWEST)
@@ -31,6 +23,8 @@ nt_status check_count(const Fitted &fitted, nt_problem *problem)
     *problem = {"points left to fit", "", double(fitted.position.size()), NT_CURVE_FEWEST, 1e9};
     return NT_E_RANGE;
 }
+
+} // namespace
 
 nt_status take_points(const nt_fit_recipe &recipe, const nt_curve_branch &branch, Fitted *fitted, nt_problem *problem)
 {

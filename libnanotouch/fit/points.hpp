@@ -14,7 +14,6 @@ struct Fitted {
     std::vector<double> position, force;
     bool torn = false;
     double tear_position = 0.0, tear_sigma = 0.0;
-    double largest() const; // size of a force [N]
     nt_fit_data data() const
     {
         return {position.data(), force.data(), static_cast<long>(position.size()), 1, 1};
@@ -23,6 +22,5 @@ struct Fitted {
 
 // Those that the law can describe. NT_E_RANGE if they are too few.
 nt_status take_points(const nt_fit_recipe &recipe, const nt_curve_branch &branch, Fitted *fitted, nt_problem *problem);
-nt_status check_count(const Fitted &fitted, nt_problem *problem);
 
 } // namespace nanotouch

@@ -58,9 +58,13 @@ Residuals::Residuals(const nt_fit_options &options, const nt_fit_data &data, con
       unit_(options.force_noise > 0.0 ? options.force_noise : force_span(data).largest()),
       x_(static_cast<std::size_t>(coordinates.size()))
 {
-    for (int i = 0; i < coordinates_.size(); i++)
-        if (options_.parameter[coordinates_.parameter(i)].sigma > 0.0)
+    for (int i = 0; i < coordinates_.size(); i++) {
+        const nt_fit_start &start = options_.parameter[coordinates_.parameter(i)];
+        lowest_.push_back(coordinates_.inverse(i, start.minimum));
+        highest_.push_back(coordinates_.inverse(i, start.maximum));
+        if (start.sigma > 0.0)
             known_.push_back(i);
+    }
     count_ = data.count + has_tear() + static_cast<long>(known_.size());
     residual_.resize(static_cast<std::size_t>(count_));
     gradient_.resize(static_cast<std::size_t>(count_ * coordinates_.size()));
@@ -70,12 +74,36 @@ void Residuals::PrepareForEvaluation(bool, bool new_evaluation_point)
 {
     if (Reserve::is_used()) // it would not last
         throw std::bad_alloc();
-    if (new_evaluation_point)
-        valid_ = evaluate();
+    if (!new_evaluation_point || (is_seen_ && x_ == seen_))
+        return;
+    is_seen_ = true;
+    seen_ = x_;
+    valid_ = evaluate();
+}
+
+// From the start again; no step may then lead out of the bounds.
+void Residuals::make_bounds_walls(bool walls)
+{
+    walls_ = walls;
+    met_bound_ = false;
+    std::fill(x_.begin(), x_.end(), 0.0);
+    is_seen_ = is_seen_ && valid_ && x_ == seen_;
+}
+
+bool Residuals::is_outside() const
+{
+    for (std::size_t i = 0; i < x_.size(); i++)
+        if (x_[i] < lowest_[i] || x_[i] > highest_[i])
+            return true;
+    return false;
 }
 
 bool Residuals::evaluate()
 {
+    if (walls_ && is_outside()) {
+        met_bound_ = true;
+        return false;
+    }
     const Parameters value = values();
     Tear tear{};
     if (model_->prepare(value) != NT_OK || model_->points_at(data_, &points_) != NT_OK ||

@@ -80,6 +80,11 @@ class Residuals : public ceres::EvaluationCallback
     {
         return &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
     }
+    bool met_bound() const
+    {
+        return met_bound_;
+    } // since bounds were made walls
+    void make_bounds_walls(bool walls);
     bool has_tear() const
     {
         return options_.tear_sigma > 0.0;
@@ -95,6 +100,7 @@ class Residuals : public ceres::EvaluationCallback
 
   private:
     bool evaluate();
+    bool is_outside() const;
     void store(long i, double residual, const Parameters &gradient, double unit);
     void store_known(long i, int coordinate);
 
@@ -104,10 +110,11 @@ class Residuals : public ceres::EvaluationCallback
     const std::unique_ptr<Model> model_;
     const double unit_;
     long count_ = 0;
-    std::vector<double> x_, residual_, gradient_;
+    std::vector<double> x_, seen_; // seen: where the residuals are those of
+    std::vector<double> residual_, gradient_, lowest_, highest_;
     std::vector<Point> points_;
     std::vector<int> known_; // coordinates with a datum of their own
-    bool valid_ = false;
+    bool valid_ = false, is_seen_ = false, walls_ = false, met_bound_ = false;
 };
 
 // Some of Residuals as one block: a single point where a loss acts on each, all of them where none does.

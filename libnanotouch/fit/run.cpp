@@ -62,12 +62,7 @@ nt_status run_from(const nt_fit_options &options, const nt_fit_data &data, doubl
     if (step > 1) {
         const nt_fit_data part{data.position, data.force, (data.count - 1) / step + 1, data.position_stride * step,
                                data.force_stride * step};
-        Fit fit(options, part, start);
-        Found coarse;
-        if (fit.run(&coarse) == NT_OK)
-            for (int i = 0; i < NT_FIT_PARAMETERS; i++)
-                if (is_free(options, i))
-                    start[static_cast<std::size_t>(i)] = coarse.result.value[i];
+        (void)Fit(options, part, start).approach(&start);
     }
     Fit fit(options, data, start);
     return fit.run(found);
@@ -127,7 +122,7 @@ void widen(const nt_fit_options &options, const nt_fit_result &other, nt_fit_res
     }
 }
 
-nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
+nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, Found *best)
 {
     std::vector<Found> all;
     for (const double lambda : transition_parameters) {
@@ -140,29 +135,27 @@ nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, n
     }
     if (all.empty())
         return NT_E_NO_CONVERGENCE;
-    const Found best =
-        *std::min_element(all.begin(), all.end(), [](const Found &a, const Found &b) { return a.cost < b.cost; });
-    hold_ranges(options, data, best.result, &all);
-    *result = best.result;
-    const Found *far = farthest(options, all, best);
+    *best = *std::min_element(all.begin(), all.end(), [](const Found &a, const Found &b) { return a.cost < b.cost; });
+    hold_ranges(options, data, best->result, &all);
+    const Found *far = farthest(options, all, *best);
     if (far)
-        widen(options, far->result, result);
+        widen(options, far->result, &best->result);
     return NT_OK;
 }
 
 nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
 {
     const nt_fit_start &range = options.parameter[NT_FIT_COHESIVE_RANGE];
-    nt_fit_result made;
+    Found found;
     nt_status status;
     if (options.model == NT_FIT_MAUGIS && std::isnan(range.initial)) {
-        status = run_from_all(options, data, &made);
+        status = run_from_all(options, data, &found);
     } else {
-        Found found;
         status = run_from(options, data, std::nan(""), &found);
-        made = found.result;
     }
     if (status == NT_OK) {
+        nt_fit_result &made = found.result;
+        made.chi_square = options.force_noise > 0.0 ? found.cost : std::nan("");
         write_message(options, &made);
         *result = made;
     }

@@ -39,8 +39,9 @@ Fit::Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameter
 {
 }
 
-void Fit::build(ceres::Problem *problem)
+void Fit::build(ceres::Problem *problem, bool bounded)
 {
+    costs_.clear();
     double *x = residuals_.x();
     problem->AddParameterBlock(x, coordinates_.size());
     const long single = loss_ ? data_.count : 0;
@@ -52,15 +53,23 @@ void Fit::build(ceres::Problem *problem)
         costs_.emplace_back(residuals_, single, residuals_.count() - single, coordinates_.size());
         problem->AddResidualBlock(&costs_.back(), nullptr, x);
     }
-    for (int i = 0; i < coordinates_.size(); i++) {
+    for (int i = 0; i < coordinates_.size() && bounded; i++) {
         const nt_fit_start &bounds = options_.parameter[coordinates_.parameter(i)];
         problem->SetParameterLowerBound(x, i, coordinates_.inverse(i, bounds.minimum));
         problem->SetParameterUpperBound(x, i, coordinates_.inverse(i, bounds.maximum));
     }
 }
 
-bool Fit::solve(ceres::Problem *problem, ceres::Solver::Summary *summary)
+bool Fit::solve(bool bounded, ceres::Solver::Summary *summary)
 {
+    ceres::Problem::Options ownership;
+    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ownership.evaluation_callback = &residuals_;
+    ceres::Problem problem(ownership);
+    build(&problem, bounded);
+    if (Reserve::is_used())
+        throw std::bad_alloc();
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     solver.logging_type = ceres::SILENT;
@@ -69,11 +78,23 @@ bool Fit::solve(ceres::Problem *problem, ceres::Solver::Summary *summary)
     solver.function_tolerance = 1e-10; // a thousandth of a standard uncertainty
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-12;
-    ceres::Solve(solver, problem, summary);
+    residuals_.make_bounds_walls(!bounded);
+    ceres::Solve(solver, &problem, summary);
     if (Reserve::is_used())
         throw std::bad_alloc();
     residuals_.PrepareForEvaluation(true, true); // at the result, not at the last trial
-    return summary->IsSolutionUsable() && residuals_.valid();
+    return summary->IsSolutionUsable() && residuals_.valid() && !residuals_.met_bound();
+}
+
+// Within bounds Ceres searches each step for a shorter one, at the cost of half of all evaluations: only where a step
+// without them leads out.
+nt_status Fit::descend(ceres::Solver::Summary *summary)
+{
+    residuals_.PrepareForEvaluation(true, true);
+    if (!residuals_.valid())
+        return NT_E_NO_CONVERGENCE;
+    const Reserve reserve;
+    return solve(false, summary) || solve(true, summary) ? NT_OK : NT_E_NO_CONVERGENCE;
 }
 
 void Fit::fill_values(nt_fit_result *result) const
@@ -112,23 +133,21 @@ nt_status Fit::finish(Found *found)
     return NT_OK;
 }
 
+nt_status Fit::approach(Parameters *value)
+{
+    ceres::Solver::Summary summary;
+    const nt_status status = descend(&summary);
+    if (status == NT_OK)
+        *value = residuals_.values();
+    return status;
+}
+
 nt_status Fit::run(Found *found)
 {
-    residuals_.PrepareForEvaluation(true, true);
-    if (!residuals_.valid())
-        return NT_E_NO_CONVERGENCE;
-    const Reserve reserve;
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ownership.evaluation_callback = &residuals_;
-    ceres::Problem problem(ownership);
-    build(&problem);
-    if (Reserve::is_used())
-        throw std::bad_alloc();
     ceres::Solver::Summary summary;
-    if (!solve(&problem, &summary))
-        return NT_E_NO_CONVERGENCE;
+    const nt_status status = descend(&summary);
+    if (status != NT_OK)
+        return status;
     fill(found);
     found->cost = 2.0 * summary.final_cost;
     found->result.iterations = static_cast<int>(summary.iterations.size()) - 1;

@@ -18,11 +18,13 @@ class Fit
   public:
     Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start);
     nt_status run(Found *found);
-    nt_status finish(Found *found); // the start is known to be the solution
+    nt_status approach(Parameters *value); // only the values, for another fit to start from
+    nt_status finish(Found *found);        // the start is known to be the solution
 
   private:
-    void build(ceres::Problem *problem);
-    bool solve(ceres::Problem *problem, ceres::Solver::Summary *summary);
+    void build(ceres::Problem *problem, bool bounded);
+    nt_status descend(ceres::Solver::Summary *summary);
+    bool solve(bool bounded, ceres::Solver::Summary *summary);
     void fill(Found *found) const;
     void fill_values(nt_fit_result *result) const;
 

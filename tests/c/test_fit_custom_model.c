@@ -15,26 +15,29 @@
 enum { POINTS = 400 };
 
 /* Hertz, written by a user; the context is R. */
-static nt_status hertz(void *context, const double *value, long count, const double *indentation, double *force)
+static nt_status hertz(const nt_fit_options *options, const double *value, long count, const double *indentation,
+                       double *force)
 {
-    const double R = *(const double *)context;
+    const double R = *(const double *)options->law->context;
     for (long i = 0; i < count; i++)
         force[i] = indentation[i] > 0.0 ? 4.0 / 3.0 * value[0] * sqrt(R) * pow(indentation[i], 1.5) : 0.0;
     return NT_OK;
 }
 
 /* Any exponent: F = A (delta/1 nm)^n. */
-static nt_status power(void *context, const double *value, long count, const double *indentation, double *force)
+static nt_status power(const nt_fit_options *options, const double *value, long count, const double *indentation,
+                       double *force)
 {
-    (void)context;
+    (void)options;
     for (long i = 0; i < count; i++)
         force[i] = indentation[i] > 0.0 ? value[0] * pow(indentation[i] / 1e-9, value[1]) : 0.0;
     return NT_OK;
 }
 
-static nt_status refuses(void *context, const double *value, long count, const double *indentation, double *force)
+static nt_status refuses(const nt_fit_options *options, const double *value, long count, const double *indentation,
+                         double *force)
 {
-    (void)context, (void)value, (void)count, (void)indentation, (void)force;
+    (void)options, (void)value, (void)count, (void)indentation, (void)force;
     return NT_E_UNSUPPORTED;
 }
 

@@ -134,9 +134,10 @@ static void a_fit_from_several_starts(void **state)
     fail_everywhere(&fit);
 }
 
-static nt_status square(void *context, const double *value, long count, const double *indentation, double *force)
+static nt_status square(const nt_fit_options *own, const double *value, long count, const double *indentation,
+                        double *force)
 {
-    (void)context;
+    (void)own;
     for (long i = 0; i < count; i++)
         force[i] = indentation[i] > 0.0 ? value[0] * indentation[i] * indentation[i] : 0.0;
     return NT_OK;
@@ -154,11 +155,11 @@ static void a_law_of_ones_own(void **state)
 }
 
 /* Every tenth time this law has a fit of its own, whose end does not matter to it. */
-static nt_status square_that_fits(void *context, const double *value, long count, const double *indentation,
+static nt_status square_that_fits(const nt_fit_options *own, const double *value, long count, const double *indentation,
                                   double *force)
 {
     static curve other;
-    int *calls = context;
+    int *calls = own->law->context;
     if (++*calls % 10 == 0) {
         nt_fit_options inner = options_of(NT_FIT_CONE, 0.0);
         nt_fit_data data = data_of(&other);
@@ -171,7 +172,7 @@ static nt_status square_that_fits(void *context, const double *value, long count
         }
         (void)nt_fit_run(&inner, &data, &result, NULL);
     }
-    return square(NULL, value, count, indentation, force);
+    return square(own, value, count, indentation, force);
 }
 
 static void a_law_that_fits(void **state)
@@ -195,12 +196,12 @@ static void find_memory(void)
 
 static heap_new_handler *kept;
 
-static nt_status square_that_keeps(void *context, const double *value, long count, const double *indentation,
-                                   double *force)
+static nt_status square_that_keeps(const nt_fit_options *own, const double *value, long count,
+                                   const double *indentation, double *force)
 {
     heap_new_handler *const found = heap_set_new_handler(NULL);
     kept = found ? found : kept;
-    return square(context, value, count, indentation, force);
+    return square(own, value, count, indentation, force);
 }
 
 /* It is called, is there after each fit, and does no harm where a program sets that of a fit again. */

@@ -3,4 +3,6 @@
 #pragma once
 #include "law.h"
 
+py::dict result_dict(const nt_fit_result &result);
 void bind_batch(py::module_ &module);
+void bind_solving(py::module_ &module);

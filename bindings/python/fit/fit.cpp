@@ -66,7 +66,7 @@ template <class Number> static py::array_t<Number> array_of(const Number (&value
     return py::array_t<Number>(NT_FIT_PARAMETERS, values);
 }
 
-static py::dict result_dict(const nt_fit_result &result)
+py::dict result_dict(const nt_fit_result &result)
 {
     py::array_t<double> covariance({int(NT_FIT_PARAMETERS), int(NT_FIT_PARAMETERS)});
     std::copy_n(&result.covariance[0][0], NT_FIT_PARAMETERS * NT_FIT_PARAMETERS, covariance.mutable_data());
@@ -80,6 +80,7 @@ static py::dict result_dict(const nt_fit_result &result)
     out["residual_noise"] = result.residual_noise;
     out["residuals_are_noise"] = bool(result.residuals_are_noise);
     out["misfit"] = result.misfit;
+    out["chi_square"] = result.chi_square;
     out["transition_parameter"] = result.transition_parameter;
     out["pull_off_force"] = result.pull_off_force;
     out["contact_radius"] = result.contact_radius;
@@ -208,6 +209,7 @@ PYBIND11_MODULE(_fit, module)
     module.attr("models") = py::tuple(models);
     bind_options(module);
     bind_batch(module);
+    bind_solving(module);
     module.def("run", &run, py::arg("options"), py::arg("position"), py::arg("force"));
     module.def("evaluate", &evaluate, py::arg("options"), py::arg("value"), py::arg("position"));
     module.def("gradient", &gradient, py::arg("options"), py::arg("value"), py::arg("position"));

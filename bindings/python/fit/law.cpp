@@ -25,13 +25,14 @@ void PythonLaw::rethrow()
         std::rethrow_exception(raised);
 }
 
-nt_status PythonLaw::call(void *context, const double *value, long count, const double *indentation, double *force)
+nt_status PythonLaw::call(const nt_fit_options *options, const double *value, long count, const double *indentation,
+                          double *force)
 {
-    auto *own = static_cast<PythonLaw *>(context);
+    auto *own = static_cast<PythonLaw *>(options->law->context);
     const py::gil_scoped_acquire acquire;
     try {
         const Array at(count, indentation), values(own->law.count, value);
-        const Array found = own->force_(at, values).cast<Array>();
+        const Array found = own->force_(at, options->radius, values).cast<Array>();
         if (found.ndim() != 1 || found.size() != count)
             throw py::value_error("a model's function must return one force for each indentation");
         std::copy_n(found.data(), count, force);

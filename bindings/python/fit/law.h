@@ -13,7 +13,7 @@
 class PythonLaw
 {
   public:
-    // parameters: (name, unit, initial, minimum, maximum); force(indentation, values) -> forces, arrays.
+    // parameters: (name, unit, initial, minimum, maximum); force(indentation, radius, values) -> forces, arrays.
     PythonLaw(const std::string &name, const py::list &parameters, const py::function &force);
     PythonLaw(const PythonLaw &) = delete;
     PythonLaw &operator=(const PythonLaw &) = delete;
@@ -24,7 +24,8 @@ class PythonLaw
     nt_fit_law law{};
 
   private:
-    static nt_status call(void *context, const double *value, long count, const double *indentation, double *force);
+    static nt_status call(const nt_fit_options *options, const double *value, long count, const double *indentation,
+                          double *force);
 
     std::deque<std::string> texts_;
     py::function force_;

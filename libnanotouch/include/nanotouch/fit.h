@@ -63,14 +63,18 @@ typedef struct nt_fit_quantity {
     double initial, minimum, maximum; /* initial NaN: guessed from the data [unit] */
 } nt_fit_quantity;
 
+struct nt_fit_options;
+
 /* A law of the user's own. force fills force[i] [N] at indentation[i] [m] for i < count, NaN where there is none, and
- * is a pure function of its arguments; it is differentiated numerically (central differences, 1e-9). Where there is a
- * spring constant, X must grow with delta. What it returns but NT_OK means that there is no such contact. */
+ * is a pure function of its arguments; it is differentiated numerically (central differences, 1e-9). Of options it has
+ * the tip, and its own law with its context. Where there is a spring constant, X must grow with delta. What it returns
+ * but NT_OK means that there is no such contact. */
 typedef struct nt_fit_law {
     const char *name;
     int count; /* of parameters, 1 .. NT_FIT_OWN */
     nt_fit_quantity parameter[NT_FIT_OWN];
-    nt_status (*force)(void *context, const double *value, long count, const double *indentation, double *force);
+    nt_status (*force)(const struct nt_fit_options *options, const double *value, long count, const double *indentation,
+                       double *force);
     void *context;
 } nt_fit_law;
 
@@ -138,6 +142,7 @@ typedef struct nt_fit_result {
                                 above 1.5 + 4/sqrt(count) */
     double misfit; /* reduced chi^2 against force_noise [-]; NaN if that is 0. The covariance is scaled up by it
                       if > 1 */
+    double chi_square; /* against force_noise, with that of the tear and of what is known [-]; NaN if that is 0 */
     double transition_parameter; /* Maugis' lambda [-]; NaN for other models */
     double pull_off_force;       /* of the fitted contact, positive [N]; NaN for NT_FIT_CUSTOM, as the next two */
     double contact_radius;       /* a at the deepest point [m] */
@@ -180,6 +185,59 @@ typedef struct nt_fit_rated {
 NT_API double nt_fit_rating(const nt_fit_rated *rated);
 #define NT_FIT_GOOD 4.5 /* below, a fit is a misfit if its residuals are no noise either */
 
+/* ---- A fit with what is known beforehand, and what it is worth ---- */
+
+/* What is known of the points; all 0: no more than the points say themselves. */
+typedef struct nt_fit_known {
+    double noise;                     /* of the force from point to point, standard deviation [N] */
+    nt_curve_noise free;              /* white and 1/f noise of the free cantilever [N^2] */
+    double baseline_position;         /* X where level and tilt of the baseline are not correlated [m] */
+    double level_sigma, tilt_sigma;   /* their standard uncertainties [N], [N/m]; 0: exact */
+    double tear_position, tear_sigma; /* X at which the tip was torn off [m], as in options; sigma 0: nowhere */
+    double sensitivity_sigma;         /* of the deflection, relative; 0: exact */
+    int fit_offset;                   /* 1: the force offset is free; 0: known as well as the baseline is */
+    int held[NT_FIT_PARAMETERS];      /* 1: of sensitivity, offset, tilt, stays at its value in options */
+} nt_fit_known;
+
+/* What the user of a fit has to know, one bit each. */
+typedef enum nt_fit_flag {
+    NT_FIT_NOT_CONVERGED = 1,   /* stopped at max_iterations */
+    NT_FIT_STIFF = 2,           /* contact much stiffer than the cantilever: E* hardly shows */
+    NT_FIT_MISFIT = 4,          /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
+    NT_FIT_WIDE = 8,            /* contact radius above R/2: no paraboloid on a half-space */
+    NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
+    NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
+    NT_FIT_WAVES = 64,          /* a wave of interference was taken off with the baseline */
+    NT_FIT_TORN_ELSEWHERE = 128 /* than where this contact and cantilever let go: the tear is not used */
+} nt_fit_flag;
+
+typedef struct nt_fit_solution {
+    nt_fit_options options; /* with which it was fitted in the end: noise, tear, and what is known as data */
+    nt_fit_result fit;      /* identifiable 0 also where calibration or law are in doubt */
+    long count;             /* of points that were fitted: the last ones, close to the tear, may be left out */
+    double rating;          /* nt_fit_rating */
+    unsigned flags;         /* nt_fit_flag */
+    int exact;              /* 1: the law leaves nothing but rounding */
+    double any_sensitivity, any_modulus, any_rms; /* fitted with any sensitivity [-], [Pa], [N]; NaN without need */
+} nt_fit_solution;
+/* Fits with the noise of the free cantilever, then once more with the scatter that is left where that is more: a law
+ * that does not describe the points gets wide sigmas instead of a bent calibration. Points from the deepest outwards,
+ * where they were torn off. As nt_fit_run. */
+NT_API nt_status nt_fit_solve(const nt_fit_options *options, const nt_fit_known *known, const nt_fit_data *data,
+                              nt_fit_solution *solution, nt_problem *problem);
+
+typedef enum nt_fit_calibration { NT_FIT_SPRING_CONSTANT, NT_FIT_RADIUS, NT_FIT_HALF_ANGLE } nt_fit_calibration;
+/* d value/d ln of what is calibrated (of the half angle: by the angle [rad]): differences of whole fits. */
+NT_API nt_status nt_fit_shift(const nt_fit_solution *solution, const nt_fit_data *data, nt_fit_calibration changed,
+                              double shift[NT_FIT_PARAMETERS]);
+/* The least and the most that a positive parameter can be (95 %): where chi^2, all others fitted again, has risen by
+ * 3.84; 0 and infinity where it does not. */
+NT_API nt_status nt_fit_bounds(const nt_fit_solution *solution, const nt_fit_data *data, nt_fit_parameter parameter,
+                               double bounds[2]);
+/* How far before its tear the model is only a straight continuation [m]. */
+NT_API nt_status nt_fit_steep_width(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS],
+                                    double *width);
+
 /* ---- Curves as they were recorded, many at once: baseline, what is fitted of each, the fit ---- */
 
 /* How each curve is fitted. */
@@ -210,18 +268,6 @@ typedef struct nt_fit_reading {
     nt_curve_measured offset; /* by which the retraction ends below the approach: drag, or what still holds [N] */
     int ruptures;             /* how many tear off on the retraction */
 } nt_fit_reading;
-
-/* What the user of a fit has to know, one bit each. */
-typedef enum nt_fit_flag {
-    NT_FIT_NOT_CONVERGED = 1,   /* stopped at max_iterations */
-    NT_FIT_STIFF = 2,           /* contact much stiffer than the cantilever: E* hardly shows */
-    NT_FIT_MISFIT = 4,          /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
-    NT_FIT_WIDE = 8,            /* contact radius above R/2: no paraboloid on a half-space */
-    NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
-    NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
-    NT_FIT_WAVES = 64,          /* a wave of interference was taken off with the baseline */
-    NT_FIT_TORN_ELSEWHERE = 128 /* than where this contact and cantilever let go: the tear is not used */
-} nt_fit_flag;
 
 typedef struct nt_fit_outcome {
     nt_status status;       /* NT_OK; NT_E_NOT_FINITE, NT_E_RANGE (values or too few points); or as nt_fit_run */

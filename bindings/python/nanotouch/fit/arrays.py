@@ -17,7 +17,7 @@ from .contact_part import Contact, contact_of
 from .fitting import ASSUMED_HALF_ANGLE
 from .models import Model, extension, find
 from .result import Status
-from .solving import Setup, solve, steep_width
+from .solving import Setup, solve
 from .uncertainties import Uncertainties
 
 _MISFIT = 1.6  # residual over the noise stated, where the fit itself has taken the larger one
@@ -149,7 +149,8 @@ def _run_contact(compiled: ModuleType, setup: Setup, contact: Contact) -> tuple[
     if setup.spring_constant == 0.0 or setup.model.force is not None:
         points = points.without_tear()
     elif contact.torn:  # what may lie next to the tear, where the model is only continued, would bend it
-        width = steep_width(compiled, solve(compiled, setup, points.without_tear(), exact))
+        without = solve(compiled, setup, points.without_tear(), exact)
+        width = compiled.steep_width(without.options, without.found["value"])
         points = points.kept(points.z[-1] - points.z > width, "fit_points")
     solution = solve(compiled, setup, points, exact)
     found, place = solution.found, {p[0]: i for i, p in enumerate(solution.options.parameters) if p is not None}

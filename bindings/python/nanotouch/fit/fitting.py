@@ -14,10 +14,10 @@ from nanotouch.errors import InvalidValue
 
 from .first import AUTO, first_choice
 from .models import Model, extension, find
-from .points import Branch, Points, Window, points_of
+from .points import Branch, Window, points_of
 from .reporting import Sample, Tip, make_result
 from .result import FitResult
-from .solving import Setup, Solution, solve, steep_part
+from .solving import Setup, solve
 from .uncertainties import Uncertainties
 
 Loss = Literal["squares", "huber", "soft_l1", "cauchy"]
@@ -146,24 +146,16 @@ def fit_curve(
     _check_names(setup, chosen.options(compiled, setup.radius).parameters)
     assumptions += uncertainties.assumptions(sharp=chosen.name in _SHARP)
     solution = solve(compiled, setup, points, uncertainties)
-    width = steep_part(compiled, solution)
-    if points.tear is not None and width > points.tear[0] - points.z[-1]:
-        points = points.kept(points.tear[0] - points.z > width, curve.name)
-        solution = solve(compiled, setup, points, uncertainties)
     if window is not None and window_of == "indentation":
-        points, solution = _inside(window, points, solution, curve.name)
+        inside = (solution.indentation >= window[0]) & (solution.indentation <= window[1])
+        points = solution.points.kept(inside, curve.name).without_tear()
         solution = solve(compiled, setup, points, uncertainties)
     sharp, given = chosen.name in _SHARP, tip is not None or radius is not None
     told = Tip(choice, given, half_angle is None if sharp else not given)
     return make_result(
-        compiled, curve, setup, points, solution, uncertainties, report, branch, Sample(poisson_ratio, tip),
+        compiled, curve, setup, solution, uncertainties, report, branch, Sample(poisson_ratio, tip),
         assumptions, told,
     )  # fmt: skip
-
-
-def _inside(window: Window, points: Points, solution: Solution, name: str) -> tuple[Points, Solution]:
-    mask = (solution.indentation >= window[0]) & (solution.indentation <= window[1])
-    return points.kept(mask, name).without_tear(), solution
 
 
 def _check_choice(name: str, value: str, valid: tuple[str, ...]) -> None:

@@ -91,7 +91,7 @@ class Model:
             made = extension.Options(
                 self.name,
                 starts,
-                lambda indentation, values: np.asarray(force(indentation, radius, *values), dtype=np.float64),
+                lambda indentation, size, values: np.asarray(force(indentation, size, *values), dtype=np.float64),
             )
         made.radius = radius
         return made

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch.curves import CurveReport
-from nanotouch.curves.flicker import Noise, correlated_noise
+from nanotouch.curves.flicker import Noise
 from nanotouch.errors import InvalidValue
 
 from .models import Floats, Model
@@ -50,14 +50,6 @@ class Points:
     baseline_z: float
     level_sigma: float
     tilt_sigma: float
-
-    @property
-    def correlated_noise(self) -> float:
-        """Standard deviation of one point such that the mean of independent ones would scatter as that of these [N].
-
-        0 where the free cantilever does not show that they are not independent.
-        """
-        return correlated_noise(self.noise, self.free, self.z.size)
 
     def kept(self, mask: NDArray[np.bool_], name: str) -> Points:
         """Some of them."""

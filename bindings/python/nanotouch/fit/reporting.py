@@ -15,9 +15,9 @@ from nanotouch.errors import InvalidValue
 from .bound import bounds_of
 from .doubts import doubts
 from .models import Floats
-from .points import Branch, Points
+from .points import Branch
 from .result import FitResult
-from .solving import Setup, Solution, calibration_shifts
+from .solving import Setup, Solution
 from .uncertainties import Uncertainties, quantile
 
 _PLAIN = (
@@ -99,29 +99,19 @@ class Tip(NamedTuple):
 
 
 def _bounds(
-    identifiable: dict[str, bool],
-    extension: ModuleType,
-    setup: Setup,
-    points: Points,
-    solution: Solution,
-    uncertainties: Uncertainties,
+    identifiable: dict[str, bool], solution: Solution, uncertainties: Uncertainties
 ) -> dict[str, tuple[float, float]]:
     """Of E* and w where the curve does not determine them: with an uncertain sensitivity only, as only that rules how
     much of the slope is the cantilever's."""
     if uncertainties.sensitivity <= 0.0 or solution.options.force_noise <= 0.0:
         return {}
-    return {
-        name: bounds_of(name, extension, setup, points, solution, uncertainties)
-        for name in _BOUNDED
-        if not identifiable.get(name, True)
-    }
+    return {name: bounds_of(name, solution, uncertainties) for name in _BOUNDED if not identifiable.get(name, True)}
 
 
 def make_result(
     extension: ModuleType,
     curve: ForceCurve,
     setup: Setup,
-    points: Points,
     solution: Solution,
     uncertainties: Uncertainties,
     report: CurveReport,
@@ -131,16 +121,21 @@ def make_result(
     tip: Tip,
 ) -> FitResult:
     """All that is known about a fit."""
+    points = solution.points
     found, options, noise = solution.found, solution.options, points.noise
     names = {i: parameter[0] for i, parameter in enumerate(options.parameters) if parameter is not None}
     free = [i for i in names if options.is_free(names[i])]
-    identifiable, notes, reason = doubts(extension, setup, points, solution, uncertainties)
-    shifts = calibration_shifts(extension, setup, points, solution, uncertainties)
+    identifiable, notes, reason = doubts(extension, setup, solution, uncertainties)
+    shifts = {
+        name: solution.shift(name, extension.calibrations) * getattr(uncertainties, name)
+        for name in extension.calibrations
+        if getattr(uncertainties, name) > 0.0
+    }
     covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), np.zeros((1, 1)))
     table = _table(found, options, names, shifts)
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
         _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
-    bounds = {} if reason else _bounds(identifiable, extension, setup, points, solution, uncertainties)
+    bounds = {} if reason else _bounds(identifiable, solution, uncertainties)
     if setup.model.remark is not None:
         notes.append(setup.model.remark(setup.radius, table.values, float(points.force.max())))
     sign = np.where([names[i] == "contact_point" for i in free], -1.0, 1.0)
@@ -162,7 +157,7 @@ def make_result(
         fitted=solution.fitted,
         indentation=solution.indentation,
         misfit=solution.rms / noise if noise > 0.0 else np.inf,
-        rating=extension.rating(solution.indentation, points.force, solution.fitted, noise),
+        rating=solution.made.rating,
         measured_pull_off_force=report.pull_off_force,
         measured_snap_in_force=report.snap_in_force,
         radius=setup.radius,

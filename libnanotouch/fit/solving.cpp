@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sensitivity, level and tilt of the baseline and the tear are data of their own uncertainty. Fitted with the noise of
+// the free cantilever, its 1/f part included, then once more with the scatter that is left where that is more. A last
+// fit with any sensitivity shows whether the curve contradicts its calibration.
+#include "solving.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <new>
+
+#include "model.hpp"
+
+namespace nanotouch
+{
+
+namespace
+{
+
+constexpr double stiff = 5.0;          // contact stiffness over spring constant
+constexpr double wide = 0.5;           // a/R up to which a paraboloid on a half-space is believed
+constexpr double misfitting = 3.0;     // residual over noise
+constexpr double wrong = 0.05;         // residual over the span of the force
+constexpr double as_given = 0.05;      // relative difference of scatter and noise that changes nothing
+constexpr double torn_elsewhere = 2.5; // standard deviations of the place of the tear
+constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
+constexpr int steep_places = 100;      // where the model is asked how close to the tear it is only continued
+constexpr double nearest = 1e-13, farthest = 1e-7; // m, from the tear
+constexpr double much_better = 0.7;                // ratio of residuals
+constexpr double moved = 0.5;                      // of ln E*
+constexpr double computed = 1e-9;                  // noise over force of points in which nothing is to be weighed
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+bool asks(const nt_fit_options &options, nt_fit_parameter place, const char *name)
+{
+    const nt_fit_quantity quantity = nt_fit_quantity_of(&options, place);
+    return quantity.name && !std::strcmp(quantity.name, name) && !options.parameter[place].fixed;
+}
+
+double force_at(const nt_fit_data &data, long i)
+{
+    return data.force[i * data.force_stride];
+}
+
+} // namespace
+
+Solving::Solving(const nt_fit_options &options, const nt_fit_known &known, const nt_fit_data &data, nt_problem *problem)
+    : given_(options), known_(known), data_(data), problem_(problem)
+{
+    for (long i = 0; i < data.count; i++)
+        largest_ = std::max(largest_, std::fabs(force_at(data, i)));
+}
+
+void Solving::know(nt_fit_parameter parameter, double value, double sigma)
+{
+    nt_fit_start &start = solution_.options.parameter[parameter];
+    if (sigma > 0.0 && !known_.held[parameter])
+        start = {value, start.minimum, start.maximum, sigma, 0};
+}
+
+// What is known to some uncertainty becomes a datum.
+void Solving::let_vary()
+{
+    nt_fit_options &options = solution_.options;
+    options.force_noise = noise();
+    options.tilt_position = known_.baseline_position;
+    know(NT_FIT_SENSITIVITY, 1.0, known_.sensitivity_sigma);
+    if (known_.fit_offset)
+        options.parameter[NT_FIT_FORCE_OFFSET].fixed = 0;
+    else
+        know(NT_FIT_FORCE_OFFSET, 0.0, known_.level_sigma);
+    know(NT_FIT_FORCE_TILT, 0.0, known_.tilt_sigma);
+    const bool adheres = options.model != NT_FIT_CUSTOM && nt_fit_quantity_of(&options, NT_FIT_WORK_OF_ADHESION).name;
+    if (known_.tear_sigma > 0.0 && adheres) {
+        options.tear_position = known_.tear_position;
+        options.tear_sigma = known_.tear_sigma;
+    }
+}
+
+nt_status Solving::fit()
+{
+    nt_status status = nt_fit_run(&solution_.options, &data_, &solution_.fit, problem_);
+    if (status != NT_OK)
+        return status;
+    points_.resize(static_cast<std::size_t>(data_.count));
+    status = nt_fit_model_n(&solution_.options, solution_.fit.value, &data_, points_.data());
+    if (status == NT_OK)
+        scatter_ = std::max(scatter(), correlated_noise());
+    return status;
+}
+
+// Standard deviation of one point such that N independent ones would scatter as the mean of these N does [N].
+double Solving::scatter() const
+{
+    std::vector<double> rest(points_.size());
+    double squares = 0.0;
+    for (std::size_t i = 0; i < rest.size(); i++) {
+        rest[i] = points_[i].force - force_at(data_, static_cast<long>(i));
+        squares += rest[i] * rest[i];
+    }
+    return std::sqrt(squares / double(data_.count) * nt_curve_residual_correlation(rest.data(), data_.count));
+}
+
+// Whether the tip was torn off elsewhere than where such a contact lets go: by a shock, or it is another contact.
+nt_status Solving::contradicts_tear(bool *contradicts) const
+{
+    *contradicts = false;
+    const nt_fit_options &options = solution_.options;
+    if (options.tear_sigma == 0.0)
+        return NT_OK;
+    double position;
+    const nt_status status = nt_fit_tear_position(&options, solution_.fit.value, &position);
+    if (status == NT_OK)
+        *contradicts = std::fabs(position - options.tear_position) > torn_elsewhere * options.tear_sigma;
+    return status;
+}
+
+double Solving::correlated_noise() const
+{
+    return nt_curve_correlated_noise(known_.noise, &known_.free, data_.count);
+}
+
+double Solving::noise() const
+{
+    return std::max(known_.noise, correlated_noise());
+}
+
+bool Solving::is_exact() const
+{
+    return scatter_ < computed * largest_;
+}
+
+// With the noise from point to point; then once more with the scatter that was found.
+nt_status Solving::fit_with_scatter()
+{
+    const nt_status status = fit();
+    double *used = &solution_.options.force_noise;
+    const bool as_known = std::fabs(scatter_ / noise() - 1.0) <= as_given;
+    if (status != NT_OK || is_exact() || *used == 0.0 || as_known)
+        return status;
+    *used = scatter_;
+    return fit();
+}
+
+nt_status Solving::fit_without_false_tear()
+{
+    nt_fit_options &options = solution_.options = given_;
+    if (noise() > computed * largest_)
+        let_vary();
+    nt_status status = fit_with_scatter();
+    bool contradicts = false;
+    if (status == NT_OK)
+        status = contradicts_tear(&contradicts);
+    if (!contradicts)
+        return status;
+    options.tear_sigma = 0.0;
+    options.force_noise = noise();
+    return fit_with_scatter();
+}
+
+// What was measured where the model is only continued is left out, by its distance from the measured tear: the model
+// must not choose its points.
+nt_status Solving::leave_steep_part()
+{
+    if (solution_.options.tear_sigma == 0.0)
+        return NT_OK;
+    double width;
+    const nt_status status = nt_fit_steep_width(&solution_.options, solution_.fit.value, &width);
+    const long before = data_.count;
+    while (data_.count > 0 &&
+           !(data_.position[(data_.count - 1) * data_.position_stride] - known_.tear_position > width))
+        data_.count--;
+    if (status != NT_OK || data_.count == before)
+        return status;
+    if (data_.count >= NT_CURVE_FEWEST)
+        return fit_without_false_tear();
+    if (problem_)
+        *problem_ = {"points left to fit", "", double(data_.count), NT_CURVE_FEWEST, 1e9};
+    return NT_E_RANGE;
+}
+
+nt_status Solving::fit_any_sensitivity(bool *doubtful)
+{
+    nt_fit_options options = solution_.options;
+    nt_fit_start &sensitivity = options.parameter[NT_FIT_SENSITIVITY];
+    sensitivity.initial = 1.0;
+    sensitivity.sigma = 0.0;
+    nt_fit_result any;
+    const nt_status status = nt_fit_run(&options, &data_, &any, problem_);
+    if (status != NT_OK)
+        return status;
+    solution_.any_sensitivity = any.value[NT_FIT_SENSITIVITY];
+    solution_.any_modulus = any.value[NT_FIT_EFFECTIVE_MODULUS];
+    solution_.any_rms = any.residual_rms;
+    const double change = std::log(solution_.any_modulus / solution_.fit.value[NT_FIT_EFFECTIVE_MODULUS]);
+    *doubtful = any.residual_rms <= much_better * solution_.fit.residual_rms && std::fabs(change) >= moved;
+    return NT_OK;
+}
+
+// A sensitivity far from the one given, or a much better fit with one that may be anything, puts E* in doubt.
+nt_status Solving::doubt_calibration()
+{
+    nt_fit_result &fit = solution_.fit;
+    const nt_fit_options &options = solution_.options;
+    solution_.any_sensitivity = solution_.any_modulus = solution_.any_rms = not_a_number;
+    if (!asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") || options.parameter[NT_FIT_SENSITIVITY].fixed ||
+        is_exact() || known_.sensitivity_sigma == 0.0)
+        return NT_OK;
+    const double asked = std::log(fit.value[NT_FIT_SENSITIVITY]);
+    bool doubtful = std::fabs(asked) > contradiction * known_.sensitivity_sigma;
+    if (doubtful && asks(options, NT_FIT_WORK_OF_ADHESION, "work_of_adhesion"))
+        fit.identifiable[NT_FIT_WORK_OF_ADHESION] = 0;
+    nt_status status = NT_OK;
+    if (!doubtful && fit.residual_rms / known_.noise >= 1.0 / much_better)
+        status = fit_any_sensitivity(&doubtful);
+    if (doubtful) {
+        fit.identifiable[NT_FIT_EFFECTIVE_MODULUS] = 0;
+        solution_.flags |= NT_FIT_CALIBRATION;
+    }
+    return status;
+}
+
+double Solving::rating() const
+{
+    std::vector<double> indentation(points_.size()), force(points_.size()), fitted(points_.size());
+    for (std::size_t i = 0; i < fitted.size(); i++) {
+        indentation[i] = points_[i].indentation;
+        force[i] = force_at(data_, static_cast<long>(i));
+        fitted[i] = points_[i].force;
+    }
+    const nt_fit_rated rated{indentation.data(), force.data(), fitted.data(), data_.count, known_.noise};
+    return nt_fit_rating(&rated);
+}
+
+void Solving::judge()
+{
+    nt_fit_result &fit = solution_.fit;
+    const nt_fit_options &options = solution_.options;
+    double lowest = force_at(data_, 0), highest = lowest;
+    for (long i = 1; i < data_.count; i++) {
+        lowest = std::min(lowest, force_at(data_, i));
+        highest = std::max(highest, force_at(data_, i));
+    }
+    const double misfit = fit.residual_rms / known_.noise; // infinite without noise
+    const bool in_doubt =
+        asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") && !fit.identifiable[NT_FIT_EFFECTIVE_MODULUS];
+    const bool round = options.model != NT_FIT_CONE && options.model != NT_FIT_PYRAMID;
+    const bool tear_unused = known_.tear_sigma > 0.0 && asks(options, NT_FIT_WORK_OF_ADHESION, "work_of_adhesion") &&
+                             options.tear_sigma == 0.0;
+    solution_.rating = rating();
+    unsigned flags = fit.converged ? 0U : unsigned(NT_FIT_NOT_CONVERGED);
+    if (in_doubt && fit.contact_stiffness > stiff * options.spring_constant)
+        flags |= NT_FIT_STIFF;
+    if (round && fit.contact_radius > wide * options.radius)
+        flags |= NT_FIT_WIDE;
+    if (tear_unused && !is_exact())
+        flags |= NT_FIT_TORN_ELSEWHERE;
+    if (misfit > misfitting && std::isfinite(misfit)) {
+        if (solution_.rating < NT_FIT_GOOD)
+            flags |= NT_FIT_MISFIT;
+        if (tear_unused || fit.residual_rms > wrong * (highest - lowest)) {
+            flags |= NT_FIT_WRONG_MODEL;
+            std::fill_n(fit.identifiable, NT_FIT_PARAMETERS, 0);
+        }
+    }
+    solution_.flags |= flags;
+}
+
+nt_status Solving::run()
+{
+    nt_status status = fit_without_false_tear();
+    if (status == NT_OK)
+        status = leave_steep_part();
+    if (status == NT_OK)
+        status = doubt_calibration();
+    if (status != NT_OK)
+        return status;
+    judge();
+    solution_.count = data_.count;
+    solution_.exact = is_exact();
+    return NT_OK;
+}
+
+} // namespace nanotouch
+
+nt_status nt_fit_solve(const nt_fit_options *options, const nt_fit_known *known, const nt_fit_data *data,
+                       nt_fit_solution *solution, nt_problem *problem)
+{
+    if (!options || !known || !data || !data->position || !data->force || data->count < 1 || !solution)
+        return NT_E_ARGUMENT;
+    try {
+        nanotouch::Solving solving(*options, *known, *data, problem);
+        const nt_status status = solving.run();
+        if (status == NT_OK)
+            *solution = solving.solution();
+        return status;
+    } catch (const std::bad_alloc &) {
+        return NT_E_NO_MEMORY;
+    } catch (...) {
+        return NT_E_NO_CONVERGENCE;
+    }
+}
+
+nt_status nt_fit_steep_width(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double *width)
+{
+    double tear, distance[nanotouch::steep_places], position[nanotouch::steep_places];
+    nt_status status = width ? nt_fit_tear_position(options, value, &tear) : NT_E_ARGUMENT;
+    if (status != NT_OK)
+        return status;
+    for (int i = 0; i < nanotouch::steep_places; i++) {
+        distance[i] = nanotouch::nearest *
+                      std::pow(nanotouch::farthest / nanotouch::nearest, double(i) / (nanotouch::steep_places - 1));
+        position[i] = tear + distance[i];
+    }
+    nt_fit_point points[nanotouch::steep_places];
+    const nt_fit_data data{position, nullptr, nanotouch::steep_places, 1, 1};
+    status = nt_fit_model_n(options, value, &data, points);
+    if (status != NT_OK)
+        return status;
+    const auto held =
+        std::find_if(points, points + nanotouch::steep_places, [](const nt_fit_point &p) { return p.held != 0; });
+    *width = distance[held == points + nanotouch::steep_places ? 0 : held - points];
+    return NT_OK;
+}
