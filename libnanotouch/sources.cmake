@@ -104,6 +104,7 @@ set(nanotouch_sources_scene
 set(nanotouch_sources_view view/curve.c view/section.c)
 set(nanotouch_sources_curves
     curves/baseline.c
+    curves/bend.c
     curves/branch.c
     curves/contact_point.c
     curves/film.c

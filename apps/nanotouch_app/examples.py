@@ -32,6 +32,7 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
     ),
     "fit": (("nanotouch fit curve.h5 --radius 20nm --model maugis", "modulus and adhesion from a force curve"),),
     "map": (("nanotouch map map.h5 --radius 20nm", "the same for every curve of a force volume"),),
+    "review": (("nanotouch review curves --radius 20nm --sidecar kept.toml", "keep or reject curves one by one"),),
     "report": (("nanotouch report curves --radius 20nm --model maugis", "one page about a folder of force curves"),),
     "export": (("nanotouch export result/recording.mcap --out touch.csv", "a recording as a table, with units"),),
     "recover": (("nanotouch recover cut.mcap --out whole.mcap", "what a killed touch has left"),),

@@ -20,7 +20,8 @@ from nanotouch_app.quantity import parse_quantity, whole_number
 
 HDF5_ENDINGS = (".h5", ".hdf5")
 IMAGE_ENDINGS = (".gwy", ".gsf")
-ENDINGS = (".csv", *HDF5_ENDINGS, ".tab", *IMAGE_ENDINGS)
+ONE_CURVE = (".tab", ".ibw")
+ENDINGS = (".csv", *HDF5_ENDINGS, *ONE_CURVE, *IMAGE_ENDINGS)
 CHANNELS = {"time": "s", "z": "m", "deflection": "m", "force": "N"}
 
 
@@ -37,7 +38,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument(
         "--out", type=Path, required=True, metavar="FILE",
-        help="what to write: .csv, .h5, .hdf5, .tab (one curve), .gwy or .gsf",
+        help="what to write: .csv, .h5, .hdf5, .tab or .ibw (one curve), .gwy or .gsf",
     )  # fmt: skip
     parser.add_argument(
         "--index", type=whole_number(0, 10**9), metavar="N", help="one curve of a map (default: all of them)"
@@ -65,10 +66,10 @@ def run(args: argparse.Namespace) -> int:
         print(f"{args.out}: {what}")
         return 0
     with output.progress_bar("exporting") as progress:
-        if record.is_recording(args.file) and ending != ".tab":
+        if record.is_recording(args.file) and ending not in ONE_CURVE:
             what = _export_recording(args.file, args.out, ending == ".csv", progress)
         else:
-            if ending == ".tab" and record.is_recording(args.file):
+            if ending in ONE_CURVE and record.is_recording(args.file):
                 raise InvalidValue(f"--out {args.out}: a recording is written as .csv, .h5 or .hdf5")
             found = curves.read(args.file, untrusted=args.untrusted, **_calibration(args))
             what = _export_curves(_picked(found, args), args.out, ending == ".csv", progress)

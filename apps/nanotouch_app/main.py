@@ -24,7 +24,7 @@ from nanotouch_app.guard import REFUSED, guarded, one_line
 from nanotouch_app.output import as_json
 
 COMMANDS = (
-    "touch", "live", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "export",
+    "touch", "live", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review", "export",
     "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
 )  # fmt: skip
 EPILOG = """exit status:

@@ -3,6 +3,7 @@
  * outermost point that this line cannot explain, so that it is hardly extrapolated to where it is needed. */
 #include <math.h>
 
+#include "curves/bend.h"
 #include "curves/line.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
@@ -131,7 +132,8 @@ nt_status nt_curve_fit_baseline(const nt_curve_segment *segment, const nt_curve_
 double nt_curve_baseline_at(const nt_curve_baseline *baseline, double z)
 {
     const double x = z - baseline->z_mean;
-    return baseline->force + baseline->slope * x + nt_curve_wave_at(&baseline->wave, x);
+    return baseline->force + baseline->slope * x + nt_curve_wave_at(&baseline->wave, x) +
+           nt_curve_bend_at(&baseline->bend, z, x);
 }
 
 double nt_curve_baseline_sigma(const nt_curve_baseline *baseline, double z)

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "curves/bend.h"
 #include "curves/joint.h"
 #include "curves/line.h"
 #include "curves/parts.h"
@@ -69,6 +70,8 @@ nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, do
         reading->retract.count ? reading->retract.dip.value : (double)NAN;
     if (choice->kind == NT_CURVE_AUTO && reading->approach.count && reading->retract.count)
         nt_curve_join(curve, free, reading);
+    if (choice->kind == NT_CURVE_AUTO && reading->approach.count)
+        nt_curve_unbend(&curve->approach, work, free, &reading->approach);
     const nt_curve_branch *first = reading->approach.count ? &reading->approach : &reading->retract;
     if (first->count) {
         nt_curve_find_contact(first, curve->spring_constant, free, reading);

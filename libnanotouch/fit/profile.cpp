@@ -21,58 +21,24 @@ constexpr int halvings = 8;                  // of a decade: to 1 %
 constexpr double step = 1e-3;                // relative, of what is calibrated
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+bool is_usable(const nt_fit_solution *solution, const nt_fit_data *data)
+{
+    return solution && data && data->position && data->force && solution->count > 0 && solution->count <= data->count;
+}
+
 // chi^2 over one parameter, the others fitted; remembers what it has seen.
 class Profile
 {
   public:
-    Profile(const nt_fit_solution &solution, const nt_fit_data &data, nt_fit_parameter parameter)
-        : options_(solution.options), data_(data), start_(options_.parameter[parameter])
-    {
-        data_.count = solution.count;
-        start_.fixed = 1;
-    }
-
-    double at(double value)
-    {
-        const auto [found, is_new] = seen_.try_emplace(value, infinity);
-        if (is_new) {
-            start_.initial = value;
-            nt_fit_result fit;
-            if (nt_fit_run(&options_, &data_, &fit, nullptr) == NT_OK)
-                found->second = fit.chi_square;
-        }
-        return found->second;
-    }
-
-    double best() const
-    {
-        return std::min_element(seen_.begin(), seen_.end(),
-                                [](const auto &a, const auto &b) { return a.second < b.second; })
-            ->first;
-    }
-
+    Profile(const nt_fit_solution &solution, const nt_fit_data &data, nt_fit_parameter parameter);
+    double at(double value);
+    double best() const;
     double clip(double value) const
     {
         return std::clamp(value, start_.minimum, start_.maximum);
     }
-
     // Where chi^2 has risen by what 95 % allow, in steps of a factor; `beyond` where it does not up to the limit.
-    double end(double factor, double beyond)
-    {
-        double inside = best();
-        const double most = at(inside) + excess, limit = factor > 1.0 ? start_.maximum : start_.minimum;
-        const auto within = [&](double value) { return factor > 1.0 ? value < limit : value > limit; };
-        while (within(inside * factor) && at(inside * factor) <= most)
-            inside *= factor;
-        if (!within(inside * factor))
-            return beyond;
-        double outside = inside * factor;
-        for (int i = 0; i < halvings; i++) {
-            const double middle = std::sqrt(inside * outside);
-            (at(middle) > most ? outside : inside) = middle;
-        }
-        return outside;
-    }
+    double end(double factor, double beyond);
 
   private:
     nt_fit_options options_;
@@ -80,6 +46,48 @@ class Profile
     nt_fit_start &start_; // of options_
     std::map<double, double> seen_;
 };
+
+Profile::Profile(const nt_fit_solution &solution, const nt_fit_data &data, nt_fit_parameter parameter)
+    : options_(solution.options), data_(data), start_(options_.parameter[parameter])
+{
+    data_.count = solution.count;
+    start_.fixed = 1;
+}
+
+double Profile::at(double value)
+{
+    const auto [found, is_new] = seen_.try_emplace(value, infinity);
+    if (is_new) {
+        start_.initial = value;
+        nt_fit_result fit;
+        if (nt_fit_run(&options_, &data_, &fit, nullptr) == NT_OK)
+            found->second = fit.chi_square;
+    }
+    return found->second;
+}
+
+double Profile::best() const
+{
+    const auto lower = [](const auto &a, const auto &b) { return a.second < b.second; };
+    return std::min_element(seen_.begin(), seen_.end(), lower)->first;
+}
+
+double Profile::end(double factor, double beyond)
+{
+    double inside = best();
+    const double most = at(inside) + excess, limit = factor > 1.0 ? start_.maximum : start_.minimum;
+    const auto within = [&](double value) { return factor > 1.0 ? value < limit : value > limit; };
+    while (within(inside * factor) && at(inside * factor) <= most)
+        inside *= factor;
+    if (!within(inside * factor))
+        return beyond;
+    double outside = inside * factor;
+    for (int i = 0; i < halvings; i++) {
+        const double middle = std::sqrt(inside * outside);
+        (at(middle) > most ? outside : inside) = middle;
+    }
+    return outside;
+}
 
 // The same fit with what is calibrated changed by a step, and every force with it where that changes them.
 nt_fit_options changed_options(const nt_fit_solution &solution, nt_fit_calibration changed)
@@ -118,11 +126,6 @@ nt_status shift(const nt_fit_solution &solution, nt_fit_data data, nt_fit_calibr
     for (int i = 0; i < NT_FIT_PARAMETERS && status == NT_OK; i++)
         moved[i] = (fit.value[i] - solution.fit.value[i]) / step;
     return status;
-}
-
-bool is_usable(const nt_fit_solution *solution, const nt_fit_data *data)
-{
-    return solution && data && data->position && data->force && solution->count > 0 && solution->count <= data->count;
 }
 
 } // namespace

@@ -108,6 +108,32 @@ def a_curve(name: str = "made", pause: bool = False, force: bool = True) -> Forc
     return ForceCurve(tuple(segments), meta, name)
 
 
+def test_an_igor_wave_opens_in_afmformats_in_igor2_and_here(tmp_path: Path) -> None:
+    """Doubles: all that is lost is the rounding of force -> deflection -> force."""
+    afmformats = pytest.importorskip("afmformats")
+    binarywave = pytest.importorskip("igor2.binarywave")
+    made = a_curve(pause=True)
+    assert made.approach is not None
+    assert made.retract is not None
+    file = curves.write(tmp_path / "c.ibw", [made])
+    wave = binarywave.load(file)["wave"]
+    assert wave["wave_header"]["bname"] == b"nanotouch"
+    assert [label for label in wave["labels"][1] if label] == [b"Raw", b"Defl", b"ZSnsr"]
+    (theirs,) = afmformats.load_data(file)
+    force = np.concatenate([made.approach.force, made.retract.force])  # type: ignore[list-item]
+    np.testing.assert_allclose(theirs["force"], force, rtol=1e-14)
+    np.testing.assert_array_equal(theirs["height (measured)"], np.concatenate([made.approach.z, made.retract.z]))
+    assert theirs.metadata["spring constant"] == 0.05
+    (ours,) = curves.read(file)
+    assert ours.spring_constant == 0.05
+    assert ours.approach is not None
+    np.testing.assert_allclose(ours.approach.force, made.approach.force[: len(ours.approach)], rtol=1e-12)  # type: ignore[index,arg-type]
+    with pytest.raises(InvalidValue, match="holds one curve, not 2"):
+        curves.write(tmp_path / "two.ibw", [made, made])
+    with pytest.raises(InvalidValue, match=r"\.ibw needs approach"):
+        curves.write(tmp_path / "half.ibw", [ForceCurve(made.segments[:1], made.meta, "half")])
+
+
 @pytest.mark.parametrize("ending", [".h5", ".tab"])
 @pytest.mark.parametrize("pause", [False, True])
 def test_curves_open_in_afmformats_and_here(ending: str, pause: bool, tmp_path: Path) -> None:

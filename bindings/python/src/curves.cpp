@@ -7,7 +7,7 @@
 // A baseline crosses as the row of its numbers, in the order of the struct.
 constexpr std::size_t baseline_terms = sizeof(nt_curve_baseline) / sizeof(double);
 using Terms = std::array<double, baseline_terms>;
-static_assert(sizeof(nt_curve_baseline) == 11 * sizeof(double), "nanotouch.curves.Baseline has these terms");
+static_assert(sizeof(nt_curve_baseline) == 15 * sizeof(double), "nanotouch.curves.Baseline has these terms");
 
 static Terms terms_of(const nt_curve_baseline &baseline)
 {

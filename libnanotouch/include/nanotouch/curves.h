@@ -74,7 +74,14 @@ typedef struct nt_curve_wave {
     double cosine, sine; /* [N]; both 0: no wave */
 } nt_curve_wave;
 
-/* force + slope x + wave(x) with x = z - z_mean. */
+/* What bends a free approach towards the sample: film/(max(z, nearest) - pole) + bow x^2. */
+typedef struct nt_curve_bend {
+    double film;          /* [N m]; 0: no squeeze film is evident */
+    double pole, nearest; /* z [m]; nearer than the latter it is not seen and goes on as it was there */
+    double bow;           /* [N/m^2]; 0: none is evident */
+} nt_curve_bend;
+
+/* force + slope x + wave(x) + bend with x = z - z_mean. */
 typedef struct nt_curve_baseline {
     double force;                          /* at z_mean [N] */
     double slope;                          /* [N/m] */
@@ -83,6 +90,7 @@ typedef struct nt_curve_baseline {
     double force_variance, slope_variance; /* [N^2], [N^2/m^2]; flicker noise included */
     nt_curve_noise noise;                  /* of the free cantilever */
     nt_curve_wave wave;
+    nt_curve_bend bend; /* of an approach beside its retraction */
 } nt_curve_baseline;
 
 typedef enum nt_curve_baseline_kind {

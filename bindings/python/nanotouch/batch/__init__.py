@@ -10,6 +10,20 @@ A killed or repeated run goes on from what is in the journal beside the results:
 from .files import WITHOUT, Summary, files_of, fit_files
 from .groups import FOLDER, Spread, spreads
 from .report import write_report
-from .sidecar import Sidecar
+from .review import Place, Review
+from .sidecar import Decision, Sidecar
 
-__all__ = ["FOLDER", "WITHOUT", "Sidecar", "Spread", "Summary", "files_of", "fit_files", "spreads", "write_report"]
+__all__ = [
+    "FOLDER",
+    "WITHOUT",
+    "Decision",
+    "Place",
+    "Review",
+    "Sidecar",
+    "Spread",
+    "Summary",
+    "files_of",
+    "fit_files",
+    "spreads",
+    "write_report",
+]

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Mapping
@@ -25,6 +26,7 @@ from typing import Any
 
 from .._files import toml_tables
 from .._words import told
+from .._writing import replacing
 from ..errors import ReadError
 
 _NM = 1e-9
@@ -50,6 +52,23 @@ class Sidecar:
         """Read one; ReadError names what is wrong in it."""
         tables = toml_tables(path)
         return cls({name: _decision(f"{os.fspath(path)}: [{name!r}]", table) for name, table in tables.items()})
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """As TOML that :meth:`from_toml` reads back, whole or not at all."""
+        tables = []
+        for name, decision in self.decisions.items():
+            lines = [f"[{json.dumps(name)}]"]
+            if decision.exclude:
+                lines.append(f"exclude = {json.dumps(decision.exclude)}")
+            if decision.contact_point is not None:
+                lines.append(f"contact_point_nm = {decision.contact_point / _NM:.12g}")
+            if decision.baseline is not None:
+                low, high = (f"{end / _NM:.12g}" for end in decision.baseline)
+                lines.append(f"baseline_nm = [{low}, {high}]")
+            if len(lines) > 1:
+                tables.append("\n".join(lines))
+        with replacing(Path(path)) as part:
+            part.write_text("\n\n".join(tables) + "\n", encoding="utf-8")
 
     def of(self, file: Path, index: int) -> Decision:
         """For one curve: what is said of it, or else of its whole file."""

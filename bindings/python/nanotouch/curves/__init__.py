@@ -8,7 +8,7 @@
 
 from .adhesion import Adhesion, adhesion_of
 from .analysis import analyse, force_gap, sensitivity
-from .baseline import Baseline, Wave
+from .baseline import Baseline, Bend, Wave
 from .calibration import Calibration, CalibrationTable
 from .curve import ForceCurve, Segment
 from .events import Rupture
@@ -23,6 +23,7 @@ from .writing import write
 __all__ = [
     "Adhesion",
     "Baseline",
+    "Bend",
     "Calibration",
     "CalibrationTable",
     "CurveReport",

@@ -91,7 +91,7 @@ def analyse(curve: ForceCurve, *, baseline: Kind = "auto", drag: tuple[float, fl
         contact_points=read["contact_points"],
         pull_off_interval=_interval(*read["pull_off"]),
         ruptures=tuple(Rupture(*row) for row in read["ruptures"]),
-        notes=(*_notes(curve, retract), *_tether_notes(read)),
+        notes=(*_notes(curve, approach, retract), *_tether_notes(read)),
     )
 
 
@@ -179,15 +179,31 @@ def _tether_notes(read: Mapping[str, Any]) -> list[str]:
     return []
 
 
-def _notes(curve: ForceCurve, retract: Branch | None) -> tuple[str, ...]:
+def _notes(curve: ForceCurve, approach: Branch | None, retract: Branch | None) -> tuple[str, ...]:
     notes = [
         f"the file's {name} ({curve.meta[name]:g}) is a placeholder: give the calibrated one to curves.read"
         for name in curve.meta.get("placeholders", ())
     ]
     notes += curve.meta.get("notes", ())
+    if approach is not None and approach.baseline.bend is not None:
+        notes.append(_bend_note(approach))
     if retract is not None:
         notes += _baseline_notes(retract, curve.retract)
     return tuple(notes)
+
+
+def _bend_note(approach: Branch) -> str:
+    """What was taken off the approach besides a line, where its free part shows it."""
+    baseline = approach.baseline
+    bend = baseline.bend
+    assert bend is not None
+    parts = []
+    if bend.film:
+        parts.append(f"a squeeze film of {1e12 * bend.film / (bend.nearest - bend.pole):.3g} pN at the contact")
+    if bend.bow:
+        middle = 0.25 * float(approach.z[-1] - baseline.z_mean) ** 2
+        parts.append(f"a bow of the baseline of {1e12 * abs(bend.bow) * middle:.2g} pN over half of its travel")
+    return f"{' and '.join(parts)} {'are' if len(parts) > 1 else 'is'} taken off the approach"
 
 
 def _baseline_notes(retract: Branch, segment: Segment | None) -> list[str]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +32,21 @@ class Wave:
         return float(np.hypot(self.cosine, self.sine))
 
 
+class Bend(NamedTuple):
+    """What bends a free approach towards the sample: ``film/(max(z, nearest) - pole) + bow (z - z_mean)^2`` [N].
+
+    `film` [N m] is the repulsion of the fluid under the lever, `bow` [N/m^2] a curved baseline; 0 where there is none.
+    """
+
+    film: float
+    pole: float
+    nearest: float
+    bow: float
+
+
 @dataclass(frozen=True)
 class Baseline:
-    """Force of the free cantilever: ``force + slope (z - z_mean)``, and a wave.
+    """Force of the free cantilever: ``force + slope (z - z_mean)``, a wave and what bends it.
 
     Attributes
     ----------
@@ -52,6 +64,8 @@ class Baseline:
         White and flicker noise of those points [N^2].
     wave : Wave or None
         Of interference.
+    bend : Bend or None
+        Of an approach, where a squeeze film or a bow is evident.
     """
 
     force: float
@@ -61,19 +75,22 @@ class Baseline:
     variance: tuple[float, float]
     noise: Noise
     wave: Wave | None = None
+    bend: Bend | None = None
 
     @classmethod
     def of(cls, terms: tuple[float, ...]) -> Baseline:
         """From the numbers of the C library."""
-        force, slope, z_mean, scatter, level, tilt, white, flicker, period, cosine, sine = terms
+        force, slope, z_mean, scatter, level, tilt, white, flicker, period, cosine, sine, *bent = terms
+        bend = Bend(*bent)
         wave = Wave(period, cosine, sine) if cosine or sine else None
-        return cls(force, slope, z_mean, scatter, (level, tilt), Noise(white, flicker), wave)
+        noise = Noise(white, flicker)
+        return cls(force, slope, z_mean, scatter, (level, tilt), noise, wave, bend if bend.film or bend.bow else None)
 
     def _terms(self) -> tuple[float, ...]:
         wave = self.wave or Wave(1.0, 0.0, 0.0)
         return (
             self.force, self.slope, self.z_mean, self.scatter, *self.variance, *self.noise,
-            wave.period, wave.cosine, wave.sine,
+            wave.period, wave.cosine, wave.sine, *(self.bend or Bend(0.0, 0.0, 0.0, 0.0)),
         )  # fmt: skip
 
     def at(self, z: Floats) -> Floats:

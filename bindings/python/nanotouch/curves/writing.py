@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write force curves so that others open them: afmformats' HDF5 and text, which nanite and PyJibe read too.
+"""Write force curves so that others open them: afmformats' HDF5 and text, and Igor waves; nanite and PyJibe read all.
 
 The layout is that of afmformats' documentation: one group (or one file of text) per curve, a column per channel under
 afmformats' name, in SI; ``segment`` counts 0 for the approach, 1 for the retraction. A pause counts 2, or 3, ...
@@ -22,8 +22,9 @@ import nanotouch
 from .._writing import replacing
 from ..errors import InvalidValue, require
 from .curve import ForceCurve
+from .igor import as_wave
 
-ENDINGS = (".h5", ".hdf5", ".tab")
+ENDINGS = (".h5", ".hdf5", ".tab", ".ibw")
 _UNITS = {"force": "N", "height (measured)": "m", "height (piezo)": "m", "segment": "", "time": "s"}
 _WHOLE = ("enum", "point count", "segment count", "grid index x", "grid index y", "grid shape x", "grid shape y")
 _NUMBERS = (
@@ -37,7 +38,7 @@ _TEXTS = ("instrument", "curve id", "date", "session id", "time", "feedback mode
 def write(
     path: str | os.PathLike[str], curves: Sequence[ForceCurve], progress: Callable[[float], None] | None = None
 ) -> Path:
-    """Write curves as ``.h5`` (many) or ``.tab`` (one), whole or not at all; both read back with :func:`read`.
+    """Write curves as ``.h5`` (many), ``.tab`` or ``.ibw`` (one), whole or not at all; all read back with :func:`read`.
 
     Force, height of the base, time where it is known, and what of ``curve.meta`` afmformats has a name for. The
     deflection is force over spring constant.
@@ -45,13 +46,20 @@ def write(
     Raises
     ------
     InvalidValue
-        If the ending is another, a ``.tab`` is to hold several curves, or a curve has no force.
+        If the ending is another, a file of one is to hold several curves, or a curve has no force.
     """
     file = Path(path)
     if file.suffix.lower() not in ENDINGS:
         raise InvalidValue(f"{file}: curves are written as {', '.join(ENDINGS)}")
     if not curves:
         raise InvalidValue(f"{file}: no curve to write")
+    if file.suffix.lower() == ".ibw":
+        if len(curves) > 1:
+            raise InvalidValue(f"{file}: holds one curve, not {len(curves)}; pick one, or write .h5")
+        wave = as_wave(curves[0])
+        with replacing(file) as part:
+            part.write_bytes(wave)
+        return file
     every = [(_facts(curve, number), _columns(curve)) for number, curve in enumerate(curves)]
     if file.suffix.lower() == ".tab":
         if len(every) > 1:

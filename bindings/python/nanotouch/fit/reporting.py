@@ -108,6 +108,13 @@ def _bounds(
     return {name: bounds_of(name, solution, uncertainties) for name in _BOUNDED if not identifiable.get(name, True)}
 
 
+def _shifts(extension: ModuleType, solution: Solution, uncertainties: Uncertainties) -> dict[str, Floats]:
+    """By what calibration changes: shift of all parameters with one standard uncertainty of it, shape (parameters,)."""
+    known = {name: float(getattr(uncertainties, name)) for name in extension.calibrations}
+    changes = extension.calibrations
+    return {name: solution.shift(name, changes) * spread for name, spread in known.items() if spread > 0.0}
+
+
 def make_result(
     extension: ModuleType,
     curve: ForceCurve,
@@ -121,16 +128,11 @@ def make_result(
     tip: Tip,
 ) -> FitResult:
     """All that is known about a fit."""
-    points = solution.points
-    found, options, noise = solution.found, solution.options, points.noise
+    points, found, options = solution.points, solution.found, solution.options
     names = {i: parameter[0] for i, parameter in enumerate(options.parameters) if parameter is not None}
     free = [i for i in names if options.is_free(names[i])]
     identifiable, notes, reason = doubts(extension, setup, solution, uncertainties)
-    shifts = {
-        name: solution.shift(name, extension.calibrations) * getattr(uncertainties, name)
-        for name in extension.calibrations
-        if getattr(uncertainties, name) > 0.0
-    }
+    shifts = _shifts(extension, solution, uncertainties)
     covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), np.zeros((1, 1)))
     table = _table(found, options, names, shifts)
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
@@ -156,7 +158,7 @@ def make_result(
         force=points.force,
         fitted=solution.fitted,
         indentation=solution.indentation,
-        misfit=solution.rms / noise if noise > 0.0 else np.inf,
+        misfit=solution.rms / points.noise if points.noise > 0.0 else np.inf,
         rating=solution.made.rating,
         measured_pull_off_force=report.pull_off_force,
         measured_snap_in_force=report.snap_in_force,

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A bow (interference over a long range) and a squeeze film (the fluid under the lever) look like the foot of a soft
+ * contact, which moves by much under a small force. Fitted to means of the free approach in front of contact: a line,
+ * with a bow, with A/(z - pole), with both. Each term costs `price` of chi^2. What the models that remain likely differ
+ * by at the contact is uncertain. */
+#include "curves/bend.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "curves/parts.h"
+#include "curves/robust.h"
+
+enum { BLOCKS = 120, BLOCK = 8, LEAST_BLOCKS = 16, TERMS = 4, POLES = 10 }; /* BLOCK: points, at least */
+enum { LINE = 2, BOW = 2, FILM = 3 };                /* terms of a line; the places of the others */
+static const double price = 9.0;                     /* three standard deviations */
+static const double nearest = 0.01, farthest = 0.35; /* of the free travel: distances of the pole */
+static const double doubt = 2.0;                     /* of chi^2 for a term, where only doubts are weighed (Akaike) */
+static const double likely = 0.02;                   /* least weight of a model that counts */
+static const double deep = 8.0; /* times the visible force: there the indentation is 4 times that at the visible one, */
+static const double foot_part = 0.33; /* so that contact begins about a third of the way between them further out; */
+static const double clear_part = 0.7; /* of the way: surely outside */
+
+/* Means of equal blocks of the free part, x from its middle in halves of its length. */
+typedef struct means {
+    double z[BLOCKS], x[BLOCKS], force[BLOCKS];
+    int count;
+    double middle, half; /* [m] */
+    double foot;         /* x where contact begins */
+} means;
+
+/* A law of the free part: terms it has, and what they came to. */
+typedef struct shape {
+    int bow, film;
+    double scale; /* of the pole before the first point [m] */
+    double value[TERMS], squares, start;
+    double normal[TERMS * TERMS];
+} shape;
+
+static means means_of(const nt_curve_branch *branch, long first)
+{
+    const long points = branch->count - first;
+    means m = {.count = points / BLOCK < BLOCKS ? (int)(points / BLOCK) : BLOCKS};
+    m.half = 0.5 * (branch->z[branch->count - 1] - branch->z[first]);
+    m.middle = branch->z[first] + m.half;
+    for (int b = 0; b < m.count; b++) {
+        const long from = first + b * points / m.count, end = first + (b + 1) * points / m.count;
+        for (long i = from; i < end; i++) {
+            m.z[b] += branch->z[i] / (double)(end - from);
+            m.force[b] += branch->force[i] / (double)(end - from);
+        }
+        m.x[b] = (m.z[b] - m.middle) / m.half;
+    }
+    return m;
+}
+
+/* The terms of a law at x; where it has none of a kind, 0. */
+static void row_of(const shape *law, const means *m, double x, double row[TERMS])
+{
+    const double scale = law->scale / m->half;
+    row[0] = 1.0;
+    row[1] = x;
+    row[BOW] = law->bow ? x * x - 1.0 / 3.0 : 0.0;
+    row[FILM] = law->film ? scale / (fmax(x - m->foot, 0.0) + scale) : 0.0;
+}
+
+static void fit(shape *law, const means *m)
+{
+    double right[TERMS] = {0.0}, factor[TERMS * TERMS];
+    for (int i = 0; i < TERMS * TERMS; i++)
+        law->normal[i] = 0.0;
+    for (int b = 0; b < m->count; b++) {
+        double row[TERMS];
+        row_of(law, m, m->x[b], row);
+        for (int i = 0; i < TERMS; i++) {
+            right[i] += row[i] * m->force[b];
+            for (int j = 0; j < TERMS; j++)
+                law->normal[i * TERMS + j] += row[i] * row[j];
+        }
+    }
+    for (int i = LINE; i < TERMS; i++)
+        if (law->normal[i * TERMS + i] == 0.0)
+            law->normal[i * TERMS + i] = 1.0; /* the term is not there */
+    for (int i = 0; i < TERMS * TERMS; i++)
+        factor[i] = law->normal[i];
+    law->squares = INFINITY;
+    if (!nt_curve_solve(factor, right, TERMS) || (law->film && !(right[FILM] > 0.0)))
+        return;
+    law->squares = 0.0;
+    for (int i = 0; i < TERMS; i++)
+        law->value[i] = right[i];
+    for (int b = 0; b < m->count; b++) {
+        double row[TERMS], rest = m->force[b];
+        row_of(law, m, m->x[b], row);
+        for (int i = 0; i < TERMS; i++)
+            rest -= row[i] * law->value[i];
+        law->squares += rest * rest;
+    }
+}
+
+static double at(const shape *law, const means *m, double x)
+{
+    double row[TERMS], sum = 0.0;
+    row_of(law, m, x, row);
+    for (int i = 0; i < TERMS; i++)
+        sum += row[i] * law->value[i];
+    return sum;
+}
+
+/* Of the law at x, in variances of a block's mean. */
+static double variance_at(const shape *law, const means *m, double x)
+{
+    double factor[TERMS * TERMS], row[TERMS], moved[TERMS], sum = 0.0;
+    row_of(law, m, x, row);
+    for (int i = 0; i < TERMS * TERMS; i++)
+        factor[i] = law->normal[i];
+    for (int i = 0; i < TERMS; i++)
+        moved[i] = row[i];
+    if (!nt_curve_solve(factor, moved, TERMS))
+        return 0.0;
+    for (int i = 0; i < TERMS; i++)
+        sum += row[i] * moved[i];
+    return sum;
+}
+
+/* The best law with the terms asked. */
+static shape best_law(const means *m, int bow, int film)
+{
+    shape best = {.bow = bow, .film = film, .squares = INFINITY};
+    for (int i = 0; i < (film ? POLES : 1); i++) {
+        shape tried = {.bow = bow, .film = film};
+        tried.scale = 2.0 * m->half * nearest * pow(farthest / nearest, (double)i / (POLES - 1));
+        fit(&tried, m);
+        best = tried.squares < best.squares ? tried : best;
+    }
+    return best;
+}
+
+/* By how much the blocks that a law leaves hang together. */
+static double worth_of(const shape *law, const means *m)
+{
+    double rest[BLOCKS];
+    for (int b = 0; b < m->count; b++)
+        rest[b] = m->force[b] - at(law, m, m->x[b]);
+    return nt_curve_residual_correlation(rest, m->count);
+}
+
+/* The likeliest law of the free part; *variance of its force at the foot [N^2], with what other likely laws
+ * differ by. */
+static shape judge(const means *m, double *variance)
+{
+    shape laws[] = {best_law(m, 0, 0), best_law(m, 1, 0), best_law(m, 0, 1), best_law(m, 1, 1)};
+    const int terms[] = {2, 3, 4, 5}, many = 4; /* the place of the pole is one */
+    double least = INFINITY, best = INFINITY, closest = INFINITY, total = 0.0;
+    int chosen = 0;
+    for (int i = 0; i < many; i++)
+        least = fmin(least, laws[i].squares / (m->count - terms[i]));
+    const double worth = worth_of(laws[3].squares < (double)INFINITY ? &laws[3] : &laws[1], m);
+    for (int i = 0; i < many; i++) {
+        const double left = laws[i].squares / (least * worth);
+        closest = fmin(closest, left + doubt * terms[i]);
+        if (left + price * terms[i] < best) {
+            best = left + price * terms[i];
+            chosen = i;
+        }
+    }
+    const double there = at(&laws[chosen], m, m->foot);
+    *variance = 0.0;
+    for (int i = 0; i < many; i++) {
+        const double weight = exp(0.5 * (closest - laws[i].squares / (least * worth) - doubt * terms[i]));
+        if (i != chosen && !(weight > likely))
+            continue;
+        const double off = at(&laws[i], m, m->foot) - there;
+        *variance += weight * (off * off + variance_at(&laws[i], m, m->foot) * least * worth);
+        total += weight;
+    }
+    *variance /= total;
+    return laws[chosen];
+}
+
+static void add_to(nt_curve_baseline *baseline, const shape *law, const means *m)
+{
+    const double shift = (baseline->z_mean - m->middle) / m->half, bow = law->bow ? law->value[BOW] : 0.0;
+    baseline->force += law->value[0] + law->value[1] * shift + bow * (shift * shift - 1.0 / 3.0);
+    baseline->slope += (law->value[1] + 2.0 * bow * shift) / m->half;
+    baseline->bend.bow = bow / (m->half * m->half);
+    if (law->film) {
+        baseline->bend.nearest = m->middle + m->foot * m->half;
+        baseline->bend.pole = baseline->bend.nearest - law->scale;
+        baseline->bend.film = law->value[FILM] * law->scale;
+    }
+}
+
+double nt_curve_bend_at(const nt_curve_bend *bend, double z, double x)
+{
+    const double film = bend->film != 0.0 ? bend->film / (fmax(z, bend->nearest) - bend->pole) : 0.0;
+    return film + bend->bow * x * x;
+}
+
+/* The last point whose force reaches a level; -1 without one. */
+static long last_above(const nt_curve_branch *branch, double level)
+{
+    long last = -1;
+    for (long i = 0; i < branch->count; i++)
+        last = fabs(branch->force[i]) > level ? i : last;
+    return last;
+}
+
+void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room, nt_curve_branch *approach)
+{
+    const long count = approach->count, seen = last_above(approach, approach->visible);
+    const long deeper = last_above(approach, deep * approach->visible);
+    long first = seen + 1;
+    if (deeper < 0)
+        return;
+    const double step = approach->z[seen] - approach->z[deeper], foot = approach->z[seen] + foot_part * step;
+    while (first < count && approach->z[first] < approach->z[seen] + clear_part * step)
+        first++;
+    if (count - first < LEAST_BLOCKS * BLOCK)
+        return;
+    means m = means_of(approach, first);
+    m.foot = (foot - m.middle) / m.half;
+    double variance;
+    const shape chosen = judge(&m, &variance);
+    approach->baseline.force_variance = fmax(approach->baseline.force_variance, variance);
+    if (!chosen.bow && !chosen.film)
+        return;
+    nt_curve_baseline bent = approach->baseline;
+    add_to(&bent, &chosen, &m);
+    const nt_curve_branch straight = *approach;
+    nt_curve_read_events(segment, &bent, room, approach);
+    if (straight.dips && approach->dips) { /* a snap-in: its own forces reach far out, and look like a bow */
+        *approach = straight;
+        return;
+    }
+    memcpy(kept, room, 2 * (size_t)count * sizeof *room);
+    approach->z = kept;
+    approach->force = kept + count;
+}

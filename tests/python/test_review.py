@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``nanotouch review``: what is decided by key or mouse lies in a sidecar, and a batch obeys it."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+from nanotouch import Contact, batch, curves
+from nanotouch.errors import Error
+from nanotouch_app.main import main
+from nanotouch_app.review_window import Board, show
+
+pytest.importorskip("h5py")
+pytest.importorskip("afmformats")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "gels"
+    made.mkdir()
+    for seed in range(3):
+        contact = Contact(1e-6, 5e4, 0.0)
+        curve = curves.synthesise(contact, "hertz", spring_constant=0.1, noise=10e-12, points=400, seed=seed)
+        curves.write(made / f"{seed}.h5", [curve])
+    return made
+
+
+def test_keys_write_a_sidecar_that_a_batch_obeys(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    side = folder.parent / "side.toml"
+    typed = "x tip crashed\nc 12.5nm\nwhat\nk\n-\nn\nb 100nm 50nm\nk\n"
+    monkeypatch.setattr("sys.stdin", io.StringIO(typed))
+    line = ["review", str(folder), "--sidecar", str(side), "--radius", "1um", "--model", "hertz"]
+    assert main(line) == 0
+    said = capsys.readouterr().out
+    assert "1/3" in said
+    assert "'what': k keep" in said
+    assert "expected two that grow" in said
+    assert "3 curves, 1 excluded" in said
+    read = batch.Sidecar.from_toml(side)
+    assert read.of(folder / "0.h5", 0).exclude == "tip crashed"
+    assert read.of(folder / "1.h5", 0).contact_point == pytest.approx(12.5e-9)
+    summary = batch.fit_files([folder], folder.parent / "r.csv", "hertz", sidecar=side, radius=1e-6)
+    assert [row["status"] for row in summary.rows].count("excluded") == 1
+
+
+def test_what_is_undone_leaves_no_trace(folder: Path) -> None:
+    side = folder.parent / "side.toml"
+    review = batch.Review([folder], side, "hertz", radius=1e-6)
+    review.decide(review.places[0], exclude="no contact", baseline=(1e-7, 2e-7))
+    again = batch.Review([folder], side, "hertz", radius=1e-6)
+    decision = again.decision(again.places[0])
+    assert decision.exclude == "no contact"
+    assert decision.baseline == pytest.approx((1e-7, 2e-7))
+    again.decide(again.places[0], exclude="", baseline=None)
+    assert batch.Sidecar.from_toml(side).decisions == {}
+
+
+def pixels(board: Board, z: float) -> tuple[float, float]:
+    """Where z [nm] is drawn, in the middle of the panel's height."""
+    x, y = board.panel.transData.transform((z, sum(board.panel.get_ylim()) / 2.0))
+    return float(x), float(y)
+
+
+def test_mouse_and_keys_of_the_window(folder: Path) -> None:
+    figure_module = pytest.importorskip("matplotlib.figure")
+    backend = pytest.importorskip("matplotlib.backends.backend_agg")
+    events = pytest.importorskip("matplotlib.backend_bases")
+    figure = figure_module.Figure()
+    backend.FigureCanvasAgg(figure)
+    review = batch.Review([folder], folder.parent / "side.toml", "hertz", radius=1e-6)
+    board = Board(review, figure)
+    at = board.lines["contact"] * 1e9
+    events.MouseEvent("button_press_event", figure.canvas, *pixels(board, at), button=1)._process()
+    events.MouseEvent("button_release_event", figure.canvas, *pixels(board, at - 3.0), button=1)._process()
+    assert review.decision(review.places[0]).contact_point == pytest.approx((at - 3.0) * 1e-9, abs=1e-12)
+    events.KeyEvent("key_press_event", figure.canvas, "x")._process()
+    assert review.decision(review.places[0]).exclude
+    assert board.number == 1
+    events.KeyEvent("key_press_event", figure.canvas, "left")._process()
+    events.KeyEvent("key_press_event", figure.canvas, "u")._process()
+    assert review.decision(review.places[0]) == batch.Decision()
+
+
+def test_without_a_display_the_terminal_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    monkeypatch.setattr(pyplot, "get_backend", lambda: "agg")
+    with pytest.raises(Error, match="leave out --window"):
+        show(batch.Review([folder], folder.parent / "side.toml", "hertz", radius=1e-6))
