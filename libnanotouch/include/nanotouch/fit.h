@@ -140,8 +140,8 @@ typedef struct nt_fit_result {
     int residuals_are_noise; /* 0: the model does not describe the points, and sigma is too small. Looked for at a ratio
                                 of residual_rms (from the median with a robust loss) to residual_noise or force_noise
                                 above 1.5 + 4/sqrt(count) */
-    double misfit; /* reduced chi^2 against force_noise [-]; NaN if that is 0. The covariance is scaled up by it
-                      if > 1 */
+    double misfit;     /* reduced chi^2 against force_noise [-]; NaN if that is 0. The covariance is scaled up by it
+                          if > 1 */
     double chi_square; /* against force_noise, with that of the tear and of what is known [-]; NaN if that is 0 */
     double transition_parameter; /* Maugis' lambda [-]; NaN for other models */
     double pull_off_force;       /* of the fitted contact, positive [N]; NaN for NT_FIT_CUSTOM, as the next two */
@@ -215,7 +215,7 @@ typedef struct nt_fit_solution {
     nt_fit_options options; /* with which it was fitted in the end: noise, tear, and what is known as data */
     nt_fit_result fit;      /* identifiable 0 also where calibration or law are in doubt */
     long count;             /* of points that were fitted: the last ones, close to the tear, may be left out */
-    double rating;          /* nt_fit_rating */
+    double rating;          /* nt_fit_rating [-] */
     unsigned flags;         /* nt_fit_flag */
     int exact;              /* 1: the law leaves nothing but rounding */
     double any_sensitivity, any_modulus, any_rms; /* fitted with any sensitivity [-], [Pa], [N]; NaN without need */
