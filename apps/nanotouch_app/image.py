@@ -66,6 +66,8 @@ def run(args: argparse.Namespace) -> int:
     smooth = None if args.smooth is None else parse_quantity(args.smooth, "m")
     tip = _tip(args.tip)
     threshold = args.grains if args.grains in (None, "auto", "flat", "otsu") else parse_quantity(args.grains, "m")
+    if isinstance(threshold, float) and not threshold > 0.0:
+        raise InvalidValue(f"--grains {args.grains}: valid is a height above 0, as 2nm; --pits finds what is lower")
     with output.busy("reading"):
         raw = _read(args)
     print(_described(raw))

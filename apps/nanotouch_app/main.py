@@ -72,8 +72,9 @@ class Parser(argparse.ArgumentParser):
 
 def meant(word: str, known: Sequence[str]) -> str:
     """The question whether something known was meant; nothing where none is like it."""
-    near = difflib.get_close_matches(word, known, 1)
-    return f": did you mean {near[0]}?" if near else ""
+    bare = {name.lstrip("-"): name for name in known}
+    near = difflib.get_close_matches(word.lstrip("-"), bare, 1, 0.7)
+    return f": did you mean {bare[near[0]]}?" if near else ""
 
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:

@@ -311,6 +311,8 @@ reproduce --figure x                | 'x' | int
 live prose.txt --film new.gif       | prose.txt
 live --record file                  | --record file | .mcap
 live --film file                    | --film file | .gif, .mp4, .png
+live --film nowhere/touch.gif       | --film nowhere/touch.gif | nowhere is not a folder
+image prose.txt --grains -2nm       | --grains -2nm | above 0
 live --film touch.txt               | --film touch.txt | .gif, .mp4, .png
 live prose.txt --radius 30 --film new.gif | 30 | unit
 tradeoff --quick --doc x.md         | --doc with --quick

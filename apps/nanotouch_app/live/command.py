@@ -100,6 +100,8 @@ def _checked(args: argparse.Namespace) -> bool:
         if file is not None:
             if Path(file).suffix.lower() not in endings:
                 raise InvalidValue(f"{option} {file}: valid endings are {', '.join(endings)}")
+            if not Path(file).parent.is_dir():
+                raise InvalidValue(f"{option} {file}: {Path(file).parent} is not a folder")
             output.check_free(Path(file), args, option)
     if not properties.given(args):
         files.check_named(args.what)
