@@ -225,13 +225,20 @@ static double radius_with(const nt_plan *plan, double more, double indentation)
     return contact_with(plan, more, indentation).a;
 }
 
+/* The force of the contact with w less by what some force at hold takes of it, and without [N]; NaN: nothing holds. */
+static double force_taken(const nt_plan *plan, double taken, double indentation, double alone)
+{
+    const double full = 2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion;
+    return contact_with(plan, -taken / full, indentation).F - alone;
+}
+
 /* A contact that is pulled out has a neck, and beside it the gap is far less than that of undeformed bodies: laws of
- * short range act there in full, as a part of w. By how much the force is off then, at most [N]. */
+ * short range act there in full, as a part of w. By how much the force is off then, at most [N]. Laws that take all of
+ * w reach far: only what they grow by from the undeformed gap to the neck's is not in the sum already. */
 static double error_of_neck(const nt_plan *plan)
 {
     enum { SAMPLES = 48 };
     const nt_elastic_sum held = others_at_hold(plan);
-    const double full = 2.0 * NT_PI * plan->contact.radius * plan->contact.work_of_adhesion;
     const double beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan), fold = beside - plan->release_gap;
     double worst = 0.0;
     if (held.all_F == 0.0 || nt_plan_contact_form(plan) != NT_FORM_EXACT)
@@ -241,8 +248,11 @@ static double error_of_neck(const nt_plan *plan)
         const nt_law_value alone = contact_with(plan, 0.0, d);
         if (!(alone.a > 0.0))
             continue;
-        const double F = contact_with(plan, -held.F / full, d).F - alone.F;
-        worst = fmax(worst, isnan(F) ? (double)INFINITY : fabs(F - others_at(plan, -d)));
+        const double others = others_at(plan, -d);
+        double off = force_taken(plan, held.F, d, alone.F) - others;
+        if (isnan(off))
+            off = force_taken(plan, held.F - others, d, alone.F);
+        worst = fmax(worst, isnan(off) ? (double)INFINITY : fabs(off));
     }
     return NT_SAMPLED * worst;
 }
