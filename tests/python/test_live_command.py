@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import nanotouch as nt
 import pytest
 
 pytest.importorskip("vtkmodules")
+from nanotouch import view
 from nanotouch_app.live import desk as desks
 from nanotouch_app.live import offer
 from nanotouch_app.main import main
@@ -72,11 +75,52 @@ def test_what_a_killed_view_leaves_is_removed_by_the_next(monkeypatch: pytest.Mo
         lives.communicate("\n")
 
 
+@pytest.mark.parametrize(("option", "name"), [("--film", "a.png"), ("--record", "a.mcap")])
+def test_a_missing_folder_is_told_before_the_work(
+    tmp_path: Path, option: str, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert f"there is no folder {tmp_path / 'none'}" in _refused(capsys, option, str(tmp_path / "none" / name))
+
+
+def test_a_hand_that_there_is_none_of_is_told_before_the_display(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    assert "--hand foot: valid are auto, none, gamepad, spacemouse" in _refused(capsys, "--hand", "foot")
+
+
+def test_a_film_ends_at_a_signal_that_comes_while_vtk_draws(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """VTK prints what is raised inside its callbacks, and goes on."""
+    works, reason = view.probe()
+    if not works:
+        pytest.skip(reason)
+    drawn = []
+
+    def paint(self: Any, item: Any, context: Any) -> bool:
+        if not drawn:
+            drawn.append(item)
+            signal.raise_signal(signal.SIGINT)
+        return True
+
+    monkeypatch.setattr("nanotouch_app.live.picture._Item.Paint", paint)
+    monkeypatch.setattr("nanotouch_app.live.film.RATE", 4.0)
+    out = tmp_path / "touch.gif"
+    assert main(["live", "--film", str(out)]) == 128 + signal.SIGINT
+    assert capsys.readouterr().err == "nanotouch live: stopped by SIGINT\n"
+    assert drawn
+    assert not out.exists()
+
+
 def test_options_that_would_do_nothing_are_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     film = tmp_path / "a.gif"
     assert "--task cannot be used with it" in _refused(capsys, "--film", str(film), "--task", "find")
+    assert "--browser cannot be used with it" in _refused(capsys, "--film", str(film), "--browser")
+    assert "--page cannot be used with it" in _refused(capsys, "--page", "a.html")
+    assert "no force curve: --radius cannot be used with it" in _refused(capsys, "mica_in_air", "--radius", "30nm")
     monkeypatch.setattr("nanotouch_app.live.command.record.is_recording", lambda path: True)
     played = tmp_path / "touch.mcap"
     played.write_text("a recording")

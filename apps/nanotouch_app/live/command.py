@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch import record
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import Error, InvalidValue
 from nanotouch.images import Topography
 
-from nanotouch_app import output, properties
-from nanotouch_app.live import display, files
+from nanotouch_app import output, properties, stop
+from nanotouch_app.live import display, files, hands
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.reel import surface_of
@@ -103,6 +103,9 @@ def _checked(args: argparse.Namespace) -> bool:
             if not Path(file).parent.is_dir():
                 raise InvalidValue(f"{option} {file}: {Path(file).parent} is not a folder")
             output.check_free(Path(file), args, option)
+            if not Path(file).absolute().parent.is_dir():
+                raise Error(f"{option} {file}: there is no folder {Path(file).parent}")
+    hands.check_named(args.hand)
     if not properties.given(args):
         files.check_named(args.what)
     is_recording = Path(args.what).is_file() and record.is_recording(args.what)
@@ -145,10 +148,14 @@ def _touch(args: argparse.Namespace, front: Front, first: dict[str, Any] | None)
 def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
     """Refuse options that would do nothing here."""
     for what, is_so, others in (
-        (f"{args.what} is a recording, which is played", is_recording, ("task", "record", "film")),
-        ("--film films a scripted touch", args.film is not None, ("task", "record")),
-    ):
-        useless = [f"--{name}" for name in others if getattr(args, name) is not None]
+        (f"{args.what} is a recording, which is played", is_recording,
+         ("task", "record", "film", "radius", "browser")),
+        ("--film films a scripted touch", args.film is not None, ("task", "record", "browser")),
+        (f"{args.what} is no force curve", args.what in PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"),
+         ("radius",)),
+        ("without --browser a window shows it", not args.browser, ("page",)),
+    ):  # fmt: skip
+        useless = [f"--{name}" for name in others if getattr(args, name) not in (None, False)]
         if is_so and useless:
             raise InvalidValue(f"{what}: {' and '.join(useless)} cannot be used with it")
 
@@ -161,9 +168,15 @@ def _subject(args: argparse.Namespace) -> Subject:
 def _film(args: argparse.Namespace) -> int:
     from nanotouch_app.live import film  # a window is drawn in another process
 
-    path = Path(args.film)
-    with output.progress_bar("filming") as progress:
-        film.write([(_subject(args), film.PRESS)], path, progress, dark=args.dark)
+    path, subject = Path(args.film), _subject(args)
+    # a signal waits for the end of the picture: VTK would swallow what is raised while it draws
+    with stop.between_blocks() as check, output.progress_bar("filming") as progress:
+
+        def told(share: float) -> None:
+            check()
+            progress(share)
+
+        film.write([(subject, film.PRESS)], path, told, dark=args.dark)
     print(f"written to {path}: {path.stat().st_size / 1e6:.2f} MB")
     return 0
 

@@ -15,13 +15,18 @@ from nanotouch_app.live.hands.spacemouse import SpaceMouse
 KINDS: dict[str, type[Device]] = {"gamepad": Gamepad, "spacemouse": SpaceMouse}
 
 
+def check_named(name: str) -> None:
+    """Refuse a hand that there is none of."""
+    if name not in ("auto", "none", *KINDS):
+        raise InvalidValue(f"--hand {name}: valid are auto, none, {', '.join(KINDS)}")
+
+
 def opened(name: str) -> list[Device]:
     """The hand of that name, or an error in words; "auto": those that are there, "none": none."""
     if name == "none":
         return []
+    check_named(name)
     if name != "auto":
-        if name not in KINDS:
-            raise InvalidValue(f"--hand {name}: valid are auto, none, {', '.join(KINDS)}")
         return [KINDS[name].first()]
     found = []
     for kind in KINDS.values():
