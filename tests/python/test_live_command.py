@@ -13,7 +13,7 @@ import nanotouch as nt
 import pytest
 
 pytest.importorskip("vtkmodules")
-from nanotouch import view
+from nanotouch_app import view
 from nanotouch_app.live import desk as desks
 from nanotouch_app.live import offer
 from nanotouch_app.main import main
@@ -79,7 +79,7 @@ def test_what_a_killed_view_leaves_is_removed_by_the_next(monkeypatch: pytest.Mo
 def test_a_missing_folder_is_told_before_the_work(
     tmp_path: Path, option: str, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert f"there is no folder {tmp_path / 'none'}" in _refused(capsys, option, str(tmp_path / "none" / name))
+    assert f"{tmp_path / 'none'} is not a folder" in _refused(capsys, option, str(tmp_path / "none" / name))
 
 
 def test_a_hand_that_there_is_none_of_is_told_before_the_display(

@@ -145,6 +145,10 @@ def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatc
         assert pixels.shape == (900, 1440, 3)
         assert len(np.unique((pixels * 255).astype(int).reshape(-1, 3), axis=0)) > 500
         live.x("key", "p")
+        live.serve(lambda frame: not live.host.paused)
+        live.x("key", "e", "3", "p")  # VTK by itself leaves at an E
+        live.serve(lambda frame: live.host.paused)
+        live.x("key", "p")
         _slide_to_dry(live)
         live.x("key", "q")
         live.serve(lambda frame: any(one["do"] == "leave" for one in live.asked))

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch import record
-from nanotouch.errors import Error, InvalidValue
+from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
 from nanotouch_app import output, properties, stop
@@ -103,8 +103,6 @@ def _checked(args: argparse.Namespace) -> bool:
             if not Path(file).parent.is_dir():
                 raise InvalidValue(f"{option} {file}: {Path(file).parent} is not a folder")
             output.check_free(Path(file), args, option)
-            if not Path(file).absolute().parent.is_dir():
-                raise Error(f"{option} {file}: there is no folder {Path(file).parent}")
     hands.check_named(args.hand)
     if not properties.given(args):
         files.check_named(args.what)

@@ -62,7 +62,9 @@ class Window:
         self.reel = None if recording is None else Reel(record.read(recording))
         self.interactor = self.vtk.vtkRenderWindowInteractor()
         self.interactor.SetRenderWindow(self.window)
-        self.interactor.SetInteractorStyle(self.vtk.vtkInteractorStyleUser())
+        style = self.vtk.vtkInteractorStyleUser()
+        style.AddObserver("CharEvent", lambda *_: None)  # or E leaves, as the E of a typed 1e-9, and 3 draws in stereo
+        self.interactor.SetInteractorStyle(style)
         for event, answer in (
             ("LeftButtonPressEvent", self.left), ("LeftButtonReleaseEvent", self.let_go),
             ("RightButtonPressEvent", self.right), ("RightButtonReleaseEvent", self.let_go),
