@@ -60,6 +60,14 @@ static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_h
     return b;
 }
 
+/* A stage that is told to go faster than it can falls behind its command, and goes on when that turns: by all that
+ * nothing shows [m]. */
+static double falls_behind(const basis *b, const nt_stage *stage)
+{
+    const nt_supervisor *s = &b->supervisor;
+    return b->vertical > stage->max_speed ? s->stage_most + s->correction_most + 3.0 * b->vertical * s->period : 0.0;
+}
+
 /* Deflection and travel watch each other. Read as g times what it is, the deflection x is stopped by the force limit
  * L = g k_c x and by the indentation I = (1 - g) x past a first touch that was noticed at f/g: most at k_c x = L + k_c
  * I L/(L - f). A zero that drifts away is the same. */
@@ -135,8 +143,9 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     const double off = NT_GUARANTEE_SIGMAS * hypot(probe->spring_constant_sigma, probe->sensitivity_sigma);
     found.calibration = limits->force * off / (1.0 - off);
     found.speed = b.vertical + (found.moves_sideways ? hazard->slope * limits->lateral_speed : 0.0);
-    const double closer = found.speed * b.reaction;
-    found.motion = b.k_eff * closer;
+    const double closer = found.speed * b.reaction + falls_behind(&b, &rig->stage);
+    const int slides = found.moves_sideways && limits->lateral_speed > 0.0;
+    found.motion = b.k_eff * closer + (slides ? b.spring * hazard->rise : 0.0);
     found.ringing = b.k_eff * swing;
     const double sigma = nt_probe_force_noise(probe) / probe->spring_constant;
     found.noise = b.spring * (SIGMAS * sigma + probe->sensitivity * probe->resolution);

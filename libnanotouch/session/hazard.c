@@ -246,6 +246,16 @@ static double deepest_under(const nt_plan *plan, double force)
     return plan->radii ? HUGE_VAL : -gap_of_force(&soft, force, 0.0);
 }
 
+/* A tip that slides from the softest and sharpest place to the hardest and bluntest one is lifted by this [m]. */
+static double rise_under(const nt_plan *plan, double force)
+{
+    const well soft = {.plan = plan, .place = place_of(plan, plan->least.radius, 0)};
+    well hard = {.plan = plan, .place = place_of(plan, plan->most.radius, 1)};
+    if (plan->properties)
+        hard.place.work_of_adhesion.value = plan->properties->work_of_adhesion.height_minimum;
+    return fmax(0.0, gap_of_force(&hard, force, 0.0) - gap_of_force(&soft, force, 0.0));
+}
+
 nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope)
 {
     const nt_probe *lever = &rig->probe;
@@ -257,6 +267,7 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
                         .stiffness = plan->maximum_stiffness,
                         .unseen = unseen_indentation(plan, free_force)};
     const nt_guarantee still = nt_guarantee_compute(rig, settings, &hazard);
+    hazard.rise = rise_under(plan, still.force);
     for (int side = -1; side <= 1; side += 2) { /* k_c as it may be */
         nt_rig real = *rig;
         real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from nanotouch import Faults, Input, Rig, Session, Settings, Surface, record, surface
+from nanotouch import Faults, Input, Rig, Scene, Session, Settings, Surface, record, surface
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
 LATCHED = record.STATES.index("LATCHED")
@@ -74,3 +74,29 @@ def test_a_stop_lifts_from_the_drift_of_the_frame(rate: float) -> None:
     assert (later["state"] == LATCHED).all()
     assert np.abs(later["tip_force"]).max() < 60e-9
     assert session.guarantee().help_time == pytest.approx(50e3)
+
+
+def test_a_slide_from_soft_to_hard_is_promised() -> None:
+    """The lever is bent further by as much as the tip sinks in less: with 30 N/m by more than all the rest."""
+    moduli = np.full((32, 32), 1e9)
+    moduli[:, 16:] = 100e9
+    sample = Surface(np.zeros((32, 32)), pixel_size=5e-9, youngs_modulus=moduli)
+    rig = Rig(probe={"spring_constant": 30.0, "noise": 2e-3, "spring_constant_sigma": 0.0, "sensitivity_sigma": 0.0})
+    settings = Settings.for_rig(rig)
+    settings.limits.force, settings.gains.set_point = 400e-9, 100e-9
+    settings.limits.stage_speed, settings.limits.follow_error = 0.5e-6, 25e-9
+    settings.gains.alpha_f, settings.gains.alpha_p = 2.5e6, 5e-6
+    scene = Scene(sample={"youngs_modulus": 1e9})
+    session = Session(scene, rig, surface=sample, settings=settings, path=[(20e-9, 80e-9)], clearance=5e-9, rtol=0.1)
+    promised = session.guarantee().force
+    soft = session.advance(3.0, Input(0.93, 20e-9, 80e-9, 0.5))["tip_force"][-1]
+    hard = session.advance(0.1, Input(0.93, 140e-9, 80e-9, 0.0))["tip_force"].max()
+    assert soft < 400e-9
+    assert 1.25 * 515e-9 < hard < promised < 2.5 * hard  # 515 nN: limit and all terms but this
+
+
+def test_a_stage_that_cannot_keep_up_is_promised() -> None:
+    """What it falls behind a command that is faster than it can go is still to come when the command turns."""
+    found = [Session(rig=Rig(stage={"max_speed": speed}), settings=Settings()).guarantee() for speed in (30e-6, 20e-6)]
+    assert found[1].motion > 1.5 * found[0].motion
+    assert found[1].force > found[0].force

@@ -14,7 +14,8 @@ extern "C" {
 
 /* What sample and surface may do meanwhile (hazard.h). */
 typedef struct nt_hazard {
-    double slope;          /* of the surface where it is steepest, dilated by the tip [-] */
+    double slope; /* of the surface where it is steepest, dilated by the tip [-] */
+    double rise;  /* of a tip that slides from the softest place to the hardest, as deep as it is pressed [m] */
     double pull_off_force; /* the strongest pull, positive [N] */
     double snap_in;        /* what the energy of a jump adds at the peak, pressed with all that can be [N] ... */
     double snap_in_depth;  /* ... and to the indentation [m] */
