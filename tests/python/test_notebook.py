@@ -78,7 +78,7 @@ def test_each_thing_has_a_table_in_a_notebook(recording: nt.Recording) -> None:
     for thing, words in (
         (scene, ("tip.radius *", "33 nm", "sample.youngs_modulus")), (session, ("RUN", "0.01 s", "10000 Hz")),
         (scene.plan(), ("Plan",)), (recording, ("gap", f"Recording of {len(recording)} rows")),
-        (session.settings, ("gains.alpha_f",)),
+        (session.settings, ("gains.alpha_f *", "gains.rate")),
     ):  # fmt: skip
         parsed = Parsed(thing._repr_html_())
         assert not parsed.open

@@ -25,7 +25,7 @@ material = "gold"
 relative_humidity_percent = 0
 [adhesion]
 given = "surface_energies"
-contact_potential_mV = 250
+contact_potential_mV = 100
 [range]
 maximum_load_uN = 1
 [probe]

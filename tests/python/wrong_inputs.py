@@ -251,8 +251,8 @@ samples --out file/out              | cannot write into file/out
 curve --scene ''                    | scene is empty
 curve --out file/out                | cannot write into file/out
 curve prose.txt                     | unrecognized arguments: prose.txt
-export prose.txt --out x.txt        | --out x.txt | .csv, .h5, .hdf5, .tab, .gwy or .gsf
-export prose.txt --out ''           | .csv, .h5, .hdf5, .tab, .gwy or .gsf
+export prose.txt --out x.txt        | --out x.txt | .csv, .h5, .hdf5, .tab, .ibw, .gwy or .gsf
+export prose.txt --out ''           | .csv, .h5, .hdf5, .tab, .ibw, .gwy or .gsf
 export prose.txt                    | required: --out
 export nowhere.mcap --out x.csv     | nowhere.mcap: no such file
 image                               | required: FILE
@@ -326,6 +326,9 @@ latency --rate 0.5Hz                | 0.5Hz | 1.1 Hz
 latency --out wake.txt               | wake.txt | .png
 rig check no.toml                    | no.toml | no such file
 rig check folder.toml                | folder.toml
+review prose.txt                     | required: --sidecar
+review nowhere.ibw --sidecar s.toml  | nowhere.ibw: no file
+review x.ibw --sidecar s.toml --radius 20 | '20' has no unit
 touhc                               | 'touhc' | did you mean touch?
 --versoin                           | required: COMMAND
 """
