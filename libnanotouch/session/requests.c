@@ -167,7 +167,7 @@ void nt_session_take_clients(nt_session *session)
     if (!nt_frames_take(session->frames, &request))
         return;
     if (request.kind == NT_REQUEST_STOP) {
-        nt_session_emergency_stop(session, 1);
+        nt_session_tap_stop(session);
         refuse(session, request.id, NT_OK, 0);
         return;
     }

@@ -25,6 +25,11 @@ void nt_session_emergency_stop(nt_session *session, int pressed)
         atomic_fetch_and(&session->stop, ~(unsigned)STOP_HELD);
 }
 
+void nt_session_tap_stop(nt_session *session)
+{
+    atomic_fetch_or(&session->stop, STOP_UNSEEN); /* a button that the program itself holds stays held */
+}
+
 static void take_input(nt_session *session)
 {
     nt_input input;

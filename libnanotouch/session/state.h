@@ -146,6 +146,7 @@ nt_status nt_session_keep_event(nt_session *session, const nt_event *event);
 int nt_session_events_are_full(const nt_session *session);
 /* The loop: hands a client's request on. And the thread that prepares: does it. */
 void nt_session_take_clients(nt_session *session);
+void nt_session_tap_stop(nt_session *session); /* pressed and let go: LATCHED, until somebody arms */
 void nt_session_serve_clients(nt_session *session);
 
 /* --- history.c --- */

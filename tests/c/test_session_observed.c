@@ -119,6 +119,9 @@ static void check_outcome(nt_session *session)
     assert_int_equal(count, 3); /* mode, gain, modulus: what was refused is no event */
     run(session, watched, 2);
     assert_int_equal(watched[1].state, NT_LATCHED);
+    assert_int_equal(nt_session_arm(session, 1), NT_OK); /* a client's stop is no button that stays pressed */
+    run(session, watched, TICKS);
+    assert_int_equal(watched[TICKS - 1].state, NT_RUN);
 }
 
 static void clients_are_answered(void **state)
