@@ -58,13 +58,24 @@ int nt_lift_helps(const nt_supervisor *supervisor, nt_supervisor_state *state, d
     return 0;
 }
 
+/* Is it read well below the farthest that it has come, and farther down than where that began? A slip is over at once;
+ * a stage that goes the wrong way goes on. */
+static int falls_on(const nt_supervisor *supervisor, nt_supervisor_state *state, double position)
+{
+    state->top_position = lesser(state->top_position, position);
+    if (position <= state->top_position + FALL_SLACKS * supervisor->turn_slack)
+        state->fall_position = INFINITY;
+    else if (isinf(state->fall_position))
+        state->fall_position = position;
+    return position > state->fall_position + supervisor->turn_slack;
+}
+
 int nt_lift_rises(const nt_supervisor *supervisor, nt_supervisor_state *state, double position)
 {
     const int goes = state->state >= NT_RETRACT && state->lift == NT_LIFT_GOES && state->lifts;
     if (!goes)
-        state->turn_position = position;
-    const int falls = position > state->turn_position + FALL_SLACKS * supervisor->turn_slack;
-    state->fall_run = falls ? state->fall_run + 1u : 0u;
+        state->turn_position = state->top_position = position;
+    state->fall_run = falls_on(supervisor, state, position) ? state->fall_run + 1u : 0u;
     if (state->fall_run < GROWTH_TICKS)
         return 1;
     state->lift = NT_LIFT_WAITS;

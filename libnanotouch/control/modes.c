@@ -152,7 +152,8 @@ double nt_mode_release(const nt_touch *touch, nt_touch_state *state)
 double nt_mode_stop(const nt_touch *touch, nt_touch_state *state, double distance)
 {
     if (state->retracted < distance) {
-        const double step = lesser(step_of(touch, touch->settings.limits.retract_speed), distance - state->retracted);
+        const double time = touch->period + state->supervisor.late;
+        const double step = lesser(touch->settings.limits.retract_speed * time, distance - state->retracted);
         state->retracted += step;
         state->reference = greater(state->reference - step, -touch->stage_end);
     }

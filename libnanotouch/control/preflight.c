@@ -40,6 +40,11 @@ nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings)
                           .distance = lesser(distance, 0.25 * rig->stage.travel)};
 }
 
+double nt_preflight_time(const nt_preflight *preflight)
+{
+    return preflight->period * (2.0 * preflight->ticks + 4.0 * preflight->move + 1.0);
+}
+
 static int is_good(const nt_preflight *preflight, const nt_sample *sample)
 {
     const int measures_hand = preflight->rig.master.gauge != 0.0;

@@ -15,6 +15,7 @@
 #define STALE_HOLD_PERIODS 2.0
 #define STALE_RETRACT_PERIODS 5.0
 #define LATE_PERIODS 0.2
+#define MOST_LATE 1000.0        /* periods: what a stop makes up for in one tick */
 #define LATE_TICKS 5u           /* in a row: HOLD, until as many punctual ones have made up for them */
 #define STUCK_STEPS 5.0         /* of the stage's read-out */
 #define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */
@@ -240,6 +241,14 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
     return verdict == NT_RUN ? NT_RUN : blame(state, NT_REASON_STUCK, verdict);
 }
 
+/* NaN or infinite: nobody knows how late, and nothing is made up for. */
+static double known_lateness(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    return sample->lateness > 0.0 && isfinite(sample->lateness)
+               ? lesser(sample->lateness, MOST_LATE * supervisor->period)
+               : 0.0;
+}
+
 /* Where the stage should be by now, whatever it shows. */
 static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, double reference)
 {
@@ -252,11 +261,13 @@ static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, 
     state->path = supervisor->path_kept * state->path + fabs(step);
 }
 
-/* What of the way that it lifts a stage may lose, while the integral stands still [m]. */
+/* What of the way that it lifts a stage may lose, while the integral stands still; and, where ticks come late and lift
+ * farther, the lag: the filter's part of it counts ticks, the stage's own does not [m]. */
 static double lost_in_lift(const nt_supervisor *supervisor, const nt_supervisor_state *state)
 {
     const int lifts = state->state >= NT_RETRACT && isfinite(state->turn);
-    return lifts ? supervisor->lift_share * fabs(state->expected - state->turn) : 0.0;
+    const double late = supervisor->limits.retract_speed * state->late / supervisor->stage_share;
+    return lifts ? supervisor->lift_share * fabs(state->expected - state->turn) + late : 0.0;
 }
 
 /* Not where it should be: hold; for follow_time: latched, and it stays there. So does a lift whose force cannot be
@@ -361,6 +372,7 @@ nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state
 {
     if (state->state < NT_RETRACT) /* else the reason that led there stays */
         state->reasons = 0;
+    state->late = known_lateness(supervisor, sample);
     expect(supervisor, state, situation->reference);
     nt_state verdict = judge_stops(state, sample);
     const nt_state validity = judge_validity(supervisor, state, sample);

@@ -3,9 +3,12 @@
 #include <limits.h>
 #include <math.h>
 
+#include "nanotouch/preflight.h"
+
 #include "core/problem.h"
 #include "session/state.h"
 
+#define LEAST_CLEARANCE 1e-9                                   /* [m] */
 #define LONGEST_PATH (LONG_MAX >> (sizeof(long) > 4 ? 23 : 5)) /* points; their size fits a size_t */
 
 nt_session_setup nt_session_defaults(void)
@@ -114,13 +117,22 @@ static nt_status check_heeded(const nt_session_setup *setup, nt_problem *problem
     return NT_OK;
 }
 
+/* The frame's declared drift brings the surface nearer while the preflight runs: the tip is still free at its end [m].
+ */
+static double least_clearance(const nt_session_setup *setup)
+{
+    const nt_preflight preflight = nt_preflight_make(&setup->rig, &setup->settings);
+    return LEAST_CLEARANCE + (setup->preflight ? setup->rig.stage.drift * nt_preflight_time(&preflight) : 0.0);
+}
+
 /* Numbers that no other check sees; rig and settings have been checked. */
 static nt_status check_numbers(const nt_session_setup *setup, nt_problem *problem)
 {
     if (setup->settings.gains.delay > NT_SIM_DELAY_MAX)
         return nt_problem_set(problem, "gains.delay", "periods", setup->settings.gains.delay, 0.0, NT_SIM_DELAY_MAX);
-    if (!(setup->clearance >= 1e-9 && setup->clearance <= 1e-3))
-        return nt_problem_set(problem, "clearance", "m", setup->clearance, 1e-9, 1e-3);
+    const double least = least_clearance(setup);
+    if (!(setup->clearance >= least && setup->clearance <= 1e-3))
+        return nt_problem_set(problem, "clearance", "m", setup->clearance, least, 1e-3);
     if (setup->ring_capacity < 0 || setup->ring_capacity == 1 || setup->ring_capacity > 1L << 26)
         return nt_problem_set(problem, "ring_capacity", "", (double)setup->ring_capacity, 2.0, 67108864.0);
     const double climb = setup->settings.gains.alpha_p * 0.8 * setup->rig.master.travel;

@@ -9,6 +9,7 @@
 #include "adversary_draws.h"
 #include "adversary_rigs.h"
 #include "failure_of.h"
+#include "nanotouch/preflight.h"
 #include "session/state.h" /* the truth between two ticks */
 
 /* How close it came: 1 is the promise. */
@@ -147,7 +148,9 @@ static inline void draw_plot(plot *p, dice *d, closeness *found)
     /* as far as a hand of 1 N goes in so many seconds: the tip does come down */
     const double quick = p->settings.gains.alpha_p / p->setup.rig.master.damping;
     const double seconds = p->kind == ATTACK_DYNAMIC ? between(d, 0.001, 0.02) : between(d, 0.01, 0.1);
-    p->setup.clearance = smaller(larger(seconds * quick, 1e-9), 100e-9);
+    const nt_preflight preflight = nt_preflight_make(&p->setup.rig, &p->settings);
+    p->setup.clearance =
+        smaller(larger(seconds * quick, 1e-9), 100e-9) + p->setup.rig.stage.drift * nt_preflight_time(&preflight);
     dice fault_dice = {.genes = d->genes ? d->genes + GENES - FAULT_GENES : NULL};
     p->believed = p->setup.rig;
     p->setup.settings = p->settings;

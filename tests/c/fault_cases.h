@@ -154,7 +154,7 @@ static inline void move_hand(loop *l, int tick)
 static inline nt_status observe(loop *l, int time, outcome *o)
 {
     *o = (outcome){.worst_force = l->sim.slave.truth.tip_force[NT_Z], .finite = 1};
-    const double reference = l->state.reference;
+    const double reference = l->state.reference, began = (double)l->sim.slave.link.tick;
     double motor = l->command.motor_force[NT_Z];
     int coupled = 0; /* tick that was last in RUN */
     for (int i = 0; i < time; i++) {
@@ -172,7 +172,7 @@ static inline nt_status observe(loop *l, int time, outcome *o)
     }
     o->last = (nt_state)l->command.state;
     o->lifted = reference - l->state.reference;
-    o->time = time * l->touch.period;
+    o->time = ((double)l->sim.slave.link.tick - began) * l->touch.period; /* late ticks make time pass */
     return NT_OK;
 }
 

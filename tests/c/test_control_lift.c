@@ -21,6 +21,8 @@ typedef struct rig {
     nt_command command;
     double surface; /* x_s of first touch [m] */
     double sign;    /* of the stage: the share of its way that it goes */
+    double offset;  /* of the stage: where it is when told 0 [m] */
+    double zero;    /* of the deflection [m] */
     double drift;   /* of surface towards the tip, unseen by the read-out [m/s] */
     double most;    /* deflection so far [m] */
     int blind;      /* the deflection is not a number */
@@ -49,11 +51,11 @@ static void run(rig *r, long ticks)
 {
     for (long i = 0; i < ticks; i++) {
         r->surface -= r->drift * T;
-        const double stage = r->sign * r->command.stage_position[NT_Z];
+        const double stage = r->sign * r->command.stage_position[NT_Z] + r->offset;
         const double bent = larger(0.0, stage - r->surface);
         r->most = larger(r->most, bent);
         r->sample.stage_position[NT_Z] = stage;
-        r->sample.deflection[NT_Z] = r->blind ? (double)NAN : bent + 1e-10 * (double)(r->ticks++ % 2);
+        r->sample.deflection[NT_Z] = r->blind ? (double)NAN : r->zero + bent + 1e-10 * (double)(r->ticks++ % 2);
         nt_touch_step(&r->touch, &r->state, &r->sample, &r->command);
     }
 }
@@ -203,6 +205,53 @@ static void a_lift_that_nothing_told_of_is_tried_when_the_force_grows(void **sta
     }
 }
 
+/* Force shows, so it lifts. It is given up as soon as the stage is read to come down, not when it is back where it
+ * began: fault 9000394 of the adversary turned 12 um up and came down on the sample. A slip is no wrong way. */
+static void a_stage_that_turns_while_it_lifts_is_stopped_at_once(void **state)
+{
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        rig r;
+        set_up(&r);
+        r.surface = 1e-6; /* out of reach */
+        stop(&r);
+        r.zero = 10e-9;
+        run(&r, 2000);
+        const double up = r.command.stage_position[NT_Z];
+        assert_true(up < -1e-6);
+        r.sign = turned ? -1.0 : 1.0;
+        r.offset = turned ? 2.0 * up : 300e-9; /* it turns where it is, or slips */
+        run(&r, 2000);
+        assert_int_equal(r.state.supervisor.lift, turned ? NT_LIFT_WAITS : NT_LIFT_GOES);
+        const double all = 3.0 * r.touch.supervisor.turn_slack + 10.0 * T * r.touch.settings.limits.retract_speed;
+        assert_true(turned ? r.sample.stage_position[NT_Z] < up + all : r.sample.stage_position[NT_Z] < up - 1e-6);
+    }
+}
+
+/* Ticks that come late, by a hundred periods each, lift by the time that has passed: the frame drifts by the clock. Of
+ * fault 9008454 of the adversary the lift was 187 times too slow. Nobody makes up for a lateness that nobody knows. */
+static void a_stop_lifts_by_the_clock(void **state)
+{
+    (void)state;
+    static const double late[] = {0.0, 100.0 * T, 1e6 * T, INFINITY, NAN};
+    static const double periods[] = {1.0, 101.0, 1001.0, 1.0, 1.0};
+    for (int i = 0; i < 5; i++) {
+        rig r;
+        set_up(&r);
+        stop(&r);
+        r.blind = 1;
+        r.sample.lateness = late[i];
+        const double before = r.state.reference;
+        run(&r, 1);
+        const double lifted = before - r.state.reference;
+        const double most = r.touch.settings.limits.retract_distance + before;
+        const double by_clock = r.touch.settings.limits.retract_speed * T * periods[i];
+        assert_true(fabs(lifted - (by_clock < most ? by_clock : most)) < 1e-3 * by_clock);
+        run(&r, 500);
+        assert_int_equal(r.state.supervisor.lift, NT_LIFT_GOES);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -212,6 +261,8 @@ int main(void)
         cmocka_unit_test(a_lift_that_shows_goes_on_while_the_force_grows),
         cmocka_unit_test(declared_hysteresis_stops_no_lift),
         cmocka_unit_test(a_lift_that_nothing_told_of_is_tried_when_the_force_grows),
+        cmocka_unit_test(a_stage_that_turns_while_it_lifts_is_stopped_at_once),
+        cmocka_unit_test(a_stop_lifts_by_the_clock),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,6 +69,20 @@ static void what_cannot_be_is_named(void **state)
     expect_refused(&wrong, "faults.count");
 }
 
+/* Nobody watches the force during the preflight: a frame that drifts as declared must not touch in it. */
+static void the_tip_is_clear_when_the_preflight_ends(void **state)
+{
+    (void)state;
+    nt_session_setup setup = nt_session_defaults();
+    setup.rig.stage.drift = 1e-6;
+    expect_refused(&setup, "clearance");
+    setup.preflight = 0;
+    nt_session_close(open_session(&setup));
+    setup.preflight = 1;
+    setup.clearance = 1e-6;
+    nt_session_close(open_session(&setup));
+}
+
 static void a_substep_bounds_the_work(void **state)
 {
     (void)state;
@@ -130,6 +144,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_cannot_be_is_named),
+        cmocka_unit_test(the_tip_is_clear_when_the_preflight_ends),
         cmocka_unit_test(a_substep_bounds_the_work),
         cmocka_unit_test(no_call_falls_over_nothing),
         cmocka_unit_test(a_hand_of_one_axis_goes_nowhere_else),

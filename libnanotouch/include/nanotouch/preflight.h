@@ -49,6 +49,9 @@ typedef struct nt_preflight_state {
 } nt_preflight_state;
 /* What preflight does and allows on this rig, from its noise, ranges and rate. */
 NT_API nt_preflight nt_preflight_make(const nt_rig *rig, const nt_settings *settings);
+/* How long it takes in all [s]. Nobody touches meanwhile, and nobody watches the force: it ends clear of the surface.
+ */
+NT_API double nt_preflight_time(const nt_preflight *preflight);
 /* One period. The command leaves motor and lateral position alone. */
 NT_API NT_REALTIME nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflight_state *state,
                                                           const nt_sample *sample, nt_command *command);

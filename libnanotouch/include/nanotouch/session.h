@@ -34,7 +34,7 @@ typedef struct nt_session_setup {
     double x, y;                     /* where it starts [m] */
     const double *path; /* path_count points (x, y) that the tip will follow [m]; NULL: it may go anywhere */
     long path_count;
-    double clearance; /* L, height of the tip above the surface at the start [m] */
+    double clearance; /* L, height of the tip above the surface at the start; more than drifts in the preflight [m] */
     double rise; /* how far the master shall be able to draw back from a rising surface [m]; NaN: what is reached */
     uint64_t seed;
     long ring_capacity;    /* records held between two reads, rounded up to a power of two; 0: nothing is recorded */

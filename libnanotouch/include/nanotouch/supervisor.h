@@ -90,7 +90,10 @@ typedef struct nt_supervisor_state {
     double lift_force;       /* largest force until it should have turned [N] */
     uint32_t growth_run;     /* ticks in a row in which the force has grown since */
     double turn_position;    /* where it was read to be when the lift began [m] */
-    uint32_t fall_run;       /* ticks in a row in which it has gone the wrong way since */
+    double top_position;     /* the farthest up that it has been read since [m] */
+    double fall_position;    /* where it was first read to be well below that [m] */
+    uint32_t fall_run;       /* ticks in a row in which it has gone on the wrong way */
+    double late;             /* of this tick: a stop lifts by the clock, not by ticks [s] */
     double surface;          /* travel of the tip at first touch [m] */
     double indentation;      /* [m] */
 } nt_supervisor_state;
