@@ -137,6 +137,7 @@ set(nanotouch_sources_dynamics
 set(nanotouch_sources_control
     control/calm.c
     control/felt.c
+    control/follow.c
     control/guarantee.c
     control/impedance.c
     control/lift.c

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "control/follow.h"
 #include "control/lift.h"
 #include "control/sampled.h"
 #include "control/stuck.h"
@@ -20,8 +21,6 @@
 #define STUCK_STEPS 5.0         /* of the stage's read-out */
 #define LEAST_STAGE_STEP 0.1e-9 /* of a read-out without steps [m] */
 #define FREE_SIGMA 6.0          /* of the force noise: below it is free air */
-#define FOLLOW_TICKS 3u         /* in a row: HOLD; while lifting: LATCHED */
-#define FOLLOW_SHARE 0.75       /* of the way it was to go lately: room for hysteresis */
 #define FOLLOW_STEPS 20.0       /* of read-out or converter, which it may be off besides */
 #define LEAST_SLACK 20e-9       /* [m] */
 #define CREEP_DECADES 4.0       /* of time, 0.1 s to 1000 s, that creep goes on for */
@@ -249,53 +248,13 @@ static double known_lateness(const nt_supervisor *supervisor, const nt_sample *s
                : 0.0;
 }
 
-/* Where the stage should be by now, whatever it shows. */
-static void expect(const nt_supervisor *supervisor, nt_supervisor_state *state, double reference)
-{
-    if (isnan(state->expected))
-        state->expected = reference;
-    state->lifts = reference < state->reference;
-    state->reference = reference;
-    const double step = supervisor->stage_share * (reference - state->expected);
-    state->expected += step;
-    state->path = supervisor->path_kept * state->path + fabs(step);
-}
-
-/* What of the way that it lifts a stage may lose, while the integral stands still; and, where ticks come late and lift
- * farther, the lag: the filter's part of it counts ticks, the stage's own does not [m]. */
-static double lost_in_lift(const nt_supervisor *supervisor, const nt_supervisor_state *state)
-{
-    const int lifts = state->state >= NT_RETRACT && isfinite(state->turn);
-    const double late = supervisor->limits.retract_speed * state->late / supervisor->stage_share;
-    return lifts ? supervisor->lift_share * fabs(state->expected - state->turn) + late : 0.0;
-}
-
-/* Not where it should be: hold; for follow_time: latched, and it stays there. So does a lift whose force cannot be
- * read, until it can be and grows; one that was a second try is given up. */
-static nt_state judge_place(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
-{
-    const nt_limits *limits = &supervisor->limits;
-    const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
-    if (fabs(sample->stage_position[NT_Z] - state->expected) <= slack + lost_in_lift(supervisor, state)) {
-        state->off_run = 0;
-        return NT_RUN;
-    }
-    if (++state->off_run < FOLLOW_TICKS)
-        return NT_RUN;
-    const int lasts = state->off_run * supervisor->period > limits->follow_time;
-    if (state->state < NT_RETRACT && lasts)
-        state->lift = NT_LIFT_WAITS;
-    else if (state->state >= NT_RETRACT && !tells_force(supervisor, state, sample))
-        state->lift = state->lift < NT_LIFT_TRIES ? NT_LIFT_WAITS : NT_LIFT_GIVEN_UP;
-    return blame(state, NT_REASON_FOLLOW, state->state >= NT_RETRACT || lasts ? NT_LATCHED : NT_HOLD);
-}
-
 static nt_state judge_follow(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
 {
-    const nt_state place = judge_place(supervisor, state, sample);
-    return nt_lift_rises(supervisor, state, sample->stage_position[NT_Z])
-               ? place
-               : worse(place, blame(state, NT_REASON_FOLLOW, NT_LATCHED));
+    const double position = sample->stage_position[NT_Z];
+    const nt_state found = nt_follow_judge(supervisor, state, position, tells_force(supervisor, state, sample));
+    const nt_state place = found == NT_RUN ? NT_RUN : blame(state, NT_REASON_FOLLOW, found);
+    return nt_lift_rises(supervisor, state, position) ? place
+                                                      : worse(place, blame(state, NT_REASON_FOLLOW, NT_LATCHED));
 }
 
 static nt_state judge_growth(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
@@ -373,7 +332,7 @@ nt_state nt_supervisor_step(const nt_supervisor *supervisor, nt_supervisor_state
     if (state->state < NT_RETRACT) /* else the reason that led there stays */
         state->reasons = 0;
     state->late = known_lateness(supervisor, sample);
-    expect(supervisor, state, situation->reference);
+    nt_follow_expect(supervisor, state, situation->reference);
     nt_state verdict = judge_stops(state, sample);
     const nt_state validity = judge_validity(supervisor, state, sample);
     verdict = worse(verdict, validity);
