@@ -87,6 +87,15 @@ void nt_stage_set_plays(nt_stage_state *state, double command)
         state->play[i] = (1.0 - share) * command;
 }
 
+void nt_stage_set_hysteresis(nt_stage_model *model, nt_stage_state *state, double hysteresis, double command)
+{
+    const double before = with_hysteresis(&model->stage, state, command);
+    if (model->stage.hysteresis == 0.0)
+        nt_stage_set_plays(state, command);
+    model->stage.hysteresis = hysteresis;
+    state->shift += before - with_hysteresis(&model->stage, state, command);
+}
+
 void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double command, const nt_stage_load *load)
 {
     const nt_stage *stage = &model->stage;
@@ -94,6 +103,7 @@ void nt_stage_step(const nt_stage_model *model, nt_stage_state *state, double co
     double target = command;
     if (stage->hysteresis > 0.0)
         target = with_hysteresis(stage, state, target);
+    target += state->shift;
     if (stage->creep > 0.0)
         target = with_creep(model, state, target);
     const double ahead = target - load->force / stage->stiffness - state->position, speed = state->speed;

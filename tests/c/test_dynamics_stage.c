@@ -187,6 +187,28 @@ static void hysteresis_opens_as_stated(void **state)
     }
 }
 
+/* A ceramic whose hysteresis changes keeps its place, wherever it stands in its loop: fault 9502085 of the adversary
+ * leapt by 1 um, and rang. From there on it follows the new loop. */
+static void a_change_of_hysteresis_moves_nothing(void **state)
+{
+    (void)state;
+    static const double values[] = {0.385, 0.02, 0.0, 0.2};
+    const double half = 0.5 * nt_rig_defaults().stage.travel;
+    nt_stage_model model = ceramic(0.09, 0.0, 1.0);
+    nt_stage_state now = {0};
+    nt_random random = nt_random_seed(7);
+    double u = 0.0;
+    for (int i = 0; i < 400; i++) {
+        u = half * (2.0 * nt_random_uniform(&random) - 1.0);
+        nt_stage_step(&model, &now, u, &(nt_stage_load){0});
+        const double stood = now.position;
+        nt_stage_set_hysteresis(&model, &now, values[i % 4], u);
+        nt_stage_step(&model, &now, u, &(nt_stage_load){0});
+        assert_true(fabs(now.position - stood) < 1e-12 * half);
+        assert_true(model.stage.hysteresis == values[i % 4]);
+    }
+}
+
 /* After 1, 10, 100 s a step has crept by about `creep` of it per decade; the sum of lags is log t to 0.15 of a decade.
  */
 static void creep_is_logarithmic(void **state)
@@ -244,6 +266,7 @@ int main(void)
         cmocka_unit_test(force_pushes_back_by_its_stiffness),
         cmocka_unit_test(a_stiff_load_does_not_feed_the_resonance),
         cmocka_unit_test(hysteresis_opens_as_stated),
+        cmocka_unit_test(a_change_of_hysteresis_moves_nothing),
         cmocka_unit_test(creep_is_logarithmic),
         cmocka_unit_test(options_change_nothing_when_off),
         cmocka_unit_test(refuses_bad_stages_and_periods),

@@ -125,12 +125,21 @@ static double tip_stiffness(const nt_sim_slave *slave)
     return k > 0.0 ? spring / (1.0 + spring / k) : 0.0;
 }
 
-static void move_stage(nt_sim_slave *slave, nt_stage_model *model, const double *command)
+/* A ceramic that ages keeps its place: only what it does from here on differs. */
+static void follow_hysteresis(nt_sim_slave *slave)
 {
     const double hysteresis = nt_sim_stage_hysteresis(&slave->link);
-    if (model->stage.hysteresis == 0.0 && hysteresis > 0.0)
-        nt_stage_set_plays(&slave->stage, slave->stage_drive); /* begins without a jump */
-    model->stage.hysteresis = hysteresis;
+    nt_stage_model *first = &slave->models[slave->models[0].period > 0.0 ? 0 : 1];
+    if (first->stage.hysteresis == hysteresis)
+        return;
+    nt_stage_set_hysteresis(first, &slave->stage, hysteresis, slave->driven);
+    for (int part = 0; part < 2; part++)
+        slave->models[part].stage.hysteresis = hysteresis;
+}
+
+static void move_stage(nt_sim_slave *slave, nt_stage_model *model, const double *command)
+{
+    follow_hysteresis(slave);
     const double drive = drive_stage(slave, command[NT_Z], model->period);
     const nt_stage_load load = {slave->truth.tip_force[NT_Z], tip_stiffness(slave)};
     nt_stage_step(model, &slave->stage, nt_sim_spoil_stage(slave, drive, model->period), &load);

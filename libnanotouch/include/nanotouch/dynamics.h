@@ -94,6 +94,7 @@ typedef struct nt_stage_state {
     double speed;                  /* [m/s] */
     double play[NT_STAGE_PLAYS];   /* where the play operators stand [m] */
     double creep[NT_STAGE_CREEPS]; /* how far each decade of creep has followed [m] */
+    double shift;                  /* what changes of the hysteresis have left, so that none makes it jump [m] */
 } nt_stage_state;
 typedef struct nt_stage_model {
     nt_oscillator oscillator;           /* of x_s over one period, k = 1 */
@@ -105,6 +106,9 @@ typedef struct nt_stage_model {
 NT_API nt_status nt_stage_model_init(nt_stage_model *model, const nt_stage *stage, double period);
 /* The plays as they stand at this command on the way through the middle of the loop: P[u] = u. */
 NT_API NT_REALTIME void nt_stage_set_plays(nt_stage_state *state, double command);
+/* From now on this hysteresis [-], 0 to 0.4; the stage, last driven to `command` [m], stays where it is. */
+NT_API NT_REALTIME void nt_stage_set_hysteresis(nt_stage_model *model, nt_stage_state *state, double hysteresis,
+                                                double command);
 /* What pushes the stage back: f, which grows by k per metre of travel. */
 typedef struct nt_stage_load {
     double force;     /* f where the stage is [N] */
