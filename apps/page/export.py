@@ -18,7 +18,7 @@ import numpy as np
 from nanotouch import presets, units
 from nanotouch.columns import STATES
 from nanotouch.supervisor import REASONS
-from nanotouch_app.live import hand, host, look, readings, seen, sliders, stage
+from nanotouch_app.live import hand, host, look, readings, relief, seen, sliders, stage
 from nanotouch_app.live.subject import PRESETS, of_preset
 from nanotouch_app.training import LESSON, TASKS, find, pull_off, staircase, steady, stiffer, trace
 from nanotouch_app.training.lesson_pages import PAGES
@@ -55,10 +55,12 @@ def constants() -> dict[str, Any]:
     """Numbers of the design that both front ends share."""
     taken = {hand: "LATERAL_REACH DOWN_REACH COUPLING SETTLING LOAD_SHARE PRESS_SHARE GLIDE STEPS APPROACH",
              host: "SPEEDS REWIND STEP_TICKS INDENTATION_SHARE",
-             seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER",
-             stage: "RELIEF TIP_HEIGHT LEVER LEVER_POINTS BALL FAR BEND SHADOW LIFTED VIEWS",
+             seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER ANSWERS",
+             relief: "RELIEF SLENDER LADDER HIGHEST",
+             stage: "TIP_HEIGHT LEVER LEVER_POINTS BALL FAR BEND SHADOW LIFTED VIEWS",
              readings: "TIP_STEP HAND_STEPS NOTED", look: "PROPERTY_COLOURS PROPERTY_NAMES"}  # fmt: skip
-    return {name: getattr(module, name) for module, names in taken.items() for name in names.split()}
+    shared = {name: getattr(module, name) for module, names in taken.items() for name in names.split()}
+    return {name: sorted(value) if isinstance(value, set) else value for name, value in shared.items()}
 
 
 def tasks() -> dict[str, Any]:

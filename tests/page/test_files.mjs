@@ -96,6 +96,27 @@ test("a PNG asks for its lengths, and is the surface; white is high, the top is 
   await page.close();
 });
 
+test("a large picture keeps its proportions, and + and - draw it higher and lower", async () => {
+  const { page } = await visit(chromium.context, FILE);
+  await touched(page);
+  await drop(page, "wide.png", png(2048, 512, (i) => (i & 512 ? 255 : 0)), "image/png");
+  await page.locator("#sheet input[name=width]").fill("4 um");
+  await page.locator("#sheet input[name=height]").fill("10 nm");
+  await page.locator("#sheet button", { hasText: "Touch it" }).click();
+  await titled(page, "wide.png");
+  assert.deepEqual(await value(page, () => window.nanotouch.seen.world.size.map((side) => Math.round(side * 1e9))), [4000, 1000]);
+  const factor = () => value(page, () => window.nanotouch.stage.grid.factor), before = await factor();
+  const { sent } = await value(page, () => ({ sent: window.nanotouch.stage.rebuilt }));
+  await page.focus("#view");
+  await page.keyboard.press("-");
+  assert.ok((await factor()) < before);
+  for (let i = 0; i < 30; ++i) await page.keyboard.press("+");
+  const highest = await factor();
+  assert.ok(highest > before && highest * 10e-9 <= 0.5 * 4e-6 && highest * 10e-9 > 0.3 * 4e-6, `${highest}`);
+  assert.equal(await value(page, () => window.nanotouch.stage.rebuilt), sent); // stretched, not made anew
+  await page.close();
+});
+
 test("a TOML file is the scene; what is wrong in it is named", async () => {
   const { page } = await visit(chromium.context, FILE);
   await touched(page);

@@ -13,7 +13,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch_app.live import display, stage
+from nanotouch_app.live import display, relief, stage
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import digits, step_up
 from nanotouch_app.live.seen import Seen
@@ -225,11 +225,35 @@ def test_only_the_adhesion_that_is_read_has_a_slider() -> None:
 
 def test_a_surface_is_drawn_with_few_triangles() -> None:
     heights = np.random.default_rng(1).standard_normal((4096, 1500))
-    means, size = stage.coarse(heights)
+    means, size = relief.coarse(heights)
     assert 2 * (means.shape[0] - 1) * (means.shape[1] - 1) <= 2**17
     assert means[3, 5] == pytest.approx(heights[3 * size : 4 * size, 5 * size : 6 * size].mean())
-    assert stage.exaggeration(np.array([[0.0, 1e-9]]), 1e-6) == 100.0
-    assert stage.exaggeration(np.zeros((4, 4)), 1e-6) == 1.0
+
+
+def test_heights_are_raised_so_that_a_relief_is_seen_and_a_strand_stays_a_strand() -> None:
+    x = np.mgrid[:64, :64][1] / 64.0
+    waves = 1e-9 * np.sin(2.0 * np.pi * x)
+    assert relief.exaggeration(waves, (1e-6 / 64, 1e-6 / 64), 1e-6) == 50.0  # 0.12 of the width is 60 times 2 nm
+    assert relief.exaggeration(np.zeros((4, 4)), (1e-8, 1e-8), 1e-6) == 1.0
+    assert relief.exaggeration(np.full((4, 4), np.nan), (1e-8, 1e-8), 1e-6) == 1.0
+    strand = 1e-9 * np.exp(-(((x - 0.5) / 0.01) ** 2))
+    factor = relief.exaggeration(strand, (1e-6 / 64, 1e-6 / 64), 1e-6)
+    assert factor == 30.0  # 0.12 of the width is 120 nm, twice the pixel that it is wide 31 nm
+    dna = of_preset("dna").topography
+    heights, merged = relief.coarse(dna.heights)
+    dy, dx = np.asarray(dna.pixel_size) * merged
+    assert relief.exaggeration(heights, (dy, dx), 500e-9) == 15.0
+
+
+def test_the_factor_of_heights_goes_up_and_down_by_steps() -> None:
+    ladder, factor = [1.0], 1.0
+    while (higher := relief.stepped(factor, True, 0.02)) != factor:
+        ladder.append(higher)
+        factor = higher
+    assert ladder == [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0]  # 0.5 of the width is 25 times
+    back = [factor := relief.stepped(factor, False, 0.02) for _ in range(9)]
+    assert back == [*ladder[-2::-1], 1.0]
+    assert relief.stepped(1.0, True, 0.9) == 1.0
 
 
 def test_numbers_keep_three_digits() -> None:

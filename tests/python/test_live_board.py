@@ -13,6 +13,7 @@ from nanotouch_app.live import board, look
 from nanotouch_app.live.entry import Entry, value_of
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.picture import Layout
+from nanotouch_app.live.seen import Seen
 from nanotouch_app.live.sliders import Slider, Sliders
 from nanotouch_app.live.subject import of_preset
 from nanotouch_app.training import named
@@ -63,6 +64,16 @@ def test_a_typed_number_out_of_range_is_refused_with_the_range() -> None:
     host.close()
     assert told[-1]["tell"] == "refused"
     assert "relative_humidity" in str(told[-1]["why"])
+
+
+def test_a_refused_answer_goes_when_the_next_one_is_given() -> None:
+    seen = Seen()
+    seen.hear({"tell": "note", "text": "saved a.png"})
+    seen.hear({"tell": "refused", "why": "not yet: tear three times"})
+    seen.asks("wheel")
+    assert [text for _, text, _ in seen.notes] == ["saved a.png", "not yet: tear three times"]
+    seen.asks("say")
+    assert [text for _, text, _ in seen.notes] == ["saved a.png"]
 
 
 def test_a_click_on_the_number_of_a_slider_is_no_drag() -> None:

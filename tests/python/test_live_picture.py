@@ -5,6 +5,8 @@ what is touched."""
 from __future__ import annotations
 
 import os
+import shutil
+import subprocess
 import time
 from pathlib import Path
 from typing import Any
@@ -64,6 +66,40 @@ def test_a_film_is_made_without_a_display(tmp_path: Path, monkeypatch: pytest.Mo
     with image.open(out) as made:
         assert made.n_frames >= 4
         assert made.width == film.GIF_WIDTH
+
+
+@pytest.mark.usefixtures("vtk_works")
+def test_a_film_is_made_by_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its pictures, read back, have the colours that were drawn."""
+    image = pytest.importorskip("PIL.Image")
+    if shutil.which("ffmpeg") is None:
+        pytest.skip("ffmpeg is not installed: apt-get install ffmpeg")
+    monkeypatch.setattr(film, "RATE", 1.0)
+    out, last = tmp_path / "touch.mp4", tmp_path / "last.png"
+    drawn: list[Any] = []
+    filmed = film._filmed
+    monkeypatch.setattr(film, "_filmed", lambda *given: (drawn.append(one) or one for one in filmed(*given)))
+    assert main(["live", "mica_in_air", "--film", str(out)]) == 0
+    as_players_do = "scale=in_color_matrix=bt709:in_range=tv:flags=accurate_rnd+full_chroma_int"
+    which = f"select=eq(n\\,{len(drawn) - 1}),{as_players_do}"
+    subprocess.run(["ffmpeg", "-loglevel", "error", "-i", out, "-vf", which, "-frames:v", "1", last], check=True)
+    with image.open(last) as made:
+        found = np.asarray(made.convert("RGB"), dtype=float)
+    assert found.shape == drawn[-1].shape
+    # H.264 rounds, and halves the resolution of colours; the matrix of another standard shifts them by 5
+    assert np.abs(found.mean(axis=(0, 1)) - drawn[-1].mean(axis=(0, 1))).max() < 1.0
+    assert np.abs(found - drawn[-1])[400:560, 150:600].mean() < 2.5
+
+
+def test_an_ffmpeg_that_ends_early_is_told_in_its_own_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = tmp_path / "ffmpeg"
+    broken.write_text("#!/bin/sh\necho Unknown encoder libx264 >&2\nexit 3\n")
+    broken.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    pictures = iter([np.zeros((900, 1440, 3), np.uint8)] * 3)
+    with pytest.raises(Error, match="status 3: Unknown encoder libx264"):
+        film._mp4(pictures, tmp_path / "touch.mp4")
+    assert sorted(tmp_path.iterdir()) == [broken]
 
 
 def test_a_film_of_another_kind_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -250,6 +286,26 @@ def test_nonsense_is_refused(tmp_path: Path) -> None:
     file.write_text("hello")
     with pytest.raises(Error, match="no image"):
         files.of(str(file))
+
+
+def test_a_tip_and_a_lever_are_of_a_curve(tmp_path: Path) -> None:
+    pytest.importorskip("gwyfile")
+    file = tmp_path / "dots.gwy"
+    nt.images.write(file, nt.surface.dots(size=200e-9, pixels=64, count=6))
+    with pytest.raises(Error, match="--radius is of a force curve; "):
+        files.of(str(file), 30e-9)
+    with pytest.raises(Error, match="--radius and --spring-constant are of a force curve; "):
+        files.of(str(file), 30e-9, 2.0)
+
+
+def test_a_curve_without_a_spring_constant_says_where_to_give_it() -> None:
+    pytest.importorskip("nanotouch._fit")
+    file = synthetic.DATA / "corpus/curves/asylum-pairs/Line0000Point0002Defl.ibw"
+    if not file.is_file():
+        pytest.skip("the real curves are not there")
+    with pytest.raises(Error, match=r"no spring constant; give it .*--spring-constant"):
+        files.of(str(file))
+    assert files.of(str(file), spring_constant=0.1).rig["probe.spring_constant"] == 0.1
 
 
 def test_a_map_is_touched_with_the_modulus_of_each_place(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from nanotouch_app.quantity import parse_quantity, whole_number
 from nanotouch_app.training import TASKS, named
 
 Front = Callable[[Topography], Any]  # a window or a server, over a surface
+CURVE = ("radius", "spring_constant")  # options of a force curve
 FILMS, RECORDS = (".gif", ".mp4", ".png"), (".mcap",)
 EPILOG = """examples:
   nanotouch live                         silicon in humid air: scroll down until the water snaps
@@ -54,6 +55,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--task", metavar="NAME", help="begin a task, or the lesson: see --list; its CSV is kept here")
     parser.add_argument("--list", action="store_true", help="show the presets and end")
     parser.add_argument("--radius", metavar="LENGTH", help="of the tip that measured CURVE, as 30nm")
+    parser.add_argument("--spring-constant", metavar="STIFFNESS", help="of its lever, in place of the file's, as 8N/m")
     properties.add_options(parser)
     parser.add_argument("--record", metavar="FILE.mcap", help="record the session to this file")
     parser.add_argument("--film", metavar="FILE", help="film a scripted touch instead: .gif, .mp4, or .png of its end")
@@ -63,7 +65,7 @@ def add_parser(subparsers: Any) -> None:
                              "(default: %(default)s)")  # fmt: skip
     parser.add_argument("--browser", action="store_true",
                         help="show it in browsers instead of a window: prints the links (docs/page.md)")  # fmt: skip
-    parser.add_argument("--port", type=whole_number(0, 65535), default=0, metavar="N",
+    parser.add_argument("--port", type=whole_number(0, 65535), metavar="N",
                         help="of --browser, on this machine only (default: one that is free)")  # fmt: skip
     parser.add_argument("--page", metavar="FILE", help="the page of --browser (default: that of `make page`)")
     parser.add_argument("--dark", action="store_true", help="begin with the dark colours")
@@ -122,7 +124,7 @@ def _browsers(args: argparse.Namespace, is_recording: bool) -> Front:
     from nanotouch_app.browser import page  # its server is an extra
     from nanotouch_app.browser.desk import BrowserDesk
 
-    return partial(BrowserDesk, page=page(args.page), port=args.port)
+    return partial(BrowserDesk, page=page(args.page), port=args.port or 0)
 
 
 def _touch(args: argparse.Namespace, front: Front, first: dict[str, Any] | None) -> int:
@@ -147,20 +149,25 @@ def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
     """Refuse options that would do nothing here."""
     for what, is_so, others in (
         (f"{args.what} is a recording, which is played", is_recording,
-         ("task", "record", "film", "radius", "browser")),
+         ("task", "record", "film", *CURVE, "browser")),
         ("--film films a scripted touch", args.film is not None, ("task", "record", "browser")),
         (f"{args.what} is no force curve", args.what in PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"),
-         ("radius",)),
-        ("without --browser a window shows it", not args.browser, ("page",)),
+         CURVE),
+        ("what is said of each place goes with an image", bool(properties.given(args)), CURVE),
+        ("without --browser a window shows it", not args.browser, ("page", "port")),
     ):  # fmt: skip
-        useless = [f"--{name}" for name in others if getattr(args, name) not in (None, False)]
+        useless = [f"--{name.replace('_', '-')}" for name in others if getattr(args, name) not in (None, False)]
         if is_so and useless:
             raise InvalidValue(f"{what}: {' and '.join(useless)} cannot be used with it")
 
 
 def _subject(args: argparse.Namespace) -> Subject:
     named = properties.surface_file(args, args.what, {}, None) if properties.given(args) else None
-    return files.of(args.what, None if args.radius is None else parse_quantity(args.radius, "m"), named)
+    radius, spring = (
+        None if text is None else parse_quantity(text, unit)
+        for text, unit in ((args.radius, "m"), (args.spring_constant, "N/m"))
+    )
+    return files.of(args.what, radius, spring, named)
 
 
 def _film(args: argparse.Namespace) -> int:

@@ -29,9 +29,11 @@ def check_named(what: str) -> None:
         raise InvalidValue(f"{what}: neither a file nor a preset; presets are {', '.join(PRESETS)}")
 
 
-def of(what: str, radius: float | None = None, named: nt.SurfaceFile | None = None) -> Subject:
-    """A preset by its name, or what a file says; ``radius`` [m] of the tip of a measured curve; ``named`` where more is
-    said of an image."""
+def of(
+    what: str, radius: float | None = None, spring_constant: float | None = None, named: nt.SurfaceFile | None = None
+) -> Subject:
+    """A preset by its name, or what a file says; ``radius`` [m] of the tip and ``spring_constant`` [N/m] of the lever
+    that measured a curve; ``named`` where more is said of an image."""
     if named is not None:
         return of_surface(named, *nt.presets.silicon_in_air(), Path(what).stem)
     if what in PRESETS:
@@ -44,17 +46,29 @@ def of(what: str, radius: float | None = None, named: nt.SurfaceFile | None = No
         return of_map(path)
     if record.is_recording(path):
         raise InvalidValue(f"{path.name} is a recording, and is played: nanotouch live {path.name}")
+    if radius is not None or spring_constant is not None:
+        return _of_curve_alone(path, radius, spring_constant)
     try:
         return of_image(path)
     except Error as no_image:
         try:
-            return of_curve(path, radius)
+            return of_curve(path)
         except Error as no_curve:
             reasons = [_reason(error, path) for error in (no_image, no_curve)]
             told = (
                 reasons[0] if reasons[0] == reasons[1] else f"no image ({reasons[0]}) and no force curve ({reasons[1]})"
             )
             raise Error(f"{what}: {told}") from no_curve
+
+
+def _of_curve_alone(path: Path, radius: float | None, spring_constant: float | None) -> Subject:
+    """Who names tip or lever means a curve, also where the file holds an image."""
+    try:
+        return of_curve(path, radius, spring_constant)
+    except Error as error:
+        options = [name for name, value in (("--radius", radius), ("--spring-constant", spring_constant)) if value]
+        told = f"{' and '.join(options)} {'are' if len(options) > 1 else 'is'} of a force curve"
+        raise Error(f"{path}: {told}; {_reason(error, path)}") from error
 
 
 def _reason(error: Error, path: Path) -> str:
@@ -117,9 +131,9 @@ def of_map(path: Path) -> Subject:
     return Subject(path.stem, path.stem, scene, nt.Rig(), surface(scene).topography, felt, hint, surface)
 
 
-def of_curve(path: Path, radius: float | None = None) -> Subject:
+def of_curve(path: Path, radius: float | None = None, spring_constant: float | None = None) -> Subject:
     """A force curve, the first one of a map: its fit by Maugis-Dugdale is the scene, its lever the lever."""
-    return of_fit(curves.read(path)[0], path.stem, radius)
+    return of_fit(curves.read(path, spring_constant=spring_constant)[0], path.stem, radius)
 
 
 def of_fit(curve: nt.ForceCurve, name: str, radius: float | None = None) -> Subject:

@@ -6,13 +6,16 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from nanotouch.errors import Error, require
+from nanotouch.record import replacing
 
 from nanotouch_app.live import parts as vtk_parts
 from nanotouch_app.live.arrays import pixels
@@ -22,6 +25,10 @@ from nanotouch_app.live.picture import Picture
 from nanotouch_app.live.subject import Subject
 
 RATE = 8.0  # pictures per second
+# H.264 with the colours of HD, as players expect of this size; its index stands first, so that a page can play it
+MP4 = ("-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int", "-pix_fmt", "yuv420p",
+       "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
+       "-movflags", "+faststart")  # fmt: skip
 GIF_WIDTH, GIF_COLOURS = 960, 96
 Act = tuple[float, dict[str, Any]]
 """a duration [s], and what is asked at its beginning"""
@@ -119,15 +126,36 @@ def _table(image: Any, pictures: list[Any]) -> Any:
 def _mp4(pictures: Iterator[Any], path: Path) -> None:
     if shutil.which("ffmpeg") is None:
         raise Error(f"{path}: ffmpeg is not installed: apt-get install ffmpeg; a .gif needs none")
-    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{WIDTH}x{HEIGHT}",
-               "-r", f"{RATE:g}", "-i", "-", "-pix_fmt", "yuv420p", str(path)]  # fmt: skip
-    with subprocess.Popen(command, stdin=subprocess.PIPE) as film:
-        assert film.stdin is not None
+    with replacing(path) as part:
+        command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
+                   "-s", f"{WIDTH}x{HEIGHT}", "-r", f"{RATE:g}", "-i", "-", *MP4, "-f", "mp4", str(part)]  # fmt: skip
+        with tempfile.TemporaryFile() as said:
+            # a Ctrl-C of the terminal is ours alone: we end it
+            film = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said, start_new_session=True)
+            try:
+                _feed(film, pictures)
+            except BaseException:
+                film.kill()
+                raise
+            finally:
+                film.wait()
+            said.seek(0)
+            if film.returncode:
+                words = said.read().decode(errors="replace").strip().splitlines()
+                raise Error(f"{path}: ffmpeg ended with status {film.returncode}: {words[-1] if words else 'no word'}")
+
+
+def _feed(film: subprocess.Popen[bytes], pictures: Iterator[Any]) -> None:
+    """All pictures, unless it ends before; then it says why."""
+    assert film.stdin is not None
+    try:
         for picture in pictures:
             film.stdin.write(np.ascontiguousarray(picture).tobytes())
-        film.stdin.close()
-        if film.wait():
-            raise Error(f"{path}: ffmpeg ended with status {film.returncode}")
+    except BrokenPipeError:
+        pass
+    finally:
+        with suppress(BrokenPipeError):
+            film.stdin.close()
 
 
 def _png(pictures: Iterator[Any], path: Path) -> None:

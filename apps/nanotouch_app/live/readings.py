@@ -34,6 +34,7 @@ HELP = (
     ("F1 .. F7, N", "the choices of a task; type its number"),
     ("click on a number", "type it with its unit"),
     ("L, M", "light and dark; sound"),
+    ("+ -", "draw heights higher, lower"),
     ("K", "colour by height, modulus, adhesion"),
     ("S", "save a picture"),
     ("H", "this help"),

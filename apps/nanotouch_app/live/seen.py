@@ -26,6 +26,7 @@ TAIL = 0.5  # of the point on the force curve [s]
 TRACE = 30.0  # of the path on the surface [s]
 TRACE_STEP = 0.05  # [s]
 STALE = 0.1  # [s]: what is felt ends when the newest frame is older
+ANSWERS = {"say", "choose", "task", "change", "undo", "redo"}  # what was refused before one of these is past
 READINGS = 0.2  # numbers in words are renewed this often [s]
 
 
@@ -86,6 +87,11 @@ class Seen:
             case "note":
                 if not self.notes or self.notes[-1][1] != message["text"]:
                     self.notes.append((time.monotonic(), message["text"], False))
+
+    def asks(self, what: str) -> None:
+        """The hand asks again: no refusal of its last answer stays beside a good one."""
+        if what in ANSWERS:
+            self.notes = deque((note for note in self.notes if not note[2]), maxlen=self.notes.maxlen)
 
     def _settle(self, world: dict[str, Any]) -> None:
         """A new world: its plan is made here anew, for what is drawn."""

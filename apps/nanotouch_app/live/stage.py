@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 from nanotouch_app.live.arrays import points, quads, to_vtk
 from nanotouch_app.live.look import LIGHT, PROPERTY_COLOURS, Colour, Palette, unit
+from nanotouch_app.live.relief import coarse, exaggeration, stepped
 from nanotouch_app.live.seen import TRACE, Seen
 
 Floats = NDArray[np.float64]
 
-MOST_PIXELS = 256  # to a side of the mesh: at most 2^17 triangles
-RELIEF = 0.12  # height of the drawn relief where it has to be exaggerated [scene units]
 TIP_HEIGHT = 0.34  # of the drawn tip [scene units]
 LEVER = (0.55, 0.13)  # length and width of the drawn lever [scene units]
 LEVER_POINTS = 24
@@ -32,23 +31,6 @@ VIEWS = {"0": (0.0, 32.0, 1.86), "1": (0.0, 32.0, 1.86), "2": (0.0, 89.0, 1.7), 
          "4": (0.0, 22.0, 0.75), "5": (0.0, 8.0, 1.5)}  # fmt: skip  # turn, height [degrees], distance [scene units]
 
 
-def coarse(heights: Floats, most: int = MOST_PIXELS) -> tuple[Floats, int]:
-    """Mean heights over squares of so many pixels that at most ``most`` are left to a side; and how many."""
-    size = -(-max(heights.shape) // most)
-    rows, columns = (length // size * size for length in heights.shape)
-    means = heights[:rows, :columns].reshape(rows // size, size, columns // size, size).mean(axis=(1, 3))
-    return means, size
-
-
-def exaggeration(heights: Floats, width: float) -> float:
-    """By what heights are multiplied: 1, 1.5, 2, 3, 5 or 7 times a power of ten, 1 for a steep relief."""
-    relief = float(np.ptp(heights)) / width
-    if not 0.0 < relief < RELIEF:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(RELIEF / relief))
-    return max(step * power for step in (1, 1.5, 2, 3, 5, 7) if step * power <= RELIEF / relief * (1 + 1e-12))
-
-
 class Stage:
     """The actors of one renderer."""
 
@@ -58,7 +40,7 @@ class Stage:
         dy, dx = pixel_size * merged
         self.unit = float(max(heights.shape * np.asarray(pixel_size)))
         self.dx, self.dy = dx / self.unit, dy / self.unit
-        self.factor = exaggeration(self.heights, self.unit)
+        self.factor = self.built = exaggeration(self.heights, (dy, dx), self.unit)
         self.scale = np.array([1.0, 1.0, self.factor]) / self.unit
         self.lowest = float(self.heights.min())
         self.centre = np.array([0.5 * self.dx * self.heights.shape[1], 0.5 * self.dy * self.heights.shape[0], 0.0])
@@ -180,6 +162,12 @@ class Stage:
         self.mesh.GetPointData().SetScalars(to_vtk(self.maps[self.shown].ravel()))
         self.paint(self.palette)
         return self.shown
+
+    def raise_heights(self, up: bool) -> None:
+        """Draw heights one step higher or lower; the surface that was sent is stretched, not sent again."""
+        self.factor = stepped(self.factor, up, float(np.ptp(self.heights)) / self.unit)
+        self.scale[2] = self.factor / self.unit
+        self.surface.SetScale(1.0, 1.0, self.factor / self.built)
 
     # --- the instrument: made anew when another tip is mounted ---
 

@@ -38,6 +38,7 @@ PLAIN_KEYS = {
 ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
 ARROW_PIXELS = 4.0
 FUNCTION_KEYS = tuple(f"f{number}" for number in range(1, 10))
+HEIGHT_KEYS = {"plus": True, "kp_add": True, "minus": False, "kp_subtract": False}
 REPEAT = 0.08  # a key that is let go for less than this [s] is held: X11 repeats it so
 
 
@@ -176,6 +177,7 @@ class Window:
     def ask(self, what: str | dict[str, Any], **more: Any) -> None:
         """Ask the host for something."""
         message = {"do": what, **more} if isinstance(what, str) else what
+        self.picture.seen.asks(message["do"])
         if self.reel is not None:
             self.reel.answer(message)
         if self.remote is not None and message["do"] not in ("ready", "leave"):
@@ -346,6 +348,8 @@ class Window:
             self._on_board(FUNCTION_KEYS.index(name))
         elif name == "k":
             self.picture.stage.colour_by_next()
+        elif name in HEIGHT_KEYS:
+            self.picture.stage.raise_heights(HEIGHT_KEYS[name])
         elif name == "m":
             self._turn_sound()
         elif name == "h":

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Images that are dropped: PNG (grey is height) and GSF (Gwyddion's simple field). Nothing leaves the page.
 
+const FEWEST = 4;
 const MOST = 1024; // pixels to a side: a larger one is drawn smaller
 const GSF = "Gwyddion Simple Field 1.0\n";
 
@@ -36,7 +37,9 @@ export function readGsf(buffer) {
 }
 
 async function readPicture(file) {
-  const bitmap = await createImageBitmap(file), columns = Math.min(bitmap.width, MOST), rows = Math.min(bitmap.height, MOST);
+  const bitmap = await createImageBitmap(file), share = Math.min(1, MOST / Math.max(bitmap.width, bitmap.height));
+  const [columns, rows] = [bitmap.width, bitmap.height].map((side) => Math.round(share * side));
+  if (!(columns >= FEWEST && rows >= FEWEST)) throw new Error(`a picture of ${bitmap.width} x ${bitmap.height} pixels`);
   const canvas = new OffscreenCanvas(columns, rows), context = canvas.getContext("2d");
   context.drawImage(bitmap, 0, 0, columns, rows);
   const { data } = context.getImageData(0, 0, columns, rows), heights = new Float64Array(rows * columns);

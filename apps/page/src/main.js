@@ -48,6 +48,7 @@ const hands = new Hands(ask, (text) => seen.note(text, false));
 
 function ask(message) {
   if (message.note) return seen.note(message.note, true);
+  seen.asks(message.do);
   if (message.do === "change") seen.waiting.add(message.field);
   asked.push(message);
   if (asked.length > KEPT) asked.shift();
@@ -129,6 +130,8 @@ const OWN = {
   t: () => words.tasks(),
   h: () => words.help(),
   l: () => dress(document.body.dataset.look === "light" ? "dark" : "light"),
+  "+": () => stage.grid && stage.raiseHeights(true),
+  "-": () => stage.grid && stage.raiseHeights(false),
   m: () => hands.turnSound(),
   g: () => hands.connectSpaceMouse().catch((error) => seen.note(error.message, true)),
   s: savePicture,

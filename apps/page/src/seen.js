@@ -43,6 +43,11 @@ export class Seen {
     this.notes = [...this.notes.slice(-3), { at: performance.now(), text, bad }];
   }
 
+  // The hand asks again: no refusal of its last answer stays beside a good one.
+  asks(what) {
+    if (this.constants.ANSWERS.includes(what)) this.notes = this.notes.filter(({ bad }) => !bad);
+  }
+
   #settle(world) {
     const key = (of) => JSON.stringify([of?.scene, of?.rig]), fresh = key(world) !== key(this.world);
     this.world = world;

@@ -13,14 +13,43 @@ function quads(rows, columns) {
   return cells;
 }
 
-function exaggeration(relief, most) {
-  if (!(relief > 0 && relief < most)) return 1;
-  const power = 10 ** Math.floor(Math.log10(most / relief));
-  return Math.max(...[1, 1.5, 2, 3, 5, 7].map((step) => step * power).filter((step) => step <= (most / relief) * (1 + 1e-12)));
+// How much higher than they are heights are drawn (live/relief.py).
+
+// Way along y or x after which heights are as good as any others: their mean square difference is the variance.
+function featureWidth({ heights, rows, columns, dx, dy }) {
+  const mean = heights.reduce((sum, one) => sum + one, 0) / heights.length;
+  const variance = heights.reduce((sum, one) => sum + (one - mean) ** 2, 0) / heights.length;
+  const differs = (lag, step, lines, others, other) => {
+    let sum = 0;
+    for (let i = 0; i < lines - lag; ++i)
+      for (let j = 0; j < others; ++j) sum += (heights[(i + lag) * step + j * other] - heights[i * step + j * other]) ** 2;
+    return sum >= variance * (lines - lag) * others;
+  };
+  const way = (lines, step, others, other) => {
+    const most = Math.floor(lines / 2);
+    let lag = 1;
+    while (lag < most && !differs(lag, step, lines, others, other)) ++lag;
+    return lag;
+  };
+  return Math.min(way(rows, columns, columns, 1) * dy, way(columns, 1, rows, columns) * dx);
+}
+
+function stepBelow(factor, ladder) {
+  if (!(factor > 1)) return 1;
+  const power = 10 ** Math.floor(Math.log10(factor));
+  return Math.max(...ladder.map((step) => step * power).filter((step) => step <= factor * (1 + 1e-12)));
+}
+
+// The next step, from 1 to where the relief (in scene units) is the highest.
+export function stepped(factor, up, relief, { LADDER, HIGHEST }) {
+  if (!up) return stepBelow(factor * (1 - 1e-9), LADDER);
+  const power = 10 ** Math.floor(Math.log10(factor * (1 + 1e-9)));
+  const following = [...LADDER, 10].map((step) => step * power).find((step) => step > factor * (1 + 1e-9));
+  return following * relief <= HIGHEST ? following : factor;
 }
 
 // The drawn surface: mean heights over squares of pixels, at most `most` to a side; in units of the longer side.
-export function grid({ heights, rows, columns, dx, dy }, most, relief) {
+export function grid({ heights, rows, columns, dx, dy }, most, { RELIEF, SLENDER, LADDER }) {
   const size = Math.ceil(Math.max(rows, columns) / most);
   const ny = Math.floor(rows / size), nx = Math.floor(columns / size), mean = new Float32Array(nx * ny);
   for (let j = 0; j < ny * size; ++j)
@@ -32,9 +61,10 @@ export function grid({ heights, rows, columns, dx, dy }, most, relief) {
     low = Math.min(low, value);
     high = Math.max(high, value);
   }
-  const factor = exaggeration((high - low) / unit, relief);
-  const made = { heights: mean, rows: ny, columns: nx, unit, low, dx: (size * dx) / unit, dy: (size * dy) / unit, factor,
-    scale: factor / unit, ends: [low, Math.max(high, low + Math.max(1e-12, 1e-9 * Math.abs(low)))], relief: high - low };
+  const made = { heights: mean, rows: ny, columns: nx, unit, low, dx: (size * dx) / unit, dy: (size * dy) / unit, ends: [low, Math.max(high, low + Math.max(1e-12, 1e-9 * Math.abs(low)))], relief: high - low };
+  made.factor = made.built = high > low
+    ? stepBelow((unit * Math.min(RELIEF, SLENDER * featureWidth(made))) / (high - low), LADDER) : 1;
+  made.scale = made.factor / unit;
   made.width = nx * made.dx;
   made.height = ny * made.dy;
   // height of the drawn surface [m], linear between its points

@@ -12,7 +12,7 @@ import vtkOpenGLRenderWindow from "@kitware/vtk.js/Rendering/OpenGL/RenderWindow
 import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkRenderWindow from "@kitware/vtk.js/Rendering/Core/RenderWindow";
 import vtkRenderer from "@kitware/vtk.js/Rendering/Core/Renderer";
-import { grid, laidOn, ribbon, tile, tileValues, turned } from "./shapes.js";
+import { grid, laidOn, ribbon, stepped, tile, tileValues, turned } from "./shapes.js";
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
 const unit = (colour) => colour.map((part) => part / 255);
@@ -64,11 +64,11 @@ export class Stage {
 
   lay(surface) {
     for (const actor of [...this.tiles, ...(this.others ?? [])]) this.renderer.removeActor(actor);
-    this.grid = grid(surface, MOST, this.constants.RELIEF);
+    this.grid = grid(surface, MOST, this.constants);
     this.colours = vtkColorTransferFunction.newInstance();
     this.maps = { height: this.grid };
     for (const [name, heights] of Object.entries(surface.properties ?? {}))
-      this.maps[name] = grid({ ...surface, heights }, MOST, this.constants.RELIEF);
+      this.maps[name] = grid({ ...surface, heights }, MOST, this.constants);
     this.shown = "height";
     Object.assign(this, { tiles: [], places: [] });
     for (let row = 0; row < this.grid.rows - 1; row += TILE - 1)
@@ -137,6 +137,15 @@ export class Stage {
     });
     this.paint(this.palette);
     return this.shown;
+  }
+
+  // One step higher or lower; the tiles are stretched, not made anew.
+  raiseHeights(up) {
+    const { grid: map } = this;
+    map.factor = stepped(map.factor, up, map.relief / map.unit, this.constants);
+    map.scale = map.factor / map.unit;
+    for (const actor of this.tiles) actor.setScale(1, 1, map.factor / map.built);
+    this.lastTraced = null;
   }
 
   lights(on) {

@@ -142,7 +142,7 @@ def force_gap(
         raise InvalidValue(f"role: {curve.name} has no {role} with force")
     stiffness = curve.spring_constant
     if stiffness is None:
-        raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read")
+        raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")
     force = segment.force - report.baselines[role].at(segment.z)
     return segment.z + force / stiffness - report.contact_point, force
 

@@ -98,5 +98,5 @@ class Rupture(NamedTuple):
 def arrays_of(segment: Segment, name: str) -> tuple[Floats, Floats]:
     """Height [m] and force [N] of a segment of the curve `name`."""
     if segment.force is None:
-        raise InvalidValue(f"{name}: no force without a spring constant; give it to curves.read")
+        raise InvalidValue(f"{name}: no force without a spring constant; give it to curves.read, or --spring-constant")
     return segment.z, segment.force

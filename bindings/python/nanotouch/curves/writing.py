@@ -78,7 +78,9 @@ def _columns(curve: ForceCurve) -> Columns:
     """By afmformats' names; SI."""
     channel = curve.segments[0].z_channel
     if any(segment.force is None for segment in curve.segments):
-        raise InvalidValue(f"{curve.name}: no force without a spring constant; give it to curves.read")
+        raise InvalidValue(
+            f"{curve.name}: no force without a spring constant; give it to curves.read, or --spring-constant"
+        )
     columns: Columns = {
         "force": np.concatenate([segment.force for segment in curve.segments if segment.force is not None]),
         channel if channel in _UNITS else "height (measured)": np.concatenate([s.z for s in curve.segments]),

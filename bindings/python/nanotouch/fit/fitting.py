@@ -114,7 +114,7 @@ def fit_curve(
     _check_choice("window_of", window_of, ("force", "indentation"))
     _check_choice("branch", branch or "approach", ("approach", "retract"))
     if curve.spring_constant is None:
-        raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read")
+        raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")
     report = report or analyse(curve, baseline=baseline)
     choice = ""
     if model == AUTO:
