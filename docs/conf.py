@@ -40,7 +40,7 @@ doctest_global_setup = """
 import numpy as np
 import nanotouch as nt
 from nanotouch import *
-from nanotouch.geometry import Shape, validity
+from nanotouch.contact.geometry import Shape, validity
 """
 html_copy_source = False
 suppress_warnings = ["ref.python"]  # fields of many records have the same name, such as x

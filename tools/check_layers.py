@@ -60,21 +60,16 @@ PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 # The modules and packages of the Python library from the bottom up; each may import what stands before it.
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
-    "what all need": "extras _core errors columns formats units scratch "
-    "_arrays _digest _files _words _writing _drawing _html",
-    "readers": "_transfer _worker _readers",
-    "laws": "contact forces geometry materials",
-    "devices": "faults frames commands hal _plant",
-    "descriptions": "rig_file description _custom scene presets",
-    "measured": "images _properties surface curves",
-    "what is computed": "_plan_terms _plan_text plan interaction view reference",
-    "a loop": "_calm _response",
-    "a touch": "_live _told _path _control supervisor _recorder record replay margins operator options _open session",
-    "results": "plots fit maps surface_file batch",
+    "what all need": "extras _core errors formats units _arrays _io",
+    "laws": "contact forces",
+    "measured": "images curves",
+    "what there is": "scene reference",
+    "a touch": "touch",
+    "results": "plots fit maps batch",
     "a process of its own": "_worker_process __main__",
 }
-# Methods for convenience, such as Scene.plan, may import what makes their answer: inside a function, or for its type.
-CONVENIENT = {("scene", "plan"), ("scene", "surface"), ("record", "replay"), ("record", "plots"), ("images", "maps")}
+# Methods for convenience, such as Recording.plot, may import what makes their answer: in a function, or for its type.
+CONVENIENT = {("touch", "plots"), ("images", "maps"), ("scene", "maps")}
 
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

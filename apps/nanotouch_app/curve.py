@@ -13,7 +13,7 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import plots
 from nanotouch.contact import MODELS, Contact, evaluate, pull_off_force
-from nanotouch.record import write_csv
+from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output, scenes
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import nanotouch as nt
 from nanotouch import margins, record
-from nanotouch.margins import ForceRange
-from nanotouch.session import CONTROLS, choose_control
+from nanotouch.touch.margins import ForceRange
+from nanotouch.touch.session import CONTROLS, choose_control
 
 from nanotouch_app.quantity import parse_quantity
 

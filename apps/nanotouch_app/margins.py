@@ -14,10 +14,10 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import margins, plots, record
 from nanotouch.errors import InvalidValue, require
-from nanotouch.margins import Margins, Resolution
 from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION, new_figure, saved
-from nanotouch.record import write_csv
-from nanotouch.session import INDENTATION_RANGE, MODES, settings_for_path
+from nanotouch.touch.margins import Margins, Resolution
+from nanotouch.touch.record import write_csv
+from nanotouch.touch.session import INDENTATION_RANGE, MODES, settings_for_path
 
 from nanotouch_app import loop, output, scenes, stability
 from nanotouch_app.quantity import parse_quantity

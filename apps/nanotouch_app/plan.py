@@ -14,8 +14,8 @@ from typing import Any
 import nanotouch as nt
 from nanotouch import presets
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import hertz_nanoseconds
 from nanotouch.scene import Demand, Rig, Scene, Settings, read_tables
+from nanotouch.scene.plan import hertz_nanoseconds
 from nanotouch.units import in_words
 
 from nanotouch_app import output, properties, scenes

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import nanotouch as nt
 import numpy as np
 from nanotouch import margins
-from nanotouch.operator import Input
+from nanotouch.touch.operator import Input
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]

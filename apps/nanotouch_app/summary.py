@@ -10,8 +10,8 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import margins
 from nanotouch.plots import adhesion
-from nanotouch.record import STATES, Recording
-from nanotouch.session import INDENTATION_RANGE, REASONS
+from nanotouch.touch.record import STATES, Recording
+from nanotouch.touch.session import INDENTATION_RANGE, REASONS
 
 SERVOED = ("approach", "curve")
 """modes in which the stage does not follow the hand"""

@@ -13,8 +13,8 @@ from typing import Any, get_args
 import nanotouch as nt
 from nanotouch import margins, plots, record
 from nanotouch.errors import InvalidValue, MissingExtra
-from nanotouch.operator import script_for
-from nanotouch.session import MODES, ProbeModel
+from nanotouch.touch.operator import script_for
+from nanotouch.touch.session import MODES, ProbeModel
 
 from nanotouch_app import loop, output, properties, scenes, stop, summary, told, view
 from nanotouch_app.quantity import number, parse_points, parse_quantity, whole_number

@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 from nanotouch import presets, units
-from nanotouch.columns import STATES
-from nanotouch.supervisor import REASONS
+from nanotouch.touch.columns import STATES
+from nanotouch.touch.supervisor import REASONS
 from nanotouch_app.live import hand, host, look, readings, relief, seen, sliders, stage
 from nanotouch_app.live.subject import PRESETS, of_preset
 from nanotouch_app.training import LESSON, TASKS, find, pull_off, staircase, steady, stiffer, trace

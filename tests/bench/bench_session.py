@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import nanotouch as nt
-from nanotouch.operator import Hold, Input
+from nanotouch.touch.operator import Hold, Input
 from timing import least
 
 STEPS = 10_000

@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 import nanotouch as nt
 import numpy as np
 from nanotouch import margins
-from nanotouch.operator import Input
-from nanotouch.session import settings_for_path
+from nanotouch.touch.operator import Input
+from nanotouch.touch.session import settings_for_path
 
 MARGIN = 1.52
 BORDER = 1.03  # least number of a rig that is just called calm

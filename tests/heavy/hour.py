@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import nanotouch as nt
-from nanotouch.operator import Input
+from nanotouch.touch.operator import Input
 
 MOST = 4.0  # that the peak may grow by from a tenth of the recording to its end [MB]
 SHARES = (0.1, 0.5, 1.0)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from nanotouch import Interaction, Plan, Scene, Surface, Topography
 from nanotouch._arrays import Floats
-from nanotouch.interaction import step
+from nanotouch.scene.interaction import step
 from numpy.typing import NDArray
 
 _AT, _WEIGHT = np.polynomial.legendre.leggauss(8)

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from nanotouch import record
-from nanotouch.record import Recording
+from nanotouch.touch.record import Recording
 
 CHILD = """
 import os, signal, sys, time

@@ -12,7 +12,7 @@ import numpy as np
 from nanotouch import Interaction, Scene, Surface, presets
 from nanotouch._arrays import Floats
 from nanotouch.errors import Error
-from nanotouch.plan import Plan
+from nanotouch.scene.plan import Plan
 from oracle import Oracle
 
 PRESETS = (

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from nanotouch import record
-from nanotouch.surface import grating
+from nanotouch.scene.surface import grating
 from nanotouch_app import output, told, touch, view
 from nanotouch_app.main import main
 from nanotouch_app.summary import words

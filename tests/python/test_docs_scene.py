@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from nanotouch import Demand, Rig, Scene, presets
-from nanotouch.interaction import STATE_SIZE
-from nanotouch.plan import ROWS
 from nanotouch.scene import Quantity
+from nanotouch.scene.interaction import STATE_SIZE
+from nanotouch.scene.plan import ROWS
 from nanotouch_app.main import main
 from nanotouch_app.plan import PRESETS
 

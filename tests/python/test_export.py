@@ -12,7 +12,7 @@ import pytest
 from nanotouch import curves, images, maps, record
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.errors import Error, InvalidValue, ReadError
-from nanotouch.record import Recording
+from nanotouch.touch.record import Recording
 from nanotouch_app import export
 from synthetic import DATA, asymmetric, write_gwy
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from nanotouch import Faults, Input, Rig, Session, operator, record
 from nanotouch.errors import InvalidValue
-from nanotouch.faults import CHANNELS, KINDS
+from nanotouch.touch.faults import CHANNELS, KINDS
 
 RUN, HOLD, RETRACT, LATCHED = (record.STATES.index(name) for name in ("RUN", "HOLD", "RETRACT", "LATCHED"))
 SAFETY = Path(__file__).parents[2] / "docs" / "safety.md"

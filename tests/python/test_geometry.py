@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from nanotouch import contact, geometry
 from nanotouch._arrays import Floats
 from nanotouch.contact import Contact
+from nanotouch.contact.geometry import Outside, Shape
 from nanotouch.errors import InvalidValue
-from nanotouch.geometry import Outside, Shape
 from scipy.fft import irfft2, rfft2
 
 E = 1e9

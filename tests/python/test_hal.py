@@ -21,7 +21,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import DeviceError, InvalidValue
-from nanotouch.hal import Capabilities, Channel, Reading
+from nanotouch.touch.hal import Capabilities, Channel, Reading
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs/examples/hal"

@@ -12,7 +12,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import InvalidValue
-from nanotouch.hal import Action, Capabilities, Reading
+from nanotouch.touch.hal import Action, Capabilities, Reading
 
 
 class OneAxis(nt.hal.Slave):

@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from nanotouch import Interaction, Plan, Scene, Surface, presets, surface
 from nanotouch.errors import Error, InvalidValue
-from nanotouch.interaction import STATE_SIZE, State, step
+from nanotouch.scene.interaction import STATE_SIZE, State, step
 
 PRESETS = random_scenes.PRESETS
 # Of quadrature: 8 Gauss points on pieces that end wherever the force has a kink; what is left are the joins of the

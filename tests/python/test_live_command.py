@@ -56,7 +56,8 @@ def test_what_a_killed_view_leaves_is_removed_by_the_next(monkeypatch: pytest.Mo
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
     program = (
-        "import os, signal; from nanotouch.scratch import Scratch; kept = Scratch(); print(kept.path, flush=True); "
+        "import os, signal; from nanotouch.touch.scratch import Scratch; kept = Scratch(); "
+        "print(kept.path, flush=True); "
     )
     with subprocess.Popen([sys.executable, "-c", program + "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                           text=True) as lives:  # fmt: skip

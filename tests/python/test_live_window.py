@@ -196,7 +196,7 @@ def test_a_window_leads_the_session_of_this_program(screen: str, monkeypatch: py
 
 def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("vtkmodules")
-    monkeypatch.setattr("nanotouch._live.WINDOW", "nanotouch_app.live.nothing")
+    monkeypatch.setattr("nanotouch.touch._live.WINDOW", "nanotouch_app.live.nothing")
     with pytest.raises(nt.Error, match="could not be opened"):
         nt.Session(seed=1, recorded=False).live()
 

@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch.columns import COLUMNS
+from nanotouch.touch.columns import COLUMNS
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from nanotouch import Session, Surface, presets, surface
-from nanotouch.operator import script_for
+from nanotouch.touch.operator import script_for
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
 CORNERS = [(1e-6, 1e-6), (5e-6, 1e-6), (5e-6, 2e-6)]

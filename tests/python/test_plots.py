@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nanotouch import plots
 from nanotouch.errors import Error, InvalidValue, MissingExtra
-from nanotouch.record import Recording
+from nanotouch.touch.record import Recording
 from numpy.typing import NDArray
 
 pytest.importorskip("matplotlib")

@@ -17,7 +17,8 @@ import synthetic
 pytest.importorskip("SurfaceTopography")
 pytest.importorskip("afmformats")
 
-from nanotouch import _readers, _transfer, _worker, curves, formats, images
+from nanotouch import curves, formats, images
+from nanotouch._io import readers, transfer, worker
 from nanotouch.errors import Error, InvalidValue, ReadError
 
 #: A reader of files that begin with ``FAKE``; what follows says how it behaves.
@@ -80,8 +81,8 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 def _fresh() -> None:
-    _readers._registered.cache_clear()
-    _worker._stop_at_exit()
+    readers._registered.cache_clear()
+    worker._stop_at_exit()
 
 
 def fake(path: Path, what: str) -> Path:
@@ -112,12 +113,12 @@ def test_a_reader_that_cannot_be_loaded_is_named(tmp_path: Path, monkeypatch: py
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[nanotouch.readers]\nbroken = no_such_module\n")
     monkeypatch.syspath_prepend(tmp_path / "site")
-    _readers._registered.cache_clear()
+    readers._registered.cache_clear()
     try:
         with pytest.raises(Error, match=r"the registered reader 'broken' \(no_such_module\) cannot be loaded"):
             images.read(fake(tmp_path / "a", "normal"))
     finally:
-        _readers._registered.cache_clear()
+        readers._registered.cache_clear()
 
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="the worker runs on Linux")
@@ -173,7 +174,7 @@ def _prose(path: Path) -> Path:
 def test_whatever_a_file_does_to_the_worker_is_a_read_error(
     tmp_path: Path, registered: None, monkeypatch: pytest.MonkeyPatch, what: str, message: str
 ) -> None:
-    monkeypatch.setattr(_worker, "LIMITS", _worker.Limits(time=0.4))
+    monkeypatch.setattr(worker, "LIMITS", worker.Limits(time=0.4))
     with pytest.raises(ReadError, match=message):
         images.read(fake(tmp_path / what, what), untrusted=True)
     assert images.read(fake(tmp_path / "next", "normal"), untrusted=True).source == "fake"  # the next file is read
@@ -190,9 +191,9 @@ def test_the_network_is_there_without_the_guard(tmp_path: Path, registered: None
 def test_a_worker_that_was_killed_is_started_again(tmp_path: Path) -> None:
     path = synthetic.write_matrix(tmp_path / "image.txt", synthetic.asymmetric(), (3e-6, 4e-6))
     images.read(path, untrusted=True)
-    assert _worker._current is not None
-    os.kill(_worker._current.popen.pid, 9)
-    _worker._current.popen.wait()
+    assert worker._current is not None
+    os.kill(worker._current.popen.pid, 9)
+    worker._current.popen.wait()
     assert images.read(path, untrusted=True).shape == (24, 32)
 
 
@@ -200,8 +201,8 @@ def test_a_worker_that_was_killed_is_started_again(tmp_path: Path) -> None:
 def test_no_worker_is_left_behind(tmp_path: Path) -> None:
     path = synthetic.write_matrix(tmp_path / "image.txt", synthetic.asymmetric(), (3e-6, 4e-6))
     code = (
-        "import sys, nanotouch as nt; from nanotouch import _worker\n"
-        f"nt.images.read({str(path)!r}, untrusted=True); print(_worker._current.popen.pid)"
+        "import sys, nanotouch as nt; from nanotouch._io import worker\n"
+        f"nt.images.read({str(path)!r}, untrusted=True); print(worker._current.popen.pid)"
     )
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
@@ -232,12 +233,12 @@ TYPES = (images.Topography,)
 def test_an_answer_holds_data_only(tmp_path: Path) -> None:
     """Whatever bytes a worker that was taken over sends: an answer of known types within the limits, or none."""
     topography = images.Topography(synthetic.asymmetric(), (1e-7, 1e-7), "a", "b", "c")
-    whole = b"".join(_transfer.packed([topography, {"x": (1, 2.5, None, True)}]))
-    back, rest = _transfer.unpacked(_Stream(whole), tmp_path, TYPES)
+    whole = b"".join(transfer.packed([topography, {"x": (1, 2.5, None, True)}]))
+    back, rest = transfer.unpacked(_Stream(whole), tmp_path, TYPES)
     np.testing.assert_array_equal(back.heights, topography.heights)
     assert rest == {"x": (1, 2.5, None, True)}
-    with pytest.raises(_transfer.BadAnswer):
-        _transfer.unpacked(_Stream(whole), tmp_path, (images.Channel,))  # of a type that was not asked for
+    with pytest.raises(transfer.BadAnswer):
+        transfer.unpacked(_Stream(whole), tmp_path, (images.Channel,))  # of a type that was not asked for
     head = len(whole) - topography.heights.nbytes - topography.mask.nbytes
     for old, new in (
         (b"Topography", b"subprocess"), (b'"<f8"', b'"|O8"'), (b"[24, 32]", b"[-4, 32]"),
@@ -246,18 +247,18 @@ def test_an_answer_holds_data_only(tmp_path: Path) -> None:
     ):  # fmt: skip
         text = whole[8:head].replace(old, new)
         assert text != whole[8:head]
-        with pytest.raises(_transfer.BadAnswer):
-            _transfer.unpacked(_Stream(len(text).to_bytes(8, "little") + text + whole[head:]), tmp_path, TYPES)
-    with pytest.raises(_transfer.BadAnswer, match="an answer of"):
-        _transfer.unpacked(_Stream((1 << 60).to_bytes(8, "little") + whole), tmp_path, TYPES)
+        with pytest.raises(transfer.BadAnswer):
+            transfer.unpacked(_Stream(len(text).to_bytes(8, "little") + text + whole[head:]), tmp_path, TYPES)
+    with pytest.raises(transfer.BadAnswer, match="an answer of"):
+        transfer.unpacked(_Stream((1 << 60).to_bytes(8, "little") + whole), tmp_path, TYPES)
     rng = np.random.default_rng(11)
     for _ in range(300):
         damaged = bytearray(whole)
         for place in rng.integers(0, head, 3):
             damaged[place] = rng.integers(256)
         try:
-            _transfer.unpacked(_Stream(bytes(damaged)), tmp_path, TYPES)
-        except (_transfer.BadAnswer, EOFError):
+            transfer.unpacked(_Stream(bytes(damaged)), tmp_path, TYPES)
+        except (transfer.BadAnswer, EOFError):
             continue
 
 

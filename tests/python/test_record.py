@@ -15,9 +15,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nanotouch import record
-from nanotouch._recorder import KILLED, ending
 from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
-from nanotouch.record import COLUMNS, Recording, Writer
+from nanotouch.touch._recorder import KILLED, ending
+from nanotouch.touch.record import COLUMNS, Recording, Writer
 
 METADATA: dict[str, object] = {"alpha_p": 4e-6, "alpha_f": 2e6, "master_start": -0.01, "start_height": 6e-7, "seed": 3}
 METADATA["scene"] = {"tip": {"radius": 2e-8}}
@@ -291,7 +291,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
 def test_a_disk_that_is_full_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     part = tmp_path / "full.part"
     part.symlink_to("/dev/full")
-    monkeypatch.setattr("nanotouch._recorder._new_part", lambda _: part.open("wb"))
+    monkeypatch.setattr("nanotouch.touch._recorder._new_part", lambda _: part.open("wb"))
     with pytest.raises(Error, match=r"cannot write .*r\.mcap: No space left on device; no rows were recorded"):
         Writer(tmp_path / "r.mcap")
     assert list(tmp_path.iterdir()) == []

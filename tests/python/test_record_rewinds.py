@@ -10,7 +10,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import InvalidValue
-from nanotouch.record import Recording, Writer
+from nanotouch.touch.record import Recording, Writer
 
 PUSH = nt.Input(1.0, 0.0, 0.0, 0.2)
 

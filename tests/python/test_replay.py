@@ -10,8 +10,8 @@ import time
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch.operator import Hold
-from nanotouch.record import Recording
+from nanotouch.touch.operator import Hold
+from nanotouch.touch.record import Recording
 
 COMMANDS = ("motor_force", "stage_command", "state", "reasons")
 

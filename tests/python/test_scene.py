@@ -15,9 +15,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from nanotouch import Demand, Rig, Scene, Settings, presets
-from nanotouch.description import Description, Field
 from nanotouch.errors import InvalidValue, ReadError
 from nanotouch.scene import read_toml
+from nanotouch.scene.description import Description, Field
 from nanotouch.units import UNITS, from_si, key_spellings, to_si
 
 KINDS: list[type[Description]] = [Scene, Rig, Settings, Demand]

@@ -18,9 +18,9 @@ import numpy as np
 import pytest
 from nanotouch import Input, Recording, Rig, Scene, Session, Settings, Surface, record, surface
 from nanotouch._core import Signals
-from nanotouch.columns import SIDEWAYS
 from nanotouch.errors import Error, InvalidValue
-from nanotouch.session import Columns, settings_for_path
+from nanotouch.touch.columns import SIDEWAYS
+from nanotouch.touch.session import Columns, settings_for_path
 
 RUN, LATCHED = record.STATES.index("RUN"), record.STATES.index("LATCHED")
 GRATING = Surface(surface.grating(pixels=128), 20e-9)

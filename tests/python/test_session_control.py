@@ -12,8 +12,8 @@ import pytest
 from nanotouch import Faults, Input, Recording, Rig, Scene, Session, Supervisor, Surface, record, surface
 from nanotouch._core import Signals
 from nanotouch.errors import Error, InvalidValue
-from nanotouch.margins import resolution
-from nanotouch.supervisor import REASONS
+from nanotouch.touch.margins import resolution
+from nanotouch.touch.supervisor import REASONS
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
 RUN = record.STATES.index("RUN")

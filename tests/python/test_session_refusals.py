@@ -17,7 +17,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import DeviceError, Error, InvalidValue
-from nanotouch.operator import Hold
+from nanotouch.touch.operator import Hold
 
 NO_MOTOR = {"motor": "no", "gauge": "no"}
 

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 import random_scenes
 from nanotouch import Scene, Session, presets, reference
-from nanotouch._custom import _known
 from nanotouch.errors import Error, InvalidValue
-from nanotouch.plan import ROWS
+from nanotouch.scene._custom import _known
+from nanotouch.scene.plan import ROWS
 
 K_B, E_CHARGE, EPSILON_0 = 1.380649e-23, 1.602176634e-19, 8.8541878128e-12
 
@@ -282,7 +282,7 @@ def test_an_installed_package_registers_its_law(monkeypatch: pytest.MonkeyPatch)
     def found(group: str, name: str) -> list[EntryPoint]:
         return [EntryPoint(name, f"{__name__}:{name}", group)] if name in ("install_gel", "install_none") else []
 
-    monkeypatch.setattr("nanotouch._custom.entry_points", found)
+    monkeypatch.setattr("nanotouch.scene._custom.entry_points", found)
     assert Scene(terms={"install_gel": {"strength": 0.4}}).plan().law("install_gel", 1e-9).F > 0.0
     with pytest.raises(Error, match=r"the law 'install_none' .* cannot be registered"):
         Scene(terms={"install_none": {}})

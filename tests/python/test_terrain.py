@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from nanotouch import surface
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import Reach, make_terrain
 from nanotouch.scene import Demand
+from nanotouch.scene.plan import Reach, make_terrain
 
 SCENE = nt.Scene()
 BODY = nt.Surface.touched_by(SCENE, surface.dots(pixels=64))

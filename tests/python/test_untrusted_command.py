@@ -13,7 +13,7 @@ import synthetic
 for module in ("SurfaceTopography", "cv2", "afmformats"):
     pytest.importorskip(module)
 
-from nanotouch import _worker  # noqa: E402
+from nanotouch._io import worker  # noqa: E402
 from nanotouch_app.main import main  # noqa: E402
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="the worker runs on Linux")
@@ -32,7 +32,7 @@ def test_info_says_the_same_with_the_guard(tmp_path: Path, kind: str, capsys: py
     answers = [(main(["info", str(path), *extra]), capsys.readouterr()) for extra in ([], ["--untrusted"])]
     assert answers[0] == answers[1]
     assert answers[0][0] == (2 if kind == "neither" else 0)
-    assert _worker._current is not None
+    assert worker._current is not None
 
 
 @linux

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from nanotouch.errors import Error, MissingExtra, missing
 from nanotouch.images import Topography
-from nanotouch.record import Recording
+from nanotouch.touch.record import Recording
 from nanotouch_app import view
 from nanotouch_app.view import picture, stage
 from nanotouch_app.view.picture import Picture

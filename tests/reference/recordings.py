@@ -18,8 +18,8 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch.faults import Faults
-from nanotouch.operator import Input, adversary
+from nanotouch.touch.faults import Faults
+from nanotouch.touch.operator import Input, adversary
 
 STRIDE = 199
 HARD = {"maximum_load": 1.0}  # all that the rig can press with

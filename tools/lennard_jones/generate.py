@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes bindings/python/nanotouch/lennard_jones.csv, and the table of convergence in docs/lennard_jones.md.
+"""Makes bindings/python/nanotouch/reference/lennard_jones.csv, and the table of convergence in docs/lennard_jones.md.
 
 Run: python generate.py table         writes the table, with its errors in the header
      python generate.py convergence   prints what finer meshes change
@@ -27,7 +27,7 @@ import numpy as np
 from scipy.optimize import brentq
 from sphere import COARSE, FINE, NORMAL, Floats, Point, Resolution, advance, curve
 
-OUTPUT = Path(__file__).resolve().parents[2] / "bindings/python/nanotouch/lennard_jones.csv"
+OUTPUT = Path(__file__).resolve().parents[2] / "bindings/python/nanotouch/reference/lennard_jones.csv"
 Q = np.linspace(-0.85, 1.0, 149)
 MU_MIN, MU_MAX = 0.05, 5.0
 #: Chebyshev's points in ln mu; every second one is a Chebyshev point of half as many

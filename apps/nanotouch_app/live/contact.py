@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
-from nanotouch.view import Section
+from nanotouch.scene.view import Section
 from numpy.typing import NDArray
 
 from nanotouch_app.live.look import SMALL, Palette, digits, step_up

@@ -18,7 +18,7 @@ from typing import IO, Any
 import numpy as np
 from nanotouch.errors import Error, missing
 from nanotouch.images import Topography
-from nanotouch.scratch import Scratch
+from nanotouch.touch.scratch import Scratch
 
 from nanotouch_app.live.serving import serve
 

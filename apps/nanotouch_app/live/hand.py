@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import nanotouch as nt
 import numpy as np
 from nanotouch import margins
-from nanotouch.operator import Hold
+from nanotouch.touch.operator import Hold
 
 SEEN = 0.93  # of a plan's pull-off that a loop shows at least
 LATERAL_REACH = 1.5  # travel of the master over the size of the surface
@@ -40,8 +40,8 @@ def rig_of(rig: nt.Rig, settings: nt.Settings, extent: float, way_down: float) -
 
 
 def felt_scale(rig: nt.Rig, usual: nt.Settings, pull_off_force: float, load: float) -> float:
-    """alpha_f at which a pull-off [N] would be clearly felt (:func:`nanotouch.margins.felt_alpha_f`); no loop closes
-    that could be less than calm. The browser's is the same (apps/page/src/host.js)."""
+    """alpha_f at which a pull-off [N] would be clearly felt (:func:`nanotouch.touch.margins.felt_alpha_f`); no loop
+    closes that could be less than calm. The browser's is the same (apps/page/src/host.js)."""
     wanted = margins.CLEARLY_FELT / (SEEN * pull_off_force) if pull_off_force > 0.0 else math.inf
     full = margins.heuristic_alpha_f(rig, margins.ForceRange(-pull_off_force, load))
     return max(float(usual.gains.alpha_f), min(wanted, full))

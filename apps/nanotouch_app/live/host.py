@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The session that a person touches, at wall pace, and what its front ends may ask of it. A front end asks by a
-message, a dict with "do"; what it is told are messages, too. Frames go through shared memory (:mod:`nanotouch.frames`).
+message, a dict with "do"; what it is told are messages, too. Frames go through shared memory
+(:mod:`nanotouch.touch.frames`).
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import record
 from nanotouch.errors import Error
-from nanotouch.scratch import Scratch
-from nanotouch.session import settings_for_path
+from nanotouch.touch.scratch import Scratch
+from nanotouch.touch.session import settings_for_path
 
 from nanotouch_app.live import files, places, refusals
 from nanotouch_app.live.hand import Hand, felt_scale, rig_of, settings_of

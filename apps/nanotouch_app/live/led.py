@@ -10,7 +10,7 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch.operator import Hold
+from nanotouch.touch.operator import Hold
 
 from nanotouch_app.live.hand import Hand
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 import time
 
-from nanotouch.columns import STATES
-from nanotouch.supervisor import REASONS
+from nanotouch.touch.columns import STATES
+from nanotouch.touch.supervisor import REASONS
 
 from nanotouch_app.live.look import SMALL, TITLE, Colour, Palette, digits
 from nanotouch_app.live.painter import Painter

@@ -9,7 +9,7 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch.record import Recording
+from nanotouch.touch.record import Recording
 
 STEP = 1e-3  # of a single step [s]
 SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)

@@ -10,8 +10,8 @@ import time
 from typing import Any
 
 import nanotouch as nt
-from nanotouch.commands import Answer
 from nanotouch.errors import Error
+from nanotouch.touch.commands import Answer
 
 from nanotouch_app.live.hand import Hand
 from nanotouch_app.live.led import hand_of

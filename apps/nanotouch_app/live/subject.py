@@ -83,13 +83,13 @@ def _between(z: Any, size: float, height: float, name: str) -> nt.Topography:
 
 @dataclass(frozen=True)
 class Preset:
-    """Beside a scene of :mod:`nanotouch.presets`: where it lies, and what to try."""
+    """Beside a scene of :mod:`nanotouch.scene.presets`: where it lies, and what to try."""
 
     title: str
     surface: Callable[[], nt.Topography]
     hint: str
     scene: str = ""
-    """of :mod:`nanotouch.presets`; "": that of its own name"""
+    """of :mod:`nanotouch.scene.presets`; "": that of its own name"""
     accuracy: float = 0.01
     """of its forces: where a slider leads to what is less well known, a little less is asked"""
 

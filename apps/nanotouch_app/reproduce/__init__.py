@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from nanotouch.errors import InvalidValue
-from nanotouch.record import write_csv
+from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output
 from nanotouch_app.reproduce import drawing

@@ -8,9 +8,9 @@ import math
 import nanotouch as nt
 import numpy as np
 from nanotouch import presets
-from nanotouch.margins import CLEARLY_FELT
-from nanotouch.operator import Input
-from nanotouch.session import Control
+from nanotouch.touch.margins import CLEARLY_FELT
+from nanotouch.touch.operator import Input
+from nanotouch.touch.session import Control
 
 from nanotouch_app.reproduce import paper, touching
 from nanotouch_app.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity

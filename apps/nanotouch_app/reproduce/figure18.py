@@ -8,8 +8,8 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import margins, presets
-from nanotouch.margins import CLEARLY_FELT
-from nanotouch.operator import Input
+from nanotouch.touch.margins import CLEARLY_FELT
+from nanotouch.touch.operator import Input
 
 from nanotouch_app.reproduce import drawing, paper, touching
 from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near, quantity

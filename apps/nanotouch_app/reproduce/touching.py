@@ -9,7 +9,7 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
-from nanotouch.operator import Input
+from nanotouch.touch.operator import Input
 
 from nanotouch_app.reproduce import drawing
 from nanotouch_app.reproduce.statement import Floats, Parameter

@@ -11,7 +11,7 @@ from typing import Any
 
 from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import saved
-from nanotouch.record import write_csv
+from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output
 from nanotouch_app.tradeoff import answer, drawing, errors, measure, page, plans, plant

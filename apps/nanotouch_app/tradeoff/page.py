@@ -11,7 +11,7 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import reference
 from nanotouch.errors import Error
-from nanotouch.record import replacing
+from nanotouch.touch.record import replacing
 
 from nanotouch_app.tradeoff import answer, errors, plans, plant
 from nanotouch_app.tradeoff.errors import CONTROLS, RANGES, WORDS, Control, Range

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from nanotouch import Input, Plan, Rig, Session
-from nanotouch.session import Options, ProbeModel, settings_for_path
+from nanotouch.touch.session import Options, ProbeModel, settings_for_path
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]

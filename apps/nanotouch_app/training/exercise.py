@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from nanotouch.errors import InvalidValue
-from nanotouch.record import replacing
+from nanotouch.touch.record import replacing
 from nanotouch.units import parse_quantity
 
 from nanotouch_app.training.facts import Facts

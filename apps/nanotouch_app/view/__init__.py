@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch.errors import Error, missing
-from nanotouch.record import Recording, replacing
+from nanotouch.touch.record import Recording, replacing
 
 from nanotouch_app.view.picture import Picture
 

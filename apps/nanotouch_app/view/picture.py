@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from nanotouch.images import Topography, mip_levels
 from nanotouch.plots import engineering, phases
-from nanotouch.record import Recording
+from nanotouch.touch.record import Recording
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]

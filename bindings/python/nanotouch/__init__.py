@@ -9,38 +9,41 @@ from typing import Any
 from nanotouch._core import version as __version__
 from nanotouch.errors import Error
 
-#: where each name of the package lives; modules load when they are first used
+#: where each class of the package lives; modules load when they are first used
 _HOMES = {
     "Contact": "contact",
     "ForceCurve": "curves",
-    "Faults": "faults",
+    "Faults": "touch.faults",
     "FitResult": "fit",
     "Topography": "images",
-    "Input": "operator",
-    "Recording": "record",
+    "Input": "touch.operator",
+    "Recording": "touch.record",
     "Demand": "scene",
-    "Interaction": "interaction",
-    "Plan": "plan",
+    "Interaction": "scene.interaction",
+    "Plan": "scene.plan",
     "Rig": "scene",
     "Scene": "scene",
     "Settings": "scene",
-    "Session": "session",
-    "Supervisor": "supervisor",
-    "Surface": "surface",
-    "SurfaceFile": "surface_file",
+    "Session": "touch.session",
+    "Supervisor": "touch.supervisor",
+    "Surface": "scene.surface",
+    "SurfaceFile": "scene.surface_file",
 }
-_MODULES = (
-    "batch", "commands", "contact", "curves", "errors", "faults", "fit", "forces", "frames", "geometry", "hal",
-    "images", "interaction", "maps", "margins", "materials", "operator", "plan", "plots", "presets", "record",
-    "reference", "rig_file", "scene", "session", "surface", "surface_file", "units", "view",
-)  # fmt: skip
+#: the public modules by their rooms; all are names of the package: ``nt.margins`` is ``nanotouch.touch.margins``
+_ROOMS = {
+    "": "batch contact curves errors fit forces images maps plots reference scene touch units",
+    "contact.": "geometry",
+    "scene.": "interaction materials plan presets surface surface_file view",
+    "touch.": "commands faults frames hal margins operator record rig_file session",
+}
+_MODULES = {name: room + name for room, names in _ROOMS.items() for name in names.split()}
 
 __all__ = ["Error", "__version__", *_HOMES, *_MODULES]
 
 
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
-        return importlib.import_module(f"{__name__}.{name}")
+        return importlib.import_module(f"{__name__}.{_MODULES[name]}")
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -8,7 +8,7 @@ from numpy import float64, uint8, uint32
 from numpy.typing import NDArray
 
 from nanotouch import _core
-from nanotouch.description import Description, Section
+from nanotouch.scene.description import Description, Section
 
 class YesNo:
     """Reads as a word; takes a truth value, too."""

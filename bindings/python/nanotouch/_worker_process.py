@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The other side of :mod:`nanotouch._worker`: imports the readers, and forks a limited child for each file."""
+"""The other side of :mod:`nanotouch._io.worker`: imports the readers, and forks a limited child for each file."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from . import _transfer, curves, images
-from ._readers import _registered
+from . import curves, images
+from ._io import transfer
+from ._io.readers import _registered
 from .errors import Error
 from .images.values import plane_of
 
@@ -67,12 +68,12 @@ def _leave_network() -> None:
 def _serve(request: dict[str, Any], pipe: int) -> int:
     _limit(request["limits"])
     try:
-        answer = _transfer.packed(_JOBS[request["job"]](Path(request["file"]), **request["options"]))
+        answer = transfer.packed(_JOBS[request["job"]](Path(request["file"]), **request["options"]))
     except Error as error:
         reader = getattr(error, "reader", "")
-        answer = _transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
+        answer = transfer.packed({"error": str(error), "type": type(error).__name__, "reader": reader})
     except MemoryError:
-        answer = _transfer.packed({"error": f"{request['file']}: asks for more memory than is allowed"})
+        answer = transfer.packed({"error": f"{request['file']}: asks for more memory than is allowed"})
     with os.fdopen(pipe, "wb") as stream:
         for piece in answer:
             stream.write(piece)

@@ -12,7 +12,7 @@
 
 static py::object hal_name(const char *name)
 {
-    return py::module_::import("nanotouch.hal").attr(name);
+    return py::module_::import("nanotouch.touch.hal").attr(name);
 }
 
 py::str text_of(const char *text)
@@ -256,7 +256,7 @@ static void close_python(void *context)
 
 PythonHalf::PythonHalf(py::object given, nt_half half)
     : self(std::move(given)), reading_type(hal_name("Reading")), action_type(hal_name("Action")),
-      states(py::module_::import("nanotouch.columns").attr("STATES")),
+      states(py::module_::import("nanotouch.touch.columns").attr("STATES")),
       name(py::type::of(self).attr("__name__").cast<std::string>())
 {
     backend = {sizeof backend,  NT_HAL_API_VERSION, name.c_str(), half,        open_python,
@@ -273,7 +273,7 @@ std::shared_ptr<Half> half_of(const py::object &given, nt_half half)
         return nullptr;
     if (py::isinstance(given, hal_name("SharedObject")))
         return std::make_shared<ModuleHalf>(given, half);
-    if (py::isinstance(given, py::module_::import("nanotouch.rig_file").attr("Converters")))
+    if (py::isinstance(given, py::module_::import("nanotouch.touch.rig_file").attr("Converters")))
         return converter_half_of(given, half);
     if (py::isinstance(given, hal_name(half == NT_HALF_MASTER ? "Master" : "Slave")))
         return std::make_shared<PythonHalf>(given, half);

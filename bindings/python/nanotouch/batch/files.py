@@ -15,9 +15,9 @@ import numpy as np
 
 import nanotouch
 
-from .._digest import file_digest
-from .._words import counted, printable
-from .._writing import replacing
+from .._io.digest import file_digest
+from .._io.words import counted, printable
+from .._io.writing import replacing
 from ..curves import CalibrationTable, read
 from ..errors import Error, InvalidValue
 from ..fit import FitResult, TipLike, fit_curve

@@ -12,7 +12,7 @@ import numpy as np
 
 import nanotouch
 
-from .._words import counted
+from .._io.words import counted
 from ..fit.show import between, with_sigma
 
 _LAWS = {

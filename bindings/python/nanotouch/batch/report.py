@@ -18,9 +18,9 @@ import numpy as np
 
 import nanotouch
 
-from .._drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, new_figure, plain
-from .._html import table
-from .._writing import replacing
+from .._io.drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, new_figure, plain
+from .._io.html import table
+from .._io.writing import replacing
 from ..fit.show import between, with_sigma
 from ..units import engineering
 from .groups import QUANTITIES, Spread

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._drawing import VERMILION, new_figure, plain, saved
+from .._io.drawing import VERMILION, new_figure, plain, saved
 from ..units import engineering
 
 ACROSS, DOWN = 5, 6

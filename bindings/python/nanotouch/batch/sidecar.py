@@ -24,9 +24,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .._files import toml_tables
-from .._words import told
-from .._writing import replacing
+from .._io.files import toml_tables
+from .._io.words import told
+from .._io.writing import replacing
 from ..errors import ReadError
 
 _NM = 1e-9

@@ -7,7 +7,7 @@ import csv
 from pathlib import Path
 from typing import Any
 
-from .._writing import replacing
+from .._io.writing import replacing
 from ..fit import FitResult
 from .sidecar import Decision
 

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from .._words import counted
+from .._io.words import counted
 from ..units import engineering
 from .events import Branch
 from .report import CurveReport

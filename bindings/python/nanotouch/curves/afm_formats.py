@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._words import printable
+from .._io.words import printable
 from ..errors import ReadError, require
 from .calibration import Calibration
 from .checks import FEWEST, MAX_POINTS, MIN_POINTS

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Floats
-from .._files import checked_path, refuse_traps
-from .._readers import head_of
-from .._words import printable
+from .._io.files import checked_path, refuse_traps
+from .._io.readers import head_of
+from .._io.words import printable
 from ..errors import ReadError, require
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS

@@ -15,7 +15,7 @@ from fnmatch import fnmatchcase
 from os import PathLike
 from pathlib import Path
 
-from .._files import checked_path
+from .._io.files import checked_path
 from ..errors import InvalidValue, ReadError
 from ..units import parse_quantity
 from .curve import ForceCurve

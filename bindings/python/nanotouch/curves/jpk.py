@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._files import check_unpacked
-from .._words import counted, printable
+from .._io.files import check_unpacked
+from .._io.words import counted, printable
 from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS

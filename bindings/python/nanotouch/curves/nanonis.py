@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Floats
-from .._words import printable
+from .._io.words import printable
 from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._words import counted, printable
+from .._io.words import counted, printable
 from ..errors import ReadError
 from . import nanoscope_header as header
 from .calibration import Calibration

@@ -7,10 +7,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .. import _worker
-from .._files import checked_path, guarded, refuse_traps
-from .._readers import head_of, registered_for
-from .._words import printable
+from .._io import worker
+from .._io.files import checked_path, guarded, refuse_traps
+from .._io.readers import head_of, registered_for
+from .._io.words import printable
 from ..errors import ReadError
 from ..formats import refusal
 from . import afm_formats, asylum_pair, jpk, nanonis, nanoscope
@@ -65,7 +65,7 @@ def read(
     given = _over_table(given, calibration, file)
     if untrusted:
         options = {"spring_constant": given.spring_constant, "sensitivity": given.sensitivity}
-        read_there = _worker.ask("curves.read", file, options, list[ForceCurve], [Segment])
+        read_there = worker.ask("curves.read", file, options, list[ForceCurve], [Segment])
         return [_rechecked(curve, file) for curve in read_there]
     name, curves = _loaded(file, given)
     with guarded(file, name):

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import contact as laws
-from .. import geometry
 from .._arrays import check_between
+from ..contact import geometry
 from ..errors import InvalidValue
 from .curve import ForceCurve, Segment
 

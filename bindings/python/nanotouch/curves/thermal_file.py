@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .._files import checked_path, guarded
+from .._io.files import checked_path, guarded
 from ..errors import InvalidValue, ReadError
 from ..units import parse_quantity
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import nanotouch
 
-from .._writing import replacing
+from .._io.writing import replacing
 from ..errors import InvalidValue, require
 from .curve import ForceCurve
 from .igor import as_wave

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch._words import times
+from nanotouch._io.words import times
 from nanotouch.curves import ForceCurve, analyse
 from nanotouch.curves.flicker import residual_correlation
 from nanotouch.errors import InvalidValue, SolverError

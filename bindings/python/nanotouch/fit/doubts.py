@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nanotouch._words import times
+from nanotouch._io.words import times
 
 from .result import MISFIT
 from .show import with_sigma

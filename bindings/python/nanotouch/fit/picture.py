@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch._drawing import BLUE, GREEN, VERMILION, new_figure, plain, saved
+from nanotouch._io.drawing import BLUE, GREEN, VERMILION, new_figure, plain, saved
 from nanotouch.curves import ForceCurve, Segment
 from nanotouch.units import engineering
 

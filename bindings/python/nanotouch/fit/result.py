@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from nanotouch._words import times
+from nanotouch._io.words import times
 from nanotouch.curves import CurveReport
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Scene

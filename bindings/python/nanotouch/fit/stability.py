@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from nanotouch._drawing import BLUE, new_figure, plain, saved
+from nanotouch._io.drawing import BLUE, new_figure, plain, saved
 from nanotouch.curves import ForceCurve, analyse
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.units import engineering

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .._words import counted
+from .._io.words import counted
 from ..errors import require
 from ._robust import MAD
 from .topography import Topography

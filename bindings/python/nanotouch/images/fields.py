@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .._writing import replacing
+from .._io.writing import replacing
 from ..errors import InvalidValue, ReadError, require
 from .channel import Plane
 from .checks import LENGTHS
@@ -18,7 +18,7 @@ from .reading import reader_of
 
 def planes(path: str | os.PathLike[str]) -> tuple[list[Plane], list[str]]:
     """Every channel of an image file as it is stored, and why others are left out; for files that are trusted."""
-    from .._files import checked_path, guarded
+    from .._io.files import checked_path, guarded
 
     file = checked_path(path)
     name, reader = reader_of(file)

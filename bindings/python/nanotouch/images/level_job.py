@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._words import counted
+from .._io.words import counted
 from . import drift, rows, terraces
 from ._robust import block_means, digit, reduction
 from .level_report import LevelReport, LevelStep

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats, check_between
-from .._files import MAX_FILE_SIZE, checked_path, guarded
+from .._io.files import MAX_FILE_SIZE, checked_path, guarded
 from ..errors import InvalidValue, ReadError, require
 from ._robust import MAD
 from .particles import GrainTable

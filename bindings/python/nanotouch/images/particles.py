@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._words import counted
+from .._io.words import counted
 from ..errors import InvalidValue, require
 from ._robust import MAD, pixel_noise
 from .topography import Topography

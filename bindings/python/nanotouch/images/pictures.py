@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .._drawing import new_figure, plain, saved
+from .._io.drawing import new_figure, plain, saved
 from ..errors import InvalidValue
 from ..units import engineering
 from .particles import GrainTable

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .. import _worker
-from .._files import checked_path, guarded, refuse_traps
-from .._readers import head_of, registered_for
-from .._words import printable
+from .._io import worker
+from .._io.files import checked_path, guarded, refuse_traps
+from .._io.readers import head_of, registered_for
+from .._io.words import printable
 from ..errors import InvalidValue, ReadError
 from ..formats import refusal
 from . import gsf, hdf5, jpk_movie, nanonis, ntmdt, surfacetopography, topostats
@@ -39,7 +39,7 @@ def channels(path: str | PathLike[str], *, untrusted: bool = False) -> list[Chan
     """
     file = checked_path(path)
     if untrusted:
-        return _worker.ask("images.channels", file, {}, list[Channel])
+        return worker.ask("images.channels", file, {}, list[Channel])
     name, reader = reader_of(file)
     with guarded(file, name):
         found: list[Channel] = reader.channels(file)
@@ -90,7 +90,7 @@ def read(
         raise InvalidValue(f"z_unit: {z_unit!r}, expected one of {', '.join(LENGTHS)}")
     if untrusted:
         options: dict[str, Any] = {"channel": channel, "pixel_size": given_pixel, "z_unit": z_unit}
-        topography = _worker.ask("images.read", file, options, Topography)
+        topography = worker.ask("images.read", file, options, Topography)
         with guarded(file, topography.source):
             check_scale(topography, file)  # the worker is not believed
         return topography

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._words import counted
+from .._io.words import counted
 from ..errors import require
 from ._robust import MAD, block_means, digit, middle
 from .topography import Topography

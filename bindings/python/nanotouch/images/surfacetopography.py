@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The reader of most image formats, SurfaceTopography, under the contract of :mod:`nanotouch._readers`.
+"""The reader of most image formats, SurfaceTopography, under the contract of :mod:`nanotouch._io.readers`.
 
 SurfaceTopography returns ``heights[x, y]`` with y counted from the top of the picture; ``imshow(heights.T)`` shows it
 as Gwyddion does. Ours is ``heights[y, x]`` with y counted from the bottom, hence ``heights.T[::-1]``. Two kinds of
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._files import guarded
+from .._io.files import guarded
 from ..errors import ReadError, require
 from . import gwyddion, headers, nanoscope_values
 from .channel import HEIGHT_NAMES, Channel, Plane, chosen, with_default

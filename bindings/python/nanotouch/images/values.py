@@ -15,11 +15,11 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _worker
 from .._arrays import Floats
-from .._digest import file_digest
-from .._files import checked_path, guarded
-from .._words import printable
+from .._io import worker
+from .._io.digest import file_digest
+from .._io.files import checked_path, guarded
+from .._io.words import printable
 from ..errors import InvalidValue, ReadError, require
 from ..units import UNITS
 from .channel import Plane
@@ -146,7 +146,7 @@ def read_values(
         raise InvalidValue(f"fill_by {fill_by!r}: valid are {', '.join(get_args(Fill))}")
     file = checked_path(path)
     given = checked_pixel_size(pixel_size)
-    plane = _worker.ask("images.plane", file, {"channel": channel}, Plane) if untrusted else plane_of(file, channel)
+    plane = worker.ask("images.plane", file, {"channel": channel}, Plane) if untrusted else plane_of(file, channel)
     with guarded(file, plane.source):
         return _checked(plane, file, quantity, unit, given, fill_by)
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._writing import replacing
+from .._io.writing import replacing
 from ..errors import ReadError, require
 from .block import MEASURED, PLAIN, flag_names, status_names
 from .settings import Settings

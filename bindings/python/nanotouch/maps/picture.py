@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._drawing import new_figure, plain, saved
+from .._io.drawing import new_figure, plain, saved
 from ..errors import InvalidValue, require
 from ..units import engineering
 from .dataset import determined, doubtful, flag_counts

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._writing import replacing
+from .._io.writing import replacing
 from ..errors import Error, InvalidValue
 
 Columns = dict[str, NDArray[Any]]

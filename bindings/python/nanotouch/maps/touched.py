@@ -16,7 +16,7 @@ from ..fit.touched import Law, scene_of, youngs_modulus
 from ..images import Topography, fill
 from ..images.values import LEAST_SHARE, Fill
 from ..scene import Scene
-from ..surface import Surface
+from ..scene.surface import Surface
 from .dataset import determined
 from .settings import SHARP, Settings
 

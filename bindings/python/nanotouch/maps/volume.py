@@ -13,8 +13,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .._digest import file_digest
-from .._words import printable
+from .._io.digest import file_digest
+from .._io.words import printable
 from ..curves import ForceCurve, Segment, Stream, read, stream
 from ..errors import InvalidValue
 

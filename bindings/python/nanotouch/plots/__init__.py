@@ -4,7 +4,7 @@
 Every function returns the ``Figure`` and, with ``save=``, also writes it (whole or not at all). Of long records the
 extremes of each stretch are drawn, so that a snap-in of one sample stays visible."""
 
-from .._drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, new_figure, saved
+from .._io.drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, new_figure, saved
 from ..units import PREFIXES, engineering
 from .along_line import line
 from .events import Adhesion, adhesion, phases

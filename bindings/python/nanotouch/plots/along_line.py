@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Floats
-from .._drawing import BLUE, VERMILION, StrPath, new_figure, saved
+from .._io.drawing import BLUE, VERMILION, StrPath, new_figure, saved
 from ..errors import InvalidValue
-from ..record import Recording
+from ..touch.record import Recording
 from ..units import engineering, in_words
 from .events import phases, sideways
 from .panels import dress, signal

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._arrays import Floats
-from ..record import Recording
+from ..touch.record import Recording
 
 
 @dataclass(frozen=True)

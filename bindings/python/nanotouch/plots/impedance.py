@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from .. import margins
-from .._drawing import BLUE, GREEN, PURPLE, SKY, VERMILION, StrPath, new_figure, saved
-from ..record import Recording
+from .._io.drawing import BLUE, GREEN, PURPLE, SKY, VERMILION, StrPath, new_figure, saved
+from ..touch import margins
+from ..touch.record import Recording
 from .panels import dress
 
 

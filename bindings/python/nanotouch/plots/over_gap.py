@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, StrPath, new_figure, saved
+from .._io.drawing import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, StrPath, new_figure, saved
 from ..errors import InvalidValue
-from ..plan import History
-from ..record import Recording
 from ..scene import Scene
+from ..scene.plan import History
+from ..touch.record import Recording
 from ..units import engineering
 from .events import Adhesion, adhesion, phases
 from .panels import dress, envelope

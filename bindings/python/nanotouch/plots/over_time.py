@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from .._drawing import BLUE, VERMILION, StrPath, new_figure, saved
-from ..record import Recording
+from .._io.drawing import BLUE, VERMILION, StrPath, new_figure, saved
+from ..touch.record import Recording
 from ..units import engineering
 from .panels import dress, signal, state_band
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
-from .._drawing import ORANGE, PURPLE
-from ..record import STATES, Recording
+from .._io.drawing import ORANGE, PURPLE
+from ..touch.record import STATES, Recording
 
 STATE_COLOURS = {1: ORANGE, 2: PURPLE, 3: "#000000"}
 LONG = 20_000  # points; of longer records only the extremes are drawn

@@ -54,7 +54,8 @@ class _Table(NamedTuple):
 
 @functools.cache
 def _table() -> _Table:
-    lines = resources.files("nanotouch").joinpath("lennard_jones.csv").read_text(encoding="ascii").splitlines()
+    table = resources.files("nanotouch.reference").joinpath("lennard_jones.csv")
+    lines = table.read_text(encoding="ascii").splitlines()
     notes = dict(line[2:].split(":", 1) for line in lines if line.startswith("#") and ":" in line)
     mu, q = (np.array(notes[name].split(), dtype=np.float64) for name in ("mu (slowest)", "q"))
     error = TableError(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The force of a scene with every term on and exact, composed in Python from the laws of :mod:`nanotouch.contact`,
-:mod:`nanotouch.geometry` and :mod:`nanotouch.forces` by the rules of docs/interaction.md; it
+:mod:`nanotouch.contact.geometry` and :mod:`nanotouch.forces` by the rules of docs/interaction.md; it
 shares no code with plans, but for laws that are in no other place."""
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike
 
 from nanotouch import contact as contacts
 from nanotouch import forces as laws
-from nanotouch import geometry
 from nanotouch._arrays import Floats, as_floats, plain
+from nanotouch.contact import geometry
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import ROWS, Plan
 from nanotouch.scene import Scene
+from nanotouch.scene.plan import ROWS, Plan
 
 History = Literal["approach", "retract"]
 

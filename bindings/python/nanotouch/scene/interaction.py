@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from nanotouch import _core
 from nanotouch._arrays import Floats, Law, as_floats, as_law
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import History as History
-from nanotouch.plan import Plan, begins_attached
+from nanotouch.scene.plan import History as History
+from nanotouch.scene.plan import Plan, begins_attached
 
 #: size of the history of one contact in the C library [byte]
 STATE_SIZE: int = _core.interaction_state_size

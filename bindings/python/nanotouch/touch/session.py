@@ -10,26 +10,27 @@ from typing import Any, Literal, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from nanotouch import _core, _live, _told, margins
-from nanotouch._control import CONTROLS, Control, Law, choose_control
-from nanotouch._open import TOLD, Frozen, Runs, as_now
-from nanotouch._path import MODES, Mode, checked_path, core_mode
-from nanotouch._plant import ProbeModel, plant_options
-from nanotouch._recorder import REWINDS_BEFORE, ROWS, rewinds
-from nanotouch.columns import STATES
+from nanotouch import _core
 from nanotouch.errors import InvalidValue
-from nanotouch.faults import Faults
-from nanotouch.hal import Halves, halves_of
-from nanotouch.margins import Calm, Margins
-from nanotouch.operator import Hold, Input, core_input, script_for, stretched
-from nanotouch.options import INDENTATION_RANGE as INDENTATION_RANGE
-from nanotouch.options import Options, Pace, Progress, check_options, checked_seed, settings_with
-from nanotouch.options import settings_for_path as settings_for_path
-from nanotouch.plan import Plan
-from nanotouch.record import Metadata, Recording, Writer
 from nanotouch.scene import Rig, Scene, Settings
-from nanotouch.supervisor import REASONS, Guarantee
-from nanotouch.surface import Surface
+from nanotouch.scene.plan import Plan
+from nanotouch.scene.surface import Surface
+from nanotouch.touch import _live, _told, margins
+from nanotouch.touch._control import CONTROLS, Control, Law, choose_control
+from nanotouch.touch._open import TOLD, Frozen, Runs, as_now
+from nanotouch.touch._path import MODES, Mode, checked_path, core_mode
+from nanotouch.touch._plant import ProbeModel, plant_options
+from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
+from nanotouch.touch.columns import STATES
+from nanotouch.touch.faults import Faults
+from nanotouch.touch.hal import Halves, halves_of
+from nanotouch.touch.margins import Calm, Margins
+from nanotouch.touch.operator import Hold, Input, core_input, script_for, stretched
+from nanotouch.touch.options import INDENTATION_RANGE as INDENTATION_RANGE
+from nanotouch.touch.options import Options, Pace, Progress, check_options, checked_seed, settings_with
+from nanotouch.touch.options import settings_for_path as settings_for_path
+from nanotouch.touch.record import Metadata, Recording, Writer
+from nanotouch.touch.supervisor import REASONS, Guarantee
 
 __all__ = [
     "CONTROLS", "MODES", "REASONS", "Calm", "Columns", "Control", "Law", "Margins", "Mode", "Options", "Pace",
@@ -60,7 +61,7 @@ class Session(Runs, Frozen):
         middle of the surface, or a line across it at mid-height.
     settings : Settings, optional
         Gains and limits; by default those of :func:`settings_for_path` for the relief along the path and up to the
-        scene's largest load, with the sample's pull-off clearly felt (:func:`nanotouch.margins.felt_alpha_f`).
+        scene's largest load, with the sample's pull-off clearly felt (:func:`nanotouch.touch.margins.felt_alpha_f`).
     **options
         See :class:`Options`.
 

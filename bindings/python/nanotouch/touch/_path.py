@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 from nanotouch.errors import InvalidValue
 
 if TYPE_CHECKING:
-    from nanotouch.surface import Surface
+    from nanotouch.scene.surface import Surface
 
 Mode = Literal["point", "scan", "topography", "approach", "curve"]
 MODES: tuple[Mode, ...] = get_args(Mode)

@@ -11,21 +11,22 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack
 
-from nanotouch import _core, materials
-from nanotouch._custom import CustomTerm, find
-from nanotouch._custom import register as register
-from nanotouch._custom import registered as registered
-from nanotouch._files import toml_tables
-from nanotouch._words import told
-from nanotouch.description import as_table
+from nanotouch import _core
+from nanotouch._io.files import toml_tables
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
+from nanotouch.scene import materials
+from nanotouch.scene._custom import CustomTerm, find
+from nanotouch.scene._custom import register as register
+from nanotouch.scene._custom import registered as registered
+from nanotouch.scene.description import as_table
 
 if TYPE_CHECKING:
     from nanotouch._fields import DemandFields, RigFields, SceneFields, SceneSections, SettingsFields
-    from nanotouch.plan import Plan
-    from nanotouch.surface import Surface
+    from nanotouch.scene.plan import Plan
+    from nanotouch.scene.surface import Surface
 else:
-    from nanotouch.description import Description
+    from nanotouch.scene.description import Description
 
     SceneFields = DemandFields = RigFields = SettingsFields = Description
 
@@ -197,7 +198,7 @@ class Scene(SceneFields, core_type=_core.Scene):
         """
         if budget == 0.0:
             raise InvalidValue("budget = 0: it must be above 0; None: whatever it costs")
-        from nanotouch.plan import Plan  # the next layer, which needs this one: a method for convenience
+        from nanotouch.scene.plan import Plan  # the next layer, which needs this one: a method for convenience
 
         demand = Demand(
             demand={"relative_accuracy": rtol, "force_floor": atol, "quantity": quantity, "budget": budget or 0.0}

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from nanotouch._plan_terms import ROWS, Term, Warning
+from nanotouch.scene._plan_terms import ROWS, Term, Warning
 from nanotouch.units import in_words
 
 _TAILS = {row.name for row in ROWS if row.tail}

@@ -19,13 +19,13 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch import images
-from nanotouch._digest import file_digest
-from nanotouch._words import told
-from nanotouch.description import as_table
+from nanotouch._io.digest import file_digest
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.images.values import QUANTITIES, Fill
 from nanotouch.scene import Scene
-from nanotouch.surface import Surface
+from nanotouch.scene.description import as_table
+from nanotouch.scene.surface import Surface
 from nanotouch.units import in_words, parse_quantity
 
 _SI = {"youngs_modulus": "Pa", "effective_modulus": "Pa", "work_of_adhesion": "J/m^2", "pull_off_force": "N"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nanotouch import _html
+from nanotouch._io import html
 
 
 def in_a_line(session: Any) -> str:
@@ -31,7 +31,7 @@ def as_html(session: Any) -> str:
         ("tip", f"{tip.shape}, {tip.radius:.4g} m"),
         ("spring constant", f"{probe.spring_constant:.4g} N/m"),
     ]
-    return _html.table("Session", ("", ""), rows)
+    return html.table("Session", ("", ""), rows)
 
 
 def _time(session: Any) -> float:

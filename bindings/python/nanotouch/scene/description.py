@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from nanotouch import _html
-from nanotouch._words import told
+from nanotouch._io import html
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
 from nanotouch.units import engineering, from_si, key_spellings, to_si
 
@@ -280,7 +280,7 @@ class Description(Mapping[str, float]):
             (name + (" *" if value != usual[name] else ""), _told(value, self.fields[name].unit), self.fields[name].doc)
             for name, value in self.items()
         ]
-        return _html.table(f"{type(self).__name__} (*: not the default)", ("field", "value", "meaning"), rows)
+        return html.table(f"{type(self).__name__} (*: not the default)", ("field", "value", "meaning"), rows)
 
 
 def _told(value: float | str, unit: str) -> str:

@@ -12,19 +12,20 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch import _core, _html
+from nanotouch import _core
 from nanotouch._arrays import Law, as_floats, as_law, plain
-from nanotouch._plan_terms import ROWS as ROWS
-from nanotouch._plan_terms import Pressure as Pressure
-from nanotouch._plan_terms import Row as Row
-from nanotouch._plan_terms import Term as Term
-from nanotouch._plan_terms import Warning as Warning
-from nanotouch._plan_text import contact_law_of, text_of
+from nanotouch._io import html
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Demand, Rig, Scene
+from nanotouch.scene._plan_terms import ROWS as ROWS
+from nanotouch.scene._plan_terms import Pressure as Pressure
+from nanotouch.scene._plan_terms import Row as Row
+from nanotouch.scene._plan_terms import Term as Term
+from nanotouch.scene._plan_terms import Warning as Warning
+from nanotouch.scene._plan_text import contact_law_of, text_of
 
 if TYPE_CHECKING:  # a plan over a flat loads no images
-    from nanotouch.surface import Surface
+    from nanotouch.scene.surface import Surface
 
 History = Literal["approach", "retract"]
 
@@ -198,7 +199,7 @@ class Plan:
         return text_of(self._facts)
 
     def _repr_html_(self) -> str:
-        return _html.text("Plan", str(self))
+        return html.text("Plan", str(self))
 
     def __repr__(self) -> str:
         forms = ", ".join(f"{term.name}: {term.form}" for term in self.terms)

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch import _core
-from nanotouch._control import CONTROLS, Law
-from nanotouch._path import MODES, core_mode
-from nanotouch._recorder import REWINDS_BEFORE, ROWS, rewinds
-from nanotouch.columns import SIDEWAYS
 from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
 from nanotouch.errors import InvalidValue
-from nanotouch.record import Recording
 from nanotouch.scene import Rig, Settings
+from nanotouch.touch._control import CONTROLS, Law
+from nanotouch.touch._path import MODES, core_mode
+from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
+from nanotouch.touch.columns import SIDEWAYS
+from nanotouch.touch.record import Recording
 
 MEASURED = (
     "age", "lateness", "master_position", "operator_force", "stage_position", "deflection", "x", "y", "flags",

@@ -15,7 +15,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from .errors import Error, ReadError, require
+from nanotouch.errors import Error, ReadError, require
 
 #: Largest file opened [byte]: the largest single AFM files (force maps) are a few hundred megabytes.
 MAX_FILE_SIZE = 1 << 30

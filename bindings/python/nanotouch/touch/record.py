@@ -3,7 +3,7 @@
 
 The file describes itself: its schema record (encoding ``nanotouch.columns``) is JSON that names every column with its
 type, unit and meaning, and says how a message holds them. A recording that was cut short holds every whole block, and
-its metadata say why (:mod:`nanotouch._recorder`)."""
+its metadata say why (:mod:`nanotouch.touch._recorder`)."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nanotouch import _html
-from nanotouch._control import Law
-from nanotouch._files import checked_path
-from nanotouch._recorder import ENCODING, INCOMPLETE, recovered_name
-from nanotouch._recorder import Metadata as Metadata
-from nanotouch._recorder import Writer as Writer
-from nanotouch._writing import BLOCK_ROWS
-from nanotouch._writing import replacing as replacing
-from nanotouch._writing import write_csv as write_csv
-from nanotouch.columns import COLUMNS as COLUMNS
-from nanotouch.columns import STATES as STATES
-from nanotouch.columns import Column as Column
-from nanotouch.columns import checked
+from nanotouch._io import html
+from nanotouch._io.files import checked_path
+from nanotouch._io.writing import BLOCK_ROWS
+from nanotouch._io.writing import replacing as replacing
+from nanotouch._io.writing import write_csv as write_csv
 from nanotouch.errors import Error, InvalidValue, ReadError, require
+from nanotouch.touch._control import Law
+from nanotouch.touch._recorder import ENCODING, INCOMPLETE, recovered_name
+from nanotouch.touch._recorder import Metadata as Metadata
+from nanotouch.touch._recorder import Writer as Writer
+from nanotouch.touch.columns import COLUMNS as COLUMNS
+from nanotouch.touch.columns import STATES as STATES
+from nanotouch.touch.columns import Column as Column
+from nanotouch.touch.columns import checked
 
 if TYPE_CHECKING:  # a recording is read without a reader of curves
     from nanotouch._fields import Columns
@@ -95,7 +95,7 @@ class Recording(Columns):
     def _repr_html_(self) -> str:
         rows = [(name, COLUMNS[name].unit, *_ends(values), COLUMNS[name].doc) for name, values in self.columns.items()]
         title = f"Recording of {len(self)} rows" + (f", incomplete: {self.incomplete}" if self.incomplete else "")
-        return _html.table(title, ("column", "unit", "least", "largest", "meaning"), rows)
+        return html.table(title, ("column", "unit", "least", "largest", "meaning"), rows)
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame``: a column for each column, in SI units, with ``time`` [s] as its index. Units are in
@@ -160,19 +160,19 @@ class Recording(Columns):
         control : callable, optional
             The law, where the recording was made with one's own.
         """
-        from nanotouch.replay import replay  # the next layer, which needs this one: a method for convenience
+        from nanotouch.touch.replay import replay  # the next layer, which needs this one: a method for convenience
 
         return replay(self, control)
 
     def without_rewinds(self) -> Recording:
         """The rows and events that a session went on from. Itself where the session never went back."""
-        from nanotouch.replay import without_rewinds  # as above
+        from nanotouch.touch.replay import without_rewinds  # as above
 
         return without_rewinds(self)
 
     def curve(self) -> ForceCurve:
         """The force-distance curve of a recording in mode ``"curve"``, for :mod:`nanotouch.curves`."""
-        from nanotouch.replay import curve  # as above
+        from nanotouch.touch.replay import curve  # as above
 
         return curve(self)
 

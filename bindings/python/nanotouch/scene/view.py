@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from nanotouch import _core
 from nanotouch._arrays import Floats, as_floats
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import Plan
 from nanotouch.scene import Scene
+from nanotouch.scene.plan import Plan
 
 POINTS = 200
 

@@ -19,7 +19,7 @@ from os import PathLike
 from typing import Any, NamedTuple
 
 from nanotouch import _core
-from nanotouch._files import toml_tables
+from nanotouch._io.files import toml_tables
 from nanotouch.errors import InvalidValue
 from nanotouch.units import key_spellings, to_si
 

@@ -10,7 +10,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from nanotouch._writing import replacing
+from nanotouch._io.writing import replacing
 from nanotouch.errors import require
 
 StrPath = str | os.PathLike[str]

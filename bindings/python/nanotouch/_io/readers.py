@@ -13,9 +13,9 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from ._files import guarded
-from .errors import Error
-from .formats import HEAD, Kind
+from nanotouch._io.files import guarded
+from nanotouch.errors import Error
+from nanotouch.formats import HEAD, Kind
 
 GROUP = "nanotouch.readers"
 

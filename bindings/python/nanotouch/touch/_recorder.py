@@ -26,9 +26,9 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch._writing import naming, part_of
-from nanotouch.columns import COLUMNS, checked
+from nanotouch._io.writing import naming, part_of
 from nanotouch.errors import Error, InvalidValue, require
+from nanotouch.touch.columns import COLUMNS, checked
 
 TOPIC = "nanotouch/touch"
 ENCODING = "nanotouch.columns"
@@ -64,7 +64,8 @@ class Writer:
     Until :meth:`close` the file is called ``<name>.<process id>.part``. However the ``with`` body ends, it gets its
     name. After an exception or on a full disk it holds all blocks so far, and ``metadata["incomplete"]`` says why.
     Then it replaces no earlier file, but keeps the name with ``.part``; without any row it is removed. What a killed
-    process leaves is read by :func:`nanotouch.record.read`, and finished by :func:`nanotouch.record.recover`.
+    process leaves is read by :func:`nanotouch.touch.record.read`, and finished by
+    :func:`nanotouch.touch.record.recover`.
 
     Attributes
     ----------

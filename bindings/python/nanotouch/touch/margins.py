@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from nanotouch import _core
 from nanotouch._arrays import check_between
-from nanotouch._calm import CLEARLY_FELT, RINGING_MOST, Calm, calm
-from nanotouch._path import Mode, core_mode
-from nanotouch._response import Response, passive_up_to, response
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import Plan
-from nanotouch.record import Recording
 from nanotouch.scene import Rig, Settings
+from nanotouch.scene.plan import Plan
+from nanotouch.touch._calm import CLEARLY_FELT, RINGING_MOST, Calm, calm
+from nanotouch.touch._path import Mode, core_mode
+from nanotouch.touch._response import Response, passive_up_to, response
+from nanotouch.touch.record import Recording
 
 __all__ = [
     "CLEARLY_FELT", "HAND_BAND", "MINIMUM", "RINGING_MOST", "UNKNOWN", "Calm", "Felt", "ForceRange", "Margins",

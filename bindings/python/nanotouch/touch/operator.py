@@ -11,11 +11,11 @@ import numpy as np
 
 from nanotouch import _core
 from nanotouch._arrays import Floats
-from nanotouch._path import Mode
-from nanotouch._words import told
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
-from nanotouch.plan import Plan
 from nanotouch.scene import Rig, Settings
+from nanotouch.scene.plan import Plan
+from nanotouch.touch._path import Mode
 
 APPROACH_FORCE = 0.2  # [N]
 PRESS_FORCE = 2.0  # [N]

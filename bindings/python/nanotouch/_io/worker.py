@@ -24,8 +24,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args, get_origin
 
-from . import _transfer
-from .errors import Error, InvalidValue, MissingExtra, ReadError
+from nanotouch._io import transfer
+from nanotouch.errors import Error, InvalidValue, MissingExtra, ReadError
 
 Answer = TypeVar("Answer")
 
@@ -126,8 +126,8 @@ class _Process:
                 finally:
                     os.close(writing)
                 try:
-                    answer = _transfer.unpacked(lambda count: _read(pipe.fileno(), count, deadline), file, types)
-                except (_transfer.BadAnswer, EOFError, Error) as error:
+                    answer = transfer.unpacked(lambda count: _read(pipe.fileno(), count, deadline), file, types)
+                except (transfer.BadAnswer, EOFError, Error) as error:
                     problem = error
             self.socket.settimeout(max(1.0, deadline - time.monotonic()))
             status = int(self.lines.readline() or "-1")

@@ -7,9 +7,9 @@ import math
 from typing import Any, NamedTuple
 
 from nanotouch import _core
-from nanotouch.columns import STATES
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Settings
+from nanotouch.touch.columns import STATES
 
 #: names of the bits of ``reasons``
 REASONS: tuple[str, ...] = _core.reasons

@@ -10,8 +10,8 @@ from typing import Any, NoReturn, TypeVar
 
 from nanotouch import _core
 from nanotouch.errors import DeviceError, InvalidValue
-from nanotouch.options import PACES, Pace, Progress
 from nanotouch.scene import Rig, Scene, Settings
+from nanotouch.touch.options import PACES, Pace, Progress
 
 Described = TypeVar("Described", Scene, Settings)
 
@@ -123,7 +123,7 @@ class Runs:
         self.core.rewind(duration)
 
     def publish(self, name: str = "") -> None:
-        """Show every tick to observers of this name (:mod:`nanotouch.frames`), in any process of this user."""
+        """Show every tick to observers of this name (:mod:`nanotouch.touch.frames`), in any process of this user."""
         if not re.fullmatch(r"[A-Za-z0-9._-]{0,64}", name):
             raise InvalidValue(f"publish: name {name!r}: valid are up to 64 letters, digits, '.', '-' and '_'")
         self.core.publish(name)

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nanotouch import _core, _properties
+from nanotouch import _core
 from nanotouch._arrays import Floats, as_floats, check_between, plain
-from nanotouch._properties import on_pixels
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography, ValueMap
+from nanotouch.scene import _properties
+from nanotouch.scene._properties import on_pixels
 from nanotouch.units import in_words
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class Surface:
             None if work_of_adhesion is None else on_pixels("work_of_adhesion", work_of_adhesion, topography)
         )
         self.origin: dict[str, Any] | None = None
-        """what files it was read from, by :class:`nanotouch.surface_file.SurfaceFile`"""
+        """what files it was read from, by :class:`nanotouch.scene.surface_file.SurfaceFile`"""
         self.notes: tuple[str, ...] = ()
         """what reading its properties found"""
         given = [None if one is None else _wider(one) for one in (self.youngs_modulus, self.work_of_adhesion)]

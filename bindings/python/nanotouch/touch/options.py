@@ -8,18 +8,19 @@ from collections.abc import Mapping
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypedDict, get_args
 
-from nanotouch import _core, margins
+from nanotouch import _core
 from nanotouch._arrays import check_between
-from nanotouch._control import Control, Law, choose_control
-from nanotouch._plant import ProbeModel
-from nanotouch._words import told
+from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
-from nanotouch.faults import Faults
-from nanotouch.hal import Master, SharedObject, Slave
-from nanotouch.margins import ForceRange
-from nanotouch.rig_file import Converters
 from nanotouch.scene import Rig, Scene, Settings
-from nanotouch.surface import Surface
+from nanotouch.scene.surface import Surface
+from nanotouch.touch import margins
+from nanotouch.touch._control import Control, Law, choose_control
+from nanotouch.touch._plant import ProbeModel
+from nanotouch.touch.faults import Faults
+from nanotouch.touch.hal import Master, SharedObject, Slave
+from nanotouch.touch.margins import ForceRange
+from nanotouch.touch.rig_file import Converters
 
 if TYPE_CHECKING:
     from nanotouch._fields import SettingsGainsValues
@@ -53,7 +54,7 @@ class Options(TypedDict, total=False):
     force_range: tuple[float, float]
     """lowest and highest force on the tip [N] that alpha_f is to fill the hand's range with (Eq. 19), where no settings
     are given; without it, and without ``gains={"alpha_f": ...}``, the sample's pull-off is to be clearly felt
-    (:func:`nanotouch.margins.felt_alpha_f`)"""
+    (:func:`nanotouch.touch.margins.felt_alpha_f`)"""
     clearance: float
     """height of the tip above the surface at the start; 0.1 um [m]"""
     rtol: float
@@ -71,7 +72,7 @@ class Options(TypedDict, total=False):
     faults: Faults
     """what fails in the simulated halves, and when"""
     master: Master | SharedObject | Converters | None
-    """one's own half instead of the simulated hand and master (:mod:`nanotouch.hal`, docs/hal.md)"""
+    """one's own half instead of the simulated hand and master (:mod:`nanotouch.touch.hal`, docs/hal.md)"""
     slave: Slave | SharedObject | Converters | None
     """one's own half instead of the simulated stage, probe and sample"""
     recorded: bool
@@ -106,8 +107,8 @@ def settings_for_path(
     load: float = math.inf,
 ) -> Settings:
     """Settings whose scaling follows the paper's heuristic rule (Eq. 19, 21) for a path with this relief [m] and forces
-    on the tip [N] from a plan or a test touch (:func:`nanotouch.margins.force_range`). The force limit is at most the
-    largest ``load`` of the scene [N], and half of it is held in topography, approach and curve."""
+    on the tip [N] from a plan or a test touch (:func:`nanotouch.touch.margins.force_range`). The force limit is at most
+    the largest ``load`` of the scene [N], and half of it is held in topography, approach and curve."""
     check_between("clearance", clearance, "m", above=0.0, up_to=1e-3)
     check_between("relief", relief, "m", above=-1e-15, up_to=1e-3)
     settings = Settings.for_rig(rig)

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 from nanotouch._arrays import check_between
 from nanotouch.errors import InvalidValue
-from nanotouch.faults import Faults
+from nanotouch.touch.faults import Faults
 
 ProbeModel = Literal["auto", "quasi-static", "dynamic"]
 PROBE_MODELS: tuple[ProbeModel, ...] = get_args(ProbeModel)

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from nanotouch.errors import Error, missing
-from nanotouch.scratch import Scratch
+from nanotouch.touch.scratch import Scratch
 
 WINDOW = "nanotouch_app.live.window"
 _numbers = itertools.count(1)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from nanotouch import _core
 from nanotouch.errors import Error
-from nanotouch.frames import attached
+from nanotouch.touch.frames import attached
 
 
 class Answer(NamedTuple):

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import Error
+from nanotouch.errors import Error
 
 MAX_JSON = 1 << 28  # of 65536 curves with what their file says of them: 1 << 27 [byte]
 MAX_ARRAYS = 1 << 30  # of all arrays of an answer [byte]
