@@ -29,29 +29,29 @@ set(nanotouch_sources_contact
     contact/dmt.c
     contact/hertz.c
     contact/jkr.c
-    contact/jkr_shape.c
     contact/jump.c
     contact/law.c
     contact/material.c
-    contact/maugis.c
-    contact/maugis_bank.c
-    contact/maugis_bank_contact.c
-    contact/maugis_bank_eval.c
-    contact/maugis_bank_panels.c
-    contact/maugis_branch.c
-    contact/maugis_cells.c
-    contact/maugis_control.c
-    contact/maugis_kernel.c
-    contact/maugis_solve.c
-    contact/maugis_table.c
-    contact/maugis_tier.c
-    contact/reduced.c
+    contact/maugis/bank.c
+    contact/maugis/bank_contact.c
+    contact/maugis/bank_eval.c
+    contact/maugis/bank_panels.c
+    contact/maugis/branch.c
+    contact/maugis/cells.c
+    contact/maugis/control.c
+    contact/maugis/kernel.c
+    contact/maugis/maugis.c
+    contact/maugis/solve.c
+    contact/maugis/table.c
+    contact/maugis/tier.c
     contact/model_error.c
-    contact/rim.c
-    contact/shape.c
-    contact/sneddon.c
-    contact/sphere.c
-    contact/sphere_series.c
+    contact/reduced.c
+    contact/shapes/jkr_shape.c
+    contact/shapes/rim.c
+    contact/shapes/shape.c
+    contact/shapes/sneddon.c
+    contact/shapes/sphere.c
+    contact/shapes/sphere_series.c
     contact/stage_displacement.c
     contact/tabor.c
     contact/validity.c)
@@ -93,14 +93,14 @@ set(nanotouch_sources_scene
     scene/terms/vdw.c
     scene/terms/yukawa.c
     scene/warnings.c
-    scene/yield_adhere.c
-    scene/yield_contact.c
-    scene/yield_follow.c
-    scene/yield_mesh.c
-    scene/yield_solve.c
-    scene/yield_table.c
-    scene/yield_terms.c
-    scene/yielding.c)
+    scene/yielding/adhere.c
+    scene/yielding/contact.c
+    scene/yielding/follow.c
+    scene/yielding/mesh.c
+    scene/yielding/solve.c
+    scene/yielding/table.c
+    scene/yielding/terms.c
+    scene/yielding/yielding.c)
 set(nanotouch_sources_view view/curve.c view/section.c)
 set(nanotouch_sources_curves
     curves/baseline.c

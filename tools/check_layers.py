@@ -17,20 +17,23 @@ LIBRARY = ROOT / "libnanotouch"
 USES = {
     "core": "",
     "forces": "core",
-    "contact": "core",
+    "contact": "core contact/maugis",
+    "contact/maugis": "core contact",
+    "contact/shapes": "core contact",
     "surface": "core",
     "control": "core",
     "curves": "core",
     "dynamics": "core",
     "hal": "core",
     "hal/chips": "core hal",
-    "scene": "core forces contact surface scene/terms",
+    "scene": "core forces contact surface scene/terms scene/yielding",
     "scene/terms": "core forces contact surface scene",
+    "scene/yielding": "core forces contact surface scene scene/terms",
     "view": "core forces contact surface scene",
     "hal/sim": "core forces contact surface scene dynamics hal",
     "hal/linux": "core hal hal/chips",
     "session": "core forces contact surface scene dynamics control hal hal/sim",
-    "fit": "core forces contact curves",
+    "fit": "core forces contact contact/maugis curves",
 }
 
 # The layer that each public header belongs to, where it is not named after it (contact.h, contact_table.h).

@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_apart.h"
-#include "contact/maugis_solve.h"
+#include "contact/maugis/apart.h"
+#include "contact/maugis/solve.h"
 #include "core/roots.h"
 #include "nanotouch/contact_control.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Hertz, DMT, cone: s = delta. JKR: s = sqrt(a), P = s^6 - sqrt(6) s^3, d = s^4 - 4 s/sqrt(6) (contact/jkr.c), load
- * fold at s^3 = sqrt(6)/2, displacement fold at s^3 = 1/sqrt(6). Maugis-Dugdale: s = y^2 (contact/maugis_branch.c),
+ * fold at s^3 = sqrt(6)/2, displacement fold at s^3 = 1/sqrt(6). Maugis-Dugdale: s = y^2 (contact/maugis/branch.c),
  * because load and indentation leave the end of the contact branch, y = 0, quadratically; below it, where the surfaces
  * are apart but a disc r < c still attracts, s = c/c0 - 1 with c0 the c of y = 0 and
  *
@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-#include "contact/maugis_shape.h"
+#include "contact/maugis/shape.h"
 #include "nanotouch/material.h"
 
 #define SQRT_6 2.44948974278317809820

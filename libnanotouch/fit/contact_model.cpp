@@ -9,7 +9,7 @@
 //
 // for every paraboloid; Lambda = 0 without a range of adhesion. Cone and pyramid: dF/d ln E* = k delta/2. For
 // Maugis-Dugdale, dp/dlambda|_d = p_lambda - k d_lambda at constant branch parameter y. Differentiating (Griffith) of
-// contact/maugis_branch.c by lambda gives, with q = 4/3 lambda^2 g2 b and r = (1 + q)/(2 - q),
+// contact/maugis/branch.c by lambda gives, with q = 4/3 lambda^2 g2 b and r = (1 + q)/(2 - q),
 //
 //     lambda b_lambda = -r b     lambda p_lambda = p (1 - 2r) - a^3 (1 + r)     lambda d_lambda = d (1 - r) - a^2 (1 +
 //     r)

@@ -11,7 +11,7 @@
 #include <math.h>
 
 #include "scene/terms/term.h"
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 #define BESIDE 0.409  /* 1.025/sqrt(2 pi) */
 #define SLOPE 3.0     /* the stiffness is off by so much more than the force, at most */

@@ -70,7 +70,7 @@ static nt_bank_error bank_error(const nt_plan *plan)
     return nt_maugis_bank_error(plan->bank, lambda[0], lambda[1]);
 }
 
-#define AWAY_FROM_FOLDS 1e-4 /* reduced: nearer to them the bank has not been measured (contact/maugis_bank.c) */
+#define AWAY_FROM_FOLDS 1e-4 /* reduced: nearer to them the bank has not been measured (contact/maugis/bank.c) */
 
 /* How much more than the plan's own contact one of its own radius can pull. */
 static double most_of(const nt_plan *plan)

@@ -133,10 +133,10 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
 double nt_plan_around_error(const nt_plan *plan, int tails);
 /* How far the folds of an adhesive contact are from where they would be on a sample that yields [m]. */
 double nt_plan_rigid_shift(const nt_plan *plan);
-/* yielding.c: the plan of a scene whose sample yields to all terms together. */
+/* yielding/yielding.c: the plan of a scene whose sample yields to all terms together. */
 nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
-/* yield_adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share of the
- * demand. NT_E_RANGE: contact and table do not fit. */
+/* yielding/adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share of
+ * the demand. NT_E_RANGE: contact and table do not fit. */
 nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
 /* Whether other laws press on the sample around its adhesive contact by so much that contact and laws are solved
  * together. */

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "contact/profile.h"
+#include "contact/shapes/profile.h"
 
 static const nt_rim rims[] = {{0.0, 0.3}, {0.2, 0.3}, {0.3, 0.3}, {0.0, 2.7}, {2.7, 2.7}};
 

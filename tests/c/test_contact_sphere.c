@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "contact/profile.h"
+#include "contact/shapes/profile.h"
 
 /* Sneddon's printed equations, which lose digits as (R/a)^2 for small a. */
 static void is_sneddons_sphere(void **state)

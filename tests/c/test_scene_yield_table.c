@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "assertions.h"
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 typedef struct law {
     double pressure, length;

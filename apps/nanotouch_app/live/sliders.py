@@ -83,9 +83,9 @@ class Slider:
         return digits(value, self.about.unit).replace("^2", "²").replace("^3", "³")
 
     @property
-    def about(self) -> nt.description.Field:
+    def about(self) -> nt.scene.description.Field:
         """Unit, valid range and meaning."""
-        field: nt.description.Field = KINDS[self.what].fields[self.field]
+        field: nt.scene.description.Field = KINDS[self.what].fields[self.field]
         return field
 
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/profile.h"
+#include "contact/shapes/profile.h"
 #include "core/strided.h"
 #include "nanotouch/field.h"
 #include "nanotouch/geometry.h"

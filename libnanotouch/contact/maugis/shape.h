@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "contact/maugis_branch.h"
+#include "contact/maugis/branch.h"
 #include "nanotouch/material.h"
 
 /* h_ is a derivative divided by y. */

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 /* The cubic of a cell at t = v - v0, and its slope. */
 static inline void cubic(const nt_yield_node *from, const nt_yield_node *to, double c[4])

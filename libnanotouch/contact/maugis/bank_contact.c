@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_bank.h"
+#include "contact/maugis/bank.h"
 
 /* {lambda, d} and the units they are counted in. */
 typedef struct {

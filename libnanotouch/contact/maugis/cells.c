@@ -6,7 +6,7 @@
  *
  * In each cell a cubic takes value and slope at both ends (Hermite), so that force and stiffness are continuous; the
  * slopes are those of the exact branch, at the fold by its second derivative. */
-#include "contact/maugis_cells.h"
+#include "contact/maugis/cells.h"
 
 #include <math.h>
 #include <stddef.h>

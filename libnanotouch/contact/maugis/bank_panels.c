@@ -3,7 +3,7 @@
  *
  * At every border of panels five tables side by side give value and slope over v of all numbers of a cell; both panels
  * that meet there take them. */
-#include "contact/maugis_bank_panels.h"
+#include "contact/maugis/bank_panels.h"
 
 #define GAP 0.0078125   /* v below which there is no panel: 2^-7, a border of panels of every width */
 #define STEP 0.00390625 /* between the tables at a border, of its v: truncation 1e-10, rounding 1e-13 of the slope */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_bank.h"
+#include "contact/maugis/bank.h"
 
 /* A place in the bank. */
 typedef struct {

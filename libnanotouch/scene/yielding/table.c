@@ -5,7 +5,7 @@
  * before a jump, where F - F_jump begins with a square root, in sqrt(h - h_jump). v grows inwards. */
 #include <math.h>
 
-#include "scene/yield_cubic.h"
+#include "scene/yielding/cubic.h"
 
 #define FIRST_STEP 0.5 /* of the length over which the law falls */
 #define FIRST_RIM 0.05 /* of sqrt(2 R l): the first radius of contact */

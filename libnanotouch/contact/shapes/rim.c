@@ -14,7 +14,7 @@
  *                 + theta^2/3 (phi^2 c^3 + 2 phi c s + (c - 1) - J),            J = Int_0^w gd(v) dv           (energy)
  *
  * where U is 8/15 rho^2, Hertz, at w = 0, and then Int F ddelta. */
-#include "contact/profile.h"
+#include "contact/shapes/profile.h"
 
 #include <float.h>
 #include <math.h>

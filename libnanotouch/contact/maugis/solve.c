@@ -5,13 +5,13 @@
  * Z = sqrt(d - d_fold) goes straight through the fold, and above it d(y) is convex: Newton on Z needs about five
  * evaluations anywhere. On the part below the fold Z is smooth in y^2, because d and P are even in y to leading order
  * at y = 0. A bracket is kept throughout: convergence does not rest on convexity, which is measured, not proved. */
-#include "contact/maugis_solve.h"
+#include "contact/maugis/solve.h"
 
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_shape.h"
+#include "contact/maugis/shape.h"
 #include "core/roots.h"
 
 enum { MAX_ITERATIONS = 100 };

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "scene/terms/term.h"
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 #define GAPS 1.1      /* ratio of gaps that are looked at */
 #define FARTHEST 1e-2 /* [m] */

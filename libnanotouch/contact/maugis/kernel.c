@@ -9,7 +9,7 @@
  * transposed, which beats gathering their numbers one by one. */
 #include <stddef.h>
 
-#include "contact/maugis_place.h"
+#include "contact/maugis/place.h"
 #include "core/strided.h"
 
 /* glibc resolves the variants at load time; sanitizers come too late for that. */

@@ -14,8 +14,8 @@
 
 #include <math.h>
 
-#include "contact/maugis_apart.h"
-#include "contact/maugis_cells.h"
+#include "contact/maugis/apart.h"
+#include "contact/maugis/cells.h"
 #include "nanotouch/contact_bank.h"
 
 #define NT_BANK_CENTRE 0.93794745721071121163 /* lambda_0 = (9/(16 (1 - 1/pi)))^(1/3) */

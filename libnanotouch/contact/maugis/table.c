@@ -8,7 +8,7 @@
  * cells are made: maugis_cells.c. */
 #include <stddef.h>
 
-#include "contact/maugis_cells.h"
+#include "contact/maugis/cells.h"
 #include "nanotouch/material.h"
 
 #define DEFAULT_REACH 1000.0 /* reduced */

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 enum { N = NT_YIELD_ORDER, NT = 2 * NT_YIELD_ORDER + 4, PIECES = 6 };
 

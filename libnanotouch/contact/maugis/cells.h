@@ -3,8 +3,8 @@
 #ifndef NANOTOUCH_CONTACT_MAUGIS_CELLS_H
 #define NANOTOUCH_CONTACT_MAUGIS_CELLS_H
 
-#include "contact/maugis_place.h"
-#include "contact/maugis_solve.h"
+#include "contact/maugis/place.h"
+#include "contact/maugis/solve.h"
 
 /* A border of cells; reduced. */
 typedef struct nt_maugis_border {

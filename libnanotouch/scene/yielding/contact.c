@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 enum { N = NT_YIELD_ORDER, OUTER = NT_YIELD_PANELS - 3, MOST_MESHES = 800 };
 enum { NEWTONS = 40, EDGES = 60, KINKS = 8, SECANTS = 8 };

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "contact/maugis_shape.h"
+#include "contact/maugis/shape.h"
 #include "contact/reduced.h"
 #include "nanotouch/contact_table.h"
 

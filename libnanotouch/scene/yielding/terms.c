@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "scene/terms/term.h"
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 #define STEP 1e-4  /* of a gap: differences */
 #define FADED 1e-6 /* of what a law is at half the gap: it ends without a kink */

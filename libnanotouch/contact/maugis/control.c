@@ -7,9 +7,9 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_apart.h"
-#include "contact/maugis_shape.h"
-#include "contact/maugis_solve.h"
+#include "contact/maugis/apart.h"
+#include "contact/maugis/shape.h"
+#include "contact/maugis/solve.h"
 #include "core/roots.h"
 #include "nanotouch/contact_control.h"
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, STRICT = 5, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 enum { N = NT_YIELD_ORDER };
 

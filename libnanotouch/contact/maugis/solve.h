@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 #define NANOTOUCH_CONTACT_MAUGIS_SOLVE_H
 
-#include "contact/maugis_branch.h"
+#include "contact/maugis/branch.h"
 
 /* What is given. */
 typedef enum nt_maugis_given { NT_GIVEN_INDENTATION, NT_GIVEN_LOAD } nt_maugis_given;

@@ -3,7 +3,7 @@
 #ifndef NANOTOUCH_CONTACT_MAUGIS_BANK_PANELS_H
 #define NANOTOUCH_CONTACT_MAUGIS_BANK_PANELS_H
 
-#include "contact/maugis_bank.h"
+#include "contact/maugis/bank.h"
 
 double nt_bank_lambda(double distance, int above);
 

@@ -9,7 +9,7 @@
  *     g = u t         G1 = Int_0^t g dx = (t^2 u - (u - t))/2         G2 = Int_0^t g^2 dx
  *
  * where only u - t and G2 need care. For a -> 0: Hertz times 1 - delta/(10 R). */
-#include "contact/profile.h"
+#include "contact/shapes/profile.h"
 
 #include <float.h>
 #include <math.h>

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_place.h"
-#include "contact/maugis_solve.h"
+#include "contact/maugis/place.h"
+#include "contact/maugis/solve.h"
 #include "contact/reduced.h"
 
 /* What the table does not cover, or has in closed form. */

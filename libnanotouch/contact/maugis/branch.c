@@ -25,11 +25,11 @@
  *
  * None of the g, e is evaluated as written where that cancels: for y > 1 they are written in s = 1/y, z = s^2 and
  * A(z) = (s - atan s)/s^3, a smooth function. */
-#include "contact/maugis_branch.h"
+#include "contact/maugis/branch.h"
 
 #include <math.h>
 
-#include "contact/maugis_shape.h"
+#include "contact/maugis/shape.h"
 
 void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point)
 {

@@ -11,7 +11,7 @@
 #include <math.h>
 
 #include "scene/terms/term.h"
-#include "scene/yield.h"
+#include "scene/yielding/yield.h"
 
 #define INSIDE 0.01   /* of what a cycle can lose: at least so much is lost at either jump */
 #define FELT 0.2      /* of the demand: what laws around a contact err by on the undeformed gap */

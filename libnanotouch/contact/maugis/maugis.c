@@ -16,8 +16,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis_apart.h"
-#include "contact/maugis_solve.h"
+#include "contact/maugis/apart.h"
+#include "contact/maugis/solve.h"
 #include "nanotouch/material.h"
 
 static nt_reduced_units units_of(const nt_maugis *maugis)
