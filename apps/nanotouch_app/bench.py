@@ -18,8 +18,8 @@ from nanotouch.contact import reduced
 from nanotouch.errors import Error, InvalidValue
 
 from nanotouch_app import output
-from nanotouch_app.tradeoff.solvers import EXACT, SOLVERS, pull_off, unit
-from nanotouch_app.tradeoff.timing import ELEMENTS, nanoseconds
+from nanotouch_app.studies.tradeoff.solvers import EXACT, SOLVERS, pull_off, unit
+from nanotouch_app.studies.tradeoff.timing import ELEMENTS, nanoseconds
 
 LAM = 1.0
 HIGHEST_LOAD = 10.0

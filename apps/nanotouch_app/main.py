@@ -14,6 +14,7 @@ import re
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stdout, suppress
+from types import ModuleType
 from typing import Any, NoReturn
 
 import nanotouch as nt
@@ -27,6 +28,7 @@ COMMANDS = (
     "touch", "live", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review", "export",
     "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
 )  # fmt: skip
+STUDIES = ("reproduce", "tradeoff")
 EPILOG = """exit status:
   0    done
   1    done, and the answer is no (margins: refused; rig probe: too slow; fit: no curve), or nobody read it
@@ -88,9 +90,15 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> Parser:
     parser.add_argument("--version", action="version", version=f"nanotouch {nt.__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in commands:
-        importlib.import_module(f"nanotouch_app.{command}").add_parser(subparsers)
+        _module(command).add_parser(subparsers)
         _complete(subparsers.choices[command], command)
     return parser
+
+
+def _module(command: str) -> ModuleType:
+    """Where a command is."""
+    room = "nanotouch_app.studies" if command in STUDIES else "nanotouch_app"
+    return importlib.import_module(f"{room}.{command}")
 
 
 def _complete(parser: argparse.ArgumentParser, command: str) -> None:
@@ -123,7 +131,7 @@ def _run(arguments: list[str]) -> int:
     for name, value in vars(args).items():
         if "" in (value if isinstance(value, list) else [value]):
             raise InvalidValue(f"{name.replace('_', '-')} is empty: is it a variable of the shell that is not set?")
-    work = importlib.import_module(f"nanotouch_app.{args.command}").run
+    work = _module(args.command).run
     with stop.on_signals():
         try:
             if not getattr(args, "json", False):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from nanotouch_app import bench
 from nanotouch_app.main import main
-from nanotouch_app.tradeoff import timing
+from nanotouch_app.studies.tradeoff import timing
 
 
 def test_least_of_turns(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from nanotouch.contact import Contact
 from nanotouch_app import reproduce
-from nanotouch_app.reproduce import figure5, figure6, figure9, figure10, figure11, unloading
-from nanotouch_app.reproduce.statement import Statement
+from nanotouch_app.studies.reproduce import figure5, figure6, figure9, figure10, figure11, unloading
+from nanotouch_app.studies.reproduce.statement import Statement
 
 pytest.importorskip("matplotlib")
 brentq = pytest.importorskip("scipy.optimize").brentq

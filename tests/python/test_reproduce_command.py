@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from nanotouch_app import reproduce
 from nanotouch_app.main import main
-from nanotouch_app.reproduce.statement import quantity
+from nanotouch_app.studies.reproduce.statement import quantity
 
 pytest.importorskip("matplotlib")
 

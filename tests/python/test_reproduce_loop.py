@@ -9,8 +9,8 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch_app import reproduce
-from nanotouch_app.reproduce import figure16, figure17, figure18, figure19, touching
-from nanotouch_app.reproduce.statement import Statement
+from nanotouch_app.studies.reproduce import figure16, figure17, figure18, figure19, touching
+from nanotouch_app.studies.reproduce.statement import Statement
 
 pytest.importorskip("matplotlib")
 

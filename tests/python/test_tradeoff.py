@@ -14,8 +14,8 @@ import pytest
 from nanotouch import reference
 from nanotouch_app.main import main
 from nanotouch_app.plan import PRESETS
-from nanotouch_app.tradeoff import FILES, answer, errors, measure, page, plans, plant, rules, timing
-from nanotouch_app.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_TABLE, POLISHED, SOLVERS, TABLE, Solver
+from nanotouch_app.studies.tradeoff import FILES, answer, errors, measure, page, plans, plant, rules, timing
+from nanotouch_app.studies.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_TABLE, POLISHED, SOLVERS, TABLE, Solver
 
 pytest.importorskip("matplotlib")
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from nanotouch_app.reproduce.statement import Parameter
+from nanotouch_app.studies.reproduce.statement import Parameter
 
 CANTILEVER = Parameter("spring constant k_c", 8.0, "N/m", "Sec. VI-B; 'around 8 N/m' in III-B")
 TILT = Parameter("tilt alpha of the cantilever", 0.0, "rad", "not in the text")

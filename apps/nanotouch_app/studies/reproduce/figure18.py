@@ -11,8 +11,8 @@ from nanotouch import margins, presets
 from nanotouch.touch.margins import CLEARLY_FELT
 from nanotouch.touch.operator import Input
 
-from nanotouch_app.reproduce import drawing, paper, touching
-from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near, quantity
+from nanotouch_app.studies.reproduce import drawing, paper, touching
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near, quantity
 
 LITERAL = Parameter("alpha_p, literal", 1e-6, "m/m", "Sec. VI-C, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 1e-4, "m/m", "ours: 480 nm are 4.8 mm of the master")

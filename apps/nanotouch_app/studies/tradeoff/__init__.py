@@ -14,7 +14,7 @@ from nanotouch.plots import saved
 from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output
-from nanotouch_app.tradeoff import answer, drawing, errors, measure, page, plans, plant
+from nanotouch_app.studies.tradeoff import answer, drawing, errors, measure, page, plans, plant
 
 FILES = (
     "tradeoff.png", "tradeoff.csv", "laws.csv", "loop.csv", "errormap.csv", "errormap.png", "plans.csv", "plans.png",

@@ -11,8 +11,8 @@ import nanotouch as nt
 import numpy as np
 from nanotouch.touch.operator import Input
 
-from nanotouch_app.reproduce import drawing
-from nanotouch_app.reproduce.statement import Floats, Parameter
+from nanotouch_app.studies.reproduce import drawing
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter
 
 ROWS = 2001
 RATE = Parameter("rate of the repaired loop", 10e3, "Hz", "ours; the paper's 3 ms leave no margin")

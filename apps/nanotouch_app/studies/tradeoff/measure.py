@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nanotouch_app.tradeoff import errors
-from nanotouch_app.tradeoff.errors import CONTROLS, RANGES, Control, Range
-from nanotouch_app.tradeoff.solvers import EXACT, MAPPED, SOLVERS, Floats, pull_off
-from nanotouch_app.tradeoff.timing import ELEMENTS, nanoseconds
+from nanotouch_app.studies.tradeoff import errors
+from nanotouch_app.studies.tradeoff.errors import CONTROLS, RANGES, Control, Range
+from nanotouch_app.studies.tradeoff.solvers import EXACT, MAPPED, SOLVERS, Floats, pull_off
+from nanotouch_app.studies.tradeoff.timing import ELEMENTS, nanoseconds
 
 #: of the trade: hard and small to soft and large, those in 0.06 .. 5 in reach of the Lennard-Jones table
 LAMBDAS = (1e-4, 1e-3, 0.01, 0.06, 0.12, 0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1e3)

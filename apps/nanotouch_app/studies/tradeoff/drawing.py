@@ -9,11 +9,11 @@ import numpy as np
 from nanotouch.errors import require
 from nanotouch.plots import new_figure
 
-from nanotouch_app.tradeoff import errors
-from nanotouch_app.tradeoff.errors import CONTROLS, Control
-from nanotouch_app.tradeoff.measure import Maps
-from nanotouch_app.tradeoff.rules import HERTZ_LOAD, SPREAD, THRESHOLDS
-from nanotouch_app.tradeoff.solvers import HERTZ
+from nanotouch_app.studies.tradeoff import errors
+from nanotouch_app.studies.tradeoff.errors import CONTROLS, Control
+from nanotouch_app.studies.tradeoff.measure import Maps
+from nanotouch_app.studies.tradeoff.rules import HERTZ_LOAD, SPREAD, THRESHOLDS
+from nanotouch_app.studies.tradeoff.solvers import HERTZ
 
 
 def maps(found: Maps) -> Any:

@@ -12,11 +12,11 @@ from nanotouch import presets
 from nanotouch.contact import Contact, cohesive_stress_atomic, effective_modulus, evaluate, indentation
 from nanotouch.forces import kelvin_radius
 
-from nanotouch_app.reproduce import drawing, paper
-from nanotouch_app.reproduce.figure9 import film_pressure
-from nanotouch_app.reproduce.figure10 import LARGE
-from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
-from nanotouch_app.reproduce.unloading import Path, unload
+from nanotouch_app.studies.reproduce import drawing, paper
+from nanotouch_app.studies.reproduce.figure9 import film_pressure
+from nanotouch_app.studies.reproduce.figure10 import LARGE
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce.unloading import Path, unload
 
 DEEPEST, APART = Parameter("largest displacement", 100e-9, "m", "not in the text"), -100e-9
 SCENES: dict[str, nt.Scene] = {

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from nanotouch import forces
 
-from nanotouch_app.reproduce import drawing, paper
-from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near, quantity
-from nanotouch_app.reproduce.unloading import bisect
+from nanotouch_app.studies.reproduce import drawing, paper
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near, quantity
+from nanotouch_app.studies.reproduce.unloading import bisect
 
 FARTHEST = Parameter("largest gap", 100e-9, "m", "Eq. 1, 'h <= 100 nm'")
 PARAMETERS = (

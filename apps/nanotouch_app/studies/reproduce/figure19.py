@@ -9,8 +9,8 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import margins, presets
 
-from nanotouch_app.reproduce import drawing, paper, touching
-from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce import drawing, paper, touching
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
 
 SIZE = Parameter("smallest and largest dot", 10e-9, "m", "Sec. VI-C, 10 to 30 nm")
 TIME = Parameter("time of the line", 40.0, "s", "not in the text")

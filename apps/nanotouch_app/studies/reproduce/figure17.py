@@ -12,8 +12,8 @@ from nanotouch.touch.margins import CLEARLY_FELT
 from nanotouch.touch.operator import Input
 from nanotouch.touch.session import Control
 
-from nanotouch_app.reproduce import paper, touching
-from nanotouch_app.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce import paper, touching
+from nanotouch_app.studies.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
 
 LITERAL = Parameter("alpha_p, literal", 4e-3, "m/m", "Sec. VI-B, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 4.5e-5, "m/m", "Eq. 21: 0.6 + 0.3 um over 2 cm")

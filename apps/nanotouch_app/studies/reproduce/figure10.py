@@ -8,10 +8,18 @@ from typing import Any
 import numpy as np
 from nanotouch.contact import Contact, Model, evaluate, indentation, pull_off_force
 
-from nanotouch_app.reproduce import drawing, paper
-from nanotouch_app.reproduce.figure9 import APART, COMPARED, DEEPEST, body
-from nanotouch_app.reproduce.statement import TOLERANCE, Floats, Parameter, Reproduction, Statement, holds, quantity
-from nanotouch_app.reproduce.unloading import Path, bisect, unload
+from nanotouch_app.studies.reproduce import drawing, paper
+from nanotouch_app.studies.reproduce.figure9 import APART, COMPARED, DEEPEST, body
+from nanotouch_app.studies.reproduce.statement import (
+    TOLERANCE,
+    Floats,
+    Parameter,
+    Reproduction,
+    Statement,
+    holds,
+    quantity,
+)
+from nanotouch_app.studies.reproduce.unloading import Path, bisect, unload
 
 SOFTEST = -30e-9  # stage displacement [m] at which also the softest sample has let go
 MODULI = (

@@ -13,10 +13,10 @@ from nanotouch import reference
 from nanotouch.errors import Error
 from nanotouch.touch.record import replacing
 
-from nanotouch_app.tradeoff import answer, errors, plans, plant
-from nanotouch_app.tradeoff.errors import CONTROLS, RANGES, WORDS, Control, Range
-from nanotouch_app.tradeoff.measure import Maps, Row
-from nanotouch_app.tradeoff.rules import (
+from nanotouch_app.studies.tradeoff import answer, errors, plans, plant
+from nanotouch_app.studies.tradeoff.errors import CONTROLS, RANGES, WORDS, Control, Range
+from nanotouch_app.studies.tradeoff.measure import Maps, Row
+from nanotouch_app.studies.tradeoff.rules import (
     HERTZ_LOAD,
     SPREAD,
     THRESHOLDS,
@@ -25,8 +25,8 @@ from nanotouch_app.tradeoff.rules import (
     lambda_limits,
     load_limits,
 )
-from nanotouch_app.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_LAMBDA, MAPPED, SOLVERS, Solver, unit
-from nanotouch_app.tradeoff.timing import ELEMENTS
+from nanotouch_app.studies.tradeoff.solvers import DMT, EXACT, HERTZ, JKR, JKR_LAMBDA, MAPPED, SOLVERS, Solver, unit
+from nanotouch_app.studies.tradeoff.timing import ELEMENTS
 
 LAMBDAS = (1e-4, 1e-3, 0.01, 0.05, 0.12, 0.5, 1.0, 2.0, 5.8, 10.0)
 HERTZ_LOADS = (10.0, 20.0, 100.0, 1000.0)

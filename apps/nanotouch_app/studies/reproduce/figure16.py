@@ -8,8 +8,8 @@ import math
 import nanotouch as nt
 from nanotouch import margins, presets
 
-from nanotouch_app.reproduce import paper, touching
-from nanotouch_app.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce import paper, touching
+from nanotouch_app.studies.reproduce.statement import Parameter, Reproduction, Statement, holds, quantity
 
 LITERAL = Parameter("alpha_p, literal", 15e-9, "m/m", "Sec. VI-B, as printed")
 REPAIRED = Parameter("alpha_p, repaired", 15e-6, "m/m", "the same number as metres per millimetre")

@@ -10,9 +10,9 @@ import numpy as np
 from nanotouch.contact import MODELS, Contact, cohesive_stress_atomic, effective_modulus
 from nanotouch.forces import kelvin_radius
 
-from nanotouch_app.reproduce import drawing, paper
-from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near
-from nanotouch_app.reproduce.unloading import Path, unload
+from nanotouch_app.studies.reproduce import drawing, paper
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, near
+from nanotouch_app.studies.reproduce.unloading import Path, unload
 
 TITLES = {"hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "MD", "film": "MD, film's pressure (E12)"}
 DEEPEST, APART = Parameter("largest displacement", 20e-9, "m", "not in the text"), -4e-9

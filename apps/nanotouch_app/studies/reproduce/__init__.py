@@ -12,8 +12,8 @@ from nanotouch.errors import InvalidValue
 from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output
-from nanotouch_app.reproduce import drawing
-from nanotouch_app.reproduce.statement import Reproduction
+from nanotouch_app.studies.reproduce import drawing
+from nanotouch_app.studies.reproduce.statement import Reproduction
 
 FIGURES = (5, 6, 9, 10, 11, 16, 17, 18, 19)
 

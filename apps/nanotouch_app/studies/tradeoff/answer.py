@@ -10,9 +10,9 @@ import numpy as np
 from nanotouch.errors import require
 from nanotouch.plots import new_figure
 
-from nanotouch_app.tradeoff import errors, plant, timing
-from nanotouch_app.tradeoff.measure import ROUNDING, Row
-from nanotouch_app.tradeoff.solvers import EXACT, SOLVERS, pull_off
+from nanotouch_app.studies.tradeoff import errors, plant, timing
+from nanotouch_app.studies.tradeoff.measure import ROUNDING, Row
+from nanotouch_app.studies.tradeoff.solvers import EXACT, SOLVERS, pull_off
 
 PERIOD = 1.0 / plant.RATE
 SINGLE_LAMBDA = 0.12

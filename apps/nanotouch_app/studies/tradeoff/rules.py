@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nanotouch_app.tradeoff import errors
-from nanotouch_app.tradeoff.errors import Control, Range
-from nanotouch_app.tradeoff.measure import Maps
-from nanotouch_app.tradeoff.solvers import DMT, HERTZ, JKR, Floats, Solver
+from nanotouch_app.studies.tradeoff import errors
+from nanotouch_app.studies.tradeoff.errors import Control, Range
+from nanotouch_app.studies.tradeoff.measure import Maps
+from nanotouch_app.studies.tradeoff.solvers import DMT, HERTZ, JKR, Floats, Solver
 
 #: the lambda from which on a model is said to hold: DMT below, JKR above
 THRESHOLDS: tuple[tuple[Solver, float], ...] = ((DMT, 0.12), (JKR, 5.8))

@@ -10,9 +10,9 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import presets
 
-from nanotouch_app.reproduce import drawing, paper
-from nanotouch_app.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
-from nanotouch_app.reproduce.unloading import SAMPLES, Path, follow
+from nanotouch_app.studies.reproduce import drawing, paper
+from nanotouch_app.studies.reproduce.statement import Floats, Parameter, Reproduction, Statement, holds, quantity
+from nanotouch_app.studies.reproduce.unloading import SAMPLES, Path, follow
 
 FARTHEST = Parameter("largest gap", 60e-9, "m", "beyond the 40 nm of point A")
 DEEPEST = Parameter("largest stage displacement", 10e-9, "m", "not in the text")

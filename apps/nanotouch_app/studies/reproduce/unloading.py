@@ -16,8 +16,8 @@ import numpy as np
 from nanotouch.contact import Contact, Model, evaluate
 from nanotouch.errors import InvalidValue
 
-from nanotouch_app.reproduce.paper import CANTILEVER, TILT
-from nanotouch_app.reproduce.statement import Floats
+from nanotouch_app.studies.reproduce.paper import CANTILEVER, TILT
+from nanotouch_app.studies.reproduce.statement import Floats
 
 SAMPLES = 40_001
 

@@ -13,7 +13,7 @@ from typing import Literal, get_args
 import numpy as np
 from nanotouch import reference
 
-from nanotouch_app.tradeoff.solvers import EXACT, Floats, Solver, pull_off
+from nanotouch_app.studies.tradeoff.solvers import EXACT, Floats, Solver, pull_off
 
 Control = Literal["grips", "load"]
 CONTROLS: tuple[Control, ...] = get_args(Control)

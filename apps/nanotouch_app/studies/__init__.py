@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Studies with the library: the figures of the paper, and speed against accuracy."""
