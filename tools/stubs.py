@@ -102,13 +102,10 @@ def _told(field: Field) -> str:
 def names() -> str:
     """``__init__.pyi``."""
     homes = {"Error": "errors", **vars(nanotouch)["_HOMES"]}
+    modules = {name: path.rpartition(".")[0] for name, path in vars(nanotouch)["_MODULES"].items()}
     imports = [
-        f"from nanotouch{'.' * bool(room)}{room} import {module} as {module}"
-        for room, _, module in sorted(path.rpartition(".") for path in vars(nanotouch)["_MODULES"].values())
-    ]
-    imports += [
-        f"from nanotouch.{home} import {name} as {name}"
-        for home, name in sorted((home, name) for name, home in homes.items())
+        f"from nanotouch{'.' * bool(room)}{room} import {name} as {name}"
+        for room, name in sorted((room, name) for name, room in {**homes, **modules}.items())
     ]
     every = "\n".join(f'    "{name}",' for name in sorted(nanotouch.__all__))
     return f"{HEAD}\n" + "\n".join(imports) + f"\n\n__version__: str\n__all__ = [\n{every}\n]\n"

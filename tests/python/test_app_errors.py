@@ -193,4 +193,6 @@ def test_the_version_loads_no_command() -> None:
     version, loaded = done.stdout.splitlines()
     assert version == f"nanotouch {nt.__version__}"
     assert "nanotouch_app.main" in loaded.split()
-    assert not {f"nanotouch_app.{command}" for command in COMMANDS} & set(loaded.split())
+    assert not {f"nanotouch_app.{room}{command}" for command in COMMANDS for room in ("", "studies.")} & set(
+        loaded.split()
+    )
