@@ -11,7 +11,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.contact import Contact
-from nanotouch_app import reproduce
+from nanotouch_app.studies import reproduce
 from nanotouch_app.studies.reproduce import figure5, figure6, figure9, figure10, figure11, unloading
 from nanotouch_app.studies.reproduce.statement import Statement
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from nanotouch_app import reproduce
 from nanotouch_app.main import main
+from nanotouch_app.studies import reproduce
 from nanotouch_app.studies.reproduce.statement import quantity
 
 pytest.importorskip("matplotlib")

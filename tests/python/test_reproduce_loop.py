@@ -8,7 +8,7 @@ import math
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch_app import reproduce
+from nanotouch_app.studies import reproduce
 from nanotouch_app.studies.reproduce import figure16, figure17, figure18, figure19, touching
 from nanotouch_app.studies.reproduce.statement import Statement
 
