@@ -11,7 +11,8 @@ import numpy as np
 from nanotouch import margins
 from nanotouch.plots import adhesion
 from nanotouch.touch.record import STATES, Recording
-from nanotouch.touch.session import INDENTATION_RANGE, REASONS
+from nanotouch.touch.options import INDENTATION_RANGE
+from nanotouch.touch.session import REASONS
 
 SERVOED = ("approach", "curve")
 """modes in which the stage does not follow the hand"""

@@ -26,7 +26,6 @@ from nanotouch.touch.faults import Faults
 from nanotouch.touch.hal import Halves, halves_of
 from nanotouch.touch.margins import Calm, Margins
 from nanotouch.touch.operator import Hold, Input, core_input, script_for, stretched
-from nanotouch.touch.options import INDENTATION_RANGE as INDENTATION_RANGE
 from nanotouch.touch.options import Options, Pace, Progress, check_options, checked_seed, settings_with
 from nanotouch.touch.options import settings_for_path as settings_for_path
 from nanotouch.touch.record import Metadata, Recording, Writer
