@@ -16,8 +16,8 @@ from nanotouch import margins, plots, record
 from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import BLUE, GREEN, ORANGE, VERMILION, new_figure, saved
 from nanotouch.touch.margins import Margins, Resolution
-from nanotouch.touch.record import write_csv
 from nanotouch.touch.options import INDENTATION_RANGE
+from nanotouch.touch.record import write_csv
 from nanotouch.touch.session import MODES, settings_for_path
 
 from nanotouch_app import loop, output, scenes, stability

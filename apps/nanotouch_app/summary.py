@@ -10,8 +10,8 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import margins
 from nanotouch.plots import adhesion
-from nanotouch.touch.record import STATES, Recording
 from nanotouch.touch.options import INDENTATION_RANGE
+from nanotouch.touch.record import STATES, Recording
 from nanotouch.touch.session import REASONS
 
 SERVOED = ("approach", "curve")
