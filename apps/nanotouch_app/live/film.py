@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from nanotouch.errors import Error, require
-from nanotouch.record import replacing
+from nanotouch.touch.record import replacing
 
 from nanotouch_app.live import parts as vtk_parts
 from nanotouch_app.live.arrays import pixels
