@@ -91,15 +91,18 @@ class Guarantee(NamedTuple):
         if unseen:
             failing += f", but without bound for {' or '.join(unseen)}: nothing would show it"
         lines = [
-            f"force on the sample at most {self.force * 1e9:.4g} nN, which is the limit of {self.limit * 1e9:.4g} nN "
-            f"and {terms * 1e9:.4g} nN before a stop shows (calibration {self.calibration * 1e9:.3g}, motion "
-            f"{self.motion * 1e9:.3g}, ringing {self.ringing * 1e9:.3g}, snap-in {self.snap_in * 1e9:.3g}, noise "
-            f"{self.noise * 1e9:.3g}), and {self.zero_drift * 1e9:.3g} nN more for each second since the tare; "
-            f"indentation at most {self.indentation * 1e9:.4g} nm; reaction within {self.reaction_time * 1e3:.2f} ms; "
-            f"{failing}; after a stop help is needed within {_long(self.help_time)}, at once if the stage does not "
-            f"lift ({self.frame_drift * 1e9:.3g} nN more each second)"
-            + ("" if self.moves_sideways else "; the tip stays at its place, for the stage has one axis")
+            f"force on the sample at most {self.force * 1e9:.4g} nN: the limit of {self.limit * 1e9:.4g} nN and "
+            f"{terms * 1e9:.4g} nN before a stop shows",
+            f"these are calibration {self.calibration * 1e9:.3g}, motion {self.motion * 1e9:.3g}, ringing "
+            f"{self.ringing * 1e9:.3g}, snap-in {self.snap_in * 1e9:.3g}, noise {self.noise * 1e9:.3g} nN; and "
+            f"{self.zero_drift * 1e9:.3g} nN more for each second since the tare",
+            f"indentation at most {self.indentation * 1e9:.4g} nm; reaction within {self.reaction_time * 1e3:.2f} ms",
+            failing,
+            f"after a stop help is needed within {_long(self.help_time)}; at once if the stage does not lift "
+            f"({self.frame_drift * 1e9:.3g} nN more each second)",
         ]
+        if not self.moves_sideways:
+            lines.append("the tip stays at its place, for the stage has one axis")
         if self.warning is not None:
             lines.append(f"WARNING: {self.warning}")
         return "\n".join(lines)
