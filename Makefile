@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help docs docs-links demo test page check fuzz damage corpus heavy bench lint format clean
+.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -29,6 +29,9 @@ test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev
 	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
+
+wheels:  ## a wheel for each Python of 3.11 to 3.14 that is here, with a Ceres free of the GPL, tested; PYTHONS=3.11 limits it; build/wheels
+	@tools/wheels.sh build/wheels $(PYTHONS)
 
 page:  ## the touch in one HTML file, build/page/nanotouch-touch.html; needs node and npm
 	@tools/setup.sh page

@@ -29,7 +29,7 @@ extensions = [
 html_theme = "furo"
 html_title = f"nanotouch {version}"
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["README.md", "examples/**", "build", "gallery/*.md5", "decisions/README.md"]
+exclude_patterns = ["README.md", "examples/**", "build", "gallery/*.md5", "notebooks/*.md5", "decisions/README.md"]
 myst_enable_extensions = ["deflist", "colon_fence"]
 myst_heading_anchors = 4
 autodoc_member_order = "bysource"
@@ -46,8 +46,8 @@ html_copy_source = False
 suppress_warnings = ["ref.python"]  # fields of many records have the same name, such as x
 linkcheck_ignore = [r"https?://localhost.*", r"tcp://.*"]
 sphinx_gallery_conf = {
-    "examples_dirs": "examples/gallery",
-    "gallery_dirs": "gallery",
+    "examples_dirs": ["examples/gallery", "examples/notebooks"],
+    "gallery_dirs": ["gallery", "notebooks"],
     "filename_pattern": r"/plot_",
     "remove_config_comments": True,
     "abort_on_example_error": True,

@@ -12,12 +12,12 @@ import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 pytestmark = pytest.mark.skipif(not (DOCS / "conf.py").exists(), reason="needs the source tree")
-MADE = {"reference/command.md", "reference/headers.md", "gallery/index.rst"}  # when the site is built
+MADE = {"reference/command.md", "reference/headers.md", "gallery/index.rst", "notebooks/index.rst"}  # when the site is built
 OWN = {"README.md", "index.md", "decisions/README.md"}
 
 
 def pages() -> list[Path]:
-    found = [path for path in DOCS.rglob("*.md") if not {"examples", "gallery"} & set(path.relative_to(DOCS).parts)]
+    found = [path for path in DOCS.rglob("*.md") if not {"examples", "gallery", "notebooks"} & set(path.relative_to(DOCS).parts)]
     return [path for path in found if path.relative_to(DOCS).as_posix() not in MADE]
 
 
