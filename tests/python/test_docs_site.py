@@ -12,12 +12,21 @@ import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 pytestmark = pytest.mark.skipif(not (DOCS / "conf.py").exists(), reason="needs the source tree")
-MADE = {"reference/command.md", "reference/headers.md", "gallery/index.rst", "notebooks/index.rst"}  # when the site is built
+MADE = {
+    "reference/command.md",
+    "reference/headers.md",
+    "gallery/index.rst",
+    "notebooks/index.rst",
+}  # when the site is built
 OWN = {"README.md", "index.md", "decisions/README.md"}
 
 
 def pages() -> list[Path]:
-    found = [path for path in DOCS.rglob("*.md") if not {"examples", "gallery", "notebooks"} & set(path.relative_to(DOCS).parts)]
+    found = [
+        path
+        for path in DOCS.rglob("*.md")
+        if not {"examples", "gallery", "notebooks"} & set(path.relative_to(DOCS).parts)
+    ]
     return [path for path in found if path.relative_to(DOCS).as_posix() not in MADE]
 
 
@@ -52,8 +61,10 @@ def test_links_between_pages_lead_somewhere() -> None:
 
 def test_the_gallery_has_its_examples() -> None:
     examples = sorted((DOCS / "examples/gallery").glob("plot_*.py"))
+    notebooks = sorted((DOCS / "examples/notebooks").glob("plot_*.py"))
     assert len(examples) >= 25
-    for path in examples:
+    assert len(notebooks) == len(list((DOCS / "tutorials").glob("[0-9]*.md")))
+    for path in examples + notebooks:
         tree = ast.parse(path.read_text())
         title = (ast.get_docstring(tree) or "").splitlines()
         assert len(title) >= 3, path.name
