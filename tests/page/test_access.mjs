@@ -96,6 +96,23 @@ test("each control that is seen is reached by Tab, with a name and a ring around
   await page.close();
 });
 
+test("on a phone view and force curve are whole, and the sliders are below them", async () => {
+  const { page } = await visit(chromium.context, FILE);
+  for (const size of [{ width: 390, height: 844 }, { width: 360, height: 640 }]) {
+    await page.setViewportSize(size);
+    await touched(page);
+    await page.waitForTimeout(300);
+    const [law, view, footer, sliders] = await value(page, () => ["law", "view", "facts", "sliders"].map((id) => {
+      const { left, right, top, bottom } = (id === "facts" ? document.querySelector("footer") : document.getElementById(id)).getBoundingClientRect();
+      return { left, right, top, bottom };
+    }));
+    assert.ok(law.bottom <= footer.top && view.bottom <= law.top && sliders.top >= law.bottom, JSON.stringify({ law, view, footer, sliders }));
+    assert.ok(footer.bottom <= size.height && [law, view, footer].every(({ left, right }) => left >= 0 && right <= size.width));
+    assert.ok(law.bottom - law.top >= 140 && view.bottom - view.top >= 180, JSON.stringify({ law, view }));
+  }
+  await page.close();
+});
+
 test("what is seen is said, too: state, notes and what the session tells have a role", async () => {
   const { page } = await visit(chromium.context, FILE);
   await touched(page);

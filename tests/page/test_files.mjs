@@ -187,6 +187,10 @@ test("a wrong file gets a plain word, and the touch goes on", async () => {
     ["nan.gsf", gsf(8, 8, "m", Array(64).fill(NaN)), "without a height"], ["huge.gsf", gsf(99999, 99999, "m", [0]), "99999"],
     ["few.csv", "1,2\n3,4\n", "32 rows"], ["words.txt", "once upon a time\n".repeat(50), "32 rows"],
     ["units.csv", `z (furlong), force (N)\n${"1,2\n".repeat(50)}`, "units"], ["flat.csv", "1e-9,0\n".repeat(50), "flat.csv"],
+    ["volts.csv", `z (V), force (V)\n${"1,2\n".repeat(50)}`, "length and a force"], ["swapped.csv", `z (nN), force (nm)\n${"1,2\n".repeat(50)}`, "length and a force"],
+    ["rigid.csv", curve().replace("[N/m]: 5", "[N/m]: 0"), "spring constant = 0 N/m: valid is above 0"],
+    ["tower.gsf", gsf(8, 8, "m", Array(64).fill(0).fill(1, 0, 8)), "surface is .* high: valid is up to"],
+    ["deep.toml", `a = ${"[".repeat(5000)}`, "^deep.toml: Invalid TOML document: [^\\n]{0,90}$"],
     ["touch.mcap", "\x89MCAP0", "recording"], ["archive.zip", Buffer.from([80, 75, 3, 4, 0, 1, 2]), "archive.zip"],
   ];
   for (const [name, bytes, words] of cases) {

@@ -120,6 +120,22 @@ test("a hostile scene in the fragment is refused in words, and silicon is touche
   }
 });
 
+test("a link whose scene is refused still begins its task, and one with a key says what it needs", async () => {
+  const refused = await visit(chromium.context, `${FILE}#${new URLSearchParams({ scene: "[tip]\nradius_nm = 1", task: "find" })}`);
+  await touched(refused.page);
+  await until(refused.page, () => window.nanotouch.seen.task.name === "find");
+  assert.match((await seen(refused.page, "notes")).map(({ text }) => text).join(), /maximum_load/);
+  await refused.page.close();
+  for (const [fragment, words] of [["key=abc", /the page alone/], [`task=${"x".repeat(5000)}`, /^task x{40}: valid/]]) {
+    const { page, said } = await visit(chromium.context, `${FILE}#${fragment}`);
+    await touched(page);
+    await until(page, () => window.nanotouch.seen.notes.length);
+    assert.match((await seen(page, "notes"))[0].text, words);
+    assert.deepEqual(said.filter((line) => !/GL Driver|WebGL/.test(line)), []);
+    await page.close();
+  }
+});
+
 test("a scene in the fragment is touched; its link holds it", async () => {
   const scene = "[tip]\nradius_nm = 35\n[sample]\nyoungs_modulus_GPa = 70\n";
   const { page } = await visit(chromium.context, `${FILE}#${new URLSearchParams({ scene })}`);

@@ -124,9 +124,20 @@ def test_only_the_right_key_opens_and_operates_once(desk: BrowserDesk) -> None:
             pass
         for hostile in ({"do": "open", "path": "/etc/passwd"}, {"do": "leave"}, {"do": "move", "way": [1, 2]},
                         {"do": "wheel", "steps": "1"}, {"do": "preset", "name": "../x"}, {"do": []}, [], 3,
-                        {"do": "__init__"}, {"do": "change", "what": "core", "field": "a", "value": 1.0}):  # fmt: skip
+                        {"do": "__init__"}, {"do": "change", "what": "core", "field": "a", "value": 1.0},
+                        {"do": "wheel", "steps": 1e308}, {"do": "move", "way": [1e300, 0, 0]},
+                        {"do": "change", "what": "scene", "field": "__class__", "value": 1.0},
+                        {"do": "change", "what": "scene", "field": "tip", "value": 1.0},
+                        {"do": "change", "what": "rig", "field": "tip.radius", "value": 1e-8},
+                        {"do": "change", "what": "settings", "field": "limits.force", "value": 1.0},
+                        {"do": "change", "what": "scene", "field": "tip.radius", "value": 1e308}):  # fmt: skip
             await again.send_json(hostile)
             await heard(again, "refused")
+        await again.send_str("[" * 4000)
+        await heard(again, "refused")
+        deep = await client.ws_connect(f"{address}/session", headers={"Origin": address})
+        await deep.send_str("[" * 4000)
+        assert await refused(deep) == 4403
 
     visit(desk, call)
 

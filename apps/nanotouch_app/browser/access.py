@@ -13,11 +13,13 @@ from urllib.parse import urlsplit
 
 from nanotouch.errors import InvalidValue
 
+from nanotouch_app.live.sliders import OFFERED
 from nanotouch_app.live.subject import PRESETS
 from nanotouch_app.training import TASKS
 from nanotouch_app.training.lesson import LESSON
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
+MOST_STEPS = 100.0  # of the wheel at once
 LONGEST = 200  # letters of a text that is asked
 KEY_BYTES = 24
 Message = dict[str, Any]
@@ -73,8 +75,12 @@ def _number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
+def _steps(value: object) -> bool:
+    return _number(value) and abs(value) <= MOST_STEPS  # type: ignore[arg-type]
+
+
 def _way(value: object) -> bool:
-    return isinstance(value, list) and len(value) == 3 and all(_number(part) for part in value)
+    return isinstance(value, list) and len(value) == 3 and all(_number(part) and abs(part) <= 1.0 for part in value)
 
 
 def _text(value: object) -> bool:
@@ -85,14 +91,15 @@ def _task(value: object) -> bool:
     return value in ("", "lesson", *TASKS, *(page.name for page in LESSON))
 
 
+FIELDS = {field: what for what, field, *_ in OFFERED}  # that have a slider; no other is changed from a page
 # what may be asked over a socket: no file of this machine, no end
 ASKED: dict[str, dict[str, Callable[[object], bool]]] = {
-    "move": {"way": _way}, "wheel": {"steps": _number}, "press": {"on": lambda value: isinstance(value, bool)},
+    "move": {"way": _way}, "wheel": {"steps": _steps}, "press": {"on": lambda value: isinstance(value, bool)},
     "retract": {}, "stop": {}, "arm": {}, "pause": {}, "step": {}, "slower": {}, "faster": {}, "rewind": {}, "undo": {},
     "redo": {},
     "preset": {"name": lambda value: value in PRESETS}, "task": {"name": _task}, "choose": {"number": _number},
     "say": {"text": _text},
-    "change": {"what": lambda value: value in ("scene", "rig", "settings"), "field": _text, "value": _number},
+    "change": {"what": _text, "field": lambda value: isinstance(value, str) and value in FIELDS, "value": _number},
 }  # fmt: skip
 
 
@@ -105,6 +112,8 @@ def checked(message: object) -> Message:
     wrong = [name for name, is_good in wanted.items() if not is_good(message.get(name))]
     if wrong:
         raise InvalidValue(f"{what}: {wrong[0]} is not valid")
+    if what == "change" and message["what"] != FIELDS[message["field"]]:
+        raise InvalidValue(f"change: {message['field']} is of the {FIELDS[message['field']]}")
     made = {"do": what, **{name: message[name] for name in wanted}}
     if what == "choose":
         made["number"] = int(made["number"])

@@ -106,7 +106,7 @@ class Server:
         except Refused as refused:
             await socket.close(code=WRONG_KEY, message=str(refused).encode())
             return socket
-        except (TimeoutError, ValueError, TypeError, AttributeError):
+        except (TimeoutError, ValueError, TypeError, AttributeError, RecursionError):
             await socket.close(code=WRONG_KEY, message=b"no key was said")
             return socket
         if len(self.readers.all) >= MOST:

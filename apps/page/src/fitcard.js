@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A force curve of text that was dropped: its columns, what C reads of it, and the scene that it becomes.
 
-const FACTORS = { m: 1, mm: 1e-3, um: 1e-6, "µm": 1e-6, nm: 1e-9, pm: 1e-12, N: 1, mN: 1e-3, uN: 1e-6, "µN": 1e-6, nN: 1e-9,
-  pN: 1e-12, V: 1 };
+const LENGTHS = { m: 1, mm: 1e-3, um: 1e-6, "µm": 1e-6, nm: 1e-9, pm: 1e-12 };
+const FORCES = { N: 1, mN: 1e-3, uN: 1e-6, "µN": 1e-6, nN: 1e-9, pN: 1e-12 };
 const FEWEST = 32;
 const ABOVE = 2; // times the pull-off is the least load that is planned for: a limit below it would stop each pull
 
@@ -23,9 +23,9 @@ export function readText(text) {
   const at = [column(/\bz\b|height|position|distance/i, 0), column(/force/i, 1)];
   const factor = at.map((place, i) => {
     const unit = /[([]\s*([a-zµ]+)\s*[)\]]/i.exec(named[place] ?? "")?.[1];
-    return unit ? FACTORS[unit] ?? NaN : i === 0 ? 1 : 1;
+    return unit ? [LENGTHS, FORCES][i][unit] ?? NaN : 1;
   });
-  if (!factor.every(Number.isFinite)) throw new Error(`the units of the columns are not known: ${named.join(", ")}`);
+  if (!factor.every(Number.isFinite)) throw new Error(`units of the columns ${named.join(", ").slice(0, 80)}: valid are a length and a force`);
   const spring = /spring[\s_]*constant[^0-9+-]*([0-9.eE+-]+)/i.exec(head);
   return { z: rows.map((row) => row[at[0]] * factor[0]), force: rows.map((row) => row[at[1]] * factor[1]),
     springConstant: spring ? Number(spring[1]) : NaN };
@@ -34,13 +34,14 @@ export function readText(text) {
 // The card: what the curve shows, and a scene to touch. radius [m] of the tip that measured it.
 export function fitCard(core, { text, radius, springConstant }) {
   const curve = readText(text), { z, force } = curve, spring = Number.isFinite(springConstant) ? springConstant : curve.springConstant;
+  if (Number.isFinite(spring) && !(spring > 0)) throw new Error(`spring constant = ${spring} N/m: valid is above 0`);
   let turn = 0;
   z.forEach((height, i) => { if (height < z[turn]) turn = i; });
   const approach = turn >= 16 ? turn + 1 : 0, retract = z.length - approach >= 16 ? z.length - approach : 0;
   const { found, branches } = core.readCurve(z, force, approach, retract, spring);
   const value = (name) => found.find(([one]) => one === name)[1];
-  const pull = value("pull-off force"), k = Number.isFinite(spring) && spring > 0 ? spring : Infinity;
-  const modulus = core.c.page_hertz(radius, k), largest = Math.max(...branches.flatMap((branch) => branch.force));
+  const pull = value("pull-off force"), k = Number.isFinite(spring) ? spring : Infinity;
+  const modulus = core.c.page_hertz(radius, k), largest = branches.reduce((most, { force: forces }) => forces.reduce((a, b) => Math.max(a, b), most), -Infinity);
   return { found, branches, radius, springConstant: spring, modulus, largest,
     scene: sceneOf(core, { radius, modulus, pull, largest }),
     rig: Number.isFinite(k) ? { probe: { spring_constant: k } } : {} };

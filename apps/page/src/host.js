@@ -7,11 +7,13 @@ import { Hand } from "./hand.js";
 import { inWords } from "./refusals.js";
 import { edged, extremes, ofPreset, PROPERTIES, stretched } from "./subject.js";
 import { Trainer } from "./trainer.js";
+import { digits } from "./units.js";
 
 const INDENTATION = 0.3e-6, ATTRACTION = 0.6e-6, USUAL_CLEARANCE = 0.1e-6; // Eq. 21 and the paper's ranges [m], [N], [m]
 const FELT = 0.3, SEEN = 0.93; // a force at the hand that nobody misses [N]; of a pull-off that a loop shows at least
 const LEAST_CLEARANCE = 20e-9; // [m]
 const USUAL_ACCURACY = 0.01, SCALES = ["gains.alpha_p", "gains.alpha_f"];
+const HIGHEST = 1e-3; // relief of a surface [m]
 const MARGIN = 1.5;
 const LONGEST = 0.03; // of session time that one turn may run [s]: behind that, it slows down visibly
 const OWN = { margin: 0, force: 1, start: 2, master: 3, alpha: 4, bound: 5 };
@@ -64,6 +66,7 @@ export class Host {
     const facts = core.plan();
     const load = this.scene.range.maximum_load, pull = facts.pull_off_force;
     const [low, high] = extremes(map.heights);
+    if (!(high - low <= HIGHEST)) throw new Refused(`the surface is ${digits(high - low, "m")} high: valid is up to ${digits(HIGHEST, "m")}`);
     core.c.page_usual_settings(USUAL_CLEARANCE + INDENTATION + high - low, ATTRACTION);
     const settings = core.get("settings"), { master, probe } = core.get("rig");
     const reach = master.gauge === "yes" ? Math.min(master.gauge_range, master.max_force) : master.max_force;

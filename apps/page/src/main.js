@@ -24,12 +24,13 @@ const fragment = (() => {
     return new URLSearchParams({ wrong: error.message });
   }
 })();
-const framed = window.name === FRAMED && window.parent !== window, key = fragment.get("key");
+const framed = window.name === FRAMED && window.parent !== window;
+const served = /^https?:$/.test(location.protocol), key = served && fragment.get("key"); // a session is where the page came from
 const state = { own: !framed && !key, fields: null, note: (text) => seen.note(text, true) };
 const counters = { draws: 0, updates: 0, bytes: 0, messages: 0, firstTouch: NaN };
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 const KEPT = 200, asked = []; // of what was asked last
-let dirty = true, palette = null;
+let dirty = true, palette = null, task = fragment.get("task");
 
 // --- the parts ---
 
@@ -74,6 +75,8 @@ function hear(message) {
   if (message.tell === "world") {
     if (state.fields) sliders.take(message, state.fields);
     stage.mount(message.scene.tip);
+    if (task && state.own) ask({ do: "task", name: task, lay: true });
+    task = null;
   }
   if (message.tell === "granted" && !message.operates) seen.note("You watch: another one holds the hand.", false);
   if (message.tell === "refused") {
@@ -96,7 +99,7 @@ function begin({ fields }) {
   state.fields = fields;
   if (seen.world) sliders.take(seen.world, fields);
   if (!state.own) return;
-  const preset = fragment.get("preset") ?? "silicon_in_air", scene = fragment.get("scene"), task = fragment.get("task");
+  const preset = fragment.get("preset") ?? "silicon_in_air", scene = fragment.get("scene");
   let laid = false;
   try {
     if (fragment.has("wrong")) throw new Error(fragment.get("wrong"));
@@ -110,7 +113,7 @@ function begin({ fields }) {
   const known = table.presets.some((one) => one.name === preset);
   if (!known) seen.note(`there is no sample ${preset.slice(0, 40)}: this is silicon in air`, true);
   if (!laid) ask({ do: "preset", name: known ? preset : "silicon_in_air" });
-  if (task) ask({ do: "task", name: task, lay: true });
+  if (!served && fragment.get("key")) seen.note("a key opens a running session where its link leads; this is the page alone", true);
 }
 
 // --- light, keys ---

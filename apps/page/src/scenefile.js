@@ -11,7 +11,7 @@ const KNOWN = ["scene", "rig"];
 // {scene: {section: {key: SI}}, rig: {...}} of a text; an error in words names what is wrong.
 export function fromToml(text, fields, units) {
   if (text.length > LONGEST) throw new Error(`a scene of ${text.length} letters: valid are ${LONGEST}`);
-  const tables = parse(text), made = { scene: {}, rig: {} };
+  const tables = parsed(text), made = { scene: {}, rig: {} };
   for (const [section, values] of Object.entries(tables)) {
     const kind = KNOWN.find((one) => fields[one].some((row) => row.name.startsWith(`${section}.`)));
     if (!kind) throw new Error(`unknown section [${section}]`);
@@ -23,6 +23,15 @@ export function fromToml(text, fields, units) {
     }
   }
   return made;
+}
+
+function parsed(text) {
+  try {
+    return parse(text);
+  } catch (error) {
+    const [why, at] = [error.message.split("\n")[0], error.line];
+    throw new Error(at ? `${why} (line ${at})` : why);
+  }
 }
 
 function spellings(row, units) {

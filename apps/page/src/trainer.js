@@ -15,7 +15,7 @@ export class Trainer {
   static presetOf(table, name) {
     if (name === "lesson") name = "lesson-1";
     const found = [...table.tasks, ...table.lesson].find((one) => one.name === name);
-    if (!found) throw new Refused(`task ${name}: valid are ${table.tasks.map((one) => one.name).join(", ")}, lesson`);
+    if (!found) throw new Refused(`task ${name.slice(0, 40)}: valid are ${table.tasks.map((one) => one.name).join(", ")}, lesson`);
     return found.preset;
   }
 
