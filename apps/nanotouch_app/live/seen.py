@@ -26,7 +26,7 @@ TAIL = 0.5  # of the point on the force curve [s]
 TRACE = 30.0  # of the path on the surface [s]
 TRACE_STEP = 0.05  # [s]
 STALE = 0.1  # [s]: what is felt ends when the newest frame is older
-ANSWERS = {"say", "choose", "task", "change", "undo", "redo"}  # what was refused before one of these is past
+ANSWERS = {"say", "choose", "change"}  # what was refused before one of these is past
 READINGS = 0.2  # numbers in words are renewed this often [s]
 
 
