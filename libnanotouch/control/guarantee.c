@@ -2,7 +2,7 @@
  * How far force and indentation can go past their limits (docs/safety.md). The sample that first shows too much is at
  * most one period old; the command that answers it is held, delayed, and followed by the stage: all that is the loop's
  * delay D of rule R1. Until then the tip goes on as fast as stage and surface may move, against at most the lever and
- * the stiffest contact in series. */
+ * the stiffest contact in series, as stiff as it is on the mean of that way (hazard.h). */
 #include <math.h>
 
 #include "nanotouch/guarantee.h"
@@ -37,12 +37,18 @@ const char *nt_failure_name(nt_failure failure)
 typedef struct basis {
     nt_servo_shape shape;
     nt_supervisor supervisor;
-    double share;    /* 3 sigma of k_c, 1 + that */
-    double spring;   /* k_c as stiff as it may be [N/m] */
-    double k_eff;    /* on the stiffest contact [N/m] */
-    double reaction; /* D [s] */
-    double vertical; /* the stage's speed, with hysteresis and what its loop may add [m/s] */
+    double share;                /* 3 sigma of k_c, 1 + that */
+    double spring;               /* k_c as stiff as it may be [N/m] */
+    double k_eff;                /* on the stiffest contact [N/m] */
+    double failing[NT_FAILURES]; /* the same, as far as each failure presses [N/m] */
+    double reaction;             /* D [s] */
+    double vertical;             /* the stage's speed, with hysteresis and what its loop may add [m/s] */
 } basis;
+
+static double in_series(double spring, double stiffness)
+{
+    return spring / (1.0 + spring / stiffness);
+}
 
 static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
 {
@@ -51,7 +57,9 @@ static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_h
     const nt_limits *limits = &settings->limits;
     b.share = 1.0 + NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
     b.spring = b.share * rig->probe.spring_constant;
-    b.k_eff = b.spring / (1.0 + b.spring / hazard->stiffness);
+    b.k_eff = in_series(b.spring, hazard->stiffness);
+    for (int i = 0; i < NT_FAILURES; ++i)
+        b.failing[i] = in_series(b.spring, fmax(hazard->stiffness, hazard->failing[i]));
     nt_rig slave = b.shape.rig;
     slave.master.rate = 0.0; /* a slow master takes no part in a stop */
     b.reaction = nt_margins_loop_delay(&slave, &b.shape.gains);
@@ -101,10 +109,10 @@ static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig,
                         ringing_amplitude(stage, b->shape.gains.stage_damping, stage->max_speed);
     const double tolerance = s->free_force + b->spring * 1e-9;
     found->failure[NT_FAILURE_READ_OUT] = misread(b, limits);
-    found->failure[NT_FAILURE_SENSOR] = b->k_eff * unnoticed(b);
+    found->failure[NT_FAILURE_SENSOR] = b->failing[NT_FAILURE_SENSOR] * unnoticed(b);
     const int follows = b->shape.gains.stage_integral > 0.0; /* without, hysteresis hides a stage that sticks */
-    found->failure[NT_FAILURE_SLIP] = follows ? b->k_eff * fmax(stuck, stage->slip) : HUGE_VAL;
-    found->failure[NT_FAILURE_STAGE] = b->k_eff * runs + tolerance;
+    found->failure[NT_FAILURE_SLIP] = follows ? b->failing[NT_FAILURE_SLIP] * fmax(stuck, stage->slip) : HUGE_VAL;
+    found->failure[NT_FAILURE_STAGE] = b->failing[NT_FAILURE_STAGE] * runs + tolerance;
     double worst = 0.0;
     for (int i = 0; i < NT_FAILURES; ++i)
         worst = fmax(worst, found->failure[i]);
@@ -137,7 +145,8 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
                           .moves_sideways = rig->stage.axes > 1.0,
                           .arrival = hazard->arrival,
                           .zero_drift = b.spring * probe->drift,
-                          .frame_drift = b.k_eff * rig->stage.drift,
+                          .frame_drift = b.spring * rig->stage.drift, /* however deep it presses in the end */
+                          .tare = hazard->tared,
                           .help_time = 0.5 * rig->stage.travel / rig->stage.drift};
     /* (1 + a)/(1 - b) of the limit, a^2/sigma_k^2 + b^2/sigma_S^2 = 9: a + b is at most 3 hypot */
     const double off = NT_GUARANTEE_SIGMAS * hypot(probe->spring_constant_sigma, probe->sensitivity_sigma);
@@ -149,14 +158,14 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     found.ringing = b.k_eff * swing;
     const double sigma = nt_probe_force_noise(probe) / probe->spring_constant;
     found.noise = b.spring * (SIGMAS * sigma + probe->sensitivity * probe->resolution);
-    const double still = limits->force + found.calibration + found.motion + found.ringing + found.noise;
+    const double still = limits->force + found.calibration + found.motion + found.ringing + found.noise + found.tare;
     found.snap_in = fmax(outlasting(&found, &b, hazard, still), hazard->pull_off_force); /* of either sign */
     found.force = still + found.snap_in;
     add_failures(&found, &b, rig, limits);
     /* first touch is noticed where the force leaves the noise, and read with it; a tip that snaps in goes over what
      * that stretches the lever by */
     const double read =
-        (2.0 * found.noise + hazard->pull_off_force + read_error * limits->force) / probe->spring_constant;
+        (2.0 * found.noise + found.tare + hazard->pull_off_force + read_error * limits->force) / probe->spring_constant;
     const double by_travel = limits->indentation + closer + swing + read + hazard->unseen + hazard->snap_in_depth;
     found.indentation = fmin(by_travel, hazard->deepest); /* a hard sample is not pressed in that far by this force */
     return found;

@@ -10,13 +10,17 @@
  *
  * The hand presses on meanwhile, slowly beside the lever: then e/w is constant (adiabatic invariant), w^2 ~ K + k. The
  * peak is the force where V regains its value with that e, at the base that presses with all that can be pressed; how
- * much of it is left by then, the guarantee reckons (ring_down). So peaks between two samples are counted. */
+ * much of it is left by then, the guarantee reckons (ring_down). So peaks between two samples are counted.
+ *
+ * Contact stiffens under load. What the lever's base still comes closer by, once the limit is reached, presses by the
+ * contact's own law: its stiffness is the mean over that way. */
 #include "nanotouch/hazard.h"
 
 #include <math.h>
 
 #include "nanotouch/interaction.h"
 #include "nanotouch/material.h"
+#include "nanotouch/preflight.h"
 #include "nanotouch/supervisor.h"
 
 #define DEEPEST 10e-6 /* an indentation that nobody reaches [m] */
@@ -256,7 +260,63 @@ static double rise_under(const nt_plan *plan, double force)
     return fmax(0.0, gap_of_force(&hard, force, 0.0) - gap_of_force(&soft, force, 0.0));
 }
 
-nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope)
+/* On the mean, from a force on until the lever's base has come closer by `way` [N/m]. */
+static double stiffness_over(const well *w, double force, double way)
+{
+    const double start = gap_of_force(w, force, 0.0), first = law_at(w, start).F;
+    double up = start, down = start - way;
+    for (int i = 0; i < BISECTIONS; ++i) {
+        const double middle = 0.5 * (up + down);
+        if (start - middle + (law_at(w, middle).F - first) / w->spring < way)
+            up = middle;
+        else
+            down = middle;
+    }
+    return down < start ? (law_at(w, down).F - first) / (start - down) : 0.0;
+}
+
+/* The stiffest place under the stiffest lever: as far as the loop goes on past the limit, and from there as each
+ * failure does. */
+static void add_stiffness(nt_hazard *hazard, const nt_plan *plan, const nt_rig *rig, const nt_settings *settings)
+{
+    const nt_guarantee still = nt_guarantee_compute(rig, settings, hazard);
+    const double spring = rig->probe.spring_constant * (1.0 + NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma);
+    const well hard = {.plan = plan, .place = place_of(plan, plan->most.radius, 1), .spring = spring};
+    const double reckoned = spring / (1.0 + spring / hazard->stiffness), moved = still.motion + still.ringing;
+    const double begins = still.force - moved - still.snap_in, way = moved / reckoned;
+    hazard->stiffness = fmax(hazard->stiffness, stiffness_over(&hard, begins, way));
+    const double ends = begins + way * spring / (1.0 + spring / hazard->stiffness);
+    for (int i = 0; i < NT_FAILURES; ++i)
+        if (isfinite(still.failure[i]))
+            hazard->failing[i] = stiffness_over(&hard, ends, still.failure[i] / reckoned);
+}
+
+/* What the sample does to a tip that stands still while the tare is taken, as near as the frame may drift meanwhile. A
+ * tip that is drawn nearer is found where the lever holds it; one that is not held pulls with no more than the pull-off
+ * force [N]. */
+static double force_at_tare(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double clearance)
+{
+    if (!isfinite(clearance))
+        return 0.0;
+    const nt_preflight preflight = nt_preflight_make(rig, settings);
+    const double softest = 1.0 - NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
+    const well w = {.plan = plan,
+                    .place = place_of(plan, plan->most.radius, 1),
+                    .spring = softest * rig->probe.spring_constant / cos(rig->probe.tilt)};
+    const double base = fmax(0.0, clearance - rig->stage.drift * nt_preflight_time(&preflight));
+    const double pushed = law_at(&w, base).F, ratio = pow(NEAREST / FARTHEST, 1.0 / SEARCHES);
+    if (pushed >= 0.0)
+        return pushed;
+    for (double gap = base * ratio; gap > NEAREST; gap *= ratio) {
+        const double pulled = -law_at(&w, gap).F, held = w.spring * (base - gap);
+        if (pulled <= held)
+            return fmin(fmax(0.0, pulled), held);
+    }
+    return plan->largest_pull_off_force;
+}
+
+nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope,
+                       double clearance)
 {
     const nt_probe *lever = &rig->probe;
     const double off = NT_GUARANTEE_SIGMAS * hypot(lever->spring_constant_sigma, lever->sensitivity_sigma);
@@ -265,7 +325,9 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
                         .pull_off_force = plan->largest_pull_off_force,
                         .ring_down = lever->quality / (NT_PI * lever->resonance),
                         .stiffness = plan->maximum_stiffness,
-                        .unseen = unseen_indentation(plan, free_force)};
+                        .tared = force_at_tare(plan, rig, settings, clearance)};
+    hazard.unseen = unseen_indentation(plan, free_force + 0.5 * hazard.tared);
+    add_stiffness(&hazard, plan, rig, settings);
     const nt_guarantee still = nt_guarantee_compute(rig, settings, &hazard);
     hazard.rise = rise_under(plan, still.force);
     for (int side = -1; side <= 1; side += 2) { /* k_c as it may be */

@@ -319,7 +319,8 @@ static inline void fight(nt_session *session, plot *p, dice *d, closeness *found
 {
     static const double lasts[ATTACKS] = {1.0, 0.06, 2.0}; /* of each [s] */
     const double period = nt_session_touch(session)->period;
-    p->hazard = nt_hazard_of(nt_session_plan(session), &p->believed, &p->settings, nt_session_reach(session).slope);
+    p->hazard = nt_hazard_of(nt_session_plan(session), &p->believed, &p->settings, nt_session_reach(session).slope,
+                             p->setup.clearance);
     p->promised = nt_guarantee_compute(&p->believed, &p->settings, &p->hazard);
     const int operators = p->known ? 1 : operators_of(p->kind);
     for (int i = 1; i <= operators; i++)

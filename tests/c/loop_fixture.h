@@ -64,7 +64,7 @@ static inline void loop_push(loop *l, double force, double duration)
 /* What nt_guarantee has in store for a surface of this slope. */
 static inline nt_guarantee promise(const loop *l, double slope)
 {
-    const nt_hazard hazard = nt_hazard_of(&l->plan, &l->touch.rig, &l->touch.settings, slope);
+    const nt_hazard hazard = nt_hazard_of(&l->plan, &l->touch.rig, &l->touch.settings, slope, HUGE_VAL);
     return nt_guarantee_compute(&l->touch.rig, &l->touch.settings, &hazard);
 }
 

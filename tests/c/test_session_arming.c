@@ -158,7 +158,7 @@ static void fields_out_of_range_are_refused_by_name(void **state)
 static double unseen(const nt_session *session, const nt_session_setup *setup)
 {
     const nt_plan *found = nt_session_plan(session);
-    nt_hazard hazard = nt_hazard_of(found, &setup->rig, &setup->settings, 0.0);
+    nt_hazard hazard = nt_hazard_of(found, &setup->rig, &setup->settings, 0.0, HUGE_VAL);
     hazard.deepest = HUGE_VAL; /* by travel alone */
     const nt_guarantee with = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
     hazard.unseen = 0.0;

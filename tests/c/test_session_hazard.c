@@ -11,6 +11,7 @@
 
 #include "larger.h"
 #include "loop_fixture.h"
+#include "session/state.h" /* the truth between two ticks */
 
 static loop l;
 
@@ -60,7 +61,7 @@ static void without_attraction_there_is_none(void **state)
     setup.scene.medium.relative_humidity = 0.0;
     setup.scene.adhesion.work_of_adhesion = setup.scene.adhesion.hamaker_constant = 0.0;
     assert_int_equal(loop_open(&l, &setup), NT_OK);
-    const nt_hazard dry = nt_hazard_of(&l.plan, &l.touch.rig, &l.touch.settings, 0.0);
+    const nt_hazard dry = nt_hazard_of(&l.plan, &l.touch.rig, &l.touch.settings, 0.0, HUGE_VAL);
     /* 18 k_B T of a spring: sqrt(36 k_B T k), and the speed of 7 um/s on the mass k_c/w0^2 */
     const double stiffness = l.plan.maximum_stiffness, mass = 1.0 / pow(2.0 * 3.14159265 * 70e3, 2.0);
     const double most = sqrt(stiffness * (36.0 * 1.38e-23 * 295.0 + mass * 7e-6 * 7e-6));
@@ -77,7 +78,7 @@ static void a_pull_off_counts_where_it_rings_on(void **state)
         nt_session_setup setup = lever(0.1, 30e3, 2e-9);
         setup.rig.probe.quality = quality;
         assert_int_equal(loop_open(&l, &setup), NT_OK);
-        const nt_hazard found = nt_hazard_of(&l.plan, &l.touch.rig, &l.touch.settings, 0.0);
+        const nt_hazard found = nt_hazard_of(&l.plan, &l.touch.rig, &l.touch.settings, 0.0, HUGE_VAL);
         assert_true(found.snap_in >= before && isfinite(found.snap_in));
         before = found.snap_in;
     }
@@ -124,6 +125,81 @@ static void a_stop_needs_help_when_it_says(void **state)
     assert_true(rate < g.frame_drift && rate > 0.5 * g.frame_drift);
 }
 
+/* The truth at its worst while a session runs for so long, over what it promises; promised: that, if not NULL. */
+static double share_reached(const nt_session_setup *setup, const nt_input *input, double seconds,
+                            nt_guarantee *promised)
+{
+    nt_session *session = NULL;
+    assert_int_equal(nt_session_open(&session, setup, NULL), NT_OK);
+    *promised = nt_session_guarantee(session);
+    assert_int_equal(nt_session_aim(session, input, NULL), NT_OK);
+    double worst = 0.0;
+    for (double time = 0.0; time < seconds; time += nt_session_touch(session)->period) {
+        assert_int_equal(nt_session_advance(session, 1), NT_OK);
+        worst =
+            larger(worst, fmax(session->sim.slave.truth.peak_force, fabs(session->sim.slave.truth.tip_force[NT_Z])));
+    }
+    nt_session_close(session);
+    return worst / promised->force;
+}
+
+/* A sharp cone in a gel, under a stiff lever: at the limit of 0.3 nN contact has a twentieth of the stiffness that it
+ * has where the stage turns. */
+static void contact_that_stiffens_beyond_the_limit_is_promised(void **state)
+{
+    (void)state;
+    nt_session_setup setup = lever(50.0, 300e3, 0.3e-9);
+    setup.scene.tip.shape = NT_SHAPE_CONE;
+    setup.scene.tip.half_angle = 1.2;
+    setup.scene.sample.youngs_modulus = 1e6;
+    setup.scene.medium.kind = NT_MEDIUM_LIQUID;
+    setup.scene.adhesion.work_of_adhesion = setup.scene.adhesion.hamaker_constant = 0.0;
+    setup.rig.probe.sensitivity = 5e-9;
+    setup.rig.probe.noise = 1e-4;
+    setup.rig.probe.resolution = 1e-5;
+    setup.rig.stage.max_speed = 2e-3;
+    setup.rig.stage.resolution = setup.rig.stage.command_resolution = 0.0;
+    setup.rig.master.motor = setup.rig.master.gauge = setup.rig.master.resolution = 0.0;
+    setup.settings.control.choice = NT_CONTROL_IMPEDANCE;
+    setup.settings.gains.force_gain = 0.0;
+    setup.settings.gains.stage_integral = 5.0;
+    setup.settings.gains.alpha_p = 1e-3;
+    setup.settings.limits.stage_speed = setup.settings.limits.retract_speed = 1e-3;
+    setup.settings.limits.indentation = 1e-4;
+    setup.clearance = 100e-9;
+    setup.probe_model = NT_PROBE_QUASI_STATIC;
+    const nt_input plunge = {.holds = 1, .master_position[NT_Z] = 9e-3};
+    nt_guarantee promised;
+    const double share = share_reached(&setup, &plunge, 0.1, &promised);
+    print_message("a cone in a gel: %.3f of the %.1f nN that are promised, the limit is 0.3 nN\n", share,
+                  1e9 * promised.force);
+    assert_true(share < 1.0 && share * promised.force > 100e-9); /* 100 nN by the stiffness at the limit */
+}
+
+/* 60 nm above the surface a force of long range pulls with 0.5 nN: the tare takes it off, and nobody reads it. */
+static void what_the_tare_takes_off_is_promised(void **state)
+{
+    (void)state;
+    nt_session_setup setup = lever(0.5, 60e3, 0.5e-9);
+    setup.scene.medium.kind = NT_MEDIUM_LIQUID;
+    setup.scene.medium.yukawa_energy = -0.02;
+    setup.scene.medium.yukawa_length = 50e-9;
+    setup.scene.tip.radius = 50e-9;
+    setup.rig.probe.noise = 1e-3;
+    setup.settings.limits.stage_speed = 1e-7;
+    setup.settings.gains.alpha_f = 1e8;
+    setup.clearance = 60e-9;
+    setup.probe_model = NT_PROBE_QUASI_STATIC;
+    const nt_input rest = {0};
+    nt_guarantee promised;
+    const double pulled = share_reached(&setup, &rest, 0.01, &promised) * promised.force;
+    print_message("the tare takes off %.3f nN of %.3f nN\n", 1e9 * pulled, 1e9 * promised.tare);
+    assert_true(pulled > 0.5e-9 && pulled < promised.tare && promised.tare < 1.1 * pulled);
+    setup.preflight = 0;
+    (void)share_reached(&setup, &rest, 0.001, &promised);
+    assert_true(promised.tare == 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -131,6 +207,8 @@ int main(void)
         cmocka_unit_test(without_attraction_there_is_none),
         cmocka_unit_test(a_pull_off_counts_where_it_rings_on),
         cmocka_unit_test(a_stop_needs_help_when_it_says),
+        cmocka_unit_test(contact_that_stiffens_beyond_the_limit_is_promised),
+        cmocka_unit_test(what_the_tare_takes_off_is_promised),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -137,6 +137,7 @@ static py::dict guarantee_of(const Session &self)
     out["snap_in"] = guarantee.snap_in;
     out["arrival"] = guarantee.arrival;
     out["noise"] = guarantee.noise;
+    out["tare"] = guarantee.tare;
     out["force"] = guarantee.force;
     out["zero_drift"] = guarantee.zero_drift;
     py::dict failures;

@@ -12,21 +12,6 @@ extern "C" {
 
 #define NT_GUARANTEE_SIGMAS 3.0 /* of the calibration */
 
-/* What sample and surface may do meanwhile (hazard.h). */
-typedef struct nt_hazard {
-    double slope; /* of the surface where it is steepest, dilated by the tip [-] */
-    double rise;  /* of a tip that slides from the softest place to the hardest, as deep as it is pressed [m] */
-    double pull_off_force; /* the strongest pull, positive [N] */
-    double snap_in;        /* what the energy of a jump adds at the peak, pressed with all that can be [N] ... */
-    double snap_in_depth;  /* ... and to the indentation [m] */
-    double arrival;        /* the same at first touch, before anything presses [N] */
-    double thermal;        /* what of snap_in is thermal motion, which never dies away [N] */
-    double ring_down;      /* the rest dies away with this time constant, 2 Q/w0 of the lever [s] */
-    double stiffness;      /* of the stiffest contact [N/m] */
-    double unseen;         /* indentation at which the force leaves the noise of the reading [m] */
-    double deepest;        /* indentation that no force presses beyond, as all that is promised presses [m] */
-} nt_hazard;
-
 /* What may fail, one at a time. */
 typedef enum nt_failure {
     NT_FAILURE_READ_OUT, /* the deflection is read with a wrong gain, or its zero drifts away */
@@ -38,6 +23,23 @@ typedef enum nt_failure {
 /* "deflection read wrong", ...; "" for none. */
 NT_API const char *nt_failure_name(nt_failure failure);
 
+/* What sample and surface may do meanwhile (hazard.h). */
+typedef struct nt_hazard {
+    double slope; /* of the surface where it is steepest, dilated by the tip [-] */
+    double rise;  /* of a tip that slides from the softest place to the hardest, as deep as it is pressed [m] */
+    double pull_off_force; /* the strongest pull, positive [N] */
+    double snap_in;        /* what the energy of a jump adds at the peak, pressed with all that can be [N] ... */
+    double snap_in_depth;  /* ... and to the indentation [m] */
+    double arrival;        /* the same at first touch, before anything presses [N] */
+    double thermal;        /* what of snap_in is thermal motion, which never dies away [N] */
+    double ring_down;      /* the rest dies away with this time constant, 2 Q/w0 of the lever [s] */
+    double stiffness;      /* of the stiffest contact, on the mean from the limit to all that is promised [N/m] ... */
+    double failing[NT_FAILURES]; /* ... and on to what a failure adds; 0: no more than that [N/m] */
+    double tared;                /* the sample's force where the tare is taken, which nobody reads from then on [N] */
+    double unseen;               /* indentation at which the force leaves the noise of the reading [m] */
+    double deepest;              /* indentation that no force presses beyond, as all that is promised presses [m] */
+} nt_hazard;
+
 typedef struct nt_guarantee {
     double reaction_time;        /* from the sample that shows it until the stage turns [s] */
     double speed;                /* at which tip and surface come closer, at most [m/s] */
@@ -47,7 +49,8 @@ typedef struct nt_guarantee {
     double snap_in;              /* what is left of the swing of a jump when the force is there [N] */
     double arrival;              /* a snap-in alone presses with this, limit or not [N] */
     double noise;                /* 6 sigma and a step of the reading [N] */
-    double force;                /* limit and all five: never more than this on the sample, either sign [N] */
+    double tare;                 /* the sample's force at the start, which the tare takes off [N] */
+    double force;                /* limit and all six: never more than this on the sample, either sign [N] */
     double zero_drift;           /* and this more for each second since the tare [N/s] */
     double failure[NT_FAILURES]; /* what each adds; infinite where nothing would show it [N] */
     double with_failure;         /* force and the largest of them [N] */

@@ -10,9 +10,11 @@
 extern "C" {
 #endif
 
-/* slope: of the surface where it is steepest, dilated by the tip [-]. Rig and settings have been checked, the plan is
+/* slope: of the surface where it is steepest, dilated by the tip [-]; clearance: of the tip above it where the tare is
+ * taken [m], infinite where none is. Rig and settings have been checked, the plan is
  * for loads up to limits.force. Some milliseconds. */
-NT_API nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope);
+NT_API nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings *settings, double slope,
+                              double clearance);
 
 #ifdef __cplusplus
 }

@@ -43,6 +43,8 @@ class Guarantee(NamedTuple):
     """a snap-in alone presses with this, limit or not [N]"""
     noise: float
     """of the reading [N]"""
+    tare: float
+    """the sample's force at the start, which the tare takes off [N]"""
     force: float
     """limit and all of these: never more than this on the sample, either sign [N]"""
     zero_drift: float
@@ -63,7 +65,7 @@ class Guarantee(NamedTuple):
     @property
     def limit(self) -> float:
         """The force limit in it [N]."""
-        return self.force - (self.calibration + self.motion + self.ringing + self.snap_in + self.noise)
+        return self.force - (self.calibration + self.motion + self.ringing + self.snap_in + self.noise + self.tare)
 
     @property
     def warning(self) -> str | None:
@@ -90,11 +92,12 @@ class Guarantee(NamedTuple):
             failing += f", {(self.force + next_worst) * 1e9:.4g} nN if anything else does"
         if unseen:
             failing += f", but without bound for {' or '.join(unseen)}: nothing would show it"
+        tare = f", tare {self.tare * 1e9:.3g}" if self.tare > 1e-3 * self.force else ""
         lines = [
             f"force on the sample at most {self.force * 1e9:.4g} nN: the limit of {self.limit * 1e9:.4g} nN and "
             f"{terms * 1e9:.4g} nN before a stop shows",
             f"these are calibration {self.calibration * 1e9:.3g}, motion {self.motion * 1e9:.3g}, ringing "
-            f"{self.ringing * 1e9:.3g}, snap-in {self.snap_in * 1e9:.3g}, noise {self.noise * 1e9:.3g} nN; and "
+            f"{self.ringing * 1e9:.3g}, snap-in {self.snap_in * 1e9:.3g}, noise {self.noise * 1e9:.3g}{tare} nN; and "
             f"{self.zero_drift * 1e9:.3g} nN more for each second since the tare",
             f"indentation at most {self.indentation * 1e9:.4g} nm; reaction within {self.reaction_time * 1e3:.2f} ms",
             failing,
