@@ -31,7 +31,7 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
     if (!nt_composition_allows(made, verdict.margin))
         return nt_problem_set(problem, verdict.field, "", verdict.margin, setup->minimum_margin, INFINITY);
     const nt_plan *plan = nt_terrain_plan(made->terrain);
-    const double clearance = setup->preflight ? setup->clearance : INFINITY;
+    const double clearance = setup->preflight ? setup->clearance : HUGE_VAL;
     const nt_hazard hazard = nt_hazard_of(plan, &setup->rig, &setup->settings, made->reach.slope, clearance);
     made->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
     return NT_OK;

