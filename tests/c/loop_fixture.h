@@ -10,6 +10,7 @@ typedef struct loop {
     nt_touch touch;
     nt_touch_state state;
     nt_sim sim;
+    double clearance; /* where a session would take its tare [m] */
     nt_sample sample;   /* as the touch step has seen it */
     nt_command command; /* as the touch step has given it */
 } loop;
@@ -37,6 +38,7 @@ static inline nt_status loop_open(loop *l, const nt_session_setup *setup)
                               .seed = setup->seed,
                               .delay = setup->settings.gains.delay,
                               .probe_model = setup->probe_model};
+    l->clearance = setup->clearance;
     l->state = nt_touch_start(&l->touch, sim.master_position, setup->x, setup->y);
     return nt_sim_init(&l->sim, &sim);
 }
@@ -64,7 +66,7 @@ static inline void loop_push(loop *l, double force, double duration)
 /* What nt_guarantee has in store for a surface of this slope. */
 static inline nt_guarantee promise(const loop *l, double slope)
 {
-    const nt_hazard hazard = nt_hazard_of(&l->plan, &l->touch.rig, &l->touch.settings, slope, HUGE_VAL);
+    const nt_hazard hazard = nt_hazard_of(&l->plan, &l->touch.rig, &l->touch.settings, slope, l->clearance);
     return nt_guarantee_compute(&l->touch.rig, &l->touch.settings, &hazard);
 }
 
