@@ -10,7 +10,7 @@ typedef struct loop {
     nt_touch touch;
     nt_touch_state state;
     nt_sim sim;
-    double clearance; /* where a session would take its tare [m] */
+    double clearance;   /* where a session would take its tare [m] */
     nt_sample sample;   /* as the touch step has seen it */
     nt_command command; /* as the touch step has given it */
 } loop;

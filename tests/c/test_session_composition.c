@@ -61,7 +61,8 @@ static void the_promise_knows_the_slope(void **state)
     const nt_session_setup setup = over_a_ramp();
     nt_session *session = open_session(&setup);
     const nt_plan *plan = nt_session_plan(session);
-    nt_hazard hazard = nt_hazard_of(plan, &setup.rig, &setup.settings, nt_session_reach(session).slope, setup.clearance);
+    nt_hazard hazard =
+        nt_hazard_of(plan, &setup.rig, &setup.settings, nt_session_reach(session).slope, setup.clearance);
     const nt_guarantee with = nt_session_guarantee(session);
     assert_true(with.force == nt_guarantee_compute(&setup.rig, &setup.settings, &hazard).force);
     hazard.slope = 0.0;
