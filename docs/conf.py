@@ -43,6 +43,16 @@ from nanotouch import *
 from nanotouch.contact.geometry import Shape, validity
 """
 html_copy_source = False
+# The tip of the page on pages about physics, where `make page` has built it (build/page): a page, what it touches.
+TOUCH = ROOT / "build/page/nanotouch-touch.html"
+TOUCHED = {
+    "contact": "silicon_in_air",
+    "forces": "silicon_on_gold",
+    "geometry": "polyester",
+    "interaction": "mica_in_air",
+    "yielding": "cell_in_liquid",
+}
+html_extra_path = [str(TOUCH)] if TOUCH.exists() else []
 suppress_warnings = ["ref.python"]  # fields of many records have the same name, such as x
 linkcheck_ignore = [r"https?://localhost.*", r"tcp://.*"]
 sphinx_gallery_conf = {
@@ -100,7 +110,18 @@ def keep_links_inside(app: Any, name: str, source: list[str]) -> None:
     source[0] = re.sub(r"\[([^\]]+)\]\(([^)#:\s]+)\)", plain, source[0])
 
 
+def touch_here(app: Any, name: str, source: list[str]) -> None:
+    """Put the tip at the end of a page about physics."""
+    if name in TOUCHED and TOUCH.exists():
+        preset = TOUCHED[name]
+        frame = f'<iframe src="{TOUCH.name}#preset={preset}" title="a tip over a surface" loading="lazy"'
+        frame += ' style="width:100%; height:34rem; border:0"></iframe>'
+        words = f"Scroll down over the surface, or run `nanotouch live {preset}`."
+        source[0] += f"\n\n## Touch it\n\n{words}\n\n```{{raw}} html\n{frame}\n```\n"
+
+
 def setup(app: Any) -> None:
     """Called by Sphinx."""
+    app.connect("source-read", touch_here)
     app.connect("builder-inited", write_pages)
     app.connect("source-read", keep_links_inside)

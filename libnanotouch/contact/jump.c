@@ -8,6 +8,7 @@
  * non-contact branch, where G is a parabola in c. Approach is apart until the onset of attraction; from there no spring
  * holds it, because the attraction starts with its full stress, and it lands where G is the same again.
  * JKR is Maugis-Dugdale at the largest lambda, right to the last bit; DMT and Hertz have no fold but first touch. */
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -166,7 +167,8 @@ static nt_status dmt_jump(const nt_contact *contact, double spring, nt_jump *jum
     double delta = 0.0;
     if (!isinf(spring)) {
         const landing_context context = {contact, spring};
-        const double bracket[2] = {0.0, nt_dmt_indentation(contact, 0.0)};
+        /* A little wider: without a spring the end is the root, and the rounding of a libm's cbrt may lie below it. */
+        const double bracket[2] = {0.0, (1.0 + 16.0 * DBL_EPSILON) * nt_dmt_indentation(contact, 0.0)};
         const nt_status status =
             bracket[1] > 0.0 ? nt_root_find(landing_excess, &context, bracket, &delta, NULL) : NT_OK;
         if (status != NT_OK)

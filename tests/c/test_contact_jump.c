@@ -136,7 +136,12 @@ static void dmt_and_hertz(void **state)
         assert_within(spring * jump.landed.indentation, -jump.landed.value.F, 1e-13 * pull_off);
         assert_true(jump.landed.indentation > 0.0);
     }
-    assert_within(jump_of(&dmt, 0.0).landed.value.F, 0.0, 1e-14 * pull_off);
+    for (double radius = 1e-9; radius < 1e-6; radius *= 1.01) { /* whatever way the root of a dead weight is rounded */
+        nt_contact_law heavy = dmt;
+        heavy.maugis.contact.radius = radius;
+        const double scale = nt_dmt_pull_off_force(&heavy.maugis.contact);
+        assert_within(jump_of(&heavy, 0.0).landed.value.F, 0.0, 1e-14 * scale);
+    }
     assert_true(jump_of(&dmt, INFINITY).landed.indentation == 0.0);
     const nt_jump none = jump_of(&hertz, 1.0);
     assert_true(none.jump_in_gap == 0.0 && none.pull_off_gap == 0.0 && none.last.value.F == 0.0);
