@@ -26,6 +26,20 @@ static double ringing_amplitude(const nt_stage *stage, double zeta, double speed
     return fmax(4.0 / NT_PI * gain, all) * speed / (2.0 * NT_PI * stage->resonance);
 }
 
+/* A bare resonance overshoots a step by exp(-pi zeta/sqrt(1 - zeta^2)) of it. */
+static double overshoot(const nt_stage *stage)
+{
+    const double zeta = 0.5 / stage->quality;
+    return zeta < 1.0 ? exp(-NT_PI * zeta / sqrt(1.0 - zeta * zeta)) : 0.0;
+}
+
+/* A command in steps is off by up to half of one. The bare resonance behind it makes of that at most the integral of
+ * its |impulse response|, coth(pi zeta/(2 sqrt(1 - zeta^2))): steps that come in time with it [m]. */
+static double stepping_amplitude(const nt_stage *stage)
+{
+    return 0.5 * stage->command_resolution * (1.0 + overshoot(stage)) / (1.0 - overshoot(stage));
+}
+
 const char *nt_failure_name(nt_failure failure)
 {
     static const char *const names[NT_FAILURES] = {"deflection read wrong", "deflection sensor dead",
@@ -92,13 +106,6 @@ static double unnoticed(const basis *b)
     return s->stuck_distance > 0.0 ? fmax(b->vertical * NT_STUCK_SAMPLES * s->period, s->stuck_distance) : HUGE_VAL;
 }
 
-/* A bare resonance overshoots a step by exp(-pi zeta/sqrt(1 - zeta^2)) of it. */
-static double overshoot(const nt_stage *stage)
-{
-    const double zeta = 0.5 / stage->quality;
-    return zeta < 1.0 ? exp(-NT_PI * zeta / sqrt(1.0 - zeta * zeta)) : 0.0;
-}
-
 static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig, const nt_limits *limits)
 {
     const nt_stage *stage = &rig->stage;
@@ -139,7 +146,8 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     const nt_limits *limits = &settings->limits;
     const basis b = basis_of(rig, settings, hazard);
     const nt_probe *probe = &b.shape.rig.probe;
-    const double swing = ringing_amplitude(&rig->stage, b.shape.gains.stage_damping, b.vertical);
+    const double swing = ringing_amplitude(&rig->stage, b.shape.gains.stage_damping, b.vertical) +
+                         stepping_amplitude(&b.shape.rig.stage);
     const double read_error = NT_GUARANTEE_SIGMAS * probe->sensitivity_sigma;
     nt_guarantee found = {.reaction_time = b.reaction,
                           .moves_sideways = rig->stage.axes > 1.0,

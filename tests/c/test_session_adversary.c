@@ -58,7 +58,11 @@ static void what_once_broke_it_keeps_it(void **state)
     static const struct {
         attack kind;
         long seed;
-    } once[] = {{ATTACK_QUASI_STATIC, 304352}, {ATTACK_FAULT, 644}, {ATTACK_FAULT, 9008454}};
+    } once[] = {{ATTACK_QUASI_STATIC, 304352},
+                {ATTACK_FAULT, 644},
+                {ATTACK_FAULT, 9008454},
+                {ATTACK_FAULT, 9504496},
+                {ATTACK_FAULT, 9510630}};
     for (size_t i = 0; i < sizeof once / sizeof *once; i++) {
         const closeness found = run_seed(once[i].kind, once[i].seed);
         assert_true(found.opened);

@@ -45,7 +45,7 @@ typedef struct nt_guarantee {
     double speed;                /* at which tip and surface come closer, at most [m/s] */
     double calibration;          /* of the limit, if k_c and sensitivity are off by 3 sigma [N] */
     double motion;               /* stage and surface come closer meanwhile, times stiffness [N] */
-    double ringing;              /* the stage's resonance, excited by its own commands [N] */
+    double ringing;              /* the stage's resonance, excited by its own commands and their steps [N] */
     double snap_in;              /* what is left of the swing of a jump when the force is there [N] */
     double arrival;              /* a snap-in alone presses with this, limit or not [N] */
     double noise;                /* 6 sigma and a step of the reading [N] */
