@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy bench lint format clean
+.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy windows bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -67,6 +67,9 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@build/dev/tests/c/test_fit_memory every
 	@cmake --build --preset dev --target test_session_adversary
 	@$(VENV)/python tests/heavy/guarantee.py
+
+windows:  ## the C tests of the portable core on 64-bit Windows, by MinGW and Wine; some minutes
+	@tests/windows/run.sh
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test
