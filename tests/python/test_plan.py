@@ -50,7 +50,7 @@ def test_validity_is_of_the_largest_load() -> None:
 
 def test_plans_are_copied_and_pickled() -> None:
     scene, rig = presets.paper_polyester()
-    plan = scene.plan(rtol=1e-4, probe=rig)
+    plan = scene.plan(rtol=1e-4, rig=rig)
     assert copy.copy(plan) is plan
     assert copy.deepcopy([plan])[0] is plan  # immutable
     again = pickle.loads(pickle.dumps(plan))
@@ -67,9 +67,9 @@ def test_plan_over_a_surface_is_pickled() -> None:
     assert str(pickle.loads(pickle.dumps(plan))) == str(plan)
 
 
-def test_probe_is_a_rig() -> None:
-    with pytest.raises(TypeError, match="probe must be a Rig, not float"):
-        Scene().plan(probe=8.0)  # type: ignore[arg-type]
+def test_rig_is_a_rig() -> None:
+    with pytest.raises(TypeError, match="rig must be a Rig, not float"):
+        Scene().plan(rig=8.0)  # type: ignore[arg-type]
 
 
 LIQUID = {"kind": "liquid", "ionic_strength": 33.0, "hydration_energy": 0.01}
@@ -227,7 +227,7 @@ def test_what_cannot_be_felt_is_left_out(name: str, atol: float) -> None:
 def test_a_probe_adds_its_noise_and_changes_nothing(name: str, rtol: float) -> None:
     """8 N/m, 33 nm/V and 50 mV peak to peak leave 2.2 nN of noise."""
     scene, rig = getattr(presets, name)()
-    plan, felt = scene.plan(rtol=rtol), scene.plan(rtol=rtol, probe=rig)
+    plan, felt = scene.plan(rtol=rtol), scene.plan(rtol=rtol, rig=rig)
     facts = felt.explain()
     assert facts.pop("probe_noise") == pytest.approx(rig.probe.spring_constant * 33e-9 * 0.05 / 6.0, rel=1e-12)
     without = plan.explain()
@@ -245,7 +245,7 @@ def test_a_session_makes_the_plan_of_its_demand(rtol: float) -> None:
     scene, rig = presets.mica_in_air()
     session = Session(scene, rig, rtol=rtol, minimum_margin=0.0, preflight=False)
     scene.range.maximum_load = session.settings.limits.force
-    assert str(session.plan) == str(scene.plan(rtol=rtol, probe=rig))
+    assert str(session.plan) == str(scene.plan(rtol=rtol, rig=rig))
     assert session.plan.pull_off_force > 1e-9
     assert random_scenes.keeps(session.plan, rtol)
 

@@ -26,7 +26,7 @@ def test_a_first_touch_warns_of_nothing(name: str) -> None:
     assert session.plan.warnings == []
     assert session.settings.limits.force == scene.range.maximum_load
     assert session.settings.gains.set_point <= 0.5 * scene.range.maximum_load
-    assert str(session.plan) == str(scene.plan(probe=rig))
+    assert str(session.plan) == str(scene.plan(rig=rig))
 
 
 def test_the_default_touch_warns_of_nothing() -> None:
@@ -121,7 +121,7 @@ def test_a_touch_from_air_to_air(name: str) -> None:
 def test_the_noise_of_the_lever_is_as_said() -> None:
     for name, times in (("silicon_in_air", 8.2), ("mica_in_air", 12.3)):
         scene, rig = getattr(presets, name)()
-        plan = scene.plan(probe=rig)
+        plan = scene.plan(rig=rig)
         assert plan.pull_off_force / plan.explain()["probe_noise"] == pytest.approx(times, abs=0.1)
     gold = presets.silicon_on_gold()[0].plan(rtol=0.0)
     assert -float(gold.law("electrostatic", 0.0).F) == pytest.approx(0.26e-9, rel=0.01)

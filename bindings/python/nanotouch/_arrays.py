@@ -34,7 +34,7 @@ def check_between(name: str, value: float, unit: str, *, above: float, up_to: fl
         raise InvalidValue(f"{name} = {value:g} {unit}".rstrip() + f": it must be {span} {unit}".rstrip())
 
 
-class Law(NamedTuple):
+class LawValue(NamedTuple):
     """What every law returns; each an array of the input's shape, or a float for a scalar.
 
     ``F = dU/d(indentation)``, ``k = dF/d(indentation)``; force + repulsive.
@@ -50,9 +50,9 @@ class Law(NamedTuple):
     """contact radius [m]"""
 
 
-def as_law(columns: tuple[Floats, Floats, Floats, Floats]) -> Law:
-    """Arrays of the C library as a :class:`Law`; 0-d becomes float."""
-    return Law(*(column if column.ndim else float(column) for column in columns))
+def as_law(columns: tuple[Floats, Floats, Floats, Floats]) -> LawValue:
+    """Arrays of the C library as a :class:`LawValue`; 0-d becomes float."""
+    return LawValue(*(column if column.ndim else float(column) for column in columns))
 
 
 def plain(values: Floats) -> Any:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Forces between a tip and a flat at a gap [m]: in air (paper, Eq. 1, with the errata corrected) and in liquid.
 
-Each law returns a :class:`Law` of arrays (or floats): energy, force (- attractive), stiffness, and a contact radius of
-0; F = -dU/dh, k = -dF/dh. Gap and parameters broadcast against each other; all are SI. Below the minimum gap the force
+Each law returns a :class:`LawValue` of arrays (or floats): energy, force (- attractive), stiffness, and a contact radius
+of 0; F = -dU/dh, k = -dF/dh. Gap and parameters broadcast against each other; all are SI. Below the minimum gap the force
 stays as it is there. docs/forces.md says what each law leaves out and how it was checked.
 """
 
@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Floats, Law, as_floats, as_law, check_between
+from nanotouch._arrays import Floats, LawValue, as_floats, as_law, check_between
 from nanotouch.errors import InvalidValue
 
 Boundary = Literal["potential", "charge"]
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 
 
-def _evaluate(law: Callable[[Floats, Floats], _core.LawColumns], gap: ArrayLike, **parameters: ArrayLike) -> Law:
+def _evaluate(law: Callable[[Floats, Floats], _core.LawColumns], gap: ArrayLike, **parameters: ArrayLike) -> LawValue:
     """A law over the gaps; its parameters in the order of the C struct: one row for all gaps, or one for each.
 
     A function whose signature has that order hands on ``locals()``, all of what it was given."""
@@ -41,7 +41,7 @@ def vdw(
     hamaker_constant: ArrayLike,
     roughness: ArrayLike = 0.0,
     minimum_gap: ArrayLike = 0.2e-9,
-) -> Law:
+) -> LawValue:
     """Van der Waals, exact Hamaker sphere: -2 H R^3/(3 s^2 (s + 2R)^2), s = max(gap, minimum_gap) + roughness/2."""
     return _evaluate(_core.vdw_eval, **locals())
 
@@ -53,7 +53,7 @@ def vdw_derjaguin(
     hamaker_constant: ArrayLike,
     roughness: ArrayLike = 0.0,
     minimum_gap: ArrayLike = 0.2e-9,
-) -> Law:
+) -> LawValue:
     """Van der Waals, the paper's form -H R/(6 s^2), for s << R only: +36 % at 10 nm for R = 30 nm (erratum E1)."""
     return _evaluate(_core.vdw_derjaguin_eval, **locals())
 
@@ -67,7 +67,7 @@ def vdw_tip(
     height: ArrayLike,
     roughness: ArrayLike = 0.0,
     minimum_gap: ArrayLike = 0.2e-9,
-) -> Law:
+) -> LawValue:
     """Van der Waals of a whole tip, a cone (half-angle [rad], height [m]) rounded by a sphere: Hamaker's sum, exact.
 
     A cone without end is Argento and French, J. Appl. Phys. 80 (1996) 6081.
@@ -82,7 +82,7 @@ def capillary(
     surface_tension: ArrayLike = 0.072,
     meniscus_radius: ArrayLike,
     film_thickness: ArrayLike = 0.0,
-) -> Law:
+) -> LawValue:
     """Force of a standing meniscus: -4 pi gamma R [1 - (gap - 2e)/(2 r1)], the bracket held in 0..1 (erratum E3)."""
     return _evaluate(_core.capillary_eval, **locals())
 
@@ -90,7 +90,7 @@ def capillary(
 class CapillaryPath(NamedTuple):
     """The capillary force along a path of gaps."""
 
-    law: Law
+    law: LawValue
     """at every gap; nothing where there is no bridge"""
     bridged: bool
     """whether a bridge stands after the last gap"""
@@ -115,14 +115,16 @@ def capillary_path(
     return CapillaryPath(as_law(columns), stands)
 
 
-def electrostatic(gap: ArrayLike, *, radius: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> Law:
+def electrostatic(
+    gap: ArrayLike, *, radius: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9
+) -> LawValue:
     """Conducting sphere at a potential [V] against a plane: -pi eps0 U^2 R^2/(h (h + R)) (Hudlet; erratum E5)."""
     return _evaluate(_core.electrostatic_eval, **locals())
 
 
 def electrostatic_plate(
     gap: ArrayLike, *, area: ArrayLike, potential: ArrayLike, minimum_gap: ArrayLike = 0.2e-9
-) -> Law:
+) -> LawValue:
     """Parallel plates of an area [m^2], -eps0 S U^2/(2 h^2): the paper's form, whose S = 4 pi R r1 is E5's mistake."""
     return _evaluate(_core.electrostatic_plate_eval, **locals())
 
@@ -135,7 +137,7 @@ def electrostatic_tip(
     height: ArrayLike,
     potential: ArrayLike,
     minimum_gap: ArrayLike = 0.2e-9,
-) -> Law:
+) -> LawValue:
     """Apex sphere and cone, of half-angle [rad] and height [m], at a potential [V] (Hudlet et al. 1998).
 
     In place of :func:`electrostatic`; the cone's integral is taken over its finite height.
@@ -143,7 +145,7 @@ def electrostatic_tip(
     return _evaluate(_core.electrostatic_tip_eval, **locals())
 
 
-def point_charge(gap: ArrayLike, *, radius: ArrayLike, charge: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> Law:
+def point_charge(gap: ArrayLike, *, radius: ArrayLike, charge: ArrayLike, minimum_gap: ArrayLike = 0.2e-9) -> LawValue:
     """Charge [C] trapped under a grounded sphere (image charge, exact): -q^2 R (R + h)/(4 pi eps0 (h (h + 2R))^2)."""
     return _evaluate(_core.point_charge_eval, **locals())
 
@@ -157,7 +159,7 @@ def electrostatic_lever(
     tip_height: ArrayLike,
     potential: ArrayLike,
     minimum_gap: ArrayLike = 0.2e-9,
-) -> Law:
+) -> LawValue:
     """Lever at a potential [V], to be added to the tip: a plate tilted by b [rad] in the field of the wedge below it.
 
     -eps0 U^2 w l cos(b) (sin(b)/b)^2/(2 D (D + l sin(b))), D = tip_height + gap; edges are neglected.
@@ -172,7 +174,7 @@ def lennard_jones(
     work_of_adhesion: ArrayLike,
     equilibrium_distance: ArrayLike = 0.2e-9,
     minimum_gap: ArrayLike = 0.1e-9,
-) -> Law:
+) -> LawValue:
     """Rigid sphere and half-space with the 9-3 wall: 2 pi R w/3 [(z0/h)^8 - 4 (z0/h)^2] (Bradley 1932; Derjaguin).
 
     ``gap`` is measured between the surface atoms: -2 pi w R at h = z0.
@@ -190,7 +192,7 @@ def double_layer(
     relative_permittivity: ArrayLike = 78.5,
     boundary: Boundary = "potential",
     minimum_gap: ArrayLike = 0.2e-9,
-) -> Law:
+) -> LawValue:
     """Electric double layers: U = pi eps R [A ln(1 + e^-x) + B ln(1 - e^-x)], x = gap/debye_length.
 
     With S = (psi_1 + psi_2)^2, D = (psi_1 - psi_2)^2 of the potentials [V] that the surfaces have when alone:
@@ -220,7 +222,7 @@ def hydration(
     second_amplitude: ArrayLike = 0.0,
     second_decay_length: ArrayLike = 1e-9,
     minimum_gap: ArrayLike = 0.0,
-) -> Law:
+) -> LawValue:
     """Hydration (amplitude > 0) or hydrophobic (< 0) force, one or two terms: 2 pi R Sum W_i exp(-h/l_i).
 
     Amplitudes W_i are energies of plates at gap 0 [J/m^2] (Israelachvili 2011, ch. 15).
@@ -237,7 +239,7 @@ def steric(
     temperature: ArrayLike = 298.15,
     minimum_gap: ArrayLike = 0.2e-9,
     exponential: bool = False,
-) -> Law:
+) -> LawValue:
     """Polymer brushes (Alexander, de Gennes): 2 pi R Int_h^T p, p = kT/s^3 [(T/h)^(9/4) - (h/T)^(3/4)], 0 beyond T.
 
     ``thickness`` T is that of both free brushes together, ``spacing`` s the distance of chains. ``exponential``: the

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Law, as_floats, as_law, check_between, plain
+from nanotouch._arrays import LawValue, as_floats, as_law, check_between, plain
 from nanotouch.errors import InvalidValue
 
 Model = Literal["hertz", "dmt", "jkr", "maugis"]
@@ -86,7 +86,7 @@ def branch_index(branch: Branch) -> int:
     return BRANCHES.index(branch)
 
 
-def evaluate(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> Law:
+def evaluate(model: Model, indentation: ArrayLike, contact: Contact, branch: Branch = "stable") -> LawValue:
     """Energy [J], force [N], stiffness [N/m] and contact radius [m] at an indentation [m], broadcast over arrays."""
     return as_law(contact.law(model).eval(as_floats(indentation, "indentation"), branch_index(branch)))
 
@@ -123,14 +123,14 @@ def cohesive_stress_atomic(work_of_adhesion: float, equilibrium_distance: float)
     return _core.cohesive_stress_atomic(work_of_adhesion, equilibrium_distance)
 
 
-def cone(indentation: ArrayLike, effective_modulus: float, half_angle: float) -> Law:
+def cone(indentation: ArrayLike, effective_modulus: float, half_angle: float) -> LawValue:
     """Sneddon's cone of half-angle psi [rad] at an indentation [m]: F = 2/pi E* tan(psi) delta^2."""
     check_between("effective_modulus", effective_modulus, "Pa", above=0.0)
     check_between("half_angle", half_angle, "rad", above=0.0, up_to=1.57)
     return as_law(_core.cone_eval(effective_modulus, half_angle, as_floats(indentation, "indentation")))
 
 
-def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> Law:
+def punch(indentation: ArrayLike, effective_modulus: float, radius: float) -> LawValue:
     """Flat punch of a radius [m] at an indentation [m]: F = 2 E* a delta."""
     check_between("effective_modulus", effective_modulus, "Pa", above=0.0)
     check_between("radius", radius, "m", above=0.0)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Floats, Law, as_floats, as_law, check_between, plain
+from nanotouch._arrays import Floats, LawValue, as_floats, as_law, check_between, plain
 from nanotouch.contact import BRANCHES, Branch, Contact
 from nanotouch.errors import InvalidValue
 
@@ -79,7 +79,7 @@ def _with_modulus(values: ArrayLike, name: str, effective_modulus: ArrayLike) ->
     return _pair(values, name, effective_modulus, "effective_modulus")
 
 
-def evaluate(shape: Shape, indentation: ArrayLike, effective_modulus: ArrayLike) -> Law:
+def evaluate(shape: Shape, indentation: ArrayLike, effective_modulus: ArrayLike) -> LawValue:
     """Energy [J], force [N], stiffness [N/m], contact radius [m] at an indentation [m], without adhesion.
 
     With the profile f(r) of the shape: delta = a Int f'/sqrt(a^2 - r^2) dr, F = 2 E* Int r^2 f'/sqrt(a^2 - r^2) dr,
@@ -95,7 +95,7 @@ def evaluate(shape: Shape, indentation: ArrayLike, effective_modulus: ArrayLike)
 
     Returns
     -------
-    Law
+    LawValue
         Four arrays of shape (...), or floats.
     """
     return as_law(shape._law.eval(*_with_modulus(indentation, "indentation", effective_modulus)))
@@ -130,7 +130,7 @@ def _adhesive(shape: Shape, effective_modulus: float, work_of_adhesion: float) -
 
 def jkr(
     shape: Shape, indentation: ArrayLike, effective_modulus: float, work_of_adhesion: float, branch: Branch = "stable"
-) -> Law:
+) -> LawValue:
     """JKR adhesion of a paraboloid, cone (Maugis, Barquins 1983) or punch (Kendall 1971) at an indentation [m].
 
     delta = delta_0(a) - s, F = F_0(a) - 2 E* a s, s = sqrt(2 pi w a/E*). Branches as in :mod:`nanotouch.contact`; NaN
@@ -221,7 +221,7 @@ class StageDisplacement(NamedTuple):
     """delta [m]"""
     deflection: Any
     """zeta of the lever [m]"""
-    law: Law
+    law: LawValue
     """the tip at that indentation"""
 
 

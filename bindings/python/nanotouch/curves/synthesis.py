@@ -14,7 +14,7 @@ from ..contact import geometry
 from ..errors import InvalidValue
 from .curve import ForceCurve, Segment
 
-Law = Literal["maugis", "jkr", "dmt", "hertz", "cone", "pyramid"]
+CurveModel = Literal["maugis", "jkr", "dmt", "hertz", "cone", "pyramid"]
 
 _TABLE = 20_001  # points of the law between which it is taken as straight: below 1e-8 of the force
 _FOLD = 1e-12  # of the depth, by which the table starts inside the displacement fold
@@ -22,7 +22,7 @@ _FOLD = 1e-12  # of the depth, by which the table starts inside the displacement
 
 def synthesise(
     contact: laws.Contact,
-    model: Law = "maugis",
+    model: CurveModel = "maugis",
     *,
     spring_constant: float,
     depth: float = 60e-9,

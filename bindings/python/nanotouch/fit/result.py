@@ -19,7 +19,7 @@ from .models import BUILT_IN, Floats
 from .points import Branch
 from .show import Page, Row, as_html, as_text, between, newton
 from .show import with_sigma as with_sigma
-from .touched import Law, scene_of
+from .touched import FittedLaw, scene_of
 from .uncertainties import Uncertainties
 
 Status = Literal["ok", "undetermined", "misfit", "not converged"]
@@ -172,7 +172,7 @@ class FitResult:
             raise InvalidValue(f"{self.name}: the curve does not determine {' and '.join(unknown)}: no scene")
         if self.model not in {model.name for model in BUILT_IN}:
             raise InvalidValue(f"model {self.model!r} is none of contact alone: a scene cannot have it as its contact")
-        law = Law(
+        law = FittedLaw(
             model=self.model,
             radius=self.radius,
             half_angle=self.half_angle,

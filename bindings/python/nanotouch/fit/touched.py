@@ -18,7 +18,7 @@ _SHARP = {"cone": 0, "pyramid": 4}  # sides
 _RANGE_OVER_Z0 = 9.0 * math.sqrt(3.0) / 16.0
 
 
-class Law(NamedTuple):
+class FittedLaw(NamedTuple):
     """A contact as a fit has it, SI."""
 
     model: str
@@ -32,7 +32,7 @@ class Law(NamedTuple):
     largest_load: float
 
 
-def scene_of(law: Law, poisson_ratio: float) -> Scene:
+def scene_of(law: FittedLaw, poisson_ratio: float) -> Scene:
     """A dry scene of this contact, without forces that were not fitted."""
     scene = Scene()
     scene.medium.relative_humidity = scene.adhesion.hamaker_constant = 0.0
@@ -59,7 +59,7 @@ def youngs_modulus(scene: Scene, effective_modulus: float) -> float:
     return float((1.0 - scene.sample.poisson_ratio**2) / (1.0 / effective_modulus - tip))
 
 
-def _range_of(law: Law) -> float:
+def _range_of(law: FittedLaw) -> float:
     """h0 [m] by lambda = 2 w/h0 (R/(pi w K^2))^(1/3) where the model has none."""
     if math.isfinite(law.cohesive_range):
         return law.cohesive_range
@@ -70,4 +70,4 @@ def _range_of(law: Law) -> float:
     return float(np.clip(reach, field.minimum * _RANGE_OVER_Z0 * 1.000001, field.maximum * _RANGE_OVER_Z0))
 
 
-__all__ = ["Law", "scene_of", "youngs_modulus"]
+__all__ = ["FittedLaw", "scene_of", "youngs_modulus"]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .._arrays import Floats
 from ..errors import InvalidValue
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
-from ..fit.touched import Law, scene_of, youngs_modulus
+from ..fit.touched import FittedLaw, scene_of, youngs_modulus
 from ..images import Topography, fill
 from ..images.values import LEAST_SHARE, Fill
 from ..scene import Scene
@@ -39,7 +39,7 @@ def to_scene(data: Any, *, poisson_ratio: float = 0.3) -> Scene:
     radius = settings.radius or ASSUMED_RADIUS
     angle = settings.half_angle or ASSUMED_HALF_ANGLE
     return scene_of(
-        Law(
+        FittedLaw(
             model=settings.model,
             radius=radius,
             half_angle=angle,

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import forces as laws
-from nanotouch._arrays import Floats, Law, as_floats
+from nanotouch._arrays import Floats, LawValue, as_floats
 from nanotouch.reference._half_space import Layer
 from nanotouch.reference._pressures import Pressure
 from nanotouch.reference._yielding import Yielded, Yielding
@@ -71,10 +71,10 @@ def _pressure(scene: Scene, hold: float) -> Pressure:
     return Pressure(pressure, energy, ends, diverges=brush > 10.0 * hold)  # bodies with brushes do not touch
 
 
-def _laws(scene: Scene) -> list[Callable[[Floats], Law]]:
+def _laws(scene: Scene) -> list[Callable[[Floats], LawValue]]:
     tip, sample, medium, distance = scene.tip, scene.sample, scene.medium, scene.adhesion.equilibrium_distance
     radius: dict[str, Any] = {"radius": tip.radius}
-    found: list[Callable[[Floats], Law]] = []
+    found: list[Callable[[Floats], LawValue]] = []
     if scene.adhesion.hamaker_constant > 0.0:
         found.append(
             lambda g: laws.vdw_derjaguin(

@@ -168,7 +168,7 @@ class Scene(SceneFields, core_type=_core.Scene):
         rtol: float = 0.01,
         atol: float = 0.0,
         quantity: Quantity = "force",
-        probe: Rig | None = None,
+        rig: Rig | None = None,
         budget: float | None = None,
         surface: Surface | None = None,
     ) -> Plan:
@@ -184,7 +184,7 @@ class Scene(SceneFields, core_type=_core.Scene):
         quantity : str
             What has to be that accurate: ``"force"``, ``"stiffness"``, ``"radius"`` (of contact), ``"folds"`` (their
             gaps, under grips).
-        probe : Rig, optional
+        rig : Rig, optional
             Tells the force noise of its probe beside the plan; what is computed stays the same.
         budget : float, optional
             What one evaluation may cost, in Hertz evaluations.
@@ -203,7 +203,7 @@ class Scene(SceneFields, core_type=_core.Scene):
         demand = Demand(
             demand={"relative_accuracy": rtol, "force_floor": atol, "quantity": quantity, "budget": budget or 0.0}
         )
-        return Plan.make(self, demand, probe, surface)
+        return Plan.make(self, demand, rig, surface)
 
 
 class Demand(DemandFields, core_type=_core.Demand):

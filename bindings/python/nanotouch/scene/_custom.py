@@ -14,7 +14,7 @@ from nanotouch import _core
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.units import UNITS, key_spellings, to_si
 
-Law = Callable[..., float]
+TermLaw = Callable[..., float]
 LONGEST_NAME = 31
 GROUP = "nanotouch.terms"
 
@@ -24,10 +24,10 @@ class CustomTerm:
     """A law of one's own, equal to itself alone; see :func:`register`."""
 
     name: str
-    energy: Law
-    force: Law
-    stiffness: Law
-    bound: Law
+    energy: TermLaw
+    force: TermLaw
+    stiffness: TermLaw
+    bound: TermLaw
     parameters: Mapping[str, float | str | None] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     version: int = 1
@@ -100,10 +100,10 @@ _known: dict[str, CustomTerm] = {}
 def register(
     name: str,
     *,
-    energy: Law,
-    force: Law,
-    stiffness: Law,
-    bound: Law,
+    energy: TermLaw,
+    force: TermLaw,
+    stiffness: TermLaw,
+    bound: TermLaw,
     parameters: Mapping[str, float | str | None] | None = None,
     units: Mapping[str, str] | None = None,
     version: int = 1,

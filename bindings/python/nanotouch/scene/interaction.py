@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Floats, Law, as_floats, as_law
+from nanotouch._arrays import Floats, LawValue, as_floats, as_law
 from nanotouch.errors import InvalidValue
 from nanotouch.scene.plan import History as History
 from nanotouch.scene.plan import Plan, begins_attached
@@ -83,7 +83,7 @@ class Interaction:
         """Force on the tip [N] along a path of gaps [m] over a flat, in their order, committing history."""
         return self.run_law(gaps).F
 
-    def run_law(self, gaps: ArrayLike) -> Law:
+    def run_law(self, gaps: ArrayLike) -> LawValue:
         """Energy, force, stiffness and contact radius along a path of gaps [m]."""
         return as_law(self._core.run_gaps(as_floats(gaps, "gaps")))
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nanotouch import _core
-from nanotouch._arrays import Law, as_floats, as_law, plain
+from nanotouch._arrays import LawValue, as_floats, as_law, plain
 from nanotouch._io import html
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Demand, Rig, Scene
@@ -40,16 +40,16 @@ class Plan:
 
     @classmethod
     def make(
-        cls, scene: Scene, demand: Demand | None = None, probe: Rig | None = None, surface: Surface | None = None
+        cls, scene: Scene, demand: Demand | None = None, rig: Rig | None = None, surface: Surface | None = None
     ) -> Plan:
         """The cheapest plan that keeps a demand; see :meth:`nanotouch.Scene.plan`."""
         wanted = Demand() if demand is None else demand
-        if not isinstance(probe, Rig | None):
-            raise TypeError(f"probe must be a Rig, not {type(probe).__name__}")
-        rig = None if probe is None else probe.copy()
+        if not isinstance(rig, Rig | None):
+            raise TypeError(f"rig must be a Rig, not {type(rig).__name__}")
+        own = None if rig is None else rig.copy()
         with scene.naming_terms():
-            terrain = make_terrain(scene, wanted, rig, surface)
-        return cls(terrain.plan, (scene.copy(), wanted.copy(), rig, surface))
+            terrain = make_terrain(scene, wanted, own, surface)
+        return cls(terrain.plan, (scene.copy(), wanted.copy(), own, surface))
 
     @property
     def terms(self) -> list[Term]:
@@ -138,7 +138,7 @@ class Plan:
         """What the bound does not cover: laws outside their validity, descriptions that disagree, losses."""
         return [Warning(*warning) for warning in self._facts["warnings"]]
 
-    def law(self, term: str, gap: ArrayLike) -> Law:
+    def law(self, term: str, gap: ArrayLike) -> LawValue:
         """One law of the scene alone, in full, whether the plan has it or not, at gaps [m]; of contact what holds on
         the way out, NaN beyond its fold."""
         return as_law(self.core.term_eval(self._number_of(term), as_floats(gap, "gap")))
@@ -178,7 +178,7 @@ class Plan:
         """Force on the tip [N] along a path of gaps [m], in their order, starting apart or in contact."""
         return self.run(gap, history).F
 
-    def run(self, gap: ArrayLike, history: History = "approach") -> Law:
+    def run(self, gap: ArrayLike, history: History = "approach") -> LawValue:
         """Energy, force, stiffness and contact radius along a path of gaps [m]."""
         contact = _core.Interaction(self.core)
         contact.state = (begins_attached(history), 0.0, 0.0)
@@ -228,17 +228,11 @@ def begins_attached(history: History) -> bool:
     return history == "retract"
 
 
-def terrain_of(scene: Scene, surface: Surface | None, accuracy: float = 0.01) -> _core.Terrain | None:
-    """The terrain of a surface for an accuracy of the force; None for a flat."""
-    demand = Demand(demand={"relative_accuracy": accuracy})
-    return None if surface is None else make_terrain(scene, demand, None, surface)
-
-
-def make_terrain(scene: Scene, demand: Demand, probe: Rig | None, surface: Surface | None) -> _core.Terrain:
+def make_terrain(scene: Scene, demand: Demand, rig: Rig | None, surface: Surface | None) -> _core.Terrain:
     """Surface, effective radii, bank of tables and plan of a scene, each made once (docs/surface.md). A surface that no
     tip has dilated has no radii."""
     parts = (None, None, None) if surface is None else surface.parts
-    return _core.Terrain(scene.core, demand.core, None if probe is None else probe.core, *parts)
+    return _core.Terrain(scene.core, demand.core, None if rig is None else rig.core, *parts)
 
 
 class Reach(NamedTuple):

@@ -13,10 +13,10 @@ from nanotouch.scene import Settings
 Control = Literal["default", "paper", "impedance"]
 CONTROLS: tuple[Control, ...] = get_args(Control)
 #: one's own law: from :class:`nanotouch._core.Signals` to motor force [N] and where the stage shall be [m]
-Law = Callable[[_core.Signals], tuple[float, float]]
+ControlLaw = Callable[[_core.Signals], tuple[float, float]]
 
 
-def choose_control(settings: Settings, control: str | Law) -> str:
+def choose_control(settings: Settings, control: str | ControlLaw) -> str:
     """The name of the law, which the settings then have too; ``"own"`` for a callable."""
     if callable(control):
         return "own"

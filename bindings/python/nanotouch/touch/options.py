@@ -15,7 +15,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import margins
-from nanotouch.touch._control import Control, Law, choose_control
+from nanotouch.touch._control import Control, ControlLaw, choose_control
 from nanotouch.touch._plant import ProbeModel
 from nanotouch.touch.faults import Faults
 from nanotouch.touch.hal import Master, SharedObject, Slave
@@ -40,7 +40,7 @@ class Options(TypedDict, total=False):
 
     rate: float | None
     """of the force loop [Hz]; by default that of the settings, 10 kHz"""
-    control: Control | Law
+    control: Control | ControlLaw
     """the control law (docs/control.md): "default", "paper", "impedance"; or one's own, a function of the signals of a
     period (:class:`nanotouch._core.Signals`) that returns the motor force [N] and where the stage shall be [m], under
     the same supervisor and limits. It is tried before the session opens, to know its margins (``minimum_margin=0`` arms

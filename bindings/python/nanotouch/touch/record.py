@@ -25,7 +25,7 @@ from nanotouch._io.writing import BLOCK_ROWS
 from nanotouch._io.writing import replacing as replacing
 from nanotouch._io.writing import write_csv as write_csv
 from nanotouch.errors import Error, InvalidValue, ReadError, require
-from nanotouch.touch._control import Law
+from nanotouch.touch._control import ControlLaw
 from nanotouch.touch._recorder import ENCODING, INCOMPLETE, recovered_name
 from nanotouch.touch._recorder import Metadata as Metadata
 from nanotouch.touch._recorder import Writer as Writer
@@ -150,7 +150,7 @@ class Recording(Columns):
         base: NDArray[np.float64] = self.parameter("start_height") - self.stage_position
         return base + math.cos(tilt) * self.deflection
 
-    def replay(self, control: Law | None = None) -> Recording:
+    def replay(self, control: ControlLaw | None = None) -> Recording:
         """Feed what was measured to the touch step again: the same commands to the last bit, on the same machine.
 
         Of a session that went back, what was not taken back: :meth:`without_rewinds`.

@@ -13,7 +13,7 @@ from nanotouch.curves import ForceCurve
 from nanotouch.curves.curve import Role, Segment
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Rig, Settings
-from nanotouch.touch._control import CONTROLS, Law
+from nanotouch.touch._control import CONTROLS, ControlLaw
 from nanotouch.touch._path import MODES, core_mode
 from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
 from nanotouch.touch.columns import SIDEWAYS
@@ -32,7 +32,7 @@ NAMED = ("mode", "setting", "scene")
 """whose first one is a name"""
 
 
-def replay(recording: Recording, control: Law | None = None) -> Recording:
+def replay(recording: Recording, control: ControlLaw | None = None) -> Recording:
     """Settings, requests and samples are those recorded; motor force, stage command, state and reasons are new.
 
     Bit by bit the same on one machine and build. Elsewhere a compiler may round differently: then within 1e-9 of the

@@ -16,7 +16,7 @@ from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.scene.plan import Plan
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import _live, _told, margins
-from nanotouch.touch._control import CONTROLS, Control, Law, choose_control
+from nanotouch.touch._control import CONTROLS, Control, ControlLaw, choose_control
 from nanotouch.touch._open import TOLD, Frozen, Runs, as_now
 from nanotouch.touch._path import MODES, Mode, checked_path, core_mode
 from nanotouch.touch._plant import ProbeModel, plant_options
@@ -32,7 +32,7 @@ from nanotouch.touch.record import Metadata, Recording, Writer
 from nanotouch.touch.supervisor import REASONS, Guarantee
 
 __all__ = [
-    "CONTROLS", "MODES", "REASONS", "Calm", "Columns", "Control", "Law", "Margins", "Mode", "Options", "Pace",
+    "CONTROLS", "MODES", "REASONS", "Calm", "Columns", "Control", "ControlLaw", "Margins", "Mode", "Options", "Pace",
     "ProbeModel", "Progress", "Session", "choose_control", "settings_for_path",
 ]  # fmt: skip
 
