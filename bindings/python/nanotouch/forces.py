@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Forces between a tip and a flat at a gap [m]: in air (paper, Eq. 1, with the errata corrected) and in liquid.
 
-Each law returns a :class:`LawValue` of arrays (or floats): energy, force (- attractive), stiffness, and a contact radius
-of 0; F = -dU/dh, k = -dF/dh. Gap and parameters broadcast against each other; all are SI. Below the minimum gap the force
-stays as it is there. docs/forces.md says what each law leaves out and how it was checked.
+Each law returns a :class:`LawValue` of arrays (or floats): energy, force (- attractive), stiffness, and a contact
+radius of 0; F = -dU/dh, k = -dF/dh. Gap and parameters broadcast against each other; all are SI. Below the minimum gap
+the force stays as it is there. docs/forces.md says what each law leaves out and how it was checked.
 """
 
 from __future__ import annotations
