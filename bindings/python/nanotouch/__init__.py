@@ -19,6 +19,7 @@ _HOMES = {
     "Input": "touch.operator",
     "Recording": "touch.record",
     "Demand": "scene",
+    "Drive": "tapping",
     "Interaction": "scene.interaction",
     "Plan": "scene.plan",
     "Rig": "scene",
@@ -28,10 +29,11 @@ _HOMES = {
     "Supervisor": "touch.supervisor",
     "Surface": "scene.surface",
     "SurfaceFile": "scene.surface_file",
+    "Tapping": "tapping",
 }
 #: the public modules by their rooms; all are names of the package: ``nt.margins`` is ``nanotouch.touch.margins``
 _ROOMS = {
-    "": "batch contact curves errors fit forces images maps plots reference scene touch units",
+    "": "batch contact curves errors fit forces images maps plots reference scene tapping touch units",
     "contact.": "geometry",
     "scene.": "interaction materials plan presets surface surface_file view",
     "touch.": "commands faults frames hal margins operator record rig_file session",

@@ -12,6 +12,7 @@ from nanotouch import maps as maps
 from nanotouch import plots as plots
 from nanotouch import reference as reference
 from nanotouch import scene as scene
+from nanotouch import tapping as tapping
 from nanotouch import touch as touch
 from nanotouch import units as units
 from nanotouch.contact import Contact as Contact
@@ -35,6 +36,8 @@ from nanotouch.scene.interaction import Interaction as Interaction
 from nanotouch.scene.plan import Plan as Plan
 from nanotouch.scene.surface import Surface as Surface
 from nanotouch.scene.surface_file import SurfaceFile as SurfaceFile
+from nanotouch.tapping import Drive as Drive
+from nanotouch.tapping import Tapping as Tapping
 from nanotouch.touch import commands as commands
 from nanotouch.touch import faults as faults
 from nanotouch.touch import frames as frames
@@ -54,6 +57,7 @@ __version__: str
 __all__ = [
     "Contact",
     "Demand",
+    "Drive",
     "Error",
     "Faults",
     "FitResult",
@@ -69,6 +73,7 @@ __all__ = [
     "Supervisor",
     "Surface",
     "SurfaceFile",
+    "Tapping",
     "Topography",
     "__version__",
     "batch",
@@ -98,6 +103,7 @@ __all__ = [
     "session",
     "surface",
     "surface_file",
+    "tapping",
     "touch",
     "units",
     "view",

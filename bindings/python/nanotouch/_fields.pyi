@@ -558,6 +558,27 @@ class SettingsFields(Description, core_type=_core.Settings):
     @property
     def limits(self) -> SettingsLimits: ...
 
+class DriveDrive(Section):
+    at: Literal["tip", "base"]
+    """where the lever is driven: by a force at its tip, or by shaking its base"""
+    frequency: float
+    """frequency f of the drive, 0 for the free resonance [Hz], 0 .. 1e+09"""
+    free_amplitude: float
+    """amplitude A0 of the deflection, far from the surface [m], 1e-11 .. 1e-06"""
+
+class DriveDriveValues(TypedDict, total=False):
+    at: Literal["tip", "base"]
+    frequency: float
+    free_amplitude: float
+
+class DriveSections(TypedDict, total=False):
+    drive: DriveDriveValues
+
+class DriveFields(Description, core_type=_core.Drive):
+    def __init__(self, **sections: Unpack[DriveSections]) -> None: ...
+    @property
+    def drive(self) -> DriveDrive: ...
+
 class Columns:
     time: NDArray[float64]
     """time since the start [s]"""

@@ -99,6 +99,8 @@ void bind_descriptions(py::module_ &module)
     bind_described<nt_demand>(module, "Demand", fields, count, nt_demand_defaults, nt_demand_check);
     fields = nt_rig_fields(&count);
     bind_described<nt_rig>(module, "Rig", fields, count, nt_rig_defaults, nt_rig_check);
+    fields = nt_drive_fields(&count);
+    bind_described<nt_drive>(module, "Drive", fields, count, nt_drive_defaults, nt_drive_check);
     fields = nt_settings_fields(&count);
     bind_described<nt_settings>(module, "Settings", fields, count, settings_of_default_rig, nt_settings_check)
         .def("keep_to",

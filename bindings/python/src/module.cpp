@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, module)
     bind_plan(module);
     bind_terrain(module);
     bind_interaction(module);
+    bind_tapping(module);
     bind_view(module);
     bind_curves(module);
     bind_control(module);

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * The description of a scan, and the stability of its z loop: K_I/(i w) x S(i w) x P(i w) x lock-in x delay. */
+#include <math.h>
+#include <stddef.h>
+
+#include "core/problem.h"
+#include "nanotouch/material.h"
+#include "nanotouch/scan.h"
+
+#define FIELD(path, ...) NT_FIELD(nt_scan, path, __VA_ARGS__)
+#define GAIN_MARGIN 2.0
+#define PHASE_MARGIN (0.25 * NT_PI)
+enum { FREQUENCIES = 2000 };
+
+static const nt_field scan_fields[] = {
+    FIELD(zloop.mode, "contact|tapping", 0.0, 1.0, "what the loop keeps: the deflection, or the amplitude"),
+    FIELD(zloop.set_force, "N", -1e-5, 1e-4, "set point of contact mode"),
+    FIELD(zloop.set_amplitude, "", 0.05, 0.99, "set point of tapping mode, over the free amplitude"),
+    FIELD(zloop.integral, "1/s", 0.0, 1e7,
+          "integral gain K_I, 0 for the largest with a gain margin of 2 and 45 degrees"),
+    FIELD(zloop.rate, "Hz", 1e2, 1e7, "ticks of the loop per second"),
+    FIELD(zloop.lock_in, "s", 0.0, 1.0, "time constant of the lock-in amplifier"),
+    FIELD(zloop.noise, "m", 0.0, 1e-7, "noise of one reading of deflection or amplitude, standard deviation"),
+    FIELD(raster.x, "m", -1e-3, 1e-3, "x of the lower left corner"),
+    FIELD(raster.y, "m", -1e-3, 1e-3, "y of the lower left corner"),
+    FIELD(raster.width, "m", 1e-9, 1e-3, "width of the scan"),
+    FIELD(raster.height, "m", 1e-9, 1e-3, "height of the scan, across the lines"),
+    FIELD(raster.pixels, "", 4.0, 8192.0, "pixels of a line"),
+    FIELD(raster.lines, "", 1.0, 8192.0, "lines"),
+    FIELD(raster.line_rate, "Hz", 1e-3, 1e4, "lines, there and back, per second"),
+    FIELD(raster.tilt_x, "", -0.2, 0.2, "slope of the sample along x, against the scanner"),
+    FIELD(raster.tilt_y, "", -0.2, 0.2, "slope of the sample along y, against the scanner"),
+    FIELD(raster.drift, "m/s", -1e-6, 1e-6, "drift of the sample towards the tip"),
+};
+
+enum { SCAN_FIELDS = (int)(sizeof scan_fields / sizeof scan_fields[0]) };
+
+nt_scan nt_scan_defaults(void)
+{
+    return (nt_scan){.zloop = {.mode = NT_ZLOOP_TAPPING,
+                               .set_force = 1e-9,
+                               .set_amplitude = 0.7,
+                               .rate = 50e3,
+                               .lock_in = 20e-6,
+                               .noise = 20e-12},
+                     .raster = {.width = 1e-6, .height = 1e-6, .pixels = 256.0, .lines = 256.0, .line_rate = 1.0}};
+}
+
+const nt_field *nt_scan_fields(int *count)
+{
+    if (count != NULL)
+        *count = SCAN_FIELDS;
+    return scan_fields;
+}
+
+nt_status nt_scan_check(const nt_scan *scan, nt_problem *problem)
+{
+    return nt_field_check(scan_fields, SCAN_FIELDS, scan, problem);
+}
+
+/* Size and lag of the open loop with K_I = 1, at a frequency [rad/s]. */
+static double open_loop(const nt_scanner *s, double w, double *lag)
+{
+    const nt_stage *stage = &s->stage.stage;
+    const double r = w / (2.0 * NT_PI * stage->resonance), real = 1.0 - r * r, imaginary = r / stage->quality;
+    double size = 1.0 / w / hypot(real, imaginary);
+    *lag = 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
+    if (s->scan.zloop.mode == NT_ZLOOP_TAPPING) {
+        const double amplifier = w * s->scan.zloop.lock_in, lever = 2.0 * w * s->lever.quality / s->lever.rate;
+        size /= hypot(1.0, amplifier) * hypot(1.0, lever);
+        *lag += atan(amplifier) + atan(lever);
+    }
+    return size;
+}
+
+static double frequency_at(const nt_scanner *s, int i)
+{
+    const double first = 1e-3, last = NT_PI / s->period;
+    return first * pow(last / first, (double)i / (FREQUENCIES - 1));
+}
+
+/* Largest size of the open loop with K_I = 1 where its lag is at least this. */
+static double largest_beyond(const nt_scanner *s, double least_lag)
+{
+    double most = 0.0;
+    for (int i = 0; i < FREQUENCIES; i++) {
+        double lag;
+        const double size = open_loop(s, frequency_at(s, i), &lag);
+        if (lag >= least_lag)
+            most = fmax(most, size);
+    }
+    return most;
+}
+
+double nt_scanner_gain(const nt_scanner *scanner)
+{
+    const double by_gain = 1.0 / (GAIN_MARGIN * largest_beyond(scanner, NT_PI));
+    const double by_phase = 1.0 / largest_beyond(scanner, NT_PI - PHASE_MARGIN);
+    return fmin(by_gain, by_phase);
+}
+
+nt_zloop_margins nt_scanner_margins(const nt_scanner *scanner)
+{
+    nt_zloop_margins found = {1.0 / (scanner->integral * largest_beyond(scanner, NT_PI)), NT_PI, 0.0};
+    for (int i = 0; i < FREQUENCIES; i++) {
+        double lag;
+        const double w = frequency_at(scanner, i);
+        if (scanner->integral * open_loop(scanner, w, &lag) < 1.0)
+            continue;
+        found.phase = fmin(found.phase, NT_PI - lag);
+        found.speed = w;
+    }
+    return found;
+}
+
+double nt_scanner_speed(const nt_scanner *scanner, double slope, double error)
+{
+    return scanner->integral * error / fabs(slope);
+}
+
+double nt_scanner_parachute(const nt_scanner *scanner, double height, double speed)
+{
+    const nt_zloop *loop = &scanner->scan.zloop;
+    const double error = loop->mode == NT_ZLOOP_TAPPING ? (1.0 - loop->set_amplitude) * scanner->lever.free_amplitude
+                                                        : loop->set_force / scanner->probe.spring_constant;
+    return speed * height / (scanner->integral * error);
+}
