@@ -56,6 +56,7 @@ html_extra_path = [str(TOUCH)] if TOUCH.exists() else []
 suppress_warnings = ["ref.python"]  # fields of many records have the same name, such as x
 linkcheck_ignore = [r"https?://localhost.*", r"tcp://.*"]
 sphinx_gallery_conf = {
+    "image_scrapers": ("gallery_figures.drawn_figures", "matplotlib"),
     "examples_dirs": ["examples/gallery", "examples/notebooks"],
     "gallery_dirs": ["gallery", "notebooks"],
     "filename_pattern": r"/plot_",
