@@ -164,7 +164,15 @@ set(nanotouch_sources_control
 set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
-set(nanotouch_sources_hosted hal/load.c hal/loop.c hal/timed_loop.c hal/linux/realtime.c hal/linux/spidev.c)
+set(nanotouch_sources_hosted
+    hal/linux/realtime.c
+    hal/linux/spidev.c
+    hal/load.c
+    hal/loop.c
+    hal/mailbox.c
+    hal/mailbox_half.c
+    hal/shared_memory.c
+    hal/timed_loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpio_lines_of_half.c hal/linux/gpiod.c)
 set(nanotouch_sources_session
     session/arming.c
@@ -186,7 +194,6 @@ set(nanotouch_sources_session
     session/run.c
     session/session.c
     session/setup.c
-    session/shared_memory.c
     session/terrain.c
     session/terrain_reach.c)
 set(nanotouch_sources_fit

@@ -51,7 +51,7 @@ HEADERS = {
     **dict.fromkeys(["commands", "frames", "hazard", "observer"], "session"),
     **dict.fromkeys(["chips", "converters"], "hal/chips"),
     **dict.fromkeys(["hal_linux", "hal_spi", "realtime"], "hal/linux"),
-    "timing": "hal",
+    **dict.fromkeys(["mailbox", "timing"], "hal"),
 }
 
 # What the portable layers may take from the C library: nothing that allocates, prints or knows an operating system.
@@ -59,7 +59,8 @@ PORTABLE = USES.keys() - {"hal", "hal/linux", "session", "fit"}
 SYSTEM_HEADERS = {
     "complex", "float", "inttypes", "limits", "math", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "string",
 }  # fmt: skip
-HOSTED_FILES = {"hal/load.c", "hal/loop.c", "hal/timed_loop.c"}  # of hal, what is outside the portable core
+# Of hal, what is outside the portable core.
+HOSTED_FILES = {f"hal/{name}.c" for name in ("load", "loop", "mailbox", "mailbox_half", "shared_memory", "timed_loop")}
 PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 
 # The modules and packages of the Python library from the bottom up; each may import what stands before it.

@@ -8,6 +8,7 @@
 #include "session/frames_memory.h"
 
 _Static_assert(sizeof(nt_frame) == 184 && sizeof(nt_frame_slot) == 192, "three cache lines");
+_Static_assert((int)NT_NAME_SIZE == (int)NT_GIVEN_NAME_SIZE, "what shared memory allows");
 _Static_assert(sizeof(nt_request) == 48 && sizeof(nt_answer) == 24, "as documented");
 
 nt_frame nt_frame_unknown(void)

@@ -36,7 +36,7 @@ _ROOMS = {
     "": "batch contact curves errors fit forces images maps plots reference scene tapping touch units",
     "contact.": "geometry",
     "scene.": "interaction materials plan presets surface surface_file view",
-    "touch.": "commands faults frames hal margins operator record rig_file session",
+    "touch.": "commands faults frames hal mailbox margins operator record rig_file session",
 }
 _MODULES = {name: room + name for room, names in _ROOMS.items() for name in names.split()}
 

@@ -61,8 +61,7 @@ struct PythonHalf : Half {
     nt_backend backend{};
     std::shared_ptr<Host> host = std::make_shared<Host>(Host{nullptr});
     uint64_t sequence = 0;
-    std::vector<std::string> words; // names and units of the channels
-    std::vector<nt_channel_row> rows;
+    Rows channels;
     std::exception_ptr error; // the first one that a method has raised
 
     PythonHalf(py::object given, nt_half half);
@@ -106,45 +105,45 @@ static nt_status open_python(void *context, const nt_host *host, nt_problem *)
     });
 }
 
-static nt_channel_row row_of(PythonHalf &half, const py::handle &channel)
+void Rows::take(const py::list &channels)
 {
-    const auto word = [&](const char *attribute) {
-        half.words.push_back(channel.attr(attribute).cast<std::string>());
-        return half.words.back().c_str();
+    words.clear();
+    words.reserve(2 * channels.size()); // so that none of them moves
+    rows.clear();
+    for (const py::handle channel : channels) {
+        const auto word = [&](const char *attribute) {
+            words.push_back(channel.attr(attribute).cast<std::string>());
+            return words.back().c_str();
+        };
+        const auto number = [&](const char *attribute) { return channel.attr(attribute).cast<double>(); };
+        rows.push_back({word("name"), word("unit"), channel.attr("driven").cast<bool>(),
+                        channel.attr("axis").cast<int>(), number("minimum"), number("maximum"), number("step"),
+                        number("noise"), number("latency"), number("safe")});
+    }
+}
+
+uint32_t can_of(const py::object &capabilities)
+{
+    if (!py::isinstance(capabilities, hal_name("Capabilities")))
+        throw py::type_error("describe: it must return a nanotouch.hal.Capabilities, not " +
+                             py::repr(capabilities).cast<std::string>());
+    const auto bit = [&](const char *name, uint32_t value) {
+        return capabilities.attr(name).cast<bool>() ? value : 0u;
     };
-    const auto number = [&](const char *attribute) { return channel.attr(attribute).cast<double>(); };
-    return {word("name"),
-            word("unit"),
-            channel.attr("driven").cast<bool>(),
-            channel.attr("axis").cast<int>(),
-            number("minimum"),
-            number("maximum"),
-            number("step"),
-            number("noise"),
-            number("latency"),
-            number("safe")};
+    return bit("feels", NT_CAN_FEEL) | bit("pushes", NT_CAN_PUSH) | bit("servos", NT_CAN_SERVO) |
+           bit("event_driven", NT_IS_EVENT_DRIVEN);
 }
 
 static nt_status describe_python(void *context, nt_capabilities *capabilities)
 {
     return guarded(context, [capabilities](PythonHalf &half) {
         const py::object found = half.self.attr("describe")();
-        if (!py::isinstance(found, hal_name("Capabilities")))
-            throw py::type_error("describe: it must return a nanotouch.hal.Capabilities, not " +
-                                 py::repr(found).cast<std::string>());
-        const auto bit = [&](const char *name, uint32_t value) { return found.attr(name).cast<bool>() ? value : 0u; };
-        capabilities->can = bit("feels", NT_CAN_FEEL) | bit("pushes", NT_CAN_PUSH) | bit("servos", NT_CAN_SERVO) |
-                            bit("event_driven", NT_IS_EVENT_DRIVEN) | NT_IS_SLOW;
+        capabilities->can = can_of(found) | NT_IS_SLOW;
         capabilities->axes = found.attr("axes").cast<int>();
         capabilities->period = found.attr("period").cast<double>();
-        const auto channels = found.attr("channels").cast<py::list>();
-        half.words.clear();
-        half.words.reserve(2 * channels.size()); // so that none of them moves
-        half.rows.clear();
-        for (const py::handle channel : channels)
-            half.rows.push_back(row_of(half, channel));
-        capabilities->rows = static_cast<int>(half.rows.size());
-        capabilities->channels = half.rows.data();
+        half.channels.take(found.attr("channels").cast<py::list>());
+        capabilities->rows = static_cast<int>(half.channels.rows.size());
+        capabilities->channels = half.channels.rows.data();
     });
 }
 
@@ -203,6 +202,19 @@ static uint32_t flags_of(const py::object &names)
     return flags;
 }
 
+void take_measured(const py::object &given, nt_reading &reading)
+{
+    reading.valid = numbers_of(given, "position", reading.position) << NT_READS_POSITION;
+    reading.valid |= numbers_of(given, "felt", reading.felt) << NT_READS_FELT;
+    reading.flags = flags_of(given.attr("flags"));
+    reading.buttons = number_of<uint32_t>(given.attr("buttons"), "buttons", "whole numbers, 0 .. 2^32 - 1");
+}
+
+int64_t time_of(const py::object &given)
+{
+    return number_of<int64_t>(given, "time", "whole nanoseconds, -2^63 .. 2^63 - 1");
+}
+
 static void fill(PythonHalf &half, const py::object &found, nt_reading &reading)
 {
     if (!py::isinstance(found, half.reading_type))
@@ -210,18 +222,14 @@ static void fill(PythonHalf &half, const py::object &found, nt_reading &reading)
                              py::repr(found).cast<std::string>());
     nt_reading made{};
     made.size = reading.size;
-    made.valid = numbers_of(found, "position", made.position) << NT_READS_POSITION;
-    made.valid |= numbers_of(found, "felt", made.felt) << NT_READS_FELT;
-    made.flags = flags_of(found.attr("flags"));
-    made.buttons = number_of<uint32_t>(found.attr("buttons"), "buttons", "whole numbers, 0 .. 2^32 - 1");
+    take_measured(found, made);
     const py::object number = found.attr("sequence"), time = found.attr("time");
     if (!number.is_none() && (!PyLong_Check(number.ptr()) || number < py::int_(0)))
         throw py::value_error("read: sequence = " + py::repr(number).cast<std::string>() +
                               ": valid are whole numbers from 0 up");
     made.sequence = half.sequence =
         number.is_none() ? half.sequence + 1u : number_of<uint64_t>(number, "sequence", "whole numbers, 0 .. 2^64 - 1");
-    made.time = time.is_none() ? half.host->get().now(half.host->host)
-                               : number_of<int64_t>(time, "time", "whole nanoseconds, -2^63 .. 2^63 - 1");
+    made.time = time.is_none() ? half.host->get().now(half.host->host) : time_of(time);
     reading = made;
 }
 
@@ -275,11 +283,13 @@ std::shared_ptr<Half> half_of(const py::object &given, nt_half half)
         return std::make_shared<ModuleHalf>(given, half);
     if (py::isinstance(given, py::module_::import("nanotouch.touch.rig_file").attr("Converters")))
         return converter_half_of(given, half);
+    if (py::isinstance(given, hal_name("Mailbox")))
+        return mailbox_half_of(given, half);
     if (py::isinstance(given, hal_name(half == NT_HALF_MASTER ? "Master" : "Slave")))
         return std::make_shared<PythonHalf>(given, half);
     throw py::type_error(std::string(names[half]) + ": " + py::repr(given).cast<std::string>() +
                          " is neither a nanotouch.hal." + (half == NT_HALF_MASTER ? "Master" : "Slave") +
-                         " nor a nanotouch.hal.SharedObject");
+                         ", a nanotouch.hal.SharedObject nor a Mailbox");
 }
 
 // --- the rehearsal ---
@@ -329,8 +339,7 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
     const nt_half half = is_master ? NT_HALF_MASTER : NT_HALF_SLAVE;
     const std::shared_ptr<Half> made = half_of(given, half);
     if (!made)
-        throw py::type_error(
-            "rehearse: None is neither a nanotouch.hal.Master, a Slave nor a nanotouch.hal.SharedObject");
+        throw py::type_error("rehearse: None is neither a nanotouch.hal.Master, a Slave, a SharedObject nor a Mailbox");
     Stage stage{real, 0, {}};
     const nt_host host = {sizeof host, NT_HAL_API_VERSION, stage_now, stage_say, &stage};
     const nt_configuration configuration = {sizeof configuration, 0, period, 1e-6, made->option.c_str()};
@@ -355,6 +364,7 @@ static py::tuple rehearse(const py::object &given, bool is_master, double period
 void bind_hal(py::module_ &module)
 {
     bind_converters(module);
+    bind_mailbox(module);
     py::class_<Host, std::shared_ptr<Host>>(module, "Host")
         .def("now", [](const Host &self) { return self.get().now(&self.get()); })
         .def("say", [](const Host &self, const std::string &text) { self.get().say(&self.get(), text.c_str()); });

@@ -19,6 +19,7 @@
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
 #include "nanotouch/interaction.h"
+#include "nanotouch/mailbox.h"
 #include "nanotouch/material.h"
 #include "nanotouch/observer.h"
 #include "nanotouch/plan.h"

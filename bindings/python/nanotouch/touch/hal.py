@@ -222,6 +222,13 @@ class SharedObject:
         object.__setattr__(self, "option", option)
 
 
+@dataclass(frozen=True)
+class Mailbox:
+    """A half in another process, by the name of its mailbox (:mod:`nanotouch.mailbox`, docs/devices.md)."""
+
+    name: str
+
+
 class Rehearsed(NamedTuple):
     """What was seen in a rehearsal."""
 
@@ -234,7 +241,7 @@ class Rehearsed(NamedTuple):
 
 
 def rehearse(
-    half: Master | Slave | SharedObject,
+    half: Master | Slave | SharedObject | Mailbox,
     *,
     slave: bool = False,
     period: float = 1e-3,
@@ -245,10 +252,10 @@ def rehearse(
 
     Parameters
     ----------
-    half : Master, Slave or SharedObject
+    half : Master, Slave, SharedObject or Mailbox
         What to try.
     slave : bool
-        Which half a shared object is.
+        Which half a shared object or a mailbox is.
     period : float
         Of the loop [s].
     duration : float

@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Private: a block of memory that has a name and one owner. The owner holds a lock on it, which the system takes away
  * when its process ends, however it ends: so a block without a lock is left over and may go. */
-#ifndef NANOTOUCH_SESSION_SHARED_MEMORY_H
-#define NANOTOUCH_SESSION_SHARED_MEMORY_H
+#ifndef NANOTOUCH_HAL_SHARED_MEMORY_H
+#define NANOTOUCH_HAL_SHARED_MEMORY_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "nanotouch/frames.h"
+#include "nanotouch/status.h"
 
-enum { NT_SHARED_NAME_SIZE = 96 };
+enum {
+    NT_GIVEN_NAME_SIZE = 65, /* [byte] of the name that a user gives, with its ending 0 */
+    NT_SHARED_NAME_SIZE = 96 /* of the system's */
+};
 
 typedef struct nt_shared {
     void *memory; /* whole pages; NULL: none */
@@ -19,8 +22,9 @@ typedef struct nt_shared {
     char name[NT_SHARED_NAME_SIZE];
 } nt_shared;
 
-/* All 0 at first. kind: "frames" or "commands", part of the system's name for it. name NULL: private memory. Status as
- * of nt_frames_create; after a failure nothing needs to be closed. */
+/* All 0 at first. kind: "frames", "commands", "mailbox" or "claim", part of the system's name for it. name NULL:
+ * private memory. NT_E_STATE if a living owner, or another user, has the name; NT_E_RANGE for a bad name;
+ * NT_E_NO_MEMORY; NT_E_DEVICE if the system refuses otherwise. After a failure nothing needs to be closed. */
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size);
 /* Is this the process that made it? Asks the system. */
 int nt_shared_is_own(const nt_shared *shared);
@@ -31,5 +35,7 @@ void nt_shared_close(nt_shared *shared);
 
 /* The monotonic clock, the same for all processes [ns]; 0 if it fails. */
 uint64_t nt_shared_clock(void);
+/* Waits for 0.2 ms. */
+void nt_shared_nap(void);
 
 #endif

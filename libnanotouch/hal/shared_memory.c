@@ -4,7 +4,7 @@
 #define _DEFAULT_SOURCE
 #endif
 
-#include "session/shared_memory.h"
+#include "hal/shared_memory.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static nt_status make_name(char *full, const char *kind, const char *name)
 {
     static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
     const size_t length = strlen(name);
-    if (length == 0 || length >= NT_NAME_SIZE || strspn(name, allowed) != length)
+    if (length == 0 || length >= NT_GIVEN_NAME_SIZE || strspn(name, allowed) != length)
         return NT_E_RANGE;
     snprintf(full, NT_SHARED_NAME_SIZE, "/nanotouch.%s.%s", kind, name);
     return NT_OK;
@@ -160,6 +160,12 @@ uint64_t nt_shared_clock(void)
     return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
+void nt_shared_nap(void)
+{
+    const struct timespec nap = {.tv_nsec = 200000};
+    (void)nanosleep(&nap, NULL);
+}
+
 #else
 
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size)
@@ -188,6 +194,10 @@ int nt_shared_is_own(const nt_shared *shared)
 uint64_t nt_shared_clock(void)
 {
     return 0;
+}
+
+void nt_shared_nap(void)
+{
 }
 
 #endif
