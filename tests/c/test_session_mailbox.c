@@ -15,6 +15,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -161,6 +162,7 @@ static void end(life *l)
     const nt_shared view = l->view;
     nt_session_close(l->session);
     l->view = view;
+    (void)shm_unlink(view.name); /* what a killed program leaves until its name is taken again */
     nt_shared_close(&l->view);
 }
 

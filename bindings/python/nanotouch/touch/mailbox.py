@@ -58,7 +58,7 @@ class Device:
     ------
     InvalidValue
         A name or capabilities that cannot be.
-    StateError
+    Error
         Another program, or another user, has the name.
     """
 

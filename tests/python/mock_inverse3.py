@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A mock of Haply's Inverse Service: it sends the first frame by itself, then one for each command, as the service
+does, and notes the forces. A test tells it what to send instead, or to be silent, or to close."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any
+
+ID = "04BA"
+
+
+def frame(z: float = 0.2, device: str = ID, pressed: str = "") -> str:
+    """As the service sends it, with one Inverse3 and a grip."""
+    state = {"cursor_position": {"x": 0.01, "y": -0.15, "z": z}, "cursor_velocity": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    buttons = {name: name in pressed for name in "abc"}
+    grip = {"device_id": "61548", "state": {"buttons": buttons, "orientation": {"w": 1.0, "x": 0, "y": 0, "z": 0}}}
+    return json.dumps({"inverse3": [{"device_id": device, "state": state}], "wireless_verse_grip": [grip]})
+
+
+@dataclass
+class Service:
+    """One at a time; `port` once it is started."""
+
+    instead: deque[str | bytes | None] = field(default_factory=deque)
+    """what it sends next; None: it closes the connection"""
+    silent: bool = False
+    pressed: str = ""
+    forces: list[dict[str, float]] = field(default_factory=list)
+    wrong: list[str] = field(default_factory=list)
+    """commands that the service would not understand"""
+    connections: int = 0
+    port: int = 0
+
+    async def start(self) -> None:
+        """Listen on a free port of the loopback."""
+        from aiohttp import web
+
+        application = web.Application()
+        application.router.add_get("/", self._talk)
+        self.runner = web.AppRunner(application, shutdown_timeout=0.1)
+        await self.runner.setup()
+        site = web.TCPSite(self.runner, "127.0.0.1", self.port)
+        await site.start()
+        self.port = self.runner.addresses[0][1]
+
+    async def stop(self) -> None:
+        """The service ends; its connections are cut."""
+        await self.runner.cleanup()
+
+    async def _talk(self, request: Any) -> Any:
+        from aiohttp import WSMsgType, web
+
+        link = web.WebSocketResponse()
+        await link.prepare(request)
+        self.connections += 1
+        await self._send(link)
+        async for message in link:
+            if message.type != WSMsgType.TEXT or not self._take(message.data):
+                self.wrong.append(str(message.data))
+            if not await self._send(link):
+                break
+        return link
+
+    def _take(self, text: str) -> bool:
+        try:
+            (one,) = json.loads(text)["inverse3"]
+            values = one["commands"]["set_cursor_force"]["values"]
+        except (ValueError, KeyError, TypeError):
+            return False
+        self.forces.append(values)
+        return one["device_id"] == ID and sorted(values) == ["x", "y", "z"]
+
+    async def _send(self, link: Any) -> bool:
+        await asyncio.sleep(1e-3)
+        if self.silent:
+            return True
+        what = self.instead.popleft() if self.instead else frame(pressed=self.pressed)
+        if what is None:
+            await link.close()
+            return False
+        await (link.send_bytes(what) if isinstance(what, bytes) else link.send_str(what))
+        return True

@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The bridge to Haply's Inverse3 against a mock that speaks its protocol: frames, forces, garbage, silence, losses."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import os
+import time
+from collections.abc import Awaitable, Callable
+
+import nanotouch as nt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mock_inverse3 import ID, Service, frame
+
+pytest.importorskip("aiohttp")
+
+from nanotouch_app.devices import inverse3
+
+PATIENCE = 60.0  # with a machine that is busy [s]
+JSON = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.sampled_from(
+        ["inverse3", "state", "device_id", "cursor_position", "x", "y", "z", "wireless_verse_grip", "buttons"]), inner),
+    max_leaves=20,
+)  # fmt: skip
+
+
+# --- frames ---
+
+
+def test_a_frame_is_understood() -> None:
+    found = inverse3.understood(frame(z=0.25, pressed="ac"))
+    assert found is not None
+    assert found.device == ID
+    assert found.position == pytest.approx((0.01, 0.0, -0.05))  # up is away from the sample
+    assert found.buttons == 0b101
+    assert inverse3.understood(frame().encode()) is not None
+    assert inverse3.understood(frame(), "another") is None
+
+
+WRONG = [
+    "", "{", "null", "[]", "{}", "[" * 100_000, '{"inverse3": {}}', '{"inverse3": [3]}',
+    '{"inverse3": [{"state": {}}]}',
+    frame().replace("0.01", "NaN"), frame().replace("0.01", "1e999"), frame().replace("0.01", "true"),
+    frame().replace("0.01", '"0.01"'), frame().replace("0.01", "null"), frame().replace('"x": 0.01, ', ""),
+    frame().replace('"cursor_position"', '"position"'), frame(z=5.0), frame().replace(f'"{ID}"', "7"), frame()[:-1],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", [*WRONG, b"\xff\xfe\x00", b"\x00" * 100])
+def test_garbage_is_no_frame(text: str | bytes) -> None:
+    assert inverse3.understood(text) is None
+
+
+@given(JSON)
+def test_no_json_is_too_odd(found: object) -> None:
+    made = inverse3.understood(json.dumps(found))
+    assert made is None or all(math.isfinite(value) for value in made.position)
+
+
+@given(st.tuples(*[st.floats()] * 3))
+def test_a_force_is_finite_and_within_its_range(force: tuple[float, float, float]) -> None:
+    said = json.loads(inverse3.command(ID, force))
+    (one,) = said["inverse3"]
+    values = one["commands"]["set_cursor_force"]["values"]
+    assert all(abs(value) <= inverse3.STRONGEST for value in values.values())
+    if all(math.isfinite(f) and abs(f) < inverse3.STRONGEST for f in force):
+        assert (values["x"], values["y"], -values["z"]) == force
+
+
+# --- the bridge ---
+
+
+async def until(condition: Callable[[], bool]) -> None:
+    due = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < due
+        await asyncio.sleep(5e-3)
+
+
+class Box(nt.mailbox.Device):
+    """A mailbox that notes what is published."""
+
+    def __init__(self) -> None:
+        super().__init__(f"test-inverse3-{os.getpid()}-{time.monotonic_ns()}", inverse3.capabilities())
+        self.readings: list[nt.hal.Reading] = []
+        self.force = (0.0, 0.0, 0.0)
+
+    def publish(self, reading: nt.hal.Reading) -> None:
+        super().publish(reading)
+        self.readings.append(reading)
+
+    def ask(self) -> nt.mailbox.Request:
+        return super().ask()._replace(target=self.force)
+
+
+def play(story: Callable[[Service, Box, inverse3.Bridge], Awaitable[None]]) -> tuple[Service, Box, inverse3.Bridge]:
+    """A service, a bridge that runs, and what happens to them."""
+
+    async def played() -> tuple[Service, Box, inverse3.Bridge]:
+        service = Service()
+        await service.start()
+        with Box() as box:
+            bridge = inverse3.Bridge(box, f"ws://127.0.0.1:{service.port}")
+            running = asyncio.create_task(bridge.run())
+            try:
+                await until(lambda: len(box.readings) > 2)
+                await story(service, box, bridge)
+            finally:
+                running.cancel()
+                await asyncio.gather(running, return_exceptions=True)
+                await service.stop()
+        return service, box, bridge
+
+    return asyncio.run(played())
+
+
+def test_positions_come_and_forces_go() -> None:
+    async def story(service: Service, box: Box, _: inverse3.Bridge) -> None:
+        box.force, service.pressed = (0.5, 0.0, 2.0), "b"
+        await until(lambda: service.forces[-1] == {"x": 0.5, "y": 0.0, "z": -2.0})
+        await until(lambda: box.readings[-1].buttons == 0b010)
+
+    service, box, bridge = play(story)
+    assert service.wrong == []
+    assert bridge.device == ID
+    assert box.readings[-1].position == pytest.approx((0.01, 0.0, 0.0))
+    assert service.forces[-1]["z"] == 0.0  # let go at the end
+
+
+def test_garbage_publishes_nothing_and_takes_the_force_away() -> None:
+    async def story(service: Service, box: Box, bridge: inverse3.Bridge) -> None:
+        box.force = (0.0, 0.0, 1.0)
+        await until(lambda: service.forces[-1]["z"] == -1.0)
+        before = len(service.forces)
+        service.instead.extend(WRONG)
+        await until(lambda: not service.instead)
+        await until(lambda: bridge.counts["refused"] >= len(WRONG) or bridge.counts["connections"] > 1)
+        assert any(force["z"] == 0.0 for force in service.forces[before:])
+        await until(lambda: service.forces[-1]["z"] == -1.0)  # and it goes on
+
+    _, box, _ = play(story)
+    assert all(reading.position == box.readings[0].position for reading in box.readings)
+
+
+def test_silence_ends_the_connection_and_a_new_one_goes_on() -> None:
+    async def story(service: Service, box: Box, bridge: inverse3.Bridge) -> None:
+        service.silent = True
+        await until(lambda: bridge.counts["late"] > 0)
+        published = len(box.readings)
+        await asyncio.sleep(0.02)
+        assert len(box.readings) == published  # nothing is made up meanwhile
+        service.silent = False
+        await until(lambda: len(box.readings) > published)
+        assert service.connections > 1
+
+    play(story)
+
+
+@pytest.mark.parametrize("what", [None, "x" * (inverse3.LARGEST + 1)])
+def test_a_lost_connection_is_made_again(what: str | None) -> None:
+    """The service closes, or sends more than any frame has."""
+
+    async def story(service: Service, box: Box, bridge: inverse3.Bridge) -> None:
+        service.instead.append(what)
+        await until(lambda: bridge.counts["connections"] > 1)
+        published = len(box.readings)
+        await until(lambda: len(box.readings) > published)
+
+    play(story)
+
+
+def test_a_service_that_ends_and_comes_back() -> None:
+    async def story(service: Service, box: Box, bridge: inverse3.Bridge) -> None:
+        await service.stop()
+        await until(lambda: service.connections == bridge.counts["connections"])
+        published = len(box.readings)
+        await service.start()  # at the same port
+        await until(lambda: len(box.readings) > published)
+
+    play(story)
+
+
+def test_another_device_does_not_take_its_place() -> None:
+    async def story(service: Service, box: Box, bridge: inverse3.Bridge) -> None:
+        refused = bridge.counts["refused"]
+        service.instead.append(frame(z=0.3, device="another"))
+        await until(lambda: bridge.counts["refused"] > refused)
+
+    _, box, _ = play(story)
+    assert all(reading.position[2] == pytest.approx(0.0) for reading in box.readings)
+
+
+def test_the_session_holds_when_the_service_is_gone_and_goes_on_when_it_is_back() -> None:
+    """Service and bridge in this thread, the session in its own."""
+
+    async def played() -> None:
+        service = Service()
+        await service.start()
+        name = f"test-inverse3-{os.getpid()}-{time.monotonic_ns()}"
+        running = asyncio.create_task(inverse3.serve(name, f"ws://127.0.0.1:{service.port}"))
+        await until(lambda: len(service.forces) > 2)
+        rig = nt.Rig(master={"gauge": "no", "max_force": 3.0, "rate": 1000.0})
+        session = await asyncio.to_thread(
+            lambda: nt.Session(rig=rig, master=nt.hal.Mailbox(name), clearance=1e-6, preflight=False)
+        )
+        session.start("wall")
+        await until(lambda: session.state == "RUN")
+        await service.stop()
+        await until(lambda: session.state == "HOLD")
+        await asyncio.sleep(3 * inverse3.TIMEOUT)
+        assert session.state == "HOLD"  # the program lives: nothing is latched
+        await service.start()
+        await until(lambda: session.state == "RUN")
+        await asyncio.to_thread(session.halt)
+        await asyncio.to_thread(session.close)
+        running.cancel()
+        await asyncio.gather(running, return_exceptions=True)
+        await service.stop()
+
+    asyncio.run(played())
+
+
+def test_it_says_why_it_cannot_begin(capsys: pytest.CaptureFixture[str]) -> None:
+    assert inverse3.main(["a/b"]) == 2
+    assert "bytes of the name" in capsys.readouterr().err
