@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A mock of Haply's Inverse Service: it sends the first frame by itself, then one for each command, as the service
-does, and notes the forces. A test tells it what to send instead, or to be silent, or to close."""
+does, and notes the forces. A test tells it what to send instead, or to be silent, or to close.
+
+Usage: mock_inverse3.py [PORT]    prints the port that it serves
+"""
 
 from __future__ import annotations
 
 import asyncio
 import json
+import sys
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -57,12 +62,13 @@ class Service:
         link = web.WebSocketResponse()
         await link.prepare(request)
         self.connections += 1
-        await self._send(link)
-        async for message in link:
-            if message.type != WSMsgType.TEXT or not self._take(message.data):
-                self.wrong.append(str(message.data))
-            if not await self._send(link):
-                break
+        with suppress(ConnectionError):  # the other end has gone
+            await self._send(link)
+            async for message in link:
+                if message.type != WSMsgType.TEXT or not self._take(message.data):
+                    self.wrong.append(str(message.data))
+                if not await self._send(link):
+                    break
         return link
 
     def _take(self, text: str) -> bool:
@@ -84,3 +90,15 @@ class Service:
             return False
         await (link.send_bytes(what) if isinstance(what, bytes) else link.send_str(what))
         return True
+
+
+async def serve(port: int) -> None:
+    """Serve until the process ends."""
+    service = Service(port=port)
+    await service.start()
+    print(service.port, flush=True)
+    await asyncio.Event().wait()
+
+
+if __name__ == "__main__":
+    asyncio.run(serve(int(sys.argv[1]) if len(sys.argv) > 1 else 0))

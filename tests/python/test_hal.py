@@ -157,7 +157,7 @@ def test_answers_that_are_no_reading(answer: object, message: str) -> None:
 
 
 def test_only_halves_are_rehearsed() -> None:
-    with pytest.raises(TypeError, match=r"neither a nanotouch\.hal\.Master nor"):
+    with pytest.raises(TypeError, match=r"neither a nanotouch\.hal\.Master, "):
         nt.hal.rehearse(object())  # type: ignore[arg-type]
     with pytest.raises(InvalidValue, match="period = 0"):
         nt.hal.rehearse(Mouse(), period=0.0)

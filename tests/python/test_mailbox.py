@@ -115,7 +115,6 @@ def test_a_killed_program_latches(name: str) -> None:
         served.kill()
         awaited(session, "LATCHED")
         session.halt()
-        session.close()
 
 
 def test_both_ends(name: str) -> None:

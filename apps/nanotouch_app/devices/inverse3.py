@@ -4,7 +4,7 @@
 The service answers each command with a frame of all devices, so a force is sent for every frame, 0 N where nobody
 drives. What it says is trusted as little as any other device: docs/devices.md tells what follows from what.
 
-Usage: python -m nanotouch_app.devices.inverse3 NAME [--url URL] [--device ID]
+Usage: python -m nanotouch_app.devices.inverse3 NAME [--url URL] [--device ID] [--timeout S]
 then, elsewhere: nanotouch.Session(rig=..., master=nanotouch.hal.Mailbox(NAME))
 """
 
@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from nanotouch import mailbox
-from nanotouch.errors import DeviceError, Error, require
+from nanotouch.errors import Error, require
 from nanotouch.hal import Capabilities, Channel, Reading
 
 URL = "ws://localhost:10001"
@@ -30,7 +30,7 @@ URL = "ws://localhost:10001"
 PERIOD = 1e-3
 """between two frames of the service [s]"""
 TIMEOUT = 0.1
-"""of the mailbox, and without a good frame for so long the connection is given up [s]"""
+"""without a good frame for so long the connection is given up; of the mailbox, unless told otherwise [s]"""
 PAUSE = 0.5
 """before the service is tried again [s]"""
 LARGEST = 65536
@@ -194,18 +194,13 @@ def _losses() -> tuple[type[BaseException], ...]:
     return (require("aiohttp", "browser").ClientError, OSError, TimeoutError)
 
 
-async def serve(name: str, url: str = URL, device: str = "") -> None:
-    """Serve a mailbox until the task is cancelled."""
-    with mailbox.Device(name, capabilities(), timeout=TIMEOUT) as box:
-        await Bridge(box, url, device).run()
-
-
 async def _serve_until_stopped(args: argparse.Namespace) -> None:
-    task = asyncio.create_task(serve(args.name, args.url, args.device))
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, task.cancel)
-    with contextlib.suppress(asyncio.CancelledError):
-        await task
+    with mailbox.Device(args.name, capabilities(), timeout=args.timeout) as box:
+        task = asyncio.create_task(Bridge(box, args.url, args.device).run())
+        for number in (signal.SIGINT, signal.SIGTERM):
+            asyncio.get_running_loop().add_signal_handler(number, task.cancel)
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -214,9 +209,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("name", metavar="NAME", help="of the mailbox")
     parser.add_argument("--url", default=URL, help=f"of the Inverse Service (default: {URL})")
     parser.add_argument("--device", default="", metavar="ID", help="of the Inverse3 (default: the first one)")
+    parser.add_argument(
+        "--timeout", type=float, default=TIMEOUT, metavar="S", help=f"of the mailbox (default: {TIMEOUT:g})"
+    )
     try:
         asyncio.run(_serve_until_stopped(parser.parse_args(arguments)))
-    except (Error, DeviceError) as error:
+    except Error as error:
         print(f"inverse3: error: {error}", file=sys.stderr)
         return 2
     return 0

@@ -89,6 +89,7 @@ __all__ = [
     "hal",
     "images",
     "interaction",
+    "mailbox",
     "maps",
     "margins",
     "materials",
