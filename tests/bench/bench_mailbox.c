@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "nanotouch/mailbox.h"
 #include "nanotouch/nanotouch.h"
 
 static int64_t host_now(const nt_host *host)

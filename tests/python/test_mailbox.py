@@ -17,8 +17,8 @@ from pathlib import Path
 import nanotouch as nt
 import pytest
 from nanotouch.errors import DeviceError, Error, InvalidValue
-from nanotouch.hal import Capabilities, Channel, Mailbox, Reading
-from nanotouch.mailbox import Device
+from nanotouch.touch.hal import Capabilities, Channel, Mailbox, Reading
+from nanotouch.touch.mailbox import Device
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs/examples/mailbox"

@@ -21,9 +21,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from nanotouch import mailbox
 from nanotouch.errors import Error, require
-from nanotouch.hal import Capabilities, Channel, Reading
+from nanotouch.touch import mailbox
+from nanotouch.touch.hal import Capabilities, Channel, Reading
 
 URL = "ws://localhost:10001"
 """of the Inverse Service"""

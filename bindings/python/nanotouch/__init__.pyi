@@ -42,6 +42,7 @@ from nanotouch.touch import commands as commands
 from nanotouch.touch import faults as faults
 from nanotouch.touch import frames as frames
 from nanotouch.touch import hal as hal
+from nanotouch.touch import mailbox as mailbox
 from nanotouch.touch import margins as margins
 from nanotouch.touch import operator as operator
 from nanotouch.touch import record as record

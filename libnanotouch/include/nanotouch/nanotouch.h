@@ -19,7 +19,6 @@
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/mailbox.h"
 #include "nanotouch/material.h"
 #include "nanotouch/observer.h"
 #include "nanotouch/plan.h"

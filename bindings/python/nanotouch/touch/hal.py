@@ -224,7 +224,7 @@ class SharedObject:
 
 @dataclass(frozen=True)
 class Mailbox:
-    """A half in another process, by the name of its mailbox (:mod:`nanotouch.mailbox`, docs/devices.md)."""
+    """A half in another process, by the name of its mailbox (:mod:`nanotouch.touch.mailbox`, docs/devices.md)."""
 
     name: str
 

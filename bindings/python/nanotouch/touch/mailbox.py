@@ -19,8 +19,8 @@ from types import TracebackType
 from typing import Literal, NamedTuple, Self
 
 from nanotouch import _core
-from nanotouch.touch.columns import STATES
 from nanotouch.errors import InvalidValue
+from nanotouch.touch.columns import STATES
 from nanotouch.touch.hal import Capabilities, Reading
 
 
