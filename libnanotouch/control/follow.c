@@ -24,16 +24,18 @@ void nt_follow_expect(const nt_supervisor *supervisor, nt_supervisor_state *stat
  * farther, the lag: the filter's part of it counts ticks, the stage's own does not [m]. */
 static double lost_in_lift(const nt_supervisor *supervisor, const nt_supervisor_state *state)
 {
-    const int lifts = state->state >= NT_RETRACT && isfinite(state->turn);
+    const int lifts = state->state >= NT_RETRACT && isfinite(state->stopped);
     const double late = supervisor->limits.retract_speed * state->late / supervisor->stage_share;
-    return lifts ? supervisor->lift_share * fabs(state->expected - state->turn) + late : 0.0;
+    return lifts ? supervisor->lift_share * fabs(state->expected - state->stopped) + late : 0.0;
 }
 
 nt_state nt_follow_judge(const nt_supervisor *supervisor, nt_supervisor_state *state, double position, int tells_force)
 {
     const nt_limits *limits = &supervisor->limits;
     const double slack = lesser(supervisor->stage_most, greater(supervisor->stage_slack, FOLLOW_SHARE * state->path));
-    if (fabs(position - state->expected) <= slack + lost_in_lift(supervisor, state)) {
+    const double below = position - state->expected; /* a stop may be farther up than it was told */
+    const double off = state->state >= NT_RETRACT ? below : fabs(below);
+    if (off <= slack + lost_in_lift(supervisor, state)) {
         state->off_run = 0;
         return NT_RUN;
     }

@@ -36,8 +36,10 @@ static int shows_rise(const nt_supervisor *supervisor, const nt_supervisor_state
 int nt_lift_helps(const nt_supervisor *supervisor, nt_supervisor_state *state, double force, double position)
 {
     const int runs = state->state < NT_RETRACT, goes = state->lift == NT_LIFT_GOES;
-    if (runs)
+    if (runs) {
         state->lift = NT_LIFT_GOES;
+        state->stopped = state->expected;
+    }
     if (runs || (goes && !state->lifts)) {
         begin(state, force);
         return 1;

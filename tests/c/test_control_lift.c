@@ -176,6 +176,38 @@ static void declared_hysteresis_stops_no_lift(void **state)
     assert_true(fabs(r.command.stage_position[NT_Z] + r.touch.stage_end) < 1e-12);
 }
 
+/* A second lift begins with what hysteresis took of the first: fault 10008281 of the adversary was given up there. */
+static void hysteresis_of_the_whole_stop_counts(void **state)
+{
+    (void)state;
+    rig r;
+    set_up_with(&r, 0.2, 5e-3);
+    stop(&r);
+    r.surface = 1e-6; /* out of reach */
+    r.zero = 10e-9;   /* but force shows, so it lifts */
+    r.sign = 0.65;
+    run(&r, 1000);
+    r.zero = 0.0;
+    run(&r, 5000);
+    assert_int_equal(r.state.supervisor.lift, NT_LIFT_GOES);
+    r.blind = 1;
+    run(&r, 1000);
+    assert_int_equal(r.state.supervisor.lift, NT_LIFT_GOES);
+}
+
+/* Farther up than it was told is no danger: fault 10006838 swung up, and its lift was given up for it. */
+static void a_lift_that_overshoots_goes_on(void **state)
+{
+    (void)state;
+    rig r;
+    set_up(&r);
+    stop(&r);
+    r.blind = 1;
+    r.offset = -300e-9;
+    run(&r, 1000);
+    assert_int_equal(r.state.supervisor.lift, NT_LIFT_GOES);
+}
+
 /* A sensor that clips below its range looks dead: no noise. If the stage does not show the lift meanwhile, that waits.
  * When the sensor tells again, and drift presses, it is tried: fault 644 of the adversary was given up for good. */
 static void a_lift_that_nothing_told_of_is_tried_when_the_force_grows(void **state)
@@ -260,6 +292,8 @@ int main(void)
         cmocka_unit_test(a_stage_that_did_not_follow_waits),
         cmocka_unit_test(a_lift_that_shows_goes_on_while_the_force_grows),
         cmocka_unit_test(declared_hysteresis_stops_no_lift),
+        cmocka_unit_test(hysteresis_of_the_whole_stop_counts),
+        cmocka_unit_test(a_lift_that_overshoots_goes_on),
         cmocka_unit_test(a_lift_that_nothing_told_of_is_tried_when_the_force_grows),
         cmocka_unit_test(a_stage_that_turns_while_it_lifts_is_stopped_at_once),
         cmocka_unit_test(a_stop_lifts_by_the_clock),

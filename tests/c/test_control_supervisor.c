@@ -102,7 +102,7 @@ static void stuck_for_long(input *in)
 
 static void off_its_command(input *in)
 {
-    in->reference += 1.1 * touch.supervisor.stage_slack;
+    in->reference -= 1.1 * touch.supervisor.stage_slack; /* below where it was told to be */
     in->history.expected = in->reference;
     in->history.off_run = 2;
 }

@@ -87,6 +87,7 @@ typedef struct nt_supervisor_state {
     int lifts;               /* the stage is told to go up */
     double reference;        /* where it was told to be [m] */
     double turn;             /* where it should have been when the lift began [m] */
+    double stopped;          /* where it should have been when the stop began [m] */
     double lift_force;       /* largest force until it should have turned [N] */
     uint32_t growth_run;     /* ticks in a row in which the force has grown since */
     double turn_position;    /* where it was read to be when the lift began [m] */
