@@ -58,15 +58,16 @@ static void what_once_broke_it_keeps_it(void **state)
     static const struct {
         attack kind;
         long seed;
-    } once[] = {{ATTACK_QUASI_STATIC, 304352},
-                {ATTACK_FAULT, 644},
-                {ATTACK_FAULT, 9008454},
-                {ATTACK_FAULT, 9504496},
-                {ATTACK_FAULT, 9510630}};
+        double least; /* of the promise that it still reaches: it does press */
+    } once[] = {{ATTACK_QUASI_STATIC, 304352, 0.1},
+                {ATTACK_FAULT, 644, 0.1},
+                {ATTACK_FAULT, 9008454, 0.1},
+                {ATTACK_FAULT, 9504496, 0.1},
+                {ATTACK_FAULT, 9510630, 0.03}}; /* steps in time with its resonance are promised for, too */
     for (size_t i = 0; i < sizeof once / sizeof *once; i++) {
         const closeness found = run_seed(once[i].kind, once[i].seed);
         assert_true(found.opened);
-        assert_true(found.force > 0.01 && found.force < 1.0); /* it did press */
+        assert_true(found.force > once[i].least && found.force < 1.0);
     }
 }
 

@@ -308,7 +308,7 @@ def test_threads_may_share_a_session() -> None:
         ({"mode": "scan", "path": [(1e-6, 1e-6)] * 2}, ["'scan'", "a length"]),
         ({"mode": "scan", "path": [(1e-6, 1e-6), (1e-6, 7e-6)]}, ["outside"]),
         ({"clearance": 0.0}, ["clearance = 0 m", "0.001 m"]),
-        ({"clearance": 1e-10}, ["clearance = 1e-10 m", ".. 0.001 m"]),
+        ({"clearance": 1e-10}, ["clearance = 1e-10 m", "1.1897e-09 .. 0.001 m"]),  # 1 nm and the drift of 0.19 s
         ({"clearance": math.nan}, ["clearance = nan m"]),
         ({"seed": -1}, ["seed = -1", "0 .. 2^64 - 1"]),
         ({"seed": 2**64}, ["seed"]),
