@@ -166,7 +166,7 @@ def test_another_page_and_a_rebound_name_are_refused(desk: BrowserDesk) -> None:
 
 
 def test_the_server_is_on_this_machine_only(desk: BrowserDesk) -> None:
-    assert [address for address, _ in desk.server.runner.addresses] == ["127.0.0.1"]
+    assert [socket.getsockname()[0] for socket in desk.server.listener.sockets] == ["127.0.0.1"]
     assert all(f":{desk.server.port}/#key=" in line for line in desk.links().splitlines() if "http" in line)
 
 
@@ -292,3 +292,56 @@ def test_a_package_without_the_page_says_so_and_one_with_it_has_it(
 @pytest.mark.parametrize("host", [None, "", "evil.example", "127.0.0.1.evil.example", "[::1", "localhost@evil.example"])
 def test_hosts_that_are_not_ours(host: str | None) -> None:
     assert not access.host_is_ours(host)
+
+
+async def pause(desk: BrowserDesk, holds: Callable[[], bool]) -> None:
+    """Until it holds."""
+    while not holds():
+        await asyncio.sleep(0.02)
+
+
+def test_a_crowd_is_refused_in_words_and_the_operator_goes_on(
+    desk: BrowserDesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Watchers above the limit, connections above the limit, those that never say a word."""
+    monkeypatch.setattr("nanotouch_app.browser.server.WATCHERS", 3)
+    monkeypatch.setattr("nanotouch_app.browser.door.MOST", 12)
+    monkeypatch.setattr("nanotouch_app.browser.door.SILENCE", 0.5)
+
+    async def call(client: Any, address: str, desk: BrowserDesk) -> None:
+        await pause(desk, lambda: not desk.server.readers.all)  # of the tests before
+        keys, host = desk.server.keys, ("127.0.0.1", desk.server.port)
+        for _ in range(3):
+            await heard(await opened(client, address, keys.watch), "granted")
+        fourth = await opened(client, address, keys.watch)
+        assert (await fourth.receive()).extra == "3 pages watch already: no more can"
+        operator = await opened(client, address, keys.operate, keys.token)
+        assert (await heard(operator, "granted"))["operates"]  # there is always a place for it
+        desk.server.loop.call_soon_threadsafe(time.sleep, 0.3)  # all knock within one of its turns
+        mute = [await asyncio.open_connection(*host) for _ in range(20)]
+        answers = [await asyncio.wait_for(reader.read(12), LONG) for reader, _ in mute]  # all are closed in the end
+        for _, writer in mute:
+            writer.close()
+        assert answers.count(b"HTTP/1.1 503") >= 20 - 12
+        assert b"" in answers
+        await heard(operator, "update")
+        async with client.get(address) as answer:  # there is room again
+            assert answer.status == 200
+
+    visit(desk, call)
+
+
+def test_what_is_no_http_is_answered_and_prints_nothing(
+    desk: BrowserDesk, caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+) -> None:
+    async def call(client: Any, address: str, desk: BrowserDesk) -> None:
+        long = b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Long: " + 100_000 * b"a" + b"\r\n\r\n"
+        for hostile in (long, b"GET / HTTP/1.1\r\nbad header\x00\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\r\n\r\n"):
+            reader, writer = await asyncio.open_connection("127.0.0.1", desk.server.port)
+            writer.write(hostile)
+            assert b" 400 " in await asyncio.wait_for(reader.readline(), LONG)
+            writer.close()
+
+    visit(desk, call)
+    assert not [record for record in caplog.records if record.name.startswith(("nanotouch", "aiohttp", "asyncio"))]
+    assert "Traceback" not in capfd.readouterr().err

@@ -19,13 +19,15 @@ from nanotouch_app.browser.update import message_text, stored_surface
 
 try:
     from aiohttp import WSMsgType, web
+
+    from nanotouch_app.browser.door import Door, quiet_log
 except ImportError as missing:
     raise missing_extra("aiohttp", "browser") from missing
 
 TURN = 1.0 / 60.0  # between two looks at the frames [s]
 GREETING = 10.0  # within which a socket must say its key [s]
 LARGEST = 4096  # message of a page [byte]
-MOST = 100  # readers
+WATCHERS = 100  # at once; the page that operates always finds a place
 START = 10.0  # [s]
 WRONG_KEY, NO_ROOM = 4403, 4429  # why a socket is closed
 HEADERS = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY",
@@ -64,19 +66,22 @@ class Server:
         task = self.loop.create_task(self._look())
         self.loop.run_forever()
         task.cancel()
+        self.listener.close()
         self.loop.run_until_complete(self.runner.cleanup())
         self.readers.close()
         self.loop.close()
 
     async def _open(self) -> web.AppRunner:
-        app = web.Application(middlewares=[_guarded])
+        app = web.Application(middlewares=[self._guarded])
         app.router.add_get("/", self._page)
         app.router.add_get("/session", self._socket)
-        runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0)
+        runner = web.AppRunner(
+            app, access_log=None, shutdown_timeout=1.0, keepalive_timeout=GREETING, logger=quiet_log()
+        )
         await runner.setup()
-        site = web.TCPSite(runner, self.address, self.port)
-        await site.start()
-        self.port = runner.addresses[0][1]
+        self.door = Door(self.loop, runner.server)
+        self.listener = await self.loop.create_server(self.door, self.address, self.port)
+        self.port = self.listener.sockets[0].getsockname()[1]
         return runner
 
     async def _look(self) -> None:
@@ -92,6 +97,15 @@ class Server:
 
     # --- requests ---
 
+    @web.middleware
+    async def _guarded(self, request: web.Request, handler: Any) -> web.StreamResponse:
+        """A name that was rebound to this machine is not ours."""
+        self.door.heard(request.protocol)
+        if not host_is_ours(request.headers.get("Host"), LOOPBACK):
+            raise web.HTTPForbidden(text="this server answers to localhost only")
+        answer: web.StreamResponse = await handler(request)
+        return answer
+
     async def _page(self, request: web.Request) -> web.Response:
         return web.Response(body=self.page, content_type="text/html", charset="utf-8", headers=HEADERS)
 
@@ -101,7 +115,8 @@ class Server:
         socket = web.WebSocketResponse(max_msg_size=LARGEST, compress=False, heartbeat=30.0)
         await socket.prepare(request)
         try:
-            first = json.loads(await asyncio.wait_for(socket.receive_str(), GREETING))
+            async with asyncio.timeout(GREETING):
+                first = json.loads(await socket.receive_str())
             operates, token = self.keys.grant(first.get("key"), first.get("token"))
         except Refused as refused:
             await socket.close(code=WRONG_KEY, message=str(refused).encode())
@@ -109,8 +124,8 @@ class Server:
         except (TimeoutError, ValueError, TypeError, AttributeError, RecursionError):
             await socket.close(code=WRONG_KEY, message=b"no key was said")
             return socket
-        if len(self.readers.all) >= MOST:
-            await socket.close(code=NO_ROOM, message=b"too many readers")
+        if not operates and sum(not reader.operates for reader in self.readers.all) >= WATCHERS:
+            await socket.close(code=NO_ROOM, message=f"{WATCHERS} pages watch already: no more can".encode())
             return socket
         await self._attend(socket, operates, token)
         return socket
@@ -188,12 +203,3 @@ async def _quietly(send: Callable[[bytes | str], Awaitable[None] | None], data: 
             await sent
     except (ConnectionError, RuntimeError):
         return
-
-
-@web.middleware
-async def _guarded(request: web.Request, handler: Any) -> web.StreamResponse:
-    """A name that was rebound to this machine is not ours."""
-    if not host_is_ours(request.headers.get("Host"), LOOPBACK):
-        raise web.HTTPForbidden(text="this server answers to localhost only")
-    answer: web.StreamResponse = await handler(request)
-    return answer
