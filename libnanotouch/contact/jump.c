@@ -15,7 +15,7 @@
 #include "contact/maugis/apart.h"
 #include "contact/maugis/solve.h"
 #include "core/roots.h"
-#include "nanotouch/contact_control.h"
+#include "nanotouch/contact_equilibrium.h"
 
 /* G = stage d + load P. */
 typedef struct {

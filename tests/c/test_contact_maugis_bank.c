@@ -11,7 +11,7 @@
 
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/contact_bank.h"
+#include "nanotouch/maugis_bank.h"
 
 enum { PANELS = 240, CELLS = 26000 };
 static nt_maugis_panel panels[PANELS];

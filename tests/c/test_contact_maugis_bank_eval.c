@@ -9,7 +9,7 @@
 
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/contact_bank.h"
+#include "nanotouch/maugis_bank.h"
 
 enum { PANELS = 60, CELLS = 2000 };
 static nt_maugis_panel panels[PANELS];

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "maugis_fixture.h"
-#include "nanotouch/contact_table.h"
+#include "nanotouch/maugis_table.h"
 
 enum { CAPACITY = 300, COUNT_MAX = 1500 };
 static nt_maugis_cell cells[CAPACITY];

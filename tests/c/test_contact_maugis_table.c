@@ -11,7 +11,7 @@
 
 #include "larger.h"
 #include "maugis_fixture.h"
-#include "nanotouch/contact_table.h"
+#include "nanotouch/maugis_table.h"
 
 enum { CAPACITY = 2000 };
 static nt_maugis_cell cells[CAPACITY];

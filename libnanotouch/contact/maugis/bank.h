@@ -16,7 +16,7 @@
 
 #include "contact/maugis/apart.h"
 #include "contact/maugis/cells.h"
-#include "nanotouch/contact_bank.h"
+#include "nanotouch/maugis_bank.h"
 
 #define NT_BANK_CENTRE 0.93794745721071121163 /* lambda_0 = (9/(16 (1 - 1/pi)))^(1/3) */
 #define NT_BANK_DEEP 1.1                      /* largest indentations: from 1 to this the exact law takes over */
@@ -67,7 +67,7 @@ static inline nt_status nt_bank_prepare(double lambda, nt_maugis *maugis)
 }
 
 /* The end of the contact branch at a = 0 below lambda_0: where it is, its load, how both change with lambda, and what
- * the energy does there. (Griffith) of maugis_branch.c at y = 0. */
+ * the energy does there. (Griffith) of maugis/branch.c at y = 0. */
 typedef struct nt_bank_touch {
     double d, P, U;
     double d_lambda, P_lambda;

@@ -29,17 +29,17 @@
 
 #include <math.h>
 
-#include "contact/maugis/shape.h"
+#include "contact/maugis/functions.h"
 
 void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point)
 {
-    *point = nt_maugis_equilibrium_of(lambda, nt_maugis_shape_at(y));
+    *point = nt_maugis_equilibrium_of(lambda, nt_maugis_functions_at(y));
 }
 
 /* With N = lambda/2 h1 b + 4/3 lambda^2 h2, so that b1 = -b N/D, and D D' = B B' + lambda g1'. */
 double nt_maugis_equilibrium_curvature(double lambda, const nt_maugis_equilibrium *point)
 {
-    const nt_maugis_shape f = nt_maugis_shape_at(point->y);
+    const nt_maugis_functions f = nt_maugis_functions_at(point->y);
     const double linear = 4.0 / 3.0 * lambda * lambda, y = f.y, b = point->b, b1 = point->b1, w = 1.0 + y * y;
     const double root = sqrt(w), rho = 1.0 / (y + root);
     const double h1_y = 4.0 / (w * w), h2_y = rho / w * (1.0 / root + 2.0 * y / w);
@@ -57,7 +57,7 @@ typedef struct {
 
 static energy_shape energy_shape_at(double y)
 {
-    const nt_maugis_shape f = nt_maugis_shape_at(y);
+    const nt_maugis_functions f = nt_maugis_functions_at(y);
     const double s = f.s, z = f.z, r = f.r, A = f.A, t = 0.5 * f.h3;
     if (y <= 1.0) {
         const double rho = 1.0 / (y + r);

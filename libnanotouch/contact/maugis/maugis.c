@@ -3,7 +3,7 @@
  * radius R on an elastic half-space, attracted by a constant stress sigma0 wherever the gap is below h0 = w/sigma0. One
  * parameter, lambda = 2 sigma0 (R/(pi w K^2))^(1/3), leads from DMT (0) to JKR (infinity). Valid for a << R.
  *
- * The contact branch is that of maugis_branch.c. At its end, a = 0, the surfaces part but remain inside the range of
+ * The contact branch is that of maugis/branch.c. At its end, a = 0, the surfaces part but remain inside the range of
  * the stress over a disc of radius c; there, in reduced units,
  *
  *     d = c^2/2 - 8 lambda c/(3 pi) - 2/(pi lambda)       P = -pi/2 lambda c^2                     (non-contact)

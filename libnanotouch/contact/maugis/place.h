@@ -8,9 +8,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "contact/maugis/shape.h"
+#include "contact/maugis/functions.h"
 #include "contact/reduced.h"
-#include "nanotouch/contact_table.h"
+#include "nanotouch/maugis_table.h"
 
 /* How a force is wanted. */
 typedef struct nt_maugis_query {
@@ -178,7 +178,7 @@ static inline double nt_maugis_polish_step(const nt_maugis_polish *polish, const
  * smooth also at its fold. The slope of the exact branch is 0/0 at the fold; next to it the table's is as good. */
 static inline double nt_maugis_polished_load(const nt_maugis_polish *polish, const nt_maugis_rough *rough)
 {
-    const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(polish->lambda, nt_maugis_shape_at(rough->y));
+    const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(polish->lambda, nt_maugis_functions_at(rough->y));
     const double dZ = nt_maugis_polish_step(polish, rough, &at);
     const double slope = 2.0 * (rough->Z - dZ) * at.P1 / at.d1;
     const double P_Z = rough->Z < polish->near ? rough->P_Z : slope;

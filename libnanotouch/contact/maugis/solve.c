@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "contact/maugis/shape.h"
+#include "contact/maugis/functions.h"
 #include "core/roots.h"
 
 enum { MAX_ITERATIONS = 100 };
@@ -97,7 +97,7 @@ nt_status nt_maugis_point_find(double lambda, const nt_maugis_goal *goal, nt_mau
         y = goal->below ? guess_below(lambda, goal, Z) : fmax(guess_above(lambda, goal, Z), 1.000001 * y_fold);
     double best = HUGE_VAL, scale = 1.0, step = HUGE_VAL;
     for (int i = 1; i <= MAX_ITERATIONS; i++) {
-        const nt_maugis_equilibrium here = nt_maugis_equilibrium_of(lambda, nt_maugis_shape_at(y));
+        const nt_maugis_equilibrium here = nt_maugis_equilibrium_of(lambda, nt_maugis_functions_at(y));
         const double value = load ? here.P : here.d, residual = value - goal->target;
         const int stalled = fabs(residual) >= best && best <= FLOOR * scale;
         if (fabs(residual) < best) {

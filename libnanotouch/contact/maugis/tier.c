@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maugis-Dugdale at one indentation, in tiers: see contact_table.h. */
+ * Maugis-Dugdale at one indentation, in tiers: see maugis_table.h. */
 #include <math.h>
 #include <stddef.h>
 

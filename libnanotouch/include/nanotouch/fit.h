@@ -208,7 +208,9 @@ typedef enum nt_fit_flag {
     NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
     NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
     NT_FIT_WAVES = 64,          /* a wave of interference was taken off with the baseline */
-    NT_FIT_TORN_ELSEWHERE = 128 /* than where this contact and cantilever let go: the tear is not used */
+    NT_FIT_TORN_ELSEWHERE = 128, /* than where this contact and cantilever let go: the tear is not used */
+    NT_FIT_UNEVEN = 1 << 20 /* shallow and deep half of the contact ask for different E* and contact points: their sigma
+                               covers half of that */
 } nt_fit_flag;
 
 typedef struct nt_fit_solution {
@@ -218,6 +220,7 @@ typedef struct nt_fit_solution {
     double rating;          /* nt_fit_rating [-] */
     unsigned flags;         /* nt_fit_flag */
     int exact;              /* 1: the law leaves nothing but rounding */
+    double half_modulus[2]; /* E* that the shallow and the deep half of the contact ask for [Pa]; NaN where untold */
     double any_sensitivity, any_modulus, any_rms; /* fitted with any sensitivity [-], [Pa], [N]; NaN without need */
 } nt_fit_solution;
 /* Fits with the noise of the free cantilever, then once more with the scatter that is left where that is more: a law

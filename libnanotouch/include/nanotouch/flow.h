@@ -32,14 +32,42 @@ typedef struct nt_flow_value {
     double virial;     /* <F (q - q0)> [J] */
     double tip_loss;   /* taken by the contact in a period [J] */
 } nt_flow_value;
+/* What the force does in a period of amplitude A of q. */
+typedef struct nt_flow_average {
+    double cosine; /* fc [m] */
+    double sine;   /* fs [m] */
+    double mean;   /* <F>/k_c [m] */
+    double low;    /* gap at the lowest point [m] */
+    double peak;   /* the larger force of those at the lowest and the highest point [N] */
+    double loss;   /* [J] */
+    int attached;  /* at the top, afterwards */
+} nt_flow_average;
+/* Averages at the corners of cells of amplitude and lowest gap, made where steps come and kept for the next ones: a
+ * step costs a tenth. Between the corners they are bilinear, and linear in the radius of the place. Zero: none yet.
+ * Caller-owned, of one lever and plan; copyable. There is none across the capture gap, of a lever that stays attached,
+ * or where a sample's properties change from place to place. */
+enum { NT_FLOW_CELLS = 64 };
+typedef struct nt_flow_cell {
+    double low, amplitude, radius; /* of its first corner, and of the place [m] */
+    int is_made;
+    nt_flow_average corner[5]; /* low, low + width; the same at the next amplitude; the first at a larger radius */
+} nt_flow_cell;
+typedef struct nt_flow_table {
+    nt_flow_cell cell[NT_FLOW_CELLS];
+} nt_flow_table;
 /* Now, over a place. */
 NT_API NT_REALTIME nt_flow_value nt_flow_now(const nt_tapping *tapping, const nt_flow_state *state,
                                              const nt_tapping_over *over);
 
-/* Goes on by `time` [s] in one step: the lever alone exactly, the force in between (Strang; second order). Stable and
- * good for steps of up to some sqrt(Q) periods. Returns what the period in the middle of the step is like. */
+/* Goes on by `time` [s]: the lever alone exactly, the force in between (Strang; second order); in halves where the
+ * force turns the lag by more than 0.05 rad. Good for steps of up to 0.25 sqrt(Q) periods. Returns what the period in
+ * the middle of the step is like. */
 NT_API NT_REALTIME nt_flow_value nt_flow_step(const nt_tapping *tapping, nt_flow_state *state,
                                               const nt_tapping_over *over, double time);
+
+/* The same with a table. NULL: nt_flow_step. */
+NT_API NT_REALTIME nt_flow_value nt_flow_step_in(const nt_tapping *tapping, nt_flow_state *state,
+                                                 const nt_tapping_over *over, double time, nt_flow_table *table);
 
 /* Steps until nothing changes. NT_E_NO_CONVERGENCE: it still does after 60 Q periods; NT_E_ARGUMENT; NT_E_NOT_FINITE.
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How far the loop is from its stability limit, from numbers alone, before anything moves (docs/margins.md). Rules R1
  * to R5 are sums of delays that a reader can check; beside them stands the exact limit of the sampled linear loop. For
- * another law than the default one take rig and gains from nt_servo_shape_of. Every function is thread-safe. */
+ * another law than the default one take rig and gains from nt_servo_equivalent_of. Every function is thread-safe. */
 #ifndef NANOTOUCH_MARGINS_H
 #define NANOTOUCH_MARGINS_H
 

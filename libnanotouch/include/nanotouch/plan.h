@@ -5,8 +5,8 @@
 #ifndef NANOTOUCH_PLAN_H
 #define NANOTOUCH_PLAN_H
 
-#include "nanotouch/contact_bank.h"
-#include "nanotouch/contact_table.h"
+#include "nanotouch/maugis_bank.h"
+#include "nanotouch/maugis_table.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"

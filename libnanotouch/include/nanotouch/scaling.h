@@ -18,10 +18,6 @@ typedef struct nt_scaling {
  * over the master's travel; the gauge's range over the probe's, from -attraction to the saturation of the electronics.
  */
 NT_API nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double attraction);
-/* Goldfarb's rules for l = alpha_p << 1: structure dominated 1/l, surface dominated 1/l^2 (Sec. IV-C). */
-NT_API nt_scaling nt_scaling_structure(double alpha_p);
-/* The surface dominated rule: alpha_f = 1/alpha_p^2. */
-NT_API nt_scaling nt_scaling_surface(double alpha_p);
 
 /* --- changes while running. At the operator's scale the contact holds the energy (alpha_f/alpha_p) S, S the work that
  *     the tip has done on it. A fall of alpha_f/alpha_p takes energy away and is always allowed; a rise would give the

@@ -12,13 +12,16 @@
 extern "C" {
 #endif
 
-enum { NT_ZLOOP_CONTACT, NT_ZLOOP_TAPPING };
+enum { NT_ZLOOP_CONTACT, NT_ZLOOP_TAPPING, NT_ZLOOP_PHASE };
 
-/* What keeps the tip at the surface: z_b' = K_I (set point - amplitude), or K_I (deflection - set point). */
+/* What keeps the tip at the surface: z_b' = K_I (set point - amplitude), or K_I (deflection - set point). Phase
+ * feedback taps, too. It reads the lag as the amplitude that a contact without loss would have, A0 sin(phi), beyond 90
+ * degrees as A0 (2 - sin(phi)): far from the surface it reads A0, so that rules and gain are those of the amplitude. */
 typedef struct nt_zloop {
-    double mode;          /* NT_ZLOOP_*: "contact|tapping" */
+    double mode;          /* NT_ZLOOP_*: "contact|tapping|phase" */
     double set_force;     /* of contact mode [N] */
     double set_amplitude; /* of tapping mode, over the free amplitude [-] */
+    double set_phase;     /* of phase feedback [rad] */
     double integral;      /* K_I; 0: nt_scan_gain's [1/s] */
     double rate;          /* ticks per second [Hz] */
     double lock_in;       /* time constant of the lock-in amplifier [s] */
@@ -33,13 +36,17 @@ typedef struct nt_raster {
     double line_rate;      /* lines, there and back, per second [Hz] */
     double tilt_x, tilt_y; /* of the sample against the scanner: slopes [-] */
     double drift;          /* of the sample towards the tip [m/s] */
+    double drift_x;        /* of the sample along x [m/s] */
+    double drift_y;        /* along y [m/s] */
+    double hysteresis;     /* of the scanner in x and y: opening of its loop over the stroke [-] */
 } nt_raster;
 
 typedef struct nt_scan {
     nt_zloop zloop;
     nt_raster raster;
 } nt_scan;
-/* Tapping at 0.7 A0, 1 nN, gain by rule, 50 kHz, 20 us, 20 pm; 256 x 256 over 1 um x 1 um, 1 line per second. */
+/* Tapping at 0.7 A0 (45 degrees), 1 nN, gain by rule, 50 kHz, 20 us, 20 pm; 256 x 256 over 1 um x 1 um, 1 line per
+ * second. */
 NT_API nt_scan nt_scan_defaults(void);
 /* The table of the fields, with units and ranges; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_scan_fields(int *count);
@@ -63,6 +70,7 @@ typedef struct nt_scanner {
     double period;   /* of a tick [s] */
     double integral; /* K_I in use [1/s] */
     long ticks;      /* of half a line */
+    int steps;       /* of the slow flow in a tick */
 } nt_scanner;
 typedef struct nt_scanner_inputs {
     const nt_scan *scan;
@@ -71,7 +79,8 @@ typedef struct nt_scanner_inputs {
     const nt_plan *plan;   /* over the surface that is scanned */
 } nt_scanner_inputs;
 /* NT_E_RANGE or NT_E_NOT_FINITE with the field in *problem: "raster.line_rate" where half a line has less ticks than
- * pixels; "zloop.integral" where the loop would not be stable (gain margin below 1). */
+ * pixels; "zloop.integral" where the loop would not be stable (gain margin below 1); "drive.frequency" where phase
+ * feedback is driven off the free resonance. */
 NT_API nt_status nt_scanner_init(nt_scanner *scanner, const nt_scanner_inputs *inputs, nt_problem *problem);
 /* Open loop K_I/(i w) x stage x a tick of delay x lock-in, in tapping mode x lever 1/(1 + i w 2 Q/w0).
  * Of a hard sample, which the deflection or the amplitude follows one to one; a soft one leaves more. */
@@ -87,16 +96,22 @@ NT_API double nt_scanner_parachute(const nt_scanner *scanner, double height, dou
 /* Copyable. */
 typedef struct nt_scanner_state {
     nt_flow_state flow;
+    nt_flow_table table;
     nt_cantilever_state lever;
     nt_interaction_state contact;
     nt_stage_state stage;
     double command;  /* z of the base that the loop asks for [m] */
     double measured; /* amplitude behind the lock-in, or deflection [m] */
+    double lag;      /* phase behind the lock-in [rad] */
     double time;     /* since the beginning [s] */
     nt_noise noise;
 } nt_scanner_state;
 /* Comes down from above at the beginning of a line, until the loop holds its set point. */
 NT_API nt_status nt_scanner_engage(const nt_scanner *scanner, nt_scanner_state *state, long line, uint64_t seed);
+
+/* Where the tip stands over the sample at this share of a half line's way: raster, hysteresis (Rayleigh's parabola, no
+ * offset at the ends), drift. */
+NT_API NT_REALTIME nt_pose nt_scanner_at(const nt_scanner *scanner, long line, double share, int back, double time);
 
 /* The channels of one direction of one line, `pixels` values each; any may be NULL. */
 typedef struct nt_scan_row {

@@ -36,7 +36,7 @@ typedef struct nt_effort {
 } nt_effort;
 
 /* Must be real-time safe where the loop is. A number that is not finite stops the coupling (NT_REASON_LAW). */
-typedef nt_effort (*nt_servo_law)(void *context, const nt_gains *gains, const nt_signals *signals);
+typedef nt_effort (*nt_control_law)(void *context, const nt_gains *gains, const nt_signals *signals);
 
 /* Eq. 17 with the low-pass on f_m and velocity feed-forward: tau = -alpha_f f_s - K_f (alpha_f f_s - f_m) + beta b v;
  * the stage goes to the target through notch and integral (stage_loop.h). At rest f_m = alpha_f f_s for any K_f. */
@@ -48,19 +48,23 @@ NT_API NT_REALTIME nt_effort nt_servo_paper(void *unused, const nt_gains *gains,
 NT_API NT_REALTIME nt_effort nt_servo_impedance(void *unused, const nt_gains *gains, const nt_signals *signals);
 
 /* The function of a choice. */
-NT_API nt_servo_law nt_servo_law_of(const nt_control *control);
+NT_API nt_control_law nt_control_law_of(const nt_control *control);
 
 /* What stability rules and observer have to put into their formulas for a law (docs/control.md): K_f is 0 for the
- * impedance law, the damping of the master is what feed-forward leaves of it, the paper's law leaves the stage's
- * resonance bare, alpha_f is that of the region with the largest, and a virtual coupling softens the contact. The
- * margins of a loop are those of nt_margins_compute for this rig, these gains and this stiffness. */
-typedef struct nt_servo_shape {
+ * impedance law, the damping of the master is what feed-forward leaves of it, the paper's law and samples too few for a
+ * notch leave the stage's resonance bare, alpha_f is that of the region with the largest, and a virtual coupling
+ * softens the contact. The margins of a loop are those of nt_margins_compute for this rig, these gains and this
+ * stiffness. */
+typedef struct nt_servo_equivalent {
     nt_rig rig;
     nt_gains gains;
     double contact_stiffness; /* [N/m] */
-} nt_servo_shape;
+} nt_servo_equivalent;
 /* For a contact of this stiffness [N/m], >= 0, by the law that the settings choose. */
-NT_API nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness);
+NT_API nt_servo_equivalent nt_servo_equivalent_of(const nt_rig *rig, const nt_settings *settings,
+                                                  double contact_stiffness);
+/* Largest amplitude at which the stage rings, whose command goes to and fro at a limit of speed [m/s] to [m]. */
+NT_API double nt_servo_ringing(const nt_servo_equivalent *equivalent, double speed);
 /* Of the loop that the virtual tool closes by itself (force, tool, stage), over a delay [s]: below 1 it oscillates, and
  * no observer sees it; infinite without a coupling. */
 NT_API double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness,

@@ -17,7 +17,12 @@ typedef enum nt_mode {
     NT_MODE_CURVE       /* down to the set-point, up again by curve_length, at approach_speed */
 } nt_mode;
 
-typedef enum nt_law_choice { NT_CONTROL_DEFAULT, NT_CONTROL_PAPER, NT_CONTROL_IMPEDANCE, NT_CONTROL_OWN } nt_law_choice;
+typedef enum nt_control_choice {
+    NT_CONTROL_DEFAULT,
+    NT_CONTROL_PAPER,
+    NT_CONTROL_IMPEDANCE,
+    NT_CONTROL_OWN
+} nt_control_choice;
 
 struct nt_signals;
 struct nt_effort;
@@ -25,7 +30,7 @@ struct nt_gains;
 
 /* Which law (servo.h). All zero: the default one. */
 typedef struct nt_control {
-    nt_law_choice choice;
+    nt_control_choice choice;
     struct nt_effort (*law)(void *context, const struct nt_gains *gains, const struct nt_signals *signals); /* OWN */
     void *context;                                                                                          /* OWN */
 } nt_control;

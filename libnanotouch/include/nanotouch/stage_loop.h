@@ -17,6 +17,8 @@ typedef struct nt_stage_loop_state {
     double w[2];       /* filter memory [m] */
     double correction; /* integral of the error [m] */
 } nt_stage_loop_state;
+/* Whether samples are many enough to see the resonance: two in its period; else the notch is off. */
+NT_API int nt_stage_loop_notches(const nt_stage *stage, const nt_gains *gains);
 /* Notch and gain for a stage and gains that have been checked. */
 NT_API nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *gains);
 /* One period: reference and read-out [m] in, the command to the stage [m] out. */

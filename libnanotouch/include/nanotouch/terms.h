@@ -107,7 +107,7 @@ typedef enum nt_form {
     NT_FORM_SERIES,     /* contact of a sphere without adhesion, in powers of delta/R */
     NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
     NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
-    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (contact_table.h); a law of one's own */
+    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (maugis_table.h); a law of one's own */
     NT_FORM_POLISHED,
     NT_FORM_EXACT,
     NT_FORM_LOCAL,       /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */

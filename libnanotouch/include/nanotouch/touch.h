@@ -21,7 +21,7 @@ typedef struct nt_touch {
     nt_settings settings;
     nt_mode mode;  /* to begin with */
     double period; /* T [s] */
-    nt_servo_law law;
+    nt_control_law law;
     nt_stage_loop stage_loop;
     int leads_sideways;   /* master and stage have more than one axis: x and y follow the hand, not a path ... */
     double borders[2][2]; /* ... within these, of x and of y; infinite where nothing borders it [m] */

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maugis-Dugdale at a given load, contact radius or branch parameter, and its partial derivatives.
- *
- * At constant y the roots of (Griffith), maugis_branch.c, move with lambda as
- *     db/dlambda = -(g1 b^2/2 + 8/3 lambda g2 b)/D
- * and with it a = b y, d, P; at constant d, y moves too: P_lambda|d = P_lambda|y - (dP/dd) d_lambda|y, a alike. */
+ * Maugis-Dugdale at a given load, contact radius or branch parameter. */
 #include <math.h>
 #include <stddef.h>
 
 #include "contact/maugis/apart.h"
-#include "contact/maugis/shape.h"
+#include "contact/maugis/functions.h"
 #include "contact/maugis/solve.h"
 #include "core/roots.h"
-#include "nanotouch/contact_control.h"
+#include "nanotouch/contact_equilibrium.h"
 
 static nt_contact_state state_of(const nt_maugis *maugis, double d, const nt_law_value *reduced)
 {
@@ -148,27 +144,5 @@ nt_status nt_maugis_at_parameter(const nt_maugis *maugis, double y, nt_contact_s
     nt_maugis_equilibrium point;
     nt_maugis_equilibrium_at(maugis->lambda, y, &point);
     *state = contact_state(maugis, &point);
-    return NT_OK;
-}
-
-nt_status nt_maugis_partials_at(double lambda, double y, nt_maugis_partials *partials)
-{
-    if (!isfinite(lambda) || !isfinite(y))
-        return NT_E_NOT_FINITE;
-    if (lambda <= 0.0 || y < 0.0)
-        return NT_E_RANGE;
-    const nt_maugis_shape f = nt_maugis_shape_at(y);
-    const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(lambda, f);
-    const double b = at.b, B = 4.0 / 3.0 * lambda * lambda * f.g2, D = sqrt(B * B + 2.0 * lambda * f.g1);
-    const double b_lambda = -(0.5 * f.g1 * b * b + 8.0 / 3.0 * lambda * f.g2 * b) / D, a_lambda = y * b_lambda;
-    const double d_lambda = 2.0 * at.a * a_lambda - 4.0 / 3.0 * (b + lambda * b_lambda);
-    const double P_lambda = 3.0 * at.a * at.a * a_lambda - f.g3 * b * (b + 2.0 * lambda * b_lambda);
-    const double P_d = at.P1 / at.d1, a_d = at.a1 / (y * at.d1);
-    *partials = (nt_maugis_partials){
-        .P_d = P_d,
-        .P_lambda = P_lambda - P_d * d_lambda,
-        .a_d = a_d,
-        .a_lambda = a_lambda - a_d * d_lambda,
-    };
     return NT_OK;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The functions of the branch parameter y alone of which the contact branch of Maugis-Dugdale is made (maugis_branch.c
+ * The functions of the branch parameter y alone of which the contact branch of Maugis-Dugdale is made (maugis/branch.c
  * has the derivation); private to contact/. With s = y for y <= 1 and 1/y above, z = s^2, t = acot(y) and
  * A(z) = (s - atan s)/s^3 no form cancels. Written without a jump, so that a loop over it can be vectorised. */
-#ifndef NANOTOUCH_CONTACT_MAUGIS_SHAPE_H
-#define NANOTOUCH_CONTACT_MAUGIS_SHAPE_H
+#ifndef NANOTOUCH_CONTACT_MAUGIS_FUNCTIONS_H
+#define NANOTOUCH_CONTACT_MAUGIS_FUNCTIONS_H
 
 #include <math.h>
 
@@ -11,10 +11,10 @@
 #include "nanotouch/material.h"
 
 /* h_ is a derivative divided by y. */
-typedef struct nt_maugis_shape {
+typedef struct nt_maugis_functions {
     double y, s, z, r, A; /* r = sqrt(1 + z) */
     double g1, g2, g3, h1, h2, h3;
-} nt_maugis_shape;
+} nt_maugis_functions;
 
 /* A(z) = (sqrt z - atan sqrt z)/z^1.5 for 0 <= z <= 1: rational, relative error 2e-18 (tools/atan_remainder.py);
  * all coefficients are positive, so no digit is lost. */
@@ -32,7 +32,7 @@ static inline double nt_maugis_atan_remainder(double z)
     return numerator / denominator;
 }
 
-static inline nt_maugis_shape nt_maugis_shape_at(double y)
+static inline nt_maugis_functions nt_maugis_functions_at(double y)
 {
     const int low = y <= 1.0;
     const double s = low ? y : 1.0 / y, z = s * s, w = 1.0 + z, r = sqrt(w), A = nt_maugis_atan_remainder(z);
@@ -41,7 +41,7 @@ static inline nt_maugis_shape nt_maugis_shape_at(double y)
     const double quotient = 1.0 / (w * (1.0 + r)); /* one division for two */
     const double inverse = (1.0 + r) * quotient, half = w * quotient;
     const double rho = r - s; /* = 1/(r + s) for y <= 1: the difference does not cancel */
-    return (nt_maugis_shape){
+    return (nt_maugis_functions){
         .y = y,
         .s = s,
         .z = z,
@@ -57,7 +57,7 @@ static inline nt_maugis_shape nt_maugis_shape_at(double y)
 }
 
 /* The equilibrium that belongs to it: an explicit root of (Griffith), then the rest. */
-static inline nt_maugis_equilibrium nt_maugis_equilibrium_of(double lambda, nt_maugis_shape f)
+static inline nt_maugis_equilibrium nt_maugis_equilibrium_of(double lambda, nt_maugis_functions f)
 {
     const double linear = 4.0 / 3.0 * lambda * lambda, y = f.y;
     const double B = linear * f.g2, D = sqrt(B * B + 2.0 * lambda * f.g1);

@@ -7,8 +7,8 @@
  * dU/d(delta) and k = dF/d(delta) hold exactly: U is the integral of the tabulated F. The non-contact branch is
  * closed-form in every tier. Beyond the last tabulated indentation, and on the unstable branch, every tier is the exact
  * solver: nothing is extrapolated. */
-#ifndef NANOTOUCH_CONTACT_TABLE_H
-#define NANOTOUCH_CONTACT_TABLE_H
+#ifndef NANOTOUCH_MAUGIS_TABLE_H
+#define NANOTOUCH_MAUGIS_TABLE_H
 
 #include "nanotouch/contact.h"
 

@@ -8,8 +8,8 @@
  * its kind, and leave out 1 % around it. There, outside the range, beyond the largest indentation and on the unstable
  * branch the exact solver answers (some microseconds); in between the two potentials are blended, with their
  * derivatives. */
-#ifndef NANOTOUCH_CONTACT_BANK_H
-#define NANOTOUCH_CONTACT_BANK_H
+#ifndef NANOTOUCH_MAUGIS_BANK_H
+#define NANOTOUCH_MAUGIS_BANK_H
 
 #include "nanotouch/contact.h"
 
@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* Coefficients of a cell (contact_table.h), each a cubic in t, the place in the panel. */
+/* Coefficients of a cell (maugis_table.h), each a cubic in t, the place in the panel. */
 typedef struct nt_maugis_bank_cell {
     double F[4][4], a[4][4], U[4]; /* U and F above what they are at a = 0, below 0.9379 [reduced] */
 } nt_maugis_bank_cell;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// contact_bank.h: many contacts, each its own.
+// maugis_bank.h: many contacts, each its own.
 #include <memory>
 #include <vector>
 
@@ -77,7 +77,7 @@ static py::array_t<double> grip_indentation(const Bank &self, const Array &conta
     return out;
 }
 
-void bind_contact_bank(py::module_ &module)
+void bind_maugis_bank(py::module_ &module)
 {
     py::class_<Bank, std::shared_ptr<Bank>>(module, "Bank")
         .def(py::init(&make), py::arg("lambda_min"), py::arg("lambda_max"), py::arg("largest_indentation"),

@@ -7,8 +7,8 @@
  * grips (displacement control). On approach an attractive law with a range jumps in where its range begins; on
  * retraction contact is lost at the fold of D, between the load fold and the displacement fold. All functions:
  * thread-safe, real-time safe, no state; results untouched on failure. */
-#ifndef NANOTOUCH_CONTACT_CONTROL_H
-#define NANOTOUCH_CONTACT_CONTROL_H
+#ifndef NANOTOUCH_CONTACT_EQUILIBRIUM_H
+#define NANOTOUCH_CONTACT_EQUILIBRIUM_H
 
 #include "nanotouch/contact.h"
 
@@ -32,15 +32,6 @@ NT_API nt_status nt_maugis_at_parameter(const nt_maugis *maugis, double y, nt_co
 /* At a force, of every law. DMT and Hertz have no unstable branch: NT_E_NO_SOLUTION. */
 NT_API nt_status nt_contact_law_at_load(const nt_contact_law *law, double force, nt_branch branch,
                                         nt_contact_state *state);
-
-/* How reduced load and radius change with indentation (at constant lambda) and with lambda (at constant indentation):
- * what fits need. Explicit in y. */
-typedef struct nt_maugis_partials {
-    double P_d, P_lambda; /* [reduced] */
-    double a_d, a_lambda; /* [reduced] */
-} nt_maugis_partials;
-/* At the parameter y of nt_maugis_at, and failing as that does. */
-NT_API nt_status nt_maugis_partials_at(double lambda, double y, nt_maugis_partials *partials);
 
 /* The last equilibrium before the pull-off under a spring k_c >= 0 [N/m], INFINITY for grips. */
 NT_API nt_status nt_maugis_spring_fold(const nt_maugis *maugis, double spring, nt_contact_state *state);
