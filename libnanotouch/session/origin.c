@@ -109,7 +109,7 @@ nt_status nt_origin_check_setup(const nt_session_setup *kept, const nt_session_s
     fields = nt_rig_fields(&count);
     if (status == NT_OK)
         status = compare(fields, count, &kept->rig, &own->rig, problem);
-    const nt_law_choice a = kept->settings.control.choice, b = own->settings.control.choice;
+    const nt_control_choice a = kept->settings.control.choice, b = own->settings.control.choice;
     if (status == NT_OK && a != b)
         status = differ(problem, "control.choice", "default|paper|impedance|own", (double)a, (double)b);
     if (status == NT_OK &&

@@ -31,6 +31,10 @@ typedef struct simulated_bus {
     int has_reply;
     long frames[2];
     uint32_t noise; /* of the ADC: its lowest bits change */
+    int has_crc;    /* the ADC is an AD7768-1, which reads the deflection alone, with status and check sum */
+    int corrupt;    /* so many of its frames come with a bit wrong; below 0: all */
+    int error;      /* errno of messages ... */
+    int errors;     /* ... so many of them; below 0: all */
 } simulated_bus;
 
 static inline simulated_bus simulated_bus_after_power_up(void)
@@ -83,6 +87,24 @@ static inline void simulated_ad7606(simulated_bus *bus, uint8_t *in, uint32_t co
     }
 }
 
+static inline void simulated_ad7768(simulated_bus *bus, const uint8_t *out, uint8_t *in, uint32_t count)
+{
+    if (count != 5 || out[0] == 0x6C)
+        return;
+    const double volts = simulated_deflection(bus) / DEFLECTION_GAIN;
+    const uint32_t bits = (uint32_t)(int32_t)floor(volts / 20.0 * 16777216.0 + 0.5) + (++bus->noise >> 1 & 1u);
+    uint8_t sum = 0x03; /* x^8 + x^2 + x + 1 */
+    in[0] = (uint8_t)(bits >> 16), in[1] = (uint8_t)(bits >> 8), in[2] = (uint8_t)bits, in[3] = 0;
+    for (int i = 0; i < 32; ++i) {
+        const uint32_t bit = (uint32_t)(in[i / 8] >> (7 - i % 8) & 1) ^ (uint32_t)(sum >> 7);
+        sum = (uint8_t)(sum << 1 ^ (bit ? 0x07 : 0));
+    }
+    in[4] = sum;
+    if (bus->corrupt != 0)
+        in[1] ^= 0x10;
+    bus->corrupt -= bus->corrupt > 0;
+}
+
 /* One frame under one chip select. */
 static inline void simulated_frame(simulated_bus *bus, int chip, const uint8_t *out, uint8_t *in, uint32_t count)
 {
@@ -90,7 +112,9 @@ static inline void simulated_frame(simulated_bus *bus, int chip, const uint8_t *
     memset(in, 0, count);
     if (chip == 0 && count == 3)
         simulated_ad5791(bus, out, in);
-    if (chip == 1)
+    if (chip == 1 && bus->has_crc)
+        simulated_ad7768(bus, out, in, count);
+    if (chip == 1 && !bus->has_crc)
         simulated_ad7606(bus, in, count);
     if (bus->fault == BUS_ALL_ZERO || bus->fault == BUS_ALL_ONE)
         memset(in, bus->fault == BUS_ALL_ONE ? 0xFF : 0x00, count);

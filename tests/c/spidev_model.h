@@ -88,7 +88,11 @@ static inline int model_request(spidev_model *m, unsigned request, void *argumen
         return model_setting(m, request, argument);
     if (m->bus->fault == BUS_REFUSED)
         return -EIO;
-    if (m->mode != (m->chip ? 2 : 1)) /* on the wrong edge every bit is that of its neighbour */
+    if (m->bus->errors != 0) {
+        m->bus->errors -= m->bus->errors > 0;
+        return -m->bus->error;
+    }
+    if (m->mode != (!m->chip ? 1 : m->bus->has_crc ? 3 : 2)) /* on the wrong edge every bit is that of its neighbour */
         return -EPROTO;
     const uint32_t size = _IOC_SIZE(request);
     return size % sizeof(struct spi_ioc_transfer)

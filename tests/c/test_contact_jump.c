@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "maugis_fixture.h"
-#include "nanotouch/contact_control.h"
+#include "nanotouch/contact_equilibrium.h"
 
 static nt_contact_law law_of(nt_model model, double lambda)
 {

@@ -174,6 +174,28 @@ static void the_stage_rings_no_farther(void **state)
     assert_true(largest < bound && largest > 0.9 * bound);
 }
 
+/* Two samples in a period of the resonance do not show it: the notch is off, and the stage as bare as under the paper's
+ * law. */
+static void without_a_notch_the_stage_rings_bare(void **state)
+{
+    (void)state;
+    nt_rig rig = nt_rig_defaults();
+    rig.stage.command_resolution = 0.0;
+    for (double ratio = 1.7; ratio < 2.4; ratio += 0.2) {
+        nt_settings settings = nt_settings_defaults(&rig);
+        settings.gains.rate = ratio * rig.stage.resonance;
+        settings.gains.stage_integral = 0.0;
+        nt_settings paper = settings;
+        paper.control.choice = NT_CONTROL_PAPER;
+        const double rings = nt_guarantee_compute(&rig, &settings, &flat).ringing;
+        const double bare = nt_guarantee_compute(&rig, &paper, &flat).ringing;
+        if (ratio < 2.0)
+            assert_true(fabs(rings / bare - 1.0) < 1e-12);
+        else
+            assert_true(rings < 0.1 * bare);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +204,7 @@ int main(void)
         cmocka_unit_test(a_swing_dies_away),
         cmocka_unit_test(every_hazard_counts),
         cmocka_unit_test(the_stage_rings_no_farther),
+        cmocka_unit_test(without_a_notch_the_stage_rings_bare),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

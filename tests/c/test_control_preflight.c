@@ -78,6 +78,27 @@ static void every_trouble_is_refused_by_name(void **state)
     }
 }
 
+/* A tip that has snapped in before the first tick: its stiff contact may cost seconds to simulate until a mean is
+ * known. */
+static void a_saturated_reading_is_refused_at_once(void **state)
+{
+    (void)state;
+    const nt_rig rig = nt_rig_defaults();
+    nt_settings settings = nt_settings_defaults(&rig);
+    const nt_sample saturated = {.deflection[NT_Z] = -nt_probe_deflection_range(&rig.probe)};
+    for (int wide = 0; wide < 2; ++wide) {
+        settings.limits.deflection_bias =
+            wide ? 1e-6 : 33e-9; /* who allows for a bias of the whole range has it tared */
+        const nt_preflight preflight = nt_preflight_make(&rig, &settings);
+        nt_preflight_state begun = {.verdict = NT_PREFLIGHT_RUNNING};
+        nt_command command = {0};
+        nt_preflight_step(&preflight, &begun, &saturated, &command);
+        assert_int_equal(begun.verdict, wide ? NT_PREFLIGHT_RUNNING : NT_PREFLIGHT_DEFLECTION_BIAS);
+        assert_true(wide || begun.measure == saturated.deflection[NT_Z]);
+        assert_true(command.stage_position[NT_Z] == 0.0);
+    }
+}
+
 /* The mean of at least 50 samples of 1 nm noise, five sigma. */
 static void the_tare_is_the_bias(void **state)
 {
@@ -117,6 +138,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_trouble_is_refused_by_name),
+        cmocka_unit_test(a_saturated_reading_is_refused_at_once),
         cmocka_unit_test(the_tare_is_the_bias),
         cmocka_unit_test(without_a_gauge_none_is_asked),
     };

@@ -35,23 +35,11 @@ static void ranges_map_onto_each_other(void **state)
     assert_true(fabs(scaling.alpha_f * span - 40.0) < 1e-12);
 }
 
-/* Goldfarb: forces of structures go with the length, those of surfaces with its square. */
-static void rules_for_structure_and_surface(void **state)
-{
-    (void)state;
-    for (double l = 1e-9; l < 1.0; l *= 7.0) {
-        assert_true(nt_scaling_structure(l).alpha_p == l && nt_scaling_surface(l).alpha_p == l);
-        assert_true(fabs(nt_scaling_structure(l).alpha_f * l - 1.0) < 1e-15);
-        assert_true(fabs(nt_scaling_surface(l).alpha_f * l * l - 1.0) < 1e-15);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heuristic_rule_gives_the_papers_numbers),
         cmocka_unit_test(ranges_map_onto_each_other),
-        cmocka_unit_test(rules_for_structure_and_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,7 @@ static const nt_signals still = {.master_damping = 100.0, .scaling = {2e-5, 3e6}
 static void rest_means_scaled_forces_agree(void **state)
 {
     (void)state;
-    static const nt_servo_law laws[] = {nt_servo_default, nt_servo_paper};
+    static const nt_control_law laws[] = {nt_servo_default, nt_servo_paper};
     nt_random random = nt_random_seed(1);
     for (int i = 0; i < 1000; i++) {
         const nt_gains gains = {.force_gain = 100.0 * nt_random_uniform(&random)};
@@ -85,7 +85,7 @@ static void impedance_reflects_and_asks_no_hand(void **state)
 }
 
 typedef struct loop {
-    nt_servo_law law;
+    nt_control_law law;
     nt_gains gains;
     double k_r; /* the contact at the operator's scale [N/m] */
     double x, v, tau;
@@ -113,7 +113,7 @@ static void advance(loop *l, double push, int ticks)
 static void a_thousand_gain_sets_come_to_rest_at_the_scaled_force(void **state)
 {
     (void)state;
-    static const nt_servo_law laws[] = {nt_servo_default, nt_servo_paper, nt_servo_impedance};
+    static const nt_control_law laws[] = {nt_servo_default, nt_servo_paper, nt_servo_impedance};
     nt_random random = nt_random_seed(2);
     double worst = 0.0;
     for (int i = 0; i < 1000; i++) {
@@ -142,15 +142,15 @@ static void a_shape_is_what_the_rules_need(void **state)
     settings.gains.velocity_feedforward = 0.6;
     settings.gains.force_gain = 5.0;
     settings.gains.alpha_f_retract = 3.0;
-    nt_servo_shape shape = nt_servo_shape_of(&rig, &settings, 100.0);
-    assert_true(shape.gains.force_gain == 5.0 && fabs(shape.rig.master.damping - 40.0) < 1e-12);
-    assert_true(shape.gains.alpha_f == 3.0 * settings.gains.alpha_f && shape.contact_stiffness == 100.0);
+    nt_servo_equivalent equivalent = nt_servo_equivalent_of(&rig, &settings, 100.0);
+    assert_true(equivalent.gains.force_gain == 5.0 && fabs(equivalent.rig.master.damping - 40.0) < 1e-12);
+    assert_true(equivalent.gains.alpha_f == 3.0 * settings.gains.alpha_f && equivalent.contact_stiffness == 100.0);
     settings.control.choice = NT_CONTROL_IMPEDANCE;
-    shape = nt_servo_shape_of(&rig, &settings, 100.0);
-    assert_true(shape.gains.force_gain == 0.0 && fabs(shape.rig.master.damping - 40.0) < 1e-12);
+    equivalent = nt_servo_equivalent_of(&rig, &settings, 100.0);
+    assert_true(equivalent.gains.force_gain == 0.0 && fabs(equivalent.rig.master.damping - 40.0) < 1e-12);
     settings.control.choice = NT_CONTROL_PAPER; /* has no feed-forward and no notch */
-    shape = nt_servo_shape_of(&rig, &settings, 100.0);
-    assert_true(shape.rig.master.damping == 100.0 && shape.gains.stage_damping == 0.5 / rig.stage.quality);
+    equivalent = nt_servo_equivalent_of(&rig, &settings, 100.0);
+    assert_true(equivalent.rig.master.damping == 100.0 && equivalent.gains.stage_damping == 0.5 / rig.stage.quality);
 }
 
 /* Springs in series: the contact at the operator's scale and the coupling. */
@@ -162,12 +162,12 @@ static void a_coupling_softens_every_contact(void **state)
     settings.gains.coupling_stiffness = 300.0;
     const double scale = settings.gains.alpha_f * settings.gains.alpha_p, k_c = rig.probe.spring_constant;
     for (double k = 0.1; k < 1e6; k *= 10.0) {
-        const double softened = nt_servo_shape_of(&rig, &settings, k).contact_stiffness;
+        const double softened = nt_servo_equivalent_of(&rig, &settings, k).contact_stiffness;
         const double rigid = scale / (1.0 / k + 1.0 / k_c), felt = scale / (1.0 / softened + 1.0 / k_c);
         assert_true(fabs(1.0 / felt - (1.0 / rigid + 1.0 / 300.0)) < 1e-9 / felt);
         assert_true(felt < 300.0);
     }
-    const double felt = scale / (1.0 / nt_servo_shape_of(&rig, &settings, INFINITY).contact_stiffness + 1.0 / k_c);
+    const double felt = scale / (1.0 / nt_servo_equivalent_of(&rig, &settings, INFINITY).contact_stiffness + 1.0 / k_c);
     assert_true(fabs(1.0 / felt - (1.0 / (scale * k_c) + 1.0 / 300.0)) < 1e-9 / felt);
 }
 

@@ -13,7 +13,7 @@
 
 static const double stiffness = 1e3;
 
-static nt_verdict judged(nt_law_choice choice, nt_mode mode, nt_margins *margins)
+static nt_verdict judged(nt_control_choice choice, nt_mode mode, nt_margins *margins)
 {
     const nt_rig rig = nt_rig_defaults();
     nt_settings settings = nt_settings_defaults(&rig);
@@ -45,7 +45,7 @@ static void the_smallest_counts_in_touch(void **state)
 static void other_modes_know_the_height_servo_or_nothing(void **state)
 {
     (void)state;
-    const nt_law_choice choices[] = {NT_CONTROL_DEFAULT, NT_CONTROL_PAPER, NT_CONTROL_IMPEDANCE};
+    const nt_control_choice choices[] = {NT_CONTROL_DEFAULT, NT_CONTROL_PAPER, NT_CONTROL_IMPEDANCE};
     for (int i = 0; i < 3; i++) {
         nt_margins margins;
         const nt_verdict height = judged(choices[i], NT_MODE_TOPOGRAPHY, &margins);

@@ -16,6 +16,7 @@
 #include "host_fixture.h"
 #include "nanotouch/control.h"
 #include "nanotouch/hal_spi.h"
+#include "spidev_calls.h"
 #include "spidev_model.h"
 
 enum { APPROACH = 40000 }; /* ticks after which the set-point is held */
@@ -25,21 +26,6 @@ static spidev_model model[2];
 static int interrupts; /* this many calls end with EINTR first */
 static uint32_t lines; /* what the stop button says */
 
-static int open_call(void *context, const char *path)
-{
-    (void)context;
-    return path[0] - '0';
-}
-static void close_call(void *context, int file)
-{
-    (void)context, (void)file;
-}
-static int copy_bytes(void *context, uint64_t theirs, uint8_t *ours, uint32_t count, int is_write)
-{
-    (void)context;
-    memcpy(is_write ? (void *)(uintptr_t)theirs : ours, is_write ? ours : (const void *)(uintptr_t)theirs, count);
-    return 0;
-}
 static int control_call(void *context, int file, unsigned long request, void *argument)
 {
     (void)context;

@@ -16,6 +16,7 @@
 #include "converter_rig.h"
 #include "nanotouch/hal_spi.h"
 #include "session_fixture.h"
+#include "spidev_calls.h"
 #include "spidev_model.h"
 
 enum { PATIENCE = 20000 }; /* readings of the ring, 2 ms apart where it is empty */
@@ -24,21 +25,6 @@ static simulated_bus bus;
 static spidev_model model[2];
 static atomic_int is_pressed;
 
-static int open_call(void *context, const char *path)
-{
-    (void)context;
-    return path[0] - '0';
-}
-static void close_call(void *context, int file)
-{
-    (void)context, (void)file;
-}
-static int copy_bytes(void *context, uint64_t theirs, uint8_t *ours, uint32_t count, int is_write)
-{
-    (void)context;
-    memcpy(is_write ? (void *)(uintptr_t)theirs : ours, is_write ? ours : (const void *)(uintptr_t)theirs, count);
-    return 0;
-}
 static int control_call(void *context, int file, unsigned long request, void *argument)
 {
     (void)context;

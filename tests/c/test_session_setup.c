@@ -50,7 +50,7 @@ static void what_cannot_be_is_named(void **state)
     wrong.path_count = -1;
     expect_refused(&wrong, "path.count");
     wrong = nt_session_defaults();
-    wrong.settings.control.choice = (nt_law_choice)9;
+    wrong.settings.control.choice = (nt_control_choice)9;
     expect_refused(&wrong, "control.choice");
     wrong = nt_session_defaults();
     wrong.settings.control.context = &none; /* of no law */
