@@ -38,7 +38,7 @@ set(nanotouch_sources_contact
     contact/maugis/bank_panels.c
     contact/maugis/branch.c
     contact/maugis/cells.c
-    contact/maugis/control.c
+    contact/maugis/equilibrium.c
     contact/maugis/kernel.c
     contact/maugis/maugis.c
     contact/maugis/solve.c
@@ -195,7 +195,8 @@ set(nanotouch_sources_session
     session/session.c
     session/setup.c
     session/terrain.c
-    session/terrain_reach.c)
+    session/terrain_reach.c
+    session/well.c)
 set(nanotouch_sources_fit
     fit/batch.cpp
     fit/branch.c
@@ -204,6 +205,7 @@ set(nanotouch_sources_fit
     fit/custom_model.cpp
     fit/data.cpp
     fit/guess.cpp
+    fit/halves.cpp
     fit/judgement.cpp
     fit/linear.cpp
     fit/model.cpp

@@ -148,23 +148,23 @@ nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double c
         judge(&calm, 1.0);
         return calm;
     }
-    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
-    const nt_sampled_loop loop = nt_sampled_loop_of(&shape.rig, settings, &shape.gains);
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, contact_stiffness);
+    const nt_sampled_loop loop = nt_sampled_loop_of(&equivalent.rig, settings, &equivalent.gains);
     if (!(loop.master.damping > 0.0) || loop.master.whole > NT_SAMPLED_LONGEST) {
         calm.ripple = calm.ringing = calm.slewing = calm.margin = NAN;
         calm.rule = "ripple";
         return calm;
     }
-    list(&shape.rig, &shape.gains, shape.contact_stiffness, sources);
-    const walk found = integrate(&loop, &shape.gains, sources);
-    const double thrown = shape.gains.alpha_p * sources[NT_RIPPLE_MASTER].step;
+    list(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness, sources);
+    const walk found = integrate(&loop, &equivalent.gains, sources);
+    const double thrown = equivalent.gains.alpha_p * sources[NT_RIPPLE_MASTER].step;
     sources[NT_RIPPLE_STAGE_COMMAND].rings =
         found.back >= BACK || thrown < THROWN * sources[NT_RIPPLE_STAGE_COMMAND].step;
     add_up(sources, &found, &calm);
     calm.ringing = found.ringing;
-    const nt_margins margins = nt_margins_compute(&shape.rig, &shape.gains, shape.contact_stiffness);
-    const double step = shape.gains.alpha_p * shape.rig.master.resolution / settings->limits.stage_speed;
-    const double slew = fmax(0.0, step - 1.0 / shape.gains.rate);
+    const nt_margins margins = nt_margins_compute(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness);
+    const double step = equivalent.gains.alpha_p * equivalent.rig.master.resolution / settings->limits.stage_speed;
+    const double slew = fmax(0.0, step - 1.0 / equivalent.gains.rate);
     calm.slewing = margins.margin * margins.loop_delay / (margins.loop_delay + slew);
     judge(&calm, slew > 0.0 ? ARMED : 1.0);
     return calm;

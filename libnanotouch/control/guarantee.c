@@ -14,18 +14,6 @@
 #define SIGMAS 6.0
 #define INTERVALS 400
 
-/* Largest amplitude at which the stage rings if its command goes to and fro at its limit of speed [m]: the square
- * wave's fundamental times the gain of the resonance that the notch leaves, or, where that is more, all that a speed
- * can make of the step response, v int |1 - s| dt = 2 v/(w_n (1 - exp(-pi zeta/sqrt(1 - zeta^2)))), less the lag 2 zeta
- * v/w_n that the reaction time holds already. */
-static double ringing_amplitude(const nt_stage *stage, double zeta, double speed)
-{
-    const double split = zeta < 1.0 ? sqrt(1.0 - zeta * zeta) : 0.0;
-    const double gain = 2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * split) : 1.0;
-    const double all = split > 0.0 ? -2.0 / expm1(-NT_PI * zeta / split) - 2.0 * zeta : 0.0;
-    return fmax(4.0 / NT_PI * gain, all) * speed / (2.0 * NT_PI * stage->resonance);
-}
-
 /* A bare resonance overshoots a step by exp(-pi zeta/sqrt(1 - zeta^2)) of it. */
 static double overshoot(const nt_stage *stage)
 {
@@ -49,7 +37,7 @@ const char *nt_failure_name(nt_failure failure)
 
 /* All that the terms have in common. */
 typedef struct basis {
-    nt_servo_shape shape;
+    nt_servo_equivalent equivalent;
     nt_supervisor supervisor;
     double share;                /* 3 sigma of k_c, 1 + that */
     double spring;               /* k_c as stiff as it may be [N/m] */
@@ -66,7 +54,7 @@ static double in_series(double spring, double stiffness)
 
 static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
 {
-    basis b = {.shape = nt_servo_shape_of(rig, settings, hazard->stiffness),
+    basis b = {.equivalent = nt_servo_equivalent_of(rig, settings, hazard->stiffness),
                .supervisor = nt_supervisor_make(rig, settings)};
     const nt_limits *limits = &settings->limits;
     b.share = 1.0 + NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
@@ -74,11 +62,11 @@ static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_h
     b.k_eff = in_series(b.spring, hazard->stiffness);
     for (int i = 0; i < NT_FAILURES; ++i)
         b.failing[i] = in_series(b.spring, fmax(hazard->stiffness, hazard->failing[i]));
-    nt_rig slave = b.shape.rig;
+    nt_rig slave = b.equivalent.rig;
     slave.master.rate = 0.0; /* a slow master takes no part in a stop */
-    b.reaction = nt_margins_loop_delay(&slave, &b.shape.gains);
+    b.reaction = nt_margins_loop_delay(&slave, &b.equivalent.gains);
     b.vertical =
-        (1.0 + rig->stage.hysteresis) * limits->stage_speed + b.shape.gains.stage_integral * limits->follow_error;
+        (1.0 + rig->stage.hysteresis) * limits->stage_speed + b.equivalent.gains.stage_integral * limits->follow_error;
     return b;
 }
 
@@ -113,11 +101,11 @@ static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig,
     const double three = 3.0 * s->period; /* ticks in a row */
     const double stuck = (1.0 + overshoot(stage)) * (s->stage_most + s->correction_most + b->vertical * three);
     const double runs = stage->max_speed * (b->reaction + three) + 2.0 * s->turn_slack +
-                        ringing_amplitude(stage, b->shape.gains.stage_damping, stage->max_speed);
+                        nt_servo_ringing(&b->equivalent, stage->max_speed);
     const double tolerance = s->free_force + b->spring * 1e-9;
     found->failure[NT_FAILURE_READ_OUT] = misread(b, limits);
     found->failure[NT_FAILURE_SENSOR] = b->failing[NT_FAILURE_SENSOR] * unnoticed(b);
-    const int follows = b->shape.gains.stage_integral > 0.0; /* without, hysteresis hides a stage that sticks */
+    const int follows = b->equivalent.gains.stage_integral > 0.0; /* without, hysteresis hides a stage that sticks */
     found->failure[NT_FAILURE_SLIP] = follows ? b->failing[NT_FAILURE_SLIP] * fmax(stuck, stage->slip) : HUGE_VAL;
     found->failure[NT_FAILURE_STAGE] = b->failing[NT_FAILURE_STAGE] * runs + tolerance;
     double worst = 0.0;
@@ -145,9 +133,8 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
 {
     const nt_limits *limits = &settings->limits;
     const basis b = basis_of(rig, settings, hazard);
-    const nt_probe *probe = &b.shape.rig.probe;
-    const double swing = ringing_amplitude(&rig->stage, b.shape.gains.stage_damping, b.vertical) +
-                         stepping_amplitude(&b.shape.rig.stage);
+    const nt_probe *probe = &b.equivalent.rig.probe;
+    const double swing = nt_servo_ringing(&b.equivalent, b.vertical) + stepping_amplitude(&b.equivalent.rig.stage);
     const double read_error = NT_GUARANTEE_SIGMAS * probe->sensitivity_sigma;
     nt_guarantee found = {.reaction_time = b.reaction,
                           .moves_sideways = rig->stage.axes > 1.0,

@@ -17,8 +17,7 @@
 static double stage_lag(const nt_stage *stage, const nt_gains *gains)
 {
     const nt_stage_loop loop = nt_stage_loop_make(stage, gains);
-    const int notched = loop.a[2] != 0.0;
-    const double zeta = notched ? gains->stage_damping : 0.5 / stage->quality;
+    const double zeta = nt_stage_loop_notches(stage, gains) ? gains->stage_damping : 0.5 / stage->quality;
     const double notch = (loop.b[1] + 2.0 * loop.b[2]) / (loop.b[0] + loop.b[1] + loop.b[2]) -
                          (loop.a[1] + 2.0 * loop.a[2]) / (1.0 + loop.a[1] + loop.a[2]); /* [periods] */
     const double delay = notch / gains->rate + 1.0 / (2.0 * NT_PI * stage->resonance * stage->quality);
@@ -141,19 +140,20 @@ static nt_verdict judge_without_motor(const nt_margins *margins, const nt_gains 
 nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
                                nt_margins *margins)
 {
-    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, contact_stiffness);
-    const nt_sampled_loop loop = nt_sampled_loop_of(&shape.rig, settings, &shape.gains);
-    *margins = compute(&shape.rig, &shape.gains, shape.contact_stiffness, &loop);
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, contact_stiffness);
+    const nt_sampled_loop loop = nt_sampled_loop_of(&equivalent.rig, settings, &equivalent.gains);
+    *margins = compute(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
         return (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed");
     if (mode != NT_MODE_TOUCH)
         return (nt_verdict)NT_VERDICT(margins->height_margin, "height servo");
-    const double coupling =
-        nt_servo_coupling_margin(&shape.rig, &shape.gains, contact_stiffness,
-                                 hop_delay(&shape.rig, &shape.gains) + slave_delay(&shape.rig, &shape.gains));
+    const double coupling = nt_servo_coupling_margin(&equivalent.rig, &equivalent.gains, contact_stiffness,
+                                                     hop_delay(&equivalent.rig, &equivalent.gains) +
+                                                         slave_delay(&equivalent.rig, &equivalent.gains));
     const nt_verdict stage = NT_VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
-    const nt_verdict touch = rig->master.motor != 0.0 ? judge_touch(margins, &shape.rig, &shape.gains, coupling)
-                                                      : judge_without_motor(margins, &shape.gains, coupling);
+    const nt_verdict touch = rig->master.motor != 0.0
+                                 ? judge_touch(margins, &equivalent.rig, &equivalent.gains, coupling)
+                                 : judge_without_motor(margins, &equivalent.gains, coupling);
     return stage.margin >= touch.margin ? touch : stage;
 }
 

@@ -85,6 +85,14 @@ static nt_preflight_verdict judge_tare(const nt_preflight *preflight, nt_preflig
     return verdict;
 }
 
+/* A reading at the end of its range says no more than that the bias is at least this: no mean is waited for. */
+static nt_preflight_verdict judge_reading(const nt_preflight *preflight, nt_preflight_state *state, double deflection)
+{
+    const int saturated = fabs(deflection) >= nt_probe_deflection_range(&preflight->rig.probe);
+    const double limit = saturated ? preflight->limits.deflection_bias : HUGE_VAL;
+    return judge(state, deflection, limit, NT_PREFLIGHT_DEFLECTION_BIAS);
+}
+
 static void weigh(const nt_preflight *preflight, nt_preflight_state *state, const nt_sample *sample)
 {
     nt_tare *sum = &state->sums[state->tick >= preflight->ticks];
@@ -136,9 +144,11 @@ nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflig
         return state->verdict = NT_PREFLIGHT_BAD_SAMPLE;
     }
     const uint32_t tare = 2u * preflight->ticks, move = preflight->move;
-    if (state->tick < tare)
+    if (state->tick < tare) {
         weigh(preflight, state, sample);
-    if (state->tick + 1u == tare)
+        state->verdict = judge_reading(preflight, state, sample->deflection[NT_Z]);
+    }
+    if (state->tick + 1u == tare && state->verdict == NT_PREFLIGHT_RUNNING)
         state->verdict = judge_tare(preflight, state);
     if (state->tick >= tare + 2u * move - move / 2u && state->tick < tare + 2u * move)
         state->lifted += sample->stage_position[NT_Z];

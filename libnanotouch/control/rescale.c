@@ -16,15 +16,16 @@
 
 nt_rescale nt_rescale_make(const nt_rig *rig, const nt_settings *settings)
 {
-    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, INFINITY);
     const double T = 1.0 / settings->gains.rate;
-    const nt_probe *probe = &shape.rig.probe;
+    const nt_probe *probe = &equivalent.rig.probe;
     const double noise =
         probe->spring_constant * probe->sensitivity * hypot(FREE_SIGMA * probe->noise / 6.0, probe->resolution);
     return (nt_rescale){.share = lesser(FASTEST_SHARE, T / greater(settings->gains.ramp_time, T)),
                         .threshold = noise,
                         .spring_constant = rig->probe.spring_constant,
-                        .income = INCOME_SHARE * shape.rig.master.damping * T / (1.0 + shape.gains.force_gain),
+                        .income =
+                            INCOME_SHARE * equivalent.rig.master.damping * T / (1.0 + equivalent.gains.force_gain),
                         .capacity = TANK * rig->master.gauge_range * rig->master.travel,
                         .factors = {settings->gains.alpha_f_approach, 1.0, settings->gains.alpha_f_retract}};
 }

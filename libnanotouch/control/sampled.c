@@ -98,7 +98,7 @@ nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains)
         .hand = *hand,
         .force_filter = -expm1(-2.0 * NT_PI * gains->force_filter * T),
     };
-    loop.notched = loop.stage_loop.a[2] != 0.0;
+    loop.notched = nt_stage_loop_notches(&rig->stage, gains);
     return loop;
 }
 

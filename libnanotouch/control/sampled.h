@@ -51,7 +51,7 @@ typedef struct nt_sampled_loop {
     double derivative;   /* K_v [s] */
 } nt_sampled_loop;
 nt_sampled_loop nt_sampled_loop_make(const nt_rig *rig, const nt_gains *gains);
-/* The same of the law that the settings name; rig and gains are those of nt_servo_shape_of. */
+/* The same of the law that the settings name; rig and gains are those of nt_servo_equivalent_of. */
 nt_sampled_loop nt_sampled_loop_of(const nt_rig *rig, const nt_settings *settings, const nt_gains *gains);
 /* How long a master that is slower than the loop holds its reading, and its motor a force, beyond a period [s]. */
 double nt_sampled_master_hold(const nt_rig *rig, const nt_gains *gains);

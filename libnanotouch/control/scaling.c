@@ -11,15 +11,3 @@ nt_scaling nt_scaling_heuristic(const nt_rig *rig, double slave_path, double att
     };
     return scaling;
 }
-
-nt_scaling nt_scaling_structure(double alpha_p)
-{
-    nt_scaling scaling = {alpha_p, 1.0 / alpha_p};
-    return scaling;
-}
-
-nt_scaling nt_scaling_surface(double alpha_p)
-{
-    nt_scaling scaling = {alpha_p, 1.0 / (alpha_p * alpha_p)};
-    return scaling;
-}

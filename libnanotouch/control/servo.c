@@ -6,6 +6,8 @@
 #include <stddef.h>
 
 #include "core/clamp.h"
+#include "nanotouch/material.h"
+#include "nanotouch/stage_loop.h"
 
 /* tau_m = -alpha_f f_s - K_f (alpha_f f_s - f_m). At rest f_m = alpha_f f_s for any K_f (erratum E16). */
 static double reflect(const nt_gains *gains, const nt_signals *signals, double operator_force)
@@ -42,7 +44,7 @@ nt_effort nt_servo_impedance(void *unused, const nt_gains *gains, const nt_signa
     return (nt_effort){feed_forward(gains, signals) - reflected, signals->target};
 }
 
-nt_servo_law nt_servo_law_of(const nt_control *control)
+nt_control_law nt_control_law_of(const nt_control *control)
 {
     switch (control->choice) {
     case NT_CONTROL_DEFAULT:
@@ -75,21 +77,33 @@ static double softened(const nt_rig *rig, const nt_gains *gains, double contact_
     return k_eff / (1.0 - k_eff / k_c);
 }
 
-nt_servo_shape nt_servo_shape_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness)
+nt_servo_equivalent nt_servo_equivalent_of(const nt_rig *rig, const nt_settings *settings, double contact_stiffness)
 {
-    nt_servo_shape shape = {nt_rig_with_steps(rig), settings->gains, contact_stiffness};
-    const nt_law_choice choice = settings->control.choice;
+    nt_servo_equivalent equivalent = {nt_rig_with_steps(rig), settings->gains, contact_stiffness};
+    const nt_control_choice choice = settings->control.choice;
     if (choice == NT_CONTROL_DEFAULT || choice == NT_CONTROL_IMPEDANCE)
-        shape.rig.master.damping *= 1.0 - settings->gains.velocity_feedforward;
+        equivalent.rig.master.damping *= 1.0 - settings->gains.velocity_feedforward;
     if (choice == NT_CONTROL_IMPEDANCE || rig->master.gauge == 0.0)
-        shape.gains.force_gain = 0.0;
-    if (choice == NT_CONTROL_PAPER) {
-        shape.gains.stage_damping = 0.5 / rig->stage.quality; /* the notch does nothing then */
-        shape.gains.stage_integral = 0.0;
-    }
-    shape.gains.alpha_f *= greater(1.0, greater(shape.gains.alpha_f_approach, shape.gains.alpha_f_retract));
-    shape.contact_stiffness = softened(rig, &shape.gains, contact_stiffness);
-    return shape;
+        equivalent.gains.force_gain = 0.0;
+    if (choice == NT_CONTROL_PAPER || !nt_stage_loop_notches(&rig->stage, &settings->gains))
+        equivalent.gains.stage_damping = 0.5 / rig->stage.quality;
+    if (choice == NT_CONTROL_PAPER)
+        equivalent.gains.stage_integral = 0.0;
+    equivalent.gains.alpha_f *=
+        greater(1.0, greater(equivalent.gains.alpha_f_approach, equivalent.gains.alpha_f_retract));
+    equivalent.contact_stiffness = softened(rig, &equivalent.gains, contact_stiffness);
+    return equivalent;
+}
+
+/* The square wave's fundamental times the gain of the resonance that the notch leaves, or, where that is more, all that
+ * a speed can make of the step response, v int |1 - s| dt = 2 v/(w_n (1 - exp(-pi zeta/sqrt(1 - zeta^2)))), less the
+ * lag 2 zeta v/w_n that the reaction time holds already. */
+double nt_servo_ringing(const nt_servo_equivalent *equivalent, double speed)
+{
+    const double zeta = equivalent->gains.stage_damping, split = zeta < 1.0 ? sqrt(1.0 - zeta * zeta) : 0.0;
+    const double gain = 2.0 * zeta * zeta < 1.0 ? 0.5 / (zeta * split) : 1.0;
+    const double all = split > 0.0 ? -2.0 / expm1(-NT_PI * zeta / split) - 2.0 * zeta : 0.0;
+    return greater(4.0 / NT_PI * gain, all) * speed / (2.0 * NT_PI * equivalent->rig.stage.resonance);
 }
 
 double nt_servo_coupling_margin(const nt_rig *rig, const nt_gains *gains, double contact_stiffness, double delay)

@@ -20,12 +20,17 @@ static pole_pair poles_of(double zeta, double angle)
     return (pole_pair){sum, exp(-2.0 * decay)};
 }
 
+int nt_stage_loop_notches(const nt_stage *stage, const nt_gains *gains)
+{
+    return gains->rate > 2.0 * stage->resonance;
+}
+
 nt_stage_loop nt_stage_loop_make(const nt_stage *stage, const nt_gains *gains)
 {
     nt_stage_loop loop = {.b = {1.0, 0.0, 0.0}, .a = {1.0, 0.0, 0.0}, .integral = gains->stage_integral / gains->rate};
     const double angle = 2.0 * NT_PI * stage->resonance / gains->rate;
-    if (angle >= NT_PI)
-        return loop; /* the samples do not see the resonance */
+    if (!nt_stage_loop_notches(stage, gains))
+        return loop;
     const pole_pair bare = poles_of(0.5 / stage->quality, angle);
     const pole_pair damped = poles_of(gains->stage_damping, angle);
     const double scale = (1.0 - damped.sum + damped.product) / (1.0 - bare.sum + bare.product); /* gain 1 at rest */

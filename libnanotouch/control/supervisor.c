@@ -72,17 +72,17 @@ static double slack_of(const nt_rig *rig, const nt_settings *settings, const nt_
 
 nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
 {
-    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
-    const nt_probe *probe = &shape.rig.probe;
-    const nt_stage *stage = &shape.rig.stage;
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, INFINITY);
+    const nt_probe *probe = &equivalent.rig.probe;
+    const nt_stage *stage = &equivalent.rig.stage;
     const double period = 1.0 / settings->gains.rate;
     const double sigma = probe->sensitivity * probe->noise / 6.0; /* of the deflection [m] */
     const double step = probe->sensitivity * probe->resolution;
     const int shows_noise = sigma > step; /* identical codes are normal where the noise is below one step */
     const double travelled = STUCK_STEPS * greater(stage->resolution, LEAST_STAGE_STEP);
-    const double slack = slack_of(&shape.rig, settings, &shape.gains);
+    const double slack = slack_of(&equivalent.rig, settings, &equivalent.gains);
     const double all = settings->limits.follow_error + declared(&rig->stage);
-    const int follows = shape.gains.stage_integral > 0.0; /* without, hysteresis and creep are left */
+    const int follows = equivalent.gains.stage_integral > 0.0; /* without, hysteresis and creep are left */
     const double most = follows ? settings->limits.follow_error : all;
     return (nt_supervisor){.period = period,
                            .master_period = rig->master.rate > 0.0 ? greater(period, 1.0 / rig->master.rate) : period,
@@ -94,7 +94,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .gauge_range = rig->master.gauge != 0.0 ? rig->master.gauge_range : 0.0,
                            .stage_range = rig->stage.travel,
                            .stuck_distance = shows_noise ? travelled : 0.0,
-                           .stage_share = period / (period + stage_lag(rig, &shape.gains)),
+                           .stage_share = period / (period + stage_lag(rig, &equivalent.gains)),
                            .noise = sigma,
                            .stage_slack = follows ? slack : most,
                            .stage_most = most,

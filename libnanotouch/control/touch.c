@@ -77,13 +77,13 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
     if (mode > NT_MODE_CURVE)
         return NT_E_ARGUMENT;
     const double period = 1.0 / settings->gains.rate;
-    const nt_servo_shape shape = nt_servo_shape_of(rig, settings, INFINITY);
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, INFINITY);
     nt_touch made = {.rig = nt_rig_with_steps(rig),
                      .settings = *settings,
                      .mode = mode,
                      .period = period,
-                     .law = nt_servo_law_of(&settings->control),
-                     .stage_loop = nt_stage_loop_make(&rig->stage, &shape.gains),
+                     .law = nt_control_law_of(&settings->control),
+                     .stage_loop = nt_stage_loop_make(&rig->stage, &equivalent.gains),
                      .leads_sideways = rig->master.axes > 1.0 && rig->stage.axes > 1.0,
                      .borders = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}},
                      .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
@@ -92,8 +92,8 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .stage_step = settings->limits.stage_speed * period,
                      .stage_end = 0.5 * rig->stage.travel,
                      .motor_step = settings->limits.motor_rate * period,
-                     .spike = spike_of(&shape.rig, settings),
-                     .passivity = nt_passivity_make(&shape.rig, &shape.gains),
+                     .spike = spike_of(&equivalent.rig, settings),
+                     .passivity = nt_passivity_make(&equivalent.rig, &equivalent.gains),
                      .rescale = nt_rescale_make(rig, settings),
                      .supervisor = nt_supervisor_make(rig, settings)};
     made.passivity.damping = rig->master.damping; /* what the motor feeds forward is in its force already */

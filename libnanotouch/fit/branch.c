@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-#include "contact/maugis/shape.h"
+#include "contact/maugis/functions.h"
 #include "nanotouch/material.h"
 
 #define SQRT_6 2.44948974278317809820
@@ -41,9 +41,9 @@ static nt_fit_state jkr_at(const nt_fit_branch *branch, double s)
 static nt_fit_state maugis_at(const nt_fit_branch *branch, double s)
 {
     const double lambda = branch->lambda;
-    const nt_maugis_shape shape = nt_maugis_shape_at(sqrt(s));
-    const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(lambda, shape);
-    const double q = fmin(4.0 / 3.0 * lambda * lambda * shape.g2 * at.b, 1.0); /* rounding only */
+    const nt_maugis_functions f = nt_maugis_functions_at(sqrt(s));
+    const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(lambda, f);
+    const double q = fmin(4.0 / 3.0 * lambda * lambda * f.g2 * at.b, 1.0); /* rounding only */
     const double r = (1.0 + q) / (2.0 - q), a2 = at.a * at.a;
     const double load =
         at.P * (1.0 - 2.0 * r) - a2 * at.a * (1.0 + r); /* lambda dP/dlambda, dd/dlambda at constant y */
@@ -77,7 +77,7 @@ static void prepare_maugis(const nt_maugis *maugis, nt_fit_branch *branch)
     branch->load = maugis->load_scale;
     branch->indentation = maugis->indentation_scale;
     branch->load_fold = maugis->load_fold_y * maugis->load_fold_y;
-    const nt_maugis_equilibrium touch = nt_maugis_equilibrium_of(maugis->lambda, nt_maugis_shape_at(0.0));
+    const nt_maugis_equilibrium touch = nt_maugis_equilibrium_of(maugis->lambda, nt_maugis_functions_at(0.0));
     branch->touch_c = touch.b;
     branch->grip_fold = maugis->folds.grip_in_contact ? maugis->fold_y * maugis->fold_y
                                                       : 8.0 * maugis->lambda / (3.0 * NT_PI * touch.b) - 1.0;

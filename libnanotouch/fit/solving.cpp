@@ -10,6 +10,7 @@
 #include <limits>
 #include <new>
 
+#include "halves.hpp"
 #include "model.hpp"
 
 namespace nanotouch
@@ -265,6 +266,10 @@ void Solving::judge()
         }
     }
     solution_.flags |= flags;
+    solution_.half_modulus[0] = solution_.half_modulus[1] = not_a_number;
+    if (asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") &&
+        asks(options, NT_FIT_CONTACT_POINT, "contact_point") && !is_exact())
+        compare_halves(points_, data_, std::max(noise(), fit.residual_noise), &solution_);
 }
 
 nt_status Solving::run()

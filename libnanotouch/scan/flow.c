@@ -16,24 +16,17 @@
 
 #define NEAREST 0.25e-9 /* thickness of the first shell [m] */
 #define GROWTH 4.0
-#define SETTLED 1e-9 /* change per radian over A0 and 1/Q */
-enum { POINTS = 5, EDGES_MAX = 12, PATIENCE = 60 };
+#define SETTLED 1e-9  /* change per radian over A0 and 1/Q */
+#define NARROW 20e-12 /* width of a cell in the gap [m] */
+#define CELLS 50.0    /* of the free amplitude */
+#define ALIKE 0.03    /* radii of places in a cell, relative */
+#define TURN 0.05     /* of the lag by the force in one step [rad] */
+enum { POINTS = 5, EDGES_MAX = 12, PATIENCE = 60, HALVINGS = 8 };
 
 static const double points[POINTS] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
                                       0.95308992296933200};
 static const double weights[POINTS] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                        0.23931433524968324, 0.11846344252809454};
-
-/* What the force does in a period of amplitude A. */
-typedef struct average {
-    double cosine; /* fc [m] */
-    double sine;   /* fs [m] */
-    double mean;   /* <F>/k [m] */
-    double low;    /* gap [m] */
-    double peak;   /* [N] */
-    double loss;   /* [J] */
-    int attached;  /* at the top, afterwards */
-} average;
 
 typedef struct swing {
     const nt_tapping *lever;
@@ -82,7 +75,7 @@ static nt_law_value law_at(const swing *w, int attached, double gap)
 }
 
 /* Adds the forces between two angles; down and up are one where the history does not matter. */
-static void add_segment(const swing *w, double from, double to, average *sum)
+static void add_segment(const swing *w, double from, double to, nt_flow_average *sum)
 {
     const nt_tapping *lever = w->lever;
     const double k = lever->spring_constant, half = 0.5 * (w->top - w->low);
@@ -99,17 +92,22 @@ static void add_segment(const swing *w, double from, double to, average *sum)
     }
 }
 
-static average average_of(const nt_tapping *lever, const nt_flow_state *state, const nt_tapping_over *over,
-                          double amplitude)
+/* Where the lever swings over a place. */
+static double middle_of(const nt_tapping *lever, const nt_flow_state *state, const nt_tapping_over *over)
 {
     const double ground = over->base_height - (over->place != NULL ? over->place->surface.z : 0.0);
-    const double middle = ground + lever->cosine * state->mean, reach = lever->cosine * amplitude;
-    nt_interaction_state history = {state->attached, 0.0, 0.0};
-    swing w = {lever, over, amplitude, middle - reach, middle + reach, state->attached, 0};
+    return ground + lever->cosine * state->mean;
+}
+
+static nt_flow_average average_at(const nt_tapping *lever, const nt_tapping_over *over, int attached, double amplitude,
+                                  double low)
+{
+    nt_interaction_state history = {attached, 0.0, 0.0};
+    swing w = {lever, over, amplitude, low, low + 2.0 * lever->cosine * amplitude, attached, 0};
     nt_interaction_advance_gap(over->plan, &history, over->place, w.low);
     w.after = history.attached;
     nt_interaction_advance_gap(over->plan, &history, over->place, w.top);
-    average sum = {.low = w.low, .attached = history.attached};
+    nt_flow_average sum = {.low = w.low, .attached = history.attached};
     double edges[EDGES_MAX + 1], from = 0.0;
     const int count = edges_of(&w, edges);
     for (int i = 0; i < count; i++) {
@@ -124,6 +122,100 @@ static average average_of(const nt_tapping *lever, const nt_flow_state *state, c
     return sum;
 }
 
+static nt_flow_average average_of(const nt_tapping *lever, const nt_flow_state *state, const nt_tapping_over *over,
+                                  double amplitude)
+{
+    const double low = middle_of(lever, state, over) - lever->cosine * amplitude;
+    return average_at(lever, over, state->attached, amplitude, low);
+}
+
+static double broad(const nt_tapping *lever)
+{
+    return lever->free_amplitude / CELLS;
+}
+
+/* Makes the cell around a place of the plane; 0 where there may be none. */
+static int make_cell(const nt_tapping *lever, const nt_tapping_over *over, double amplitude, double low,
+                     nt_flow_cell *cell)
+{
+    const double width = broad(lever), capture = over->plan->capture_gap;
+    nt_place blunter = {0};
+    if (over->place != NULL)
+        blunter = *over->place;
+    nt_flow_cell made = {.low = NARROW * floor(low / NARROW),
+                         .amplitude = width * floor(amplitude / width),
+                         .radius = blunter.radius.radius,
+                         .is_made = 1};
+    blunter.radius.radius *= 1.0 + ALIKE;
+    const nt_tapping_over there = {over->plan, over->place != NULL ? &blunter : NULL, over->base_height};
+    cell->is_made = 0;
+    if (made.amplitude < width || (made.low <= capture && capture <= made.low + NARROW))
+        return 0;
+    for (int i = 0; i < 5; i++) {
+        const double A = made.amplitude + (i % 4 / 2) * width, at = made.low + (i % 2) * NARROW;
+        made.corner[i] = average_at(lever, i < 4 ? over : &there, 0, A, at);
+        if (made.corner[i].attached)
+            return 0;
+    }
+    *cell = made;
+    return 1;
+}
+
+/* A place in a cell: shares of its widths, and of the larger radius. */
+typedef struct in_cell {
+    double low, amplitude, radius;
+} in_cell;
+
+static double between(const nt_flow_cell *cell, const in_cell *in, size_t offset)
+{
+    double at[5];
+    for (int i = 0; i < 5; i++)
+        at[i] = *(const double *)(const void *)((const char *)&cell->corner[i] + offset);
+    const double x = in->low, y = in->amplitude;
+    const double flat = (1.0 - y) * ((1.0 - x) * at[0] + x * at[1]) + y * ((1.0 - x) * at[2] + x * at[3]);
+    return flat + in->radius * (at[4] - at[0]);
+}
+
+/* Where it is in a cell; 0 beyond it. */
+static int find_in(const nt_tapping *lever, const nt_flow_cell *cell, double radius, double low, double amplitude,
+                   in_cell *in)
+{
+    in->low = (low - cell->low) / NARROW;
+    in->amplitude = (amplitude - cell->amplitude) / broad(lever);
+    in->radius = radius > 0.0 ? (radius / cell->radius - 1.0) / ALIKE : 0.0;
+    return cell->is_made && in->low >= 0.0 && in->low < 1.0 && in->amplitude >= 0.0 && in->amplitude < 1.0 &&
+           fabs(in->radius) <= 1.0;
+}
+
+static nt_flow_cell *cell_at(const nt_tapping *lever, nt_flow_table *table, double low, double amplitude)
+{
+    const long i = (long)floor(low / NARROW), j = (long)floor(amplitude / broad(lever));
+    return &table->cell[(i & 15) + 16 * (j & 3)];
+}
+
+/* The average by a cell, which is made where it is not there; else by itself. */
+static nt_flow_average average_in(const nt_tapping *lever, const nt_flow_state *state, const nt_tapping_over *over,
+                                  double amplitude, nt_flow_table *table)
+{
+    const double low = middle_of(lever, state, over) - lever->cosine * amplitude;
+    if (table == NULL || state->attached || over->plan->properties != NULL || !(fabs(low) < 1e-3))
+        return average_at(lever, over, state->attached, amplitude, low);
+    const double radius = over->place != NULL ? over->place->radius.radius : 0.0;
+    nt_flow_cell *cell = cell_at(lever, table, low, amplitude);
+    in_cell in;
+    if (!find_in(lever, cell, radius, low, amplitude, &in)) {
+        if (!make_cell(lever, over, amplitude, low, cell))
+            return average_at(lever, over, 0, amplitude, low);
+        find_in(lever, cell, radius, low, amplitude, &in);
+    }
+    return (nt_flow_average){.cosine = between(cell, &in, offsetof(nt_flow_average, cosine)),
+                             .sine = between(cell, &in, offsetof(nt_flow_average, sine)),
+                             .mean = between(cell, &in, offsetof(nt_flow_average, mean)),
+                             .low = low,
+                             .peak = between(cell, &in, offsetof(nt_flow_average, peak)),
+                             .loss = between(cell, &in, offsetof(nt_flow_average, loss))};
+}
+
 nt_flow_state nt_flow_free(const nt_tapping *tapping)
 {
     const double r = tapping->ratio, real = 1.0 - r * r, imaginary = r / tapping->quality;
@@ -132,7 +224,7 @@ nt_flow_state nt_flow_free(const nt_tapping *tapping)
                            .imaginary = -tapping->strength * imaginary / square};
 }
 
-static nt_flow_value value_of(const nt_tapping *lever, const nt_flow_state *state, const average *sum)
+static nt_flow_value value_of(const nt_tapping *lever, const nt_flow_state *state, const nt_flow_average *sum)
 {
     const double real = state->real - (lever->at_base ? lever->strength : 0.0);
     const double amplitude = hypot(state->real, state->imaginary);
@@ -147,7 +239,7 @@ static nt_flow_value value_of(const nt_tapping *lever, const nt_flow_state *stat
 
 nt_flow_value nt_flow_now(const nt_tapping *tapping, const nt_flow_state *state, const nt_tapping_over *over)
 {
-    const average sum = average_of(tapping, state, over, hypot(state->real, state->imaginary));
+    const nt_flow_average sum = average_of(tapping, state, over, hypot(state->real, state->imaginary));
     return value_of(tapping, state, &sum);
 }
 
@@ -161,22 +253,54 @@ static void swing_freely(const nt_tapping *lever, nt_flow_state *state, double t
     state->imaginary = free.imaginary + decay * (s * x + c * y);
 }
 
-nt_flow_value nt_flow_step(const nt_tapping *tapping, nt_flow_state *state, const nt_tapping_over *over, double time)
+/* One step; 0 where the force would turn the lag too far, with the state as it was. */
+static int step_by(const nt_tapping *lever, nt_flow_state *state, const nt_tapping_over *over, double t,
+                   nt_flow_table *table, double most, nt_flow_value *value)
 {
-    const double t = tapping->rate * time, r = tapping->ratio;
-    swing_freely(tapping, state, 0.5 * t);
-    const double amplitude = hypot(state->real, state->imaginary);
-    const average sum = average_of(tapping, state, over, amplitude);
-    state->mean = sum.mean;
-    state->attached = sum.attached;
-    const nt_flow_value value = value_of(tapping, state, &sum);
+    nt_flow_state next = *state;
+    swing_freely(lever, &next, 0.5 * t);
+    const double r = lever->ratio, amplitude = hypot(next.real, next.imaginary);
+    const nt_flow_average sum = average_in(lever, &next, over, amplitude, table);
     /* Z' = -i/(2 r) (fc - i fs) Z/|Z| */
     const double turn = -0.5 * sum.cosine / (r * amplitude) * t, c = cos(turn), s = sin(turn);
+    if (fabs(turn) > most)
+        return 0;
+    next.mean -= expm1(-0.5 * t / lever->quality) * (sum.mean - next.mean); /* rings down as Z does */
+    next.attached = sum.attached;
+    *value = value_of(lever, &next, &sum);
     const double shrunk = fmax(0.0, 1.0 - 0.5 * sum.sine / (r * amplitude) * t);
-    const double x = state->real, y = state->imaginary;
-    state->real = shrunk * (c * x - s * y);
-    state->imaginary = shrunk * (s * x + c * y);
-    swing_freely(tapping, state, 0.5 * t);
+    const double x = next.real, y = next.imaginary;
+    next.real = shrunk * (c * x - s * y);
+    next.imaginary = shrunk * (s * x + c * y);
+    swing_freely(lever, &next, 0.5 * t);
+    *state = next;
+    return 1;
+}
+
+nt_flow_value nt_flow_step(const nt_tapping *tapping, nt_flow_state *state, const nt_tapping_over *over, double time)
+{
+    return nt_flow_step_in(tapping, state, over, time, NULL);
+}
+
+nt_flow_value nt_flow_step_in(const nt_tapping *tapping, nt_flow_state *state, const nt_tapping_over *over, double time,
+                              nt_flow_table *table)
+{
+    const double t = tapping->rate * time;
+    nt_flow_value value = {0}, now;
+    double peak = -HUGE_VAL;
+    int parts = 1; /* of the time, each as long as what is left of it allows */
+    for (int done = 0; done < parts;) {
+        const double most = parts < 1 << HALVINGS ? TURN : HUGE_VAL;
+        if (step_by(tapping, state, over, t / parts, table, most, &now)) {
+            value = now;
+            peak = fmax(peak, now.peak_force);
+            done++;
+        } else {
+            parts *= 2;
+            done *= 2;
+        }
+    }
+    value.peak_force = peak;
     return value;
 }
 
@@ -193,7 +317,8 @@ nt_status nt_flow_settle(const nt_tapping *tapping, nt_flow_state *state, const 
     for (; n < most && change > still; n++) {
         const nt_flow_state before = *state;
         *value = nt_flow_step(tapping, state, over, step);
-        change = hypot(state->real - before.real, state->imaginary - before.imaginary);
+        change =
+            hypot(hypot(state->real - before.real, state->imaginary - before.imaginary), state->mean - before.mean);
         if (!isfinite(change))
             return NT_E_NOT_FINITE;
     }

@@ -6,14 +6,26 @@
 #include <stddef.h>
 
 #include "core/problem.h"
+#include "nanotouch/material.h"
 
 #define CLEARANCE 2e-9 /* above first touch where a scan begins to come down [m] */
 #define ENGAGE 12.0    /* time constants of the loop until it holds */
+#define STEP 0.25      /* of the slow flow, over sqrt(Q) periods: longer ones ring on hard samples */
 enum { ENGAGE_TICKS_MAX = 2000000 };
 
 static int is_tapping(const nt_scanner *s)
 {
-    return s->scan.zloop.mode == NT_ZLOOP_TAPPING;
+    return s->scan.zloop.mode != NT_ZLOOP_CONTACT;
+}
+
+/* Phase feedback takes 90 degrees for free: driven at the resonance, within a tenth of its width. */
+static nt_status check_resonance(const nt_scanner *s, nt_problem *problem)
+{
+    const double width = 0.05 / s->lever.quality, f0 = s->probe.resonance;
+    if (s->scan.zloop.mode != NT_ZLOOP_PHASE || fabs(s->lever.ratio - 1.0) <= width)
+        return NT_OK;
+    return nt_problem_set(problem, "drive.frequency", "Hz", s->lever.ratio * f0, (1.0 - width) * f0,
+                          (1.0 + width) * f0);
 }
 
 static nt_status prepare(nt_scanner *made, const nt_scanner_inputs *in, nt_problem *problem)
@@ -23,6 +35,8 @@ static nt_status prepare(nt_scanner *made, const nt_scanner_inputs *in, nt_probl
         status = nt_rig_check(in->rig, problem);
     if (status == NT_OK && is_tapping(made))
         status = nt_tapping_init(&made->lever, &in->rig->probe, in->drive, 1e-9, problem);
+    if (status == NT_OK && is_tapping(made))
+        status = check_resonance(made, problem);
     if (status == NT_OK)
         status = nt_stage_model_init(&made->stage, &in->rig->stage, made->period);
     return status;
@@ -39,6 +53,10 @@ nt_status nt_scanner_init(nt_scanner *scanner, const nt_scanner_inputs *in, nt_p
     const nt_status status = prepare(&made, in, problem);
     if (status != NT_OK)
         return status;
+    if (is_tapping(&made)) {
+        const double periods = made.period * made.lever.ratio * made.probe.resonance;
+        made.steps = (int)ceil(fmax(1.0, periods / (STEP * sqrt(made.lever.quality))));
+    }
     const nt_raster *raster = &made.scan.raster;
     made.ticks = lround(0.5 * made.scan.zloop.rate / raster->line_rate);
     if ((double)made.ticks < raster->pixels)
@@ -77,25 +95,57 @@ typedef struct reading {
     double signal, error, phase, peak; /* [m], [m], [rad], [N] */
 } reading;
 
-static nt_place place_at(const nt_scanner *s, const nt_scanner_state *state, double x, double y)
+/* On the way up a stroke lags by this much: half the opening in the middle. */
+static double play(double hysteresis, double stroke, double share)
 {
-    const nt_raster *raster = &s->scan.raster;
-    nt_place place = nt_interaction_place(s->plan, x, y);
-    place.surface.z += raster->tilt_x * x + raster->tilt_y * y + raster->drift * state->time;
+    return 2.0 * hysteresis * stroke * share * (1.0 - share);
+}
+
+nt_pose nt_scanner_at(const nt_scanner *scanner, long line, double share, int back, double time)
+{
+    const nt_raster *raster = &scanner->scan.raster;
+    const double along = back ? 1.0 - share : share, across = ((double)line + 0.5) / raster->lines;
+    const double lag = play(raster->hysteresis, raster->width, along);
+    const double x = raster->x + along * raster->width + (back ? lag : -lag);
+    const double y = raster->y + across * raster->height - play(raster->hysteresis, raster->height, across);
+    return (nt_pose){x - raster->drift_x * time, y - raster->drift_y * time,
+                     raster->tilt_x * x + raster->tilt_y * y + raster->drift * time};
+}
+
+/* The sample there, as the scanner holds it. */
+static nt_place place_at(const nt_scanner *s, const nt_pose *at)
+{
+    nt_place place = nt_interaction_place(s->plan, at->x, at->y);
+    place.surface.z += at->z;
     return place;
+}
+
+/* What the loop compares with its set point, both as an amplitude. */
+static double lag_as_amplitude(const nt_scanner *s, double lag)
+{
+    const double A0 = s->lever.free_amplitude, sine = sin(lag);
+    return lag <= 0.5 * NT_PI ? A0 * sine : A0 * (2.0 - sine);
 }
 
 static nt_status read_tapping(const nt_scanner *s, nt_scanner_state *state, const nt_place *place, reading *out)
 {
     const nt_tapping_over over = {s->plan, place, -state->stage.position};
-    const nt_flow_value now = nt_flow_step(&s->lever, &state->flow, &over, s->period);
+    nt_flow_value now = {0};
+    double peak = -HUGE_VAL;
+    for (int i = 0; i < s->steps; i++) {
+        now = nt_flow_step_in(&s->lever, &state->flow, &over, s->period / s->steps, &state->table);
+        peak = fmax(peak, now.peak_force);
+    }
     const double lock_in = s->scan.zloop.lock_in;
     const double share = lock_in > 0.0 ? -expm1(-s->period / lock_in) : 1.0;
     state->measured += share * (now.amplitude - state->measured);
+    state->lag += share * (now.phase - state->lag);
     out->signal = state->measured;
-    out->phase = now.phase;
-    out->peak = now.peak_force;
-    out->error = s->scan.zloop.set_amplitude * s->lever.free_amplitude;
+    out->phase = state->lag;
+    out->peak = peak;
+    out->error = s->scan.zloop.mode == NT_ZLOOP_PHASE
+                     ? lag_as_amplitude(s, s->scan.zloop.set_phase) - lag_as_amplitude(s, state->lag)
+                     : s->scan.zloop.set_amplitude * s->lever.free_amplitude - state->measured;
     return isfinite(now.amplitude) ? NT_OK : NT_E_NOT_FINITE;
 }
 
@@ -108,30 +158,26 @@ static nt_status read_contact(const nt_scanner *s, nt_scanner_state *state, cons
     out->signal = state->measured;
     out->phase = 0.0;
     out->peak = s->probe.spring_constant * state->measured;
-    out->error = s->scan.zloop.set_force / s->probe.spring_constant;
+    out->error = s->scan.zloop.set_force / s->probe.spring_constant - state->measured;
     return status;
 }
 
-static nt_status tick(const nt_scanner *s, nt_scanner_state *state, double x, double y, reading *out)
+static nt_status tick(const nt_scanner *s, nt_scanner_state *state, const nt_pose *at, reading *out)
 {
-    const nt_place place = place_at(s, state, x, y);
+    const nt_place place = place_at(s, at);
     const nt_status status = is_tapping(s) ? read_tapping(s, state, &place, out) : read_contact(s, state, &place, out);
     if (status != NT_OK)
         return status;
-    if (s->scan.zloop.noise > 0.0)
-        out->signal += s->scan.zloop.noise * nt_noise_normal(&state->noise);
-    out->error -= out->signal;
+    if (s->scan.zloop.noise > 0.0) {
+        const double noise = s->scan.zloop.noise * nt_noise_normal(&state->noise);
+        out->signal += noise;
+        out->error -= noise;
+    }
     const nt_stage_load load = {0.0, 0.0};
     nt_stage_step(&s->stage, &state->stage, -state->command, &load); /* computing takes this tick */
     state->command += (is_tapping(s) ? 1.0 : -1.0) * s->integral * s->period * out->error; /* more force: down */
     state->time += s->period;
     return NT_OK;
-}
-
-static double y_of(const nt_scanner *s, long line)
-{
-    const nt_raster *raster = &s->scan.raster;
-    return raster->y + ((double)line + 0.5) * raster->height / raster->lines;
 }
 
 nt_status nt_scanner_engage(const nt_scanner *scanner, nt_scanner_state *state, long line, uint64_t seed)
@@ -140,12 +186,13 @@ nt_status nt_scanner_engage(const nt_scanner *scanner, nt_scanner_state *state, 
         return NT_E_ARGUMENT;
     nt_scanner_state made = {.time = 2.0 * (double)(line * scanner->ticks) * scanner->period,
                              .noise = nt_noise_of(seed, (uint32_t)line)};
-    const double x = scanner->scan.raster.x, y = y_of(scanner, line);
-    const nt_place place = place_at(scanner, &made, x, y);
+    const nt_pose at = nt_scanner_at(scanner, line, 0.0, 0, made.time);
+    const nt_place place = place_at(scanner, &at);
     double above = CLEARANCE;
     if (is_tapping(scanner)) {
         made.flow = nt_flow_free(&scanner->lever);
         made.measured = scanner->lever.free_amplitude;
+        made.lag = 0.5 * NT_PI;
         above += scanner->lever.free_amplitude;
     }
     made.command = place.surface.z + above;
@@ -159,7 +206,7 @@ nt_status nt_scanner_engage(const nt_scanner *scanner, nt_scanner_state *state, 
     reading now;
     for (long i = 0; i < ticks; i++) {
         made.time = time;
-        const nt_status status = tick(scanner, &made, x, y, &now);
+        const nt_status status = tick(scanner, &made, &at, &now);
         if (status != NT_OK)
             return status;
     }
@@ -176,19 +223,16 @@ static void put(double *channel, long pixel, double value)
 
 static nt_status half_line(const nt_scanner *s, nt_scanner_state *state, long line, int back, nt_scan_row *row)
 {
-    const nt_raster *raster = &s->scan.raster;
-    const double y = y_of(s, line);
-    const long pixels = (long)raster->pixels;
+    const long pixels = (long)s->scan.raster.pixels;
     long done = 0;
     for (long pixel = 0; pixel < pixels; pixel++) {
         const long until = (pixel + 1) * s->ticks / pixels, count = until - done,
                    at = back ? pixels - 1 - pixel : pixel;
         double height = 0.0, error = 0.0, signal = 0.0, phase = 0.0, peak = -HUGE_VAL;
         for (; done < until; done++) {
-            const double share = ((double)done + 0.5) / (double)s->ticks;
-            const double x = raster->x + (back ? 1.0 - share : share) * raster->width;
+            const nt_pose way = nt_scanner_at(s, line, ((double)done + 0.5) / (double)s->ticks, back, state->time);
             reading now;
-            const nt_status status = tick(s, state, x, y, &now);
+            const nt_status status = tick(s, state, &way, &now);
             if (status != NT_OK)
                 return status;
             height += state->command / (double)count;

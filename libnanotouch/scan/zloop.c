@@ -13,9 +13,11 @@
 enum { FREQUENCIES = 2000 };
 
 static const nt_field scan_fields[] = {
-    FIELD(zloop.mode, "contact|tapping", 0.0, 1.0, "what the loop keeps: the deflection, or the amplitude"),
+    FIELD(zloop.mode, "contact|tapping|phase", 0.0, 2.0,
+          "what the loop keeps: the deflection, or in tapping mode the amplitude or the phase"),
     FIELD(zloop.set_force, "N", -1e-5, 1e-4, "set point of contact mode"),
     FIELD(zloop.set_amplitude, "", 0.05, 0.99, "set point of tapping mode, over the free amplitude"),
+    FIELD(zloop.set_phase, "rad", 0.1, 1.5, "set point of phase feedback: lag of a tip that is repelled, below pi/2"),
     FIELD(zloop.integral, "1/s", 0.0, 1e7,
           "integral gain K_I, 0 for the largest with a gain margin of 2 and 45 degrees"),
     FIELD(zloop.rate, "Hz", 1e2, 1e7, "ticks of the loop per second"),
@@ -31,6 +33,9 @@ static const nt_field scan_fields[] = {
     FIELD(raster.tilt_x, "", -0.2, 0.2, "slope of the sample along x, against the scanner"),
     FIELD(raster.tilt_y, "", -0.2, 0.2, "slope of the sample along y, against the scanner"),
     FIELD(raster.drift, "m/s", -1e-6, 1e-6, "drift of the sample towards the tip"),
+    FIELD(raster.drift_x, "m/s", -1e-6, 1e-6, "drift of the sample along x"),
+    FIELD(raster.drift_y, "m/s", -1e-6, 1e-6, "drift of the sample along y"),
+    FIELD(raster.hysteresis, "", 0.0, 0.4, "opening of the scanner's loop in x and y over the stroke, open loop"),
 };
 
 enum { SCAN_FIELDS = (int)(sizeof scan_fields / sizeof scan_fields[0]) };
@@ -40,6 +45,7 @@ nt_scan nt_scan_defaults(void)
     return (nt_scan){.zloop = {.mode = NT_ZLOOP_TAPPING,
                                .set_force = 1e-9,
                                .set_amplitude = 0.7,
+                               .set_phase = 0.25 * NT_PI,
                                .rate = 50e3,
                                .lock_in = 20e-6,
                                .noise = 20e-12},
@@ -65,7 +71,7 @@ static double open_loop(const nt_scanner *s, double w, double *lag)
     const double r = w / (2.0 * NT_PI * stage->resonance), real = 1.0 - r * r, imaginary = r / stage->quality;
     double size = 1.0 / w / hypot(real, imaginary);
     *lag = 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
-    if (s->scan.zloop.mode == NT_ZLOOP_TAPPING) {
+    if (s->scan.zloop.mode != NT_ZLOOP_CONTACT) {
         const double amplifier = w * s->scan.zloop.lock_in, lever = 2.0 * w * s->lever.quality / s->lever.rate;
         size /= hypot(1.0, amplifier) * hypot(1.0, lever);
         *lag += atan(amplifier) + atan(lever);
@@ -121,7 +127,9 @@ double nt_scanner_speed(const nt_scanner *scanner, double slope, double error)
 double nt_scanner_parachute(const nt_scanner *scanner, double height, double speed)
 {
     const nt_zloop *loop = &scanner->scan.zloop;
-    const double error = loop->mode == NT_ZLOOP_TAPPING ? (1.0 - loop->set_amplitude) * scanner->lever.free_amplitude
-                                                        : loop->set_force / scanner->probe.spring_constant;
+    const double A0 = scanner->lever.free_amplitude;
+    const double error = loop->mode == NT_ZLOOP_CONTACT ? loop->set_force / scanner->probe.spring_constant
+                         : loop->mode == NT_ZLOOP_PHASE ? (1.0 - sin(loop->set_phase)) * A0
+                                                        : (1.0 - loop->set_amplitude) * A0;
     return speed * height / (scanner->integral * error);
 }

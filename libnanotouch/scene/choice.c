@@ -90,7 +90,7 @@ nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_probl
     } while (next(options, &tried));
     if (!found)
         return refuse(problem, "demand.relative_accuracy", demanded, full.error);
-    if (budget > 0.0 && best.cost > budget)
+    if (budget > 0.0 && best.cost > budget * NT_BUDGET_ROUNDS)
         return refuse(problem, "demand.budget", budget, best.cost);
     take(plan, options, &best);
     return NT_OK;

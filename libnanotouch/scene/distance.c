@@ -27,6 +27,14 @@ static double pull_of(const nt_plan *plan)
  * place of its fold over the distance to it. */
 #define AWAY_FROM_FOLDS 1e-4
 
+/* The contact radius at the largest load [m]. A sample that yields has a round tip, and no law of contact at a depth. */
+static double largest_radius(const nt_plan *plan)
+{
+    if (plan->shape.kind == NT_SHAPE_PARABOLOID || plan->shape.kind == NT_SHAPE_SPHERE)
+        return plan->contact.radius * plan->validity.radius_ratio;
+    return nt_plan_contact_eval(plan, nt_plan_contact_form(plan), plan->largest_indentation).a;
+}
+
 double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
 {
     const double pull = pull_of(plan);
@@ -37,8 +45,7 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
     case NT_QUANTITY_STIFFNESS:
         return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
     case NT_QUANTITY_RADIUS:
-        return maugis ? m->folds.zero_load_radius * m->radius_scale
-                      : plan->contact.radius * plan->validity.radius_ratio;
+        return maugis ? m->folds.zero_load_radius * m->radius_scale : largest_radius(plan);
     case NT_QUANTITY_FOLDS:
         return fmax(fabs(plan->release_gap), plan->length);
     default:

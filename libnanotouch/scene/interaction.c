@@ -149,24 +149,40 @@ nt_law_value nt_interaction_eval_gap(const nt_plan *plan, const nt_interaction_s
     return is_uniform && !isnan(gap) ? uniform_at(plan, state, gap) : eval_at(plan, state, place, gap).law;
 }
 
+/* U(h, R, E_s, w) with h = z - z_s(x, y) and R(x, y), ..: F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx - .. */
+static void sides_of(const nt_plan *plan, const nt_place *place, const vertical *here, double sides[2])
+{
+    sides[0] = -here->law.F * place->surface.zx - here->dU_dR * place->radius.dx;
+    sides[1] = -here->law.F * place->surface.zy - here->dU_dR * place->radius.dy;
+    if (plan->properties) {
+        sides[0] -= here->dU_dE * place->youngs_modulus.dx + here->dU_dw * place->work_of_adhesion.dx;
+        sides[1] -= here->dU_dE * place->youngs_modulus.dy + here->dU_dw * place->work_of_adhesion.dy;
+    }
+}
+
+void nt_plan_sides(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap,
+                   double force, double sides[2])
+{
+    vertical here = {.law.F = force};
+    if (plan->yield.count == 0 && nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
+        here = eval_at(plan, state, place, gap);
+    sides_of(plan, place, &here, sides);
+}
+
 nt_interaction_value nt_interaction_eval(const nt_plan *plan, const nt_interaction_state *state, const nt_pose *pose)
 {
     const nt_place place = nt_interaction_place(plan, pose->x, pose->y);
     const double gap = pose->z - place.surface.z;
     const vertical here = eval_at(plan, state, &place, gap);
-    /* U(h, R, E_s, w) with h = z - z_s(x, y) and R(x, y), ..: F_x = -dU/dx = -F dz_s/dx - dU/dR dR/dx - .. */
-    nt_interaction_value value = {.U = here.law.U,
-                                  .Fx = -here.law.F * place.surface.zx - here.dU_dR * place.radius.dx,
-                                  .Fy = -here.law.F * place.surface.zy - here.dU_dR * place.radius.dy,
+    double sides[2];
+    sides_of(plan, &place, &here, sides);
+    return (nt_interaction_value){.U = here.law.U,
+                                  .Fx = sides[0],
+                                  .Fy = sides[1],
                                   .Fz = here.law.F,
                                   .k = here.law.k,
                                   .a = here.law.a,
                                   .gap = gap};
-    if (plan->properties) {
-        value.Fx -= here.dU_dE * place.youngs_modulus.dx + here.dU_dw * place.work_of_adhesion.dx;
-        value.Fy -= here.dU_dE * place.youngs_modulus.dy + here.dU_dw * place.work_of_adhesion.dy;
-    }
-    return value;
 }
 
 void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state, const nt_place *place, double gap)

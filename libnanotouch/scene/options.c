@@ -92,8 +92,7 @@ static double lost_bits(const nt_plan *plan, double nearest, double beside)
     return LAST_BITS * worst;
 }
 
-/* Of the surface under a contact in a form; 0: cost, 1: latency. */
-static double cost_of_place(const nt_plan *plan, nt_form form, int which)
+double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which)
 {
     double cost = plan->surface ? cost_height[which] : 0.0;
     if (!nt_form_is_local(form))
@@ -112,8 +111,8 @@ static void burden_contact(const nt_plan *plan, nt_plan_options *options, double
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
         const nt_form form = options->option[NT_PLAN_CONTACT][i].form;
         options->option[NT_PLAN_CONTACT][i].error += lost;
-        options->option[NT_PLAN_CONTACT][i].cost += cost_of_place(plan, form, 0);
-        options->option[NT_PLAN_CONTACT][i].latency += cost_of_place(plan, form, 1);
+        options->option[NT_PLAN_CONTACT][i].cost += nt_plan_cost_of_place(plan, form, 0);
+        options->option[NT_PLAN_CONTACT][i].latency += nt_plan_cost_of_place(plan, form, 1);
     }
 }
 

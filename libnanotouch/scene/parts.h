@@ -121,6 +121,10 @@ typedef struct nt_plan_options {
 void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options);
 /* Adds a form; its cost is that of its row. */
 void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_form form, double error);
+/* Costs are sums of decimals: a budget that was printed does. */
+#define NT_BUDGET_ROUNDS (1.0 + 1e-9)
+/* What the surface under a contact in a form costs; 0: cost, 1: latency. */
+double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which);
 /* An error in the demanded quantity as a share of its scale. */
 double nt_plan_share(const nt_plan *plan, double error);
 
@@ -172,6 +176,11 @@ void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning);
  * is captured by contact or meniscus: already, or because the gap is inside the capture range. */
 double nt_plan_radius_at(const nt_plan *plan, const nt_place *place);
 nt_bank_value nt_plan_contact_at(const nt_plan *plan, const nt_place *place, double gap);
+
+/* The force in x and y [N] at a gap [m] over a place where the vertical force [N] is known; where each place has its
+ * own law it is computed again. */
+void nt_plan_sides(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap,
+                   double force, double sides[2]);
 int nt_plan_is_attached(const nt_plan *plan, int attached, const nt_place *place, double gap);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "parts.h"
+#include "scene/parts.h"
 
 #define PERCEIVED 1e-3 /* touch feels nothing quicker [s] */
 #define NEAR 1e-3      /* and good enough for a peak this close */
@@ -106,8 +107,10 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const nt_law_value law = law_there(&context, gap);
     slave->law = law;
     slave->law_gap = gap;
+    double sides[2];
+    nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, law.F, sides);
     slave->truth = (nt_truth){.gap = gap,
-                              .tip_force = {[NT_Z] = law.F},
+                              .tip_force = {sides[0], sides[1], law.F},
                               .peak_force = fmax(context.peak, fabs(law.F)),
                               .deepest_gap = fmin(context.deepest, gap),
                               .contact_radius = law.a,

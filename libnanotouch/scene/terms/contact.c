@@ -28,7 +28,7 @@ enum {
 };
 static const nt_term_form forms[] = {
     {NT_FORM_SHAPE, 1.0, 1.0, "Hertz"},
-    {NT_FORM_SHAPE, 11.0, 10.0, "law of the sphere"},
+    {NT_FORM_SHAPE, 8.3, 7.5, "law of the sphere"},
     {NT_FORM_SHAPE, 1.0, 1.9, "law of the cone"},
     {NT_FORM_SHAPE, 0.65, 0.6, "law of the punch"},
     {NT_FORM_SHAPE, 1.1, 1.4, "law of the blunted"},
@@ -38,11 +38,11 @@ static const nt_term_form forms[] = {
     [LOCAL_HERTZ] = {NT_FORM_LOCAL, 1.2, 1.2, "Hertz with the radius of each place"},
     [LOCAL_MAUGIS] = {NT_FORM_LOCAL, 4.1, 3.9, "Maugis-Dugdale with the radius of each place"}, /* with dU/dR */
     [MADE_HERTZ] = {NT_FORM_LOCAL, 1.2, 1.2, "Hertz with radius and modulus of each place"},
-    [MADE_SHAPE] = {NT_FORM_LOCAL, 11.0, 10.0, "law of the shape with the modulus of each place"},
+    [MADE_SHAPE] = {NT_FORM_LOCAL, 8.3, 7.5, "law of the shape with the modulus of each place"},
     [MADE_MAUGIS] = {NT_FORM_LOCAL, 4.1, 3.9, "Maugis-Dugdale with radius, modulus and adhesion of each place"},
-    [OTHERS] = {NT_FORM_SERIES, 1.05, 1.05, "law of the sphere as a series"},
+    [OTHERS] = {NT_FORM_SERIES, 1.05, 1.2, "law of the sphere as a series"},
     {NT_FORM_JKR, 1.5, 2.4, "JKR"},
-    {NT_FORM_TABLE, 1.5, 1.5, "Maugis-Dugdale table"},
+    {NT_FORM_TABLE, 1.6, 1.5, "Maugis-Dugdale table"},
     {NT_FORM_POLISHED, 6.0, 5.6, "Maugis-Dugdale, polished table"},
     {NT_FORM_YIELDING, 2.2, 2.4, "on a sample that yields to all forces together"},
     {NT_FORM_LOCAL_EXACT, 68.0, 59.0, "Maugis-Dugdale, exact, with the radius of each place"},

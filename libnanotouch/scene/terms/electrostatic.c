@@ -56,7 +56,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 }
 
 static const nt_term_form forms[] = {
-    {NT_FORM_SPHERE, 0.85, 0.85, "of the sphere"},
+    {NT_FORM_SPHERE, 0.8, 0.8, "of the sphere"},
     {NT_FORM_TIP, 1.15, 1.1, "of the whole tip"},
 };
 

@@ -149,12 +149,17 @@ static void take_contact(const nt_plan *plan, nt_plan_options *options, double e
 {
     options->count[NT_PLAN_CONTACT] = 0;
     nt_plan_offer(plan, options, NT_PLAN_CONTACT, NT_FORM_YIELDING, error);
+    options->option[NT_PLAN_CONTACT][0].cost += nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 0);
+    options->option[NT_PLAN_CONTACT][0].latency += nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 1);
 }
+
+/* What the table of all beside it adds to an evaluation in contact [Hertz evaluations] (tests/bench/bench_plan.c). */
+#define BESIDE_COST 0.6
+#define BESIDE_LATENCY 0.7
 
 /* Only forms of contact with the tip's own radius: all else is in the table. */
 static void drop_others(const nt_plan *plan, nt_plan_options *options, double error)
 {
-    const double cost = nt_term_form_of(plan, NT_PLAN_CONTACT, NT_FORM_YIELDING)->cost;
     int count = 0;
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
         const nt_form form = options->option[NT_PLAN_CONTACT][i].form;
@@ -162,13 +167,14 @@ static void drop_others(const nt_plan *plan, nt_plan_options *options, double er
             continue;
         options->option[NT_PLAN_CONTACT][count] = options->option[NT_PLAN_CONTACT][i];
         options->option[NT_PLAN_CONTACT][count].error += error;
-        options->option[NT_PLAN_CONTACT][count++].cost += cost;
+        options->option[NT_PLAN_CONTACT][count].cost += BESIDE_COST;
+        options->option[NT_PLAN_CONTACT][count++].latency += BESIDE_LATENCY;
     }
     options->count[NT_PLAN_CONTACT] = count;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         options->count[term] = 1;
         options->option[term][0].form = nt_term_rows[term]->pressure ? nt_plan_full_form(plan, term) : NT_FORM_OFF;
-        options->option[term][0].error = options->option[term][0].cost = 0.0;
+        options->option[term][0].error = options->option[term][0].cost = options->option[term][0].latency = 0.0;
     }
 }
 

@@ -18,6 +18,7 @@
 #define BEYOND 0.02      /* of the radius there: the table of contact begins so much farther */
 #define HIGHEST 1e-3     /* of ln a: where that is */
 #define RESOLVED 2.0     /* times the tolerance: energy that the force does not tell */
+#define JUMPS 3.0        /* times the pull at the jump: what a panel resolves, a tolerance of */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
 enum { CLIMB = 60, PARABOLAS = 12 };
@@ -67,7 +68,8 @@ typedef struct maker {
     nt_yield_solver solver;
     const nt_yield_range *range;
     nt_yield_hold hold;
-    double end; /* of what is held */
+    double end;  /* of what is held */
+    double pull; /* at the jump [N] */
     nt_yield_point last;
 } maker;
 
@@ -218,6 +220,7 @@ static nt_status find_jump(maker *m)
         return end_at_centre(m);
     m->table->jumps = 1;
     m->table->touch = point.h;
+    m->pull = fabs(point.F);
     m->hold = NT_YIELD_CENTRE;
     m->end = high + BEFORE_JUMP * (high - pole);
     return NT_OK;
@@ -229,6 +232,16 @@ static nt_status begin(maker *m)
     return status == NT_OK ? nt_yield_go(&m->solver, NT_YIELD_GAP, m->range->farthest, &m->last) : status;
 }
 
+/* Where the pull at the jump is small beside the scale, by a mesh that resolves it: the place of the jump is known to
+ * the tolerance, too. */
+static nt_status find_jump_again(maker *m)
+{
+    m->solver.scale = JUMPS * m->pull;
+    m->table->jumps = 0;
+    const nt_status status = begin(m);
+    return status == NT_OK ? find_jump(m) : status;
+}
+
 static nt_status make_apart(maker *m, double length)
 {
     nt_status status = begin(m);
@@ -237,6 +250,8 @@ static nt_status make_apart(maker *m, double length)
     double step = FIRST_STEP * length;
     if (m->range->attracts && status == NT_OK) {
         status = find_jump(m);
+        if (status == NT_OK && m->table->jumps && JUMPS * m->pull < m->solver.scale)
+            status = find_jump_again(m);
         if (status == NT_OK)
             status = begin(m);
         if (m->table->jumps)
@@ -266,7 +281,7 @@ static void integrate(nt_yield_table *table, double energy)
 nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range)
 {
     static const nt_yield_table empty = {0};
-    maker m;
+    maker m = {.pull = INFINITY};
     m.table = table;
     m.range = range;
     m.solver.sample = sample;

@@ -167,8 +167,8 @@ static void turn_on(nt_plan *plan)
 static void describe(nt_plan *plan, double error)
 {
     const nt_term_form *all = nt_term_form_of(plan, NT_PLAN_CONTACT, NT_FORM_YIELDING); /* computed as one */
-    plan->cost = all->cost;
-    plan->latency = all->latency;
+    plan->cost = all->cost + nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 0);
+    plan->latency = all->latency + nt_plan_cost_of_place(plan, NT_FORM_YIELDING, 1);
     plan->terms[NT_PLAN_CONTACT].form = NT_FORM_YIELDING;
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         const nt_term_row *row = nt_term_rows[term];
@@ -178,8 +178,8 @@ static void describe(nt_plan *plan, double error)
         t->title = row->words.title;
         t->words = form->words;
         t->error = term == NT_PLAN_CONTACT ? error : 0.0;
-        t->cost = term == NT_PLAN_CONTACT ? all->cost : 0.0;
-        t->latency = term == NT_PLAN_CONTACT ? all->latency : 0.0;
+        t->cost = term == NT_PLAN_CONTACT ? plan->cost : 0.0;
+        t->latency = term == NT_PLAN_CONTACT ? plan->latency : 0.0;
     }
     plan->bound.force_error = error;
 }
@@ -278,7 +278,7 @@ static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_
     if (adheres(plan))
         return nt_plan_yield_adhere(plan, scene, error, problem);
     describe(plan, error);
-    if (budget > 0.0 && plan->cost > budget)
+    if (budget > 0.0 && plan->cost > budget * NT_BUDGET_ROUNDS)
         return refuse(problem, (nt_problem){"demand.budget", "", budget, plan->cost, 1e9});
     facts_of(plan, scene->range.maximum_load);
     return NT_OK;
