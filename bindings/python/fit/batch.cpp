@@ -142,6 +142,7 @@ void bind_batch(py::module_ &module)
     flags["wrong_model"] = int(NT_FIT_WRONG_MODEL);
     flags["waves"] = int(NT_FIT_WAVES);
     flags["torn_elsewhere"] = int(NT_FIT_TORN_ELSEWHERE);
+    flags["uneven"] = int(NT_FIT_UNEVEN);
     module.attr("flags") = flags;
 #define NT_STATUS_ENTRY(code, message) statuses[#code] = int(code);
     NT_STATUS_LIST(NT_STATUS_ENTRY)
@@ -157,8 +158,14 @@ void bind_batch(py::module_ &module)
             "loss_scale", [](const nt_fit_recipe &r) { return r.options.loss_scale; },
             [](nt_fit_recipe &r, double scale) { r.options.loss_scale = scale; })
         .def_property(
-            "baseline", [](const nt_fit_recipe &r) { return int(r.baseline.kind); }, // of baseline_kinds
-            [](nt_fit_recipe &r, int kind) { r.baseline.kind = static_cast<nt_curve_baseline_kind>(kind); })
+            "baseline", // kind of baseline_kinds, ends [m]
+            [](const nt_fit_recipe &r) {
+                return std::make_tuple(int(r.baseline.kind), r.baseline.lowest, r.baseline.highest);
+            },
+            [](nt_fit_recipe &r, std::tuple<int, double, double> choice) {
+                const auto [kind, lowest, highest] = choice;
+                r.baseline = {static_cast<nt_curve_baseline_kind>(kind), lowest, highest};
+            })
         .def_property(
             "fit_offset", [](const nt_fit_recipe &r) { return r.fit_offset != 0; },
             [](nt_fit_recipe &r, bool fit_offset) { r.fit_offset = fit_offset; })

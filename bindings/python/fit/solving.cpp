@@ -126,6 +126,9 @@ void bind_solving(py::module_ &module)
         .def_readonly("any_sensitivity", &Solution::any_sensitivity)
         .def_readonly("any_modulus", &Solution::any_modulus)
         .def_readonly("any_rms", &Solution::any_rms)
+        .def_property_readonly(
+            "half_modulus",
+            [](const Solution &solution) { return py::make_tuple(solution.half_modulus[0], solution.half_modulus[1]); })
         .def("shift", &shift, py::arg("position"), py::arg("force"), py::arg("changed"))
         .def("bounds", &bounds, py::arg("position"), py::arg("force"), py::arg("place"));
     py::dict calibrations;

@@ -11,8 +11,8 @@ from nanotouch import images as images
 from nanotouch import maps as maps
 from nanotouch import plots as plots
 from nanotouch import reference as reference
+from nanotouch import scan as scan
 from nanotouch import scene as scene
-from nanotouch import tapping as tapping
 from nanotouch import touch as touch
 from nanotouch import units as units
 from nanotouch.contact import Contact as Contact
@@ -21,6 +21,14 @@ from nanotouch.curves import ForceCurve as ForceCurve
 from nanotouch.errors import Error as Error
 from nanotouch.fit import FitResult as FitResult
 from nanotouch.images import Topography as Topography
+from nanotouch.scan import flow as flow
+from nanotouch.scan import scanner as scanner
+from nanotouch.scan import tapping as tapping
+from nanotouch.scan.flow import SlowFlow as SlowFlow
+from nanotouch.scan.scanner import Scan as Scan
+from nanotouch.scan.scanner import Scanner as Scanner
+from nanotouch.scan.tapping import Drive as Drive
+from nanotouch.scan.tapping import Tapping as Tapping
 from nanotouch.scene import Demand as Demand
 from nanotouch.scene import Rig as Rig
 from nanotouch.scene import Scene as Scene
@@ -36,8 +44,6 @@ from nanotouch.scene.interaction import Interaction as Interaction
 from nanotouch.scene.plan import Plan as Plan
 from nanotouch.scene.surface import Surface as Surface
 from nanotouch.scene.surface_file import SurfaceFile as SurfaceFile
-from nanotouch.tapping import Drive as Drive
-from nanotouch.tapping import Tapping as Tapping
 from nanotouch.touch import commands as commands
 from nanotouch.touch import faults as faults
 from nanotouch.touch import frames as frames
@@ -68,9 +74,12 @@ __all__ = [
     "Plan",
     "Recording",
     "Rig",
+    "Scan",
+    "Scanner",
     "Scene",
     "Session",
     "Settings",
+    "SlowFlow",
     "Supervisor",
     "Surface",
     "SurfaceFile",
@@ -84,6 +93,7 @@ __all__ = [
     "errors",
     "faults",
     "fit",
+    "flow",
     "forces",
     "frames",
     "geometry",
@@ -101,6 +111,8 @@ __all__ = [
     "record",
     "reference",
     "rig_file",
+    "scan",
+    "scanner",
     "scene",
     "session",
     "surface",

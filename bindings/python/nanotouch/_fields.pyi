@@ -579,6 +579,88 @@ class DriveFields(Description, core_type=_core.Drive):
     @property
     def drive(self) -> DriveDrive: ...
 
+class ScanZloop(Section):
+    mode: Literal["contact", "tapping", "phase"]
+    """what the loop keeps: the deflection, or in tapping mode the amplitude or the phase"""
+    set_force: float
+    """set point of contact mode [N], -1e-05 .. 0.0001"""
+    set_amplitude: float
+    """set point of tapping mode, over the free amplitude [-], 0.05 .. 0.99"""
+    set_phase: float
+    """set point of phase feedback: lag of a tip that is repelled, below pi/2 [rad], 0.1 .. 1.5"""
+    integral: float
+    """integral gain K_I, 0 for the largest with a gain margin of 2 and 45 degrees [1/s], 0 .. 1e+07"""
+    rate: float
+    """ticks of the loop per second [Hz], 100 .. 1e+07"""
+    lock_in: float
+    """time constant of the lock-in amplifier [s], 0 .. 1"""
+    noise: float
+    """noise of one reading of deflection or amplitude, standard deviation [m], 0 .. 1e-07"""
+
+class ScanZloopValues(TypedDict, total=False):
+    mode: Literal["contact", "tapping", "phase"]
+    set_force: float
+    set_amplitude: float
+    set_phase: float
+    integral: float
+    rate: float
+    lock_in: float
+    noise: float
+
+class ScanRaster(Section):
+    x: float
+    """x of the lower left corner [m], -0.001 .. 0.001"""
+    y: float
+    """y of the lower left corner [m], -0.001 .. 0.001"""
+    width: float
+    """width of the scan [m], 1e-09 .. 0.001"""
+    height: float
+    """height of the scan, across the lines [m], 1e-09 .. 0.001"""
+    pixels: float
+    """pixels of a line [-], 4 .. 8192"""
+    lines: float
+    """lines [-], 1 .. 8192"""
+    line_rate: float
+    """lines, there and back, per second [Hz], 0.001 .. 10000"""
+    tilt_x: float
+    """slope of the sample along x, against the scanner [-], -0.2 .. 0.2"""
+    tilt_y: float
+    """slope of the sample along y, against the scanner [-], -0.2 .. 0.2"""
+    drift: float
+    """drift of the sample towards the tip [m/s], -1e-06 .. 1e-06"""
+    drift_x: float
+    """drift of the sample along x [m/s], -1e-06 .. 1e-06"""
+    drift_y: float
+    """drift of the sample along y [m/s], -1e-06 .. 1e-06"""
+    hysteresis: float
+    """opening of the scanner's loop in x and y over the stroke, open loop [-], 0 .. 0.4"""
+
+class ScanRasterValues(TypedDict, total=False):
+    x: float
+    y: float
+    width: float
+    height: float
+    pixels: float
+    lines: float
+    line_rate: float
+    tilt_x: float
+    tilt_y: float
+    drift: float
+    drift_x: float
+    drift_y: float
+    hysteresis: float
+
+class ScanSections(TypedDict, total=False):
+    zloop: ScanZloopValues
+    raster: ScanRasterValues
+
+class ScanFields(Description, core_type=_core.Scan):
+    def __init__(self, **sections: Unpack[ScanSections]) -> None: ...
+    @property
+    def zloop(self) -> ScanZloop: ...
+    @property
+    def raster(self) -> ScanRaster: ...
+
 class Columns:
     time: NDArray[float64]
     """time since the start [s]"""

@@ -125,6 +125,7 @@ FORMATS: tuple[Format, ...] = (
     _reads("AFM Workshop", ".csv .zip", "curves", _AF, _REAL),
     _reads("Optics11 Chiaro text", ".txt", "curves", _AF, _REAL),
     _reads("afmformats' own", ".h5 .tab", "curves", _AF, _MADE),
+    _reads("archive of any of these", ".zip", "curves", _OWN, f"{_REAL}, {_MADE}"),
     _refuses("Asylum force map archive", ".ardf", "curves", "export single curves from Igor as .ibw", (8, b"ARDF")),
     _refuses("Igor packed experiment", ".pxp", "curves", "save the wave in Igor as .ibw"),
     _refuses("Park Systems", ".tiff .ps-ppt", "curves", _TEXT, (0, b"II*\0"), (0, b"MM\0*")),

@@ -14,7 +14,7 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 void bind_contact(py::module_ &module);
 void bind_contact_reduced(py::module_ &module);
-void bind_contact_bank(py::module_ &module);
+void bind_maugis_bank(py::module_ &module);
 void bind_forces(py::module_ &module);
 void bind_geometry(py::module_ &module);
 void bind_margins(py::module_ &module);
@@ -22,6 +22,7 @@ void bind_materials(py::module_ &module);
 void bind_surface(py::module_ &module);
 void bind_descriptions(py::module_ &module);
 void bind_plan(py::module_ &module);
+void bind_scan(py::module_ &module);
 void bind_tapping(py::module_ &module);
 void bind_terrain(py::module_ &module);
 void bind_interaction(py::module_ &module);

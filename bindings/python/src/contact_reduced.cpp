@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// contact_table.h, contact_control.h in Maugis' units: arrays of lambda and of what is given, of one length. Equal
+// maugis_table.h, contact_equilibrium.h in Maugis' units: arrays of lambda and of what is given, of one length. Equal
 // lambdas should stand together (the Python side sorts): what is prepared for one serves its whole run.
 #include <algorithm>
 #include <cmath>

@@ -34,7 +34,7 @@ void set_control(nt_settings &settings, const std::string &name)
 {
     for (int choice = 0; choice < 3; ++choice)
         if (name == controls[choice]) {
-            settings.control = {static_cast<nt_law_choice>(choice), nullptr, nullptr};
+            settings.control = {static_cast<nt_control_choice>(choice), nullptr, nullptr};
             return;
         }
     throw py::value_error(name);

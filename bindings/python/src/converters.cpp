@@ -271,6 +271,7 @@ static py::dict latency(double period, uint64_t ticks, int priority, int process
 void bind_converters(py::module_ &core)
 {
     py::module_ module = core.def_submodule("rigs");
+    bind_drive(module);
     module.def("check_converters", check_converters);
     module.def("time_frames", time_frames);
     module.def("latency", latency);

@@ -101,6 +101,8 @@ void bind_descriptions(py::module_ &module)
     bind_described<nt_rig>(module, "Rig", fields, count, nt_rig_defaults, nt_rig_check);
     fields = nt_drive_fields(&count);
     bind_described<nt_drive>(module, "Drive", fields, count, nt_drive_defaults, nt_drive_check);
+    fields = nt_scan_fields(&count);
+    bind_described<nt_scan>(module, "Scan", fields, count, nt_scan_defaults, nt_scan_check);
     fields = nt_settings_fields(&count);
     bind_described<nt_settings>(module, "Settings", fields, count, settings_of_default_rig, nt_settings_check)
         .def("keep_to",

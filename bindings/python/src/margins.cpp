@@ -10,7 +10,7 @@ static py::dict margins(const Rig &rig, const Settings &settings, double stiffne
 {
     nt_margins m;
     const nt_verdict verdict = nt_margins_judge(&rig.value, &settings.value, stiffness, mode_of(mode), &m);
-    const nt_servo_shape shape = nt_servo_shape_of(&rig.value, &settings.value, stiffness);
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(&rig.value, &settings.value, stiffness);
     py::dict out;
     out["loop_stiffness"] = m.loop_stiffness;
     out["loop_delay"] = m.loop_delay;
@@ -25,11 +25,11 @@ static py::dict margins(const Rig &rig, const Settings &settings, double stiffne
     out["exact_frequency"] = m.exact_frequency;
     out["force_gain_limit"] = m.force_gain_limit;
     out["integral_limit"] = m.integral_limit;
-    out["bandwidth"] = nt_margins_bandwidth(&shape.rig, &shape.gains, shape.contact_stiffness);
+    out["bandwidth"] = nt_margins_bandwidth(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness);
     out["least"] = verdict.margin;
     out["rule"] = verdict.rule;
-    out["force_gain"] = shape.gains.force_gain;
-    out["damping"] = shape.rig.master.damping;
+    out["force_gain"] = equivalent.gains.force_gain;
+    out["damping"] = equivalent.rig.master.damping;
     return out;
 }
 
@@ -53,12 +53,12 @@ static py::array_t<double> response(const Rig &rig, const Settings &settings, do
                                     const Array &frequencies)
 {
     const py::ssize_t count = frequencies.size();
-    const nt_servo_shape shape = nt_servo_shape_of(&rig.value, &settings.value, stiffness);
+    const nt_servo_equivalent equivalent = nt_servo_equivalent_of(&rig.value, &settings.value, stiffness);
     py::array_t<double> out({count, py::ssize_t{5}});
     double *row = out.mutable_data();
     for (py::ssize_t i = 0; i < count; ++i, row += 5) {
-        const nt_loop_response at =
-            nt_margins_response(&shape.rig, &shape.gains, shape.contact_stiffness, frequencies.data()[i]);
+        const nt_loop_response at = nt_margins_response(&equivalent.rig, &equivalent.gains,
+                                                        equivalent.contact_stiffness, frequencies.data()[i]);
         row[0] = at.path[0];
         row[1] = at.path[1];
         row[2] = at.impedance[0];

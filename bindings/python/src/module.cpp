@@ -9,7 +9,7 @@ PYBIND11_MODULE(_core, module)
     module.attr("version") = nt_version();
     bind_contact(module);
     bind_contact_reduced(module);
-    bind_contact_bank(module);
+    bind_maugis_bank(module);
     bind_forces(module);
     bind_geometry(module);
     bind_materials(module);
@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, module)
     bind_plan(module);
     bind_terrain(module);
     bind_interaction(module);
+    bind_scan(module);
     bind_tapping(module);
     bind_view(module);
     bind_curves(module);

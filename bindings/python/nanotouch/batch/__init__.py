@@ -12,6 +12,7 @@ from .groups import FOLDER, Spread, spreads
 from .report import write_report
 from .review import Place, Review
 from .sidecar import Decision, Sidecar
+from .stability import Stabilities, stabilities
 
 __all__ = [
     "FOLDER",
@@ -21,9 +22,11 @@ __all__ = [
     "Review",
     "Sidecar",
     "Spread",
+    "Stabilities",
     "Summary",
     "files_of",
     "fit_files",
     "spreads",
+    "stabilities",
     "write_report",
 ]

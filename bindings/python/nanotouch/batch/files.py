@@ -18,7 +18,7 @@ import nanotouch
 from .._io.digest import file_digest
 from .._io.words import counted, printable
 from .._io.writing import replacing
-from ..curves import CalibrationTable, read
+from ..curves import CalibrationTable, asylum_pair, read
 from ..errors import Error, InvalidValue
 from ..fit import FitResult, TipLike, fit_curve
 from .groups import Spread, label_by, spreads
@@ -124,10 +124,10 @@ def fit_files(
     long : bool
         All columns, in place of the fifteen that answer (:data:`nanotouch.batch.table.SHORT`).
     """
-    label = label_by(groups)
     reading = dict(reading or {})
     out = Path(out)
     files = _without(files_of(names), (*_own(out), *_given(sidecar, groups, reading)))
+    label = label_by(groups, files)
     if isinstance(reading.get("calibration"), str | os.PathLike):
         reading["calibration"] = CalibrationTable.from_csv(reading["calibration"])
     decided = Sidecar() if sidecar is None else Sidecar.from_toml(sidecar)
@@ -169,9 +169,9 @@ def fit_files(
 
 
 def _without(files: list[Path], others: tuple[Path, ...]) -> list[Path]:
-    """The curves among the files."""
+    """The curves among the files; of a pair of files the one that stands for both."""
     known = {path.resolve() for path in others}
-    curves = [file for file in files if file.resolve() not in known]
+    curves = [file for file in files if file.resolve() not in known and not asylum_pair.holds_heights(file)]
     if not curves:
         raise InvalidValue(f"{', '.join(map(str, files))}: the run's own files, and no curve")
     return curves
@@ -180,7 +180,8 @@ def _without(files: list[Path], others: tuple[Path, ...]) -> list[Path]:
 def _own(out: Path) -> tuple[Path, ...]:
     """What a run leaves itself, which is no force curve."""
     sheets = out.parent.glob(f"{glob.escape(out.stem)}-[0-9][0-9].png")
-    return (out, _beside(out, "json"), _beside(out, "journal"), *sheets)
+    depths = (out.with_name(f"{out.stem}-stability.{ending}") for ending in ("csv", "png"))
+    return (out, _beside(out, "json"), _beside(out, "journal"), *depths, *sheets)
 
 
 def _given(

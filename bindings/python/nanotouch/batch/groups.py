@@ -76,13 +76,15 @@ class Spread:
         return text
 
 
-def label_by(groups: str | os.PathLike[str] | None) -> Label:
-    """The group of a file: ``"folder"``, the name of its folder; or by a CSV table ``file,group`` whose first pattern
+def label_by(groups: str | os.PathLike[str] | None, files: Sequence[Path] = ()) -> Label:
+    """The group of a file: ``"folder"``, the name of its folder (with as many of the folders above as tell those of
+    `files` apart); or by a CSV table ``file,group`` whose first pattern
     that matches counts; None: all are one group. ReadError if the table cannot be used."""
     if groups is None:
         return lambda file: ""
     if groups == FOLDER:
-        return lambda file: file.parent.name
+        names = _told_apart({file.parent for file in files})
+        return lambda file: names.get(file.parent, file.parent.name)
     rows = _table(Path(groups))
 
     def of(file: Path) -> str:
@@ -97,6 +99,15 @@ def label_by(groups: str | os.PathLike[str] | None) -> Label:
         )
 
     return of
+
+
+def _told_apart(folders: set[Path]) -> dict[Path, str]:
+    """Shortest ends of the paths that differ."""
+    for depth in range(1, max((len(folder.parts) for folder in folders), default=0) + 1):
+        names = {folder: Path(*folder.parts[-depth:]).as_posix() for folder in folders}
+        if len(set(names.values())) == len(folders):
+            return names
+    return {}
 
 
 def spreads(rows: Iterable[Mapping[str, Any]]) -> list[Spread]:

@@ -62,17 +62,20 @@ def _laws(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> str
     said = [f"{_LAWS.get(model, model)} on the {'approach' if branch == 'approach' else 'retraction'} ({count})"
             for (model, branch), count in used.most_common()]  # fmt: skip
     how = "chosen by what each curve shows" if settings.get("model") == "auto" else "chosen beforehand"
-    tip = _tip(settings)
+    tip = _tip(rows, settings)
     return f"Laws of contact, {how}: {', '.join(said)}.{tip}"
 
 
-def _tip(settings: Mapping[str, Any]) -> str:
+def _tip(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> str:
     if settings.get("half_angle") is not None:
         return f" Half angle of the tip: {np.degrees(settings['half_angle']):.3g} degrees."
     if settings.get("radius") is not None:
         return f" Radius of the tip: {with_sigma(settings['radius'], 0.0, 'm')}."
     if settings.get("tip") is not None:
         return f" Tip: {settings['tip']}."
+    if all("(as the file states)" in row["assumptions"] for row in rows):
+        radii = [row["radius [m]"] for row in rows]
+        return f" Radius of the tip, as the files state: {between(min(radii), max(radii), 'm')}."
     return " The radius of the tip is NOT given: 20 nm is assumed, and moduli hold for it alone."
 
 

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .._io.files import toml_tables
+from .._io.files import toml_tables as toml_tables
 from .._io.words import told
 from .._io.writing import replacing
 from ..errors import ReadError
@@ -72,11 +72,15 @@ class Sidecar:
 
     def of(self, file: Path, index: int) -> Decision:
         """For one curve: what is said of it, or else of its whole file."""
+        return self.named(file, index)[1]
+
+    def named(self, file: Path, index: int) -> tuple[str | None, Decision]:
+        """The same with the name by which it is said; None where nothing is."""
         for end in (f"#{index}", ""):
             for name, decision in self.decisions.items():
                 if _is_end_of(name, f"{file.as_posix()}{end}"):
-                    return decision
-        return Decision()
+                    return name, decision
+        return None, Decision()
 
     def unused(self, files: list[Path]) -> list[str]:
         """Names that are those of no file: surely misspelt."""

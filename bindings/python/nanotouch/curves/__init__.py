@@ -10,6 +10,7 @@ from .adhesion import Adhesion, adhesion_of
 from .analysis import analyse, force_gap, sensitivity
 from .baseline import Baseline, Bend, Wave
 from .calibration import Calibration, CalibrationTable
+from .chain import Chain, chains
 from .curve import ForceCurve, Segment
 from .events import Rupture
 from .reading import Stream, read, stream
@@ -26,6 +27,7 @@ __all__ = [
     "Bend",
     "Calibration",
     "CalibrationTable",
+    "Chain",
     "CurveReport",
     "ForceCurve",
     "Rupture",
@@ -36,6 +38,7 @@ __all__ = [
     "Wave",
     "adhesion_of",
     "analyse",
+    "chains",
     "force_gap",
     "hydrodynamic_function",
     "read",

@@ -8,7 +8,7 @@ approach is refused.
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from .checks import FEWEST, MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
 
 NAME = "afmformats"
+_HEADER_LINES = 100  # of a Chiaro file, at most
 PAUSE_TRAVEL = 0.1  # a segment over which the base moves less than this, of the whole travel, is a pause
 _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
 
@@ -35,13 +36,12 @@ def _loaded(file: Path, calibration: Calibration) -> list[Any]:
     afmformats = require("afmformats", "curves")
     known = sorted(afmformats.formats.supported_extensions)
     if file.suffix not in known:
-        raise ReadError(f"{file}: not a force curve file that afmformats reads ({', '.join(known)})")
+        raise ReadError(f"{file}: not a force curve file that afmformats reads ({', '.join(known)}){_other(file)}")
     given = calibration.given
     try:
         return list(afmformats.load_data(file))
     except (afmformats.errors.FileFormatNotSupportedError, UnicodeDecodeError):
-        hint = " (an archive of curves is unpacked first)" if file.suffix == ".zip" else ""
-        raise ReadError(f"{file}: its content is not that of a {file.suffix} force curve file{hint}") from None
+        raise ReadError(f"{file}: its content is not that of a {file.suffix} force curve file") from None
     except afmformats.errors.MissingMetaDataError as error:
         missing = [key for key in error.meta_keys if given.get(key) is None]
         if missing:
@@ -49,8 +49,14 @@ def _loaded(file: Path, calibration: Calibration) -> list[Any]:
         return list(afmformats.load_data(file, meta_override={key: given[key] for key in error.meta_keys}))
 
 
+def _other(file: Path) -> str:
+    return ", but of thermal spectra: curves.thermal_spectrum reads it" if file.suffix == ".tnd" else ""
+
+
 def _converted(data: Any, file: Path, number: int) -> ForceCurve:
     meta = dict(data.metadata.items()) | {"enum": number}  # counted from 0, of Asylum's too
+    if str(meta.get("format", "")).startswith("Optics11"):
+        meta = _in_si(meta) | _tip(file)
     z_channel = next((c for c in _Z_CHANNELS if c in data.columns), None)
     if z_channel is None or "force" not in data.columns:
         raise ReadError(f"{file}: curve {data.enum} lacks a height or a force; it has {', '.join(data.columns)}")
@@ -61,6 +67,27 @@ def _converted(data: Any, file: Path, number: int) -> ForceCurve:
     time = np.asarray(data["time"], np.float64) if "time" in data.columns else np.full(z.size, np.nan)
     segments = tuple(Segment(role, time[part], z[part], z_channel, force[part]) for role, part in _parts(data, z))
     return ForceCurve(segments, meta, printable(file.name))
+
+
+def _in_si(meta: dict[str, Any]) -> dict[str, Any]:
+    """Chiaro states µN and µm/s, which afmformats hands on as they are."""
+    micro = ("setpoint", "speed approach", "speed retract")
+    return meta | {key: 1e-6 * meta[key] for key in micro if isinstance(meta.get(key), float)}
+
+
+def _tip(file: Path) -> dict[str, float]:
+    """The radius that a Chiaro file states [m], which afmformats leaves out."""
+    with file.open(encoding="latin-1") as lines:
+        for line in islice(lines, _HEADER_LINES):
+            name, _, text = line.partition("\t")
+            if name.strip() != "Tip radius (um)":
+                continue
+            try:
+                radius = 1e-6 * float(text)
+            except ValueError:
+                return {}
+            return {"tip radius": radius} if 0.0 < radius < 1.0 else {}
+    return {}
 
 
 def _parts(data: Any, z: NDArray[np.float64]) -> list[tuple[Role, slice]]:

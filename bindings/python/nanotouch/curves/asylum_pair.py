@@ -36,6 +36,12 @@ def recognises(file: Path) -> bool:
     return file.suffix.lower() == ".ibw" and _half(file) is not None
 
 
+def holds_heights(file: Path) -> bool:
+    """Whether it is the half of a pair that is read with the other."""
+    half = _half(file) if file.suffix.lower() == ".ibw" else None
+    return half is not None and file == half[1]
+
+
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """The one curve; ReadError for the half that holds the heights, which would make every curve count twice."""
     half = _half(file)

@@ -104,6 +104,12 @@ class ForceCurve:
         value = self.meta.get("spring constant")
         return None if value is None else float(value)
 
+    @property
+    def tip_radius(self) -> float | None:
+        """R of the tip [m]; None where the file states none."""
+        value = self.meta.get("tip radius")
+        return None if value is None else float(value)
+
     def __repr__(self) -> str:
         parts = ", ".join(f"{s.role} {len(s)}" for s in self.segments)
         return f"ForceCurve({self.name!r} #{self.meta.get('enum', 0)}: {parts})"

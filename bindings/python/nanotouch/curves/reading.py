@@ -13,7 +13,7 @@ from .._io.readers import head_of, registered_for
 from .._io.words import printable
 from ..errors import ReadError
 from ..formats import refusal
-from . import afm_formats, asylum_pair, jpk, nanonis, nanoscope
+from . import afm_formats, archive, asylum_pair, jpk, nanonis, nanoscope
 from .calibration import Calibration, CalibrationTable, calibrated
 from .checks import check_curve
 from .curve import ForceCurve, Segment
@@ -33,7 +33,8 @@ def read(
     ----------
     path : str or path
         JPK ``.jpk-force``, ``.jpk-force-map``, ``.jpk-qi-data``, ``.jpk-qi-series``; Asylum ``.ibw``, of pairs the
-        ``...Defl.ibw``; NT-MDT and Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; Nanonis ``.dat``; afmformats
+        ``...Defl.ibw``; NT-MDT and Optics11 ``.txt``; AFM Workshop ``.csv``, ``.zip``; Nanonis ``.dat``; a ``.zip`` of
+        such files; afmformats
         ``.h5``, ``.tab``. NanoScope ramps, force volumes and PeakForce captures (``.000``, ``.spm``, ``.pfc``, any
         name; known by how they begin).
     spring_constant : float, optional
@@ -151,6 +152,9 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if asylum_pair.recognises(file):
         with guarded(file, asylum_pair.NAME):
             return asylum_pair.NAME, asylum_pair.read(file, given)
+    if archive.recognises(file, head):
+        with guarded(file, archive.NAME):
+            return archive.NAME, archive.read(file, lambda one: _loaded(checked_path(one), given)[1])
     refused = refusal(file, head, "curves")
     if refused is not None:
         raise ReadError(f"{file}: {refused}")

@@ -66,6 +66,12 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
             + ("this model does not describe the curve" if "misfit" in flagged else "the model is near")
             + ", and sigma covers only part of that"
         )
+    if "uneven" in flagged:
+        shallow, deep = (with_sigma(modulus, 0.0, "Pa") for modulus in solution.made.half_modulus)
+        notes.append(
+            f"the shallow half of the contact asks for E* = {shallow}, the deep half for {deep}, each with a contact "
+            "point of its own: a slip, a bow of the scanner or another law; sigma covers half of the difference"
+        )
     if "wrong_model" in flagged:
         reason = "the model does not describe the curve"
         notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")

@@ -17,6 +17,7 @@ from .models import Model, extension, find
 from .points import Branch, Window, points_of
 from .reporting import Sample, Tip, make_result
 from .result import FitResult
+from .show import with_sigma
 from .solving import Setup, solve
 from .uncertainties import Uncertainties
 
@@ -73,7 +74,7 @@ def fit_curve(
     tip : object with ``radius``, optional
         For instance ``scene.tip``; its ``youngs_modulus`` and ``poisson_ratio`` enter the sample's modulus.
     radius : float, optional
-        R of the tip [m], in place of `tip`. Without either 20 nm is assumed, and the result says so.
+        R of the tip [m], in place of `tip`. Without either it is the file's, or 20 nm, and the result says so.
     half_angle : float, optional
         Of cone (axis to flank) and pyramid (axis to face) [rad]; 20 degrees are assumed.
     poisson_ratio : float, optional
@@ -116,7 +117,10 @@ def fit_curve(
     if curve.spring_constant is None:
         raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")
     report = report or analyse(curve, baseline=baseline)
-    choice = ""
+    choice, assumptions = "", list[str]()
+    if tip is None and radius is None and curve.tip_radius is not None:
+        radius = curve.tip_radius
+        assumptions = [f"tip radius {with_sigma(radius, 0.0, 'm')} (as the file states)"]
     if model == AUTO:
         size, reach = _size(tip, radius), cohesive_range if isinstance(cohesive_range, float) else ASSUMED_RANGE
         model, branch, choice = first_choice(
@@ -125,7 +129,6 @@ def fit_curve(
     chosen = find(model)
     branch = branch or ("retract" if chosen.adhesive else "approach")
     points = points_of(report, branch, chosen, window if window_of == "force" else None, curve.name)
-    assumptions: list[str] = []
     held = {name: _position(name, value) for name, value in (fixed or {}).items()}
     if contact_point is not None:
         held["contact_point"] = -contact_point

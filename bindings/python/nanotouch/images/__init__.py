@@ -14,11 +14,13 @@ from .filters import gaussian, median
 from .level_report import Candidate, LevelReport, LevelStep
 from .levelling import level, prepare
 from .masking import mask_above, mask_grains, mask_image
+from .parameters import Parameter, parameters
 from .particles import GrainTable, grains
 from .pictures import draw
 from .pyramid import MipLevel, mip_levels
 from .reading import channels, read
 from .scars import ScarReport, repair_scars
+from .spectrum import Spectrum, spectrum
 from .statistics import Roughness, roughness
 from .terraces import Terrace
 from .tips import Paraboloid, RoundedCone, dilate, erode
@@ -35,10 +37,12 @@ __all__ = [
     "LevelStep",
     "MipLevel",
     "Paraboloid",
+    "Parameter",
     "Plane",
     "Roughness",
     "RoundedCone",
     "ScarReport",
+    "Spectrum",
     "Terrace",
     "TipEstimate",
     "Topography",
@@ -58,12 +62,14 @@ __all__ = [
     "mask_image",
     "median",
     "mip_levels",
+    "parameters",
     "planes",
     "prepare",
     "read",
     "read_values",
     "repair_scars",
     "roughness",
+    "spectrum",
     "write",
     "write_planes",
 ]

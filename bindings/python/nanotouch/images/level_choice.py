@@ -18,6 +18,7 @@ from .level_report import Candidate
 from .topography import Topography
 
 _SURVIVES = 0.9  # share of the step on trial
+_NO_DRIFT = 2.1  # rms with what lasts along y taken out over that with the offsets alone; an oblique step has up to 2
 _TRIAL = 12.0  # its height, over the standard deviation from row to row; at least half the rms, and what is taken out
 _ROWS = {
     "lines": lambda strips: drift.analyse(strips).offsets,
@@ -35,7 +36,7 @@ def choose(topography: Topography, used: NDArray[np.bool_] | None) -> tuple[Cand
         _judged(f"{first}+{then}", topography, used)
         for first, then in ((background, "lines"), (background, "rows"), (background, "medians"), (other, "lines"))
     ]
-    if listed[0].step_kept < _SURVIVES:
+    if listed[0].step_kept < _SURVIVES or listed[0].rms > _NO_DRIFT * listed[1].rms:
         listed[:2] = listed[1::-1]
     return tuple(listed)
 

@@ -34,6 +34,7 @@ PLAIN = {
 }
 PARABOLOIDS = ("hertz", "dmt", "jkr", "maugis")
 _GAUSSIAN = 1.959963984540054
+EXCLUDED = "EXCLUDED"  # status of a curve that a person left out
 LOST = "LOST"  # status of a curve whose block killed the workers it was given to
 
 
@@ -160,9 +161,9 @@ def lost_block(stored: Mapping[str, Any], count: int, reason: str) -> Columns:
 
 
 def status_names() -> dict[str, int]:
-    """Every status of a curve and its number: those of the C library and LOST."""
+    """Every status of a curve and its number: those of the C library, LOST and EXCLUDED."""
     statuses: dict[str, int] = dict(extension().statuses)
-    return statuses | {LOST: len(statuses)}
+    return statuses | {LOST: len(statuses), EXCLUDED: len(statuses) + 1}
 
 
 def flag_names(model: str) -> dict[str, int]:

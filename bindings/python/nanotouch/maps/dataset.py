@@ -93,8 +93,12 @@ def flag_counts(data: Any) -> dict[str, int]:
 
 
 def doubtful(data: Any) -> NDArray[np.bool_]:
-    """Where a curve has a flag that speaks against its result, shape (y, x); a wave that was taken off does not."""
-    return np.asarray((data["flags"].values & ~np.uint32(_bits(data)["waves"])) != 0)
+    """Where a curve has a flag that speaks against its result, shape (y, x).
+
+    A wave that was taken off does not, nor do halves of a contact that differ, as sigma covers that.
+    """
+    told = sum(_bits(data).get(name, 0) for name in ("waves", "uneven"))
+    return np.asarray((data["flags"].values & ~np.uint32(told)) != 0)
 
 
 def _bits(data: Any) -> dict[str, int]:

@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from itertools import islice
 from typing import Any
 
 import nanotouch
 
+from ..batch.sidecar import Decision, Sidecar
 from ..curves import CalibrationTable
 from ..errors import Error, InvalidValue, require
 from ..fit import TipLike
 from .block import fit_block, lost_block
 from .dataset import assemble
+from .decided import Decisions, decide, decisions_of
 from .settings import Settings
 from .store import BlockStore, Columns
 from .volume import Volume, blocks_of, volume_of
@@ -44,6 +48,7 @@ def fit(
     threads: int = 0,
     block: int = BLOCK_CURVES,
     progress: bool | Progress = False,
+    sidecar: str | os.PathLike[str] | None = None,
     **settings: Any,
 ) -> Any:
     """Fit every curve of a force volume or QI map.
@@ -56,7 +61,7 @@ def fit(
     model, tip, radius, **settings
         As for :func:`nanotouch.fit.fit_curve`: ``poisson_ratio``, ``branch``, ``window``, ``half_angle``,
         ``cohesive_range``, ``uncertainties``, ``fixed``, ``bounds``, ``fit_offset``, ``loss``, ``loss_scale``;
-        of ``baseline`` ``"auto"`` and ``"line"``.
+        ``baseline``.
     z : array of shape (n,) or (ny, nx, n)
         Height of the base, away from the sample [m]; with an array only.
     spring_constant : float
@@ -75,6 +80,8 @@ def fit(
         Curves that are read, fitted and kept together.
     progress : bool or callable
         True: a bar (tqdm); a callable gets the fraction that is done.
+    sidecar : path, optional
+        Exclusions, contact points and baselines by hand, of a map from a file: :mod:`nanotouch.batch.sidecar`.
 
     Returns
     -------
@@ -98,21 +105,27 @@ def fit(
         "version": nanotouch.__version__,
         "block": block,
     }
+    decisions, unused = dict[int, Decision](), list[str]()
+    if sidecar is not None:
+        decisions, unused = decisions_of(volume, Sidecar.from_toml(sidecar))
+        made_of["sidecar"] = {str(place): asdict(decision) for place, decision in decisions.items()}
     store = BlockStore(resume, made_of) if resume is not None else None
     done: dict[int, Columns] = {}
     total = -(-volume.shape[0] * volume.shape[1] // block)
     with _reporting(progress) as report, _workers(cluster) as client:
-        for number, columns in _finished(volume, chosen, store, (client, block, threads)):
+        for number, columns in _finished(volume, chosen, store, (client, block, threads), decisions):
             done[number] = columns
             report(len(done) / total)
-    return assemble(volume, chosen, [done[number] for number in range(total)], made_of)
+    data = assemble(volume, chosen, [done[number] for number in range(total)], made_of)
+    data.attrs |= {"sidecar": json.dumps(made_of.get("sidecar", {})), "sidecar_unused": json.dumps(unused)}
+    return data
 
 
 Where = tuple[Any, int, int]  # client or None, curves in a block, threads
 
 
 def _finished(
-    volume: Volume, settings: Settings, store: BlockStore | None, where: Where
+    volume: Volume, settings: Settings, store: BlockStore | None, where: Where, decisions: Decisions
 ) -> Iterator[tuple[int, Columns]]:
     """Every block with its number: first those of earlier runs, then the others as they are made."""
     client, size, threads = where
@@ -128,6 +141,7 @@ def _finished(
         _made_here(volume, stored, missing, threads) if client is None else _made_there(volume, stored, missing, client)
     )
     for number, columns, complete in made:
+        columns = decide(columns, stored, volume, number * size, decisions)
         if store is not None and complete:
             store.save(number, columns)
         yield number, columns

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .._core import baseline_kinds
+from ..curves.baseline import Kind, choice_of
 from ..errors import InvalidValue
 from ..fit import TipLike, Uncertainties
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
@@ -37,7 +37,7 @@ class Settings:
     tip_poisson_ratio: float = 0.0
     poisson_ratio: float | None = None
     branch: Branch | None = None
-    baseline: Literal["auto", "line"] = "auto"
+    baseline: Kind = "auto"
     window: tuple[float, float] | None = None
     cohesive_range: float | Literal["free"] | None = None
     uncertainties: Uncertainties = field(default_factory=Uncertainties)
@@ -53,7 +53,6 @@ class Settings:
         choices = (
             ("loss", self.loss, LOSSES),
             ("branch", self.branch, (None, "approach", "retract")),
-            ("baseline", self.baseline, ("auto", "line")),
         )
         for name, value, valid in choices:
             if value not in valid:
@@ -113,7 +112,7 @@ class Settings:
         recipe = extension().Recipe(setup.options(extension()))
         for name in held:
             recipe.hold(places[name])
-        recipe.baseline = baseline_kinds[self.baseline]
+        recipe.baseline = choice_of(self.baseline)
         recipe.loss_scale = self.loss_scale or 0.0
         recipe.fit_offset = self.fit_offset
         if self.branch is not None:

@@ -159,6 +159,8 @@ class CurveVolume:
         Rows, columns.
     file : path or None
         Where they come from.
+    numbers : mapping
+        For each place the number of its curve in the file.
     """
 
     places: Mapping[int, ForceCurve]
@@ -166,6 +168,7 @@ class CurveVolume:
     name: str
     file: Path | None = None
     coordinates: dict[str, Floats] = field(default_factory=dict)
+    numbers: Mapping[int, int] = field(default_factory=dict)
 
     @classmethod
     def of(cls, curves: Sequence[ForceCurve] | Stream, name: str, file: Path | None = None) -> CurveVolume:
@@ -181,7 +184,7 @@ class CurveVolume:
             shape = int(meta["grid shape y"]), int(meta["grid shape x"])
             order = _order(metas, shape, name)
         places = _Lazy(curves, order) if streamed else {place: curves[k] for place, k in order.items()}
-        return cls(places, shape, name, file, _coordinates(meta, *shape) if gridded else {})
+        return cls(places, shape, name, file, _coordinates(meta, *shape) if gridded else {}, order)
 
     def block(self, start: int, stop: int) -> Block:
         """The curves start .. stop - 1, counted along the rows."""

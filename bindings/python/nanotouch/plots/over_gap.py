@@ -47,6 +47,10 @@ def force_gap(recording: Recording, save: StrPath | None = None, seen: Adhesion 
         _force_panel(panel, (gap, force, recording.stage_position), window, phases(recording))
         panel.set_xlabel(f"{quantity} ({engineering('m', gap[window])[0]})")
         dress(panel, title)
+    if magnified:  # one legend for both: two would lie over their titles
+        for panel in panels:
+            panel.get_legend().remove()
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
     _mark_adhesion(panels[-1], (gap, force), windows[-1], seen)
     return saved(figure, save)
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack
@@ -40,7 +41,7 @@ class Scene(SceneFields, core_type=_core.Scene):
     ``Scene(terms={"gel": {"strength": 1e-3}})``, in a file ``[terms.gel]``.
     """
 
-    beside = ("terms", "surface")  # the second one is read by nanotouch.surface_file
+    beside = ("terms", "surface", "drive", "zloop", "raster")  # read by surface_file and scan
     _terms: dict[str, tuple[CustomTerm, dict[str, float | str]]]
 
     def __init__(
@@ -88,7 +89,9 @@ class Scene(SceneFields, core_type=_core.Scene):
             for place, (name, (term, _)) in enumerate(self._terms.items()):
                 if f"custom[{place}]" in str(refusal):
                     said = str(refusal).replace(f"custom[{place}]", f"terms.{name}")
-                    raise InvalidValue(said) from term.failure(self._term_values(name))
+                    gap = re.search(r"\.law = (\S+) m:", said)  # where it is not finite
+                    raised = term.failure(self._term_values(name), float(gap[1]) if gap else 1e-9)
+                    raise InvalidValue(f"{said}; it raised {raised!r}" if raised else said) from raised
             raise
 
     def _term_values(self, name: str) -> dict[str, float]:

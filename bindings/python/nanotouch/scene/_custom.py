@@ -66,11 +66,11 @@ class CustomTerm:
             values[name] = to_si(self._number(name, value), factor)
         return values
 
-    def failure(self, values: Mapping[str, float]) -> Exception | None:
-        """What its functions raise at a gap of 1 nm."""
+    def failure(self, values: Mapping[str, float], gap: float) -> Exception | None:
+        """What its functions raise at a gap [m]."""
         try:
             for law in (self.energy, self.force, self.stiffness, self.bound):
-                float(law(1e-9, **values))
+                float(law(gap, **values))
         except Exception as error:
             return error
         return None

@@ -7,6 +7,11 @@
     session = nt.Session(rig=nt.Rig.from_tables(file.rig), slave=file.slave)    # and session.start(pace="hard")
 
 Nothing of a calibration has a default: a key that is missing is refused by its name. docs/hardware.md has a whole file.
+A half may also be a shared object, or a program with a mailbox::
+
+    [slave]                           [master]
+    backend = "shared_object"         backend = "mailbox"
+    path = "stage.so"                 name = "falcon"
 """
 
 from __future__ import annotations
@@ -16,15 +21,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
 from nanotouch.errors import InvalidValue
+from nanotouch.touch.hal import Mailbox, SharedObject
 from nanotouch.units import key_spellings, to_si
 
 HALVES = ("master", "slave")
-BACKENDS = ("spidev", "simulated")
+ELSEWHERE = {"shared_object": ("path", "option"), "mailbox": ("name",)}
+"""backends that a program of its own makes, with their keys"""
+BACKENDS = ("spidev", *ELSEWHERE, "simulated")
 AXES = ("x", "y", "z")
 MOST = 1000
 """whole numbers of a rig file are small: axes, channels"""
@@ -45,14 +54,17 @@ class Converters:
     """by table: when its volts were compared"""
 
 
+RealHalf = Converters | SharedObject | Mailbox
+
+
 class RigFile(NamedTuple):
     """A rig file: the description of the rig, and its real halves."""
 
     rig: dict[str, Any]
     """tables for :meth:`Rig.from_tables`"""
-    master: Converters | None
+    master: RealHalf | None
     """None: simulated"""
-    slave: Converters | None
+    slave: RealHalf | None
 
 
 class _Table:
@@ -170,13 +182,29 @@ def _half(half: str, table: _Table) -> Converters:
     return Converters(setup, calibrated)
 
 
-def _taken(half: str, tables: dict[str, Any]) -> Converters | None:
+def _elsewhere(half: str, backend: str, table: _Table, folder: Path) -> SharedObject | Mailbox:
+    """A half of another maker: by its file, which a relative path seeks beside the rig file, or by its name."""
+    if backend == "mailbox":
+        made: SharedObject | Mailbox = Mailbox(table.word("name", example='"stage"'))
+    else:
+        path = folder / table.word("path", example='"stage.so"')
+        if not path.is_file():
+            raise InvalidValue(f"[{half}] path = {str(path)!r}: there is no such file")
+        made = SharedObject(path, table.word("option") if "option" in table.left else "")
+    table.done()
+    return made
+
+
+def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     """The real half, its keys taken out of the tables; what describes the rig stays."""
     given = tables.get(half)
     if not isinstance(given, Mapping) or "backend" not in given:
         return None
     backend = given["backend"]
-    own = {"backend", "axes", "chips", "lines"} | {f"{word}_{axis}" for word in QUANTITIES[half] for axis in AXES}
+    if backend not in BACKENDS:
+        raise InvalidValue(f"[{half}] backend = {backend!r}: valid are {', '.join(BACKENDS)}")
+    channels = {f"{word}_{axis}" for word in QUANTITIES[half] for axis in AXES}
+    own = {"backend", *ELSEWHERE.get(backend, {"axes", "chips", "lines"} | channels)}
     rest = {key: value for key, value in given.items() if key not in own}
     if half == "master":
         tables[half] = rest | ({"axes": given["axes"]} if "axes" in given else {})
@@ -184,23 +212,44 @@ def _taken(half: str, tables: dict[str, Any]) -> Converters | None:
         del tables[half]
         if rest:
             raise InvalidValue(f"[{half}] has no key {next(iter(rest))!r}")
-    if backend not in BACKENDS:
-        raise InvalidValue(f"[{half}] backend = {backend!r}: valid are {', '.join(BACKENDS)}")
     if backend == "simulated":
         return None
-    return _half(half, _Table(half, {key: given[key] for key in given if key in own and key != "backend"}))
+    table = _Table(half, {key: given[key] for key in given if key in own and key != "backend"})
+    return _elsewhere(half, backend, table, folder) if backend in ELSEWHERE else _half(half, table)
 
 
-def from_tables(tables: Mapping[str, Any]) -> RigFile:
-    """From the tables of a rig file; refused, with the key's name, if anything is missing or unknown."""
+def _probe(given: Any, deflection: Mapping[str, Any]) -> Any:
+    """[probe] with the sensitivity of the channel that reads the lever, so that margins and guarantee count with it."""
+    if not isinstance(given, Mapping):
+        return given  # refused with the other tables
+    stated = {"sensitivity": (abs(deflection["gain"]), "m/V"), "sensitivity_sigma": (deflection["uncertainty"], "")}
+    made = dict(given)
+    for name, (value, unit) in stated.items():
+        keys = key_spellings(name, unit)
+        if not set(keys) & set(given):
+            made[next(key for key, factor in keys.items() if factor == 1.0)] = value
+    return made
+
+
+def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> RigFile:
+    """From the tables of a rig file; refused, with the key's name, if anything is missing or unknown. ``folder``: where
+    the file is, for paths in it."""
     left = dict(tables)
-    found = {half: _taken(half, left) for half in HALVES}
+    found = {half: _taken(half, left, Path(folder)) for half in HALVES}
+    if isinstance(found["slave"], Converters):
+        left["probe"] = _probe(left.get("probe", {}), found["slave"].setup["felt"][2])
     return RigFile(left, found["master"], found["slave"])
+
+
+def is_real(tables: Mapping[str, Any]) -> bool:
+    """Whether these tables name a half that is not simulated."""
+    halves = [tables.get(half) for half in HALVES]
+    return any(isinstance(half, Mapping) and half.get("backend", "simulated") != "simulated" for half in halves)
 
 
 def read(path: str | PathLike[str]) -> RigFile:
     """A rig file."""
-    return from_tables(toml_tables(path))
+    return from_tables(toml_tables(path), Path(path).parent)
 
 
 class Latency(NamedTuple):

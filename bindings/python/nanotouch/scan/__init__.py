@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scanning: a driven lever that taps, and rasters over a surface with a z loop (docs/scan.md)."""
+
+from __future__ import annotations
+
+from .flow import FlowState, FlowValue, SlowFlow
+from .forecast import Forecast, forecast, steepest
+from .scanner import UNDONE, Channels, Image, LoopMargins, Scan, Scanner
+from .tapping import Drive, Settled, Tapping, TappingState, TappingValue
+
+__all__ = [
+    "UNDONE",
+    "Channels",
+    "Drive",
+    "FlowState",
+    "FlowValue",
+    "Forecast",
+    "Image",
+    "LoopMargins",
+    "Scan",
+    "Scanner",
+    "Settled",
+    "SlowFlow",
+    "Tapping",
+    "TappingState",
+    "TappingValue",
+    "forecast",
+    "steepest",
+]

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An image of a surface: lines there and back at a finite speed, with a z loop that keeps deflection, amplitude or
+phase, through the rig's stage."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from nanotouch import _core
+from nanotouch._arrays import Floats
+from nanotouch.errors import InvalidValue
+from nanotouch.scan.tapping import Drive
+from nanotouch.scene import Rig
+from nanotouch.scene.plan import Plan
+
+if TYPE_CHECKING:
+    from nanotouch._fields import ScanFields
+    from nanotouch.images import Paraboloid, RoundedCone, Topography
+else:
+    from nanotouch.scene.description import Description
+
+    ScanFields = Description
+
+STRIP = 64
+"""lines that follow one coming down of the tip; strips go to the cores, with the same result on any number of them"""
+
+
+UNDONE = "Height, tip undone"
+"""channel of the heights without the tip"""
+
+
+class Scan(ScanFields, core_type=_core.Scan):
+    """What is scanned, how fast, and what the z loop keeps. In a file the tables ``[zloop]`` and ``[raster]``."""
+
+
+class LoopMargins(NamedTuple):
+    """How far a z loop is from ringing, over a hard sample."""
+
+    gain: float
+    """K_I may grow by this factor, at least"""
+    phase: float
+    """[rad]"""
+    speed: float
+    """where the open loop has gain 1 [rad/s]"""
+
+
+class Channels(NamedTuple):
+    """One direction of an image; arrays (lines, pixels), row 0 at the lower edge."""
+
+    height: Floats
+    """that the loop asked for: of the apex [m]"""
+    error: Floats
+    """set point minus reading [m]; of phase feedback as an amplitude"""
+    signal: Floats
+    """amplitude, of contact mode deflection [m]"""
+    phase: Floats
+    """lag behind the drive, 0 in contact mode [rad]"""
+    peak_force: Floats
+    """largest in the pixel [N]"""
+
+
+class Image(NamedTuple):
+    """What a scan gives."""
+
+    trace: Channels
+    """there, along +x"""
+    retrace: Channels
+    """and back"""
+    pixel_size: tuple[float, float]
+    """(dy, dx) [m]"""
+    mode: str
+    """``"contact"``, ``"tapping"`` or ``"phase"``"""
+
+    def topography(self, name: str = "scan") -> Topography:
+        """The heights of the trace."""
+        from nanotouch.images import Topography
+
+        return Topography(self.trace.height, self.pixel_size, name, "Height", "nanotouch/scan")
+
+    def without_tip(self, tip: Paraboloid | RoundedCone, name: str = "scan") -> Topography:
+        """The heights of the trace without the tip that took them: a surface to touch."""
+        from nanotouch.images import erode
+
+        return replace(erode(self.topography(name), tip)[0], channel=UNDONE)
+
+    def write(self, path: str | os.PathLike[str], tip: Paraboloid | RoundedCone | None = None) -> Path:
+        """All channels as ``.gwy``, which :func:`nanotouch.images.read`, Gwyddion and gwyfile open; with a tip the
+        heights that it leaves once more without it, :data:`UNDONE`: what to touch next."""
+        from nanotouch.images import Plane, write_planes
+
+        taps = self.mode != "contact"
+        names = {"height": ("Height", "m"), "signal": ("Amplitude" if taps else "Deflection", "m")}
+        names |= {"phase": ("Phase", "rad")} if taps else {}
+        names |= {"error": ("Error", "m"), "peak_force": ("Peak force", "N")}
+        planes = [
+            Plane(f"{name}{direction}", getattr(channels, key), unit, self.pixel_size, "nanotouch/scan")
+            for key, (name, unit) in names.items()
+            for direction, channels in (("", self.trace), (" retrace", self.retrace))
+        ]
+        if tip is not None:
+            undone = self.without_tip(tip).heights
+            planes.append(Plane(UNDONE, undone, "m", self.pixel_size, "nanotouch/scan"))
+        return write_planes(path, planes)
+
+
+class Scanner:
+    """A raster over a plan's surface, prepared.
+
+    Parameters
+    ----------
+    plan : Plan
+        The force, over a surface that its tip has dilated, or a flat.
+    scan : Scan, optional
+        By default tapping at 0.7 A0, 256 x 256 pixels over 1 um x 1 um, one line per second.
+    rig : Rig, optional
+        Its probe is the lever, its stage moves it.
+    drive : Drive, optional
+        Of tapping; by default 20 nm at the base, at the free resonance.
+    """
+
+    def __init__(
+        self, plan: Plan, scan: Scan | None = None, rig: Rig | None = None, drive: Drive | None = None
+    ) -> None:
+        self.plan = plan
+        self.scan = Scan() if scan is None else scan.copy()
+        self.rig = Rig() if rig is None else rig.copy()
+        self.drive = Drive() if drive is None else drive.copy()
+        self._core = _core.Scanner(self.scan.core, self.rig.core, self.drive.core, plan.core)
+
+    @property
+    def integral(self) -> float:
+        """K_I in use [1/s]."""
+        return float(self._core.integral)
+
+    @property
+    def advised_integral(self) -> float:
+        """The largest K_I with a gain margin of 2 and a phase margin of 45 degrees [1/s]."""
+        return float(self._core.advised)
+
+    @property
+    def margins(self) -> LoopMargins:
+        """Of the z loop."""
+        return LoopMargins(*self._core.margins)
+
+    @property
+    def speed(self) -> float:
+        """Of the tip along a line [m/s]."""
+        return 2.0 * self.scan["raster.width"] * self.scan["raster.line_rate"]
+
+    @property
+    def ratio(self) -> float:
+        """Frequency of the drive over the free resonance."""
+        return (self.drive["drive.frequency"] or self.rig["probe.resonance"]) / self.rig["probe.resonance"]
+
+    def speed_limit(self, slope: float, error: float) -> float:
+        """The fastest scan over a slope [-] that keeps the height within an error [m]: K_I error/slope [m/s]."""
+        if not (abs(slope) > 0.0 and error > 0.0):
+            raise InvalidValue(f"slope = {slope:g}, error = {error:g} m: neither may be 0")
+        return float(self._core.speed(slope, error))
+
+    def parachute(self, height: float, speed: float | None = None) -> float:
+        """The way [m] that the tip flies after a step down by a height [m], v H/(K_I (A0 - A)); without a speed [m/s]
+        at that of the scan."""
+        return float(self._core.parachute(height, self.speed if speed is None else speed))
+
+    def run(self, seed: int = 1, progress: Callable[[float], None] | None = None, threads: int | None = None) -> Image:
+        """Scan all lines.
+
+        Parameters
+        ----------
+        seed : int
+            Of the noise.
+        progress : callable, optional
+            Told the share that is done; what it raises ends the scan.
+        threads : int, optional
+            By default one for each core. The image is the same on any number.
+        """
+        lines, pixels = (int(self.scan[f"raster.{name}"]) for name in ("lines", "pixels"))
+        out = np.empty((2, 5, lines, pixels))
+        starts = range(0, lines, STRIP)
+
+        def strip(first: int) -> None:
+            count = min(STRIP, lines - first)
+            out[:, :, first : first + count] = self._core.strip(first, count, seed).transpose(1, 2, 0, 3)
+
+        with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+            try:
+                for done, _ in enumerate(pool.map(strip, starts), 1):
+                    if progress is not None:
+                        progress(done / len(starts))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+        size = self.scan["raster.height"] / lines, self.scan["raster.width"] / pixels
+        return Image(Channels(*out[0]), Channels(*out[1]), size, str(self.scan.zloop.mode))
