@@ -16,6 +16,11 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
         ("nanotouch live --list", "all presets, with what to try"),
         ("nanotouch live silicon_in_air --film touch.gif", "a film of a touch; needs no display"),
     ),
+    "scan": (
+        ("nanotouch scan --forecast", "forces, speed limit and margins of a scan, before it begins"),
+        ("nanotouch scan dots --pixels 32 --out scanned", "quantum dots in tapping mode: scanned/scan.gwy"),
+        ("nanotouch touch scanned/surface.gwy --out touched", "touch what was scanned"),
+    ),
     "margins": (("nanotouch margins scene.toml --no-map", "is the loop of this scene stable? numbers only"),),
     "info": (
         ("nanotouch info scan.gwy", "channels, size and units of an image"),
@@ -29,6 +34,7 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
     "image": (
         ("nanotouch image scan.gwy", "level it, and measure its roughness"),
         ("nanotouch image scan.gwy --scars --grains", "find particles: a table of them in grains.csv"),
+        ("nanotouch image scan.gwy --spectrum", "also power spectral density and autocorrelation"),
     ),
     "fit": (("nanotouch fit curve.h5 --radius 20nm --model maugis", "modulus and adhesion from a force curve"),),
     "map": (("nanotouch map map.h5 --radius 20nm", "the same for every curve of a force volume"),),

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import math
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
@@ -15,7 +17,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch_app import fit_many, output, scenes
 from nanotouch_app.quantity import number, parse_quantity, whole_number
 
-FILES = ("fit.json", "fit.png", "stability.png")
+FILES = ("fit.json", "fit.png", "stability.png", "ruptures.csv")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -90,13 +92,19 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
         "--poisson-ratio", type=number(-0.99, 0.5), metavar="NU", help="of the sample: also gives its Young's modulus"
     )
     parser.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what="tip, sample and adhesion"))
+    parser.add_argument("--window", metavar="LOW,HIGH", help="fit only forces between these, as 0.1nN,2nN")
+    parser.add_argument(
+        "--baseline", choices=("auto", "line", "wave", "constant"), help="which is taken off (default: auto)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
+    if args.stability and args.window is not None:
+        raise InvalidValue("--stability fits ever deeper windows of its own: leave out --window")
     if fit_many.is_meant(args):
-        if args.compare or args.stability:
-            raise InvalidValue("--compare and --stability look at one curve: name one file")
+        if args.compare:
+            raise InvalidValue("--compare looks at one curve: name one file")
         return fit_many.run(args, reading(args), knowledge(args))
     for name in ("sidecar", "groups", "long"):
         if getattr(args, name):
@@ -114,6 +122,8 @@ def run(args: argparse.Namespace) -> int:
         args.answer = as_json(result)
         output.write_json(out / "fit.json", args.answer)
         fitting.draw(curve, result, save=out / "fit.png")
+        if result.report.ruptures:
+            write_ruptures(out / "ruptures.csv", curves.chains(curve, result.report))
         if args.stability:
             fitting.stability(curve, result.model, branch=result.branch, **known).draw(save=out / "stability.png")
         if len(found) > 1:
@@ -147,6 +157,19 @@ def reading(args: argparse.Namespace) -> dict[str, Any]:
         "calibration": args.calibration,
         "untrusted": args.untrusted,
     }
+
+
+def write_ruptures(path: Path, found: tuple[curves.Chain, ...]) -> None:
+    """A row for each rupture, with the worm-like chain that it ended where the curve determines one."""
+    columns = ("z [m]", "force [N]", "slope [N/m]", "step [N]", "contour_length [m]", "contour_length sigma [m]",
+               "persistence_length [m]", "persistence_length sigma [m]")  # fmt: skip
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(columns)
+        for chain in found:
+            lengths = (chain.contour_length, chain.contour_length_sigma,
+                       chain.segment_length, chain.segment_length_sigma)  # fmt: skip
+            table.writerow([*chain.rupture, *("" if math.isnan(length) else length for length in lengths)])
 
 
 def as_json(result: nt.fit.FitResult) -> dict[str, Any]:
@@ -195,6 +218,10 @@ def knowledge(args: argparse.Namespace) -> dict[str, Any]:
     """What the scene and the options say about tip and sample, as arguments of the fit."""
     radius = _quantity(args.radius, "m")
     tools: dict[str, Any] = {"uncertainties": fitting.Uncertainties(**dict(args.known_to))}
+    if args.window is not None:
+        tools["window"] = _window(args.window)
+    if args.baseline is not None:
+        tools["baseline"] = args.baseline
     if args.half_angle is not None:
         tools["half_angle"] = parse_quantity(args.half_angle, "rad")
     if args.scene is None:
@@ -209,6 +236,17 @@ def knowledge(args: argparse.Namespace) -> dict[str, Any]:
     if args.model in ("auto", "maugis") and facts["cohesive_stress"] > 0.0:
         known["cohesive_range"] = facts["work_of_adhesion"] / facts["cohesive_stress"]
     return known
+
+
+def _window(text: str) -> tuple[float, float]:
+    """``"0.1nN,2nN"`` to forces [N]."""
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise InvalidValue(f"--window {text!r}: two forces, as 0.1nN,2nN")
+    low, high = (parse_quantity(part, "N") for part in parts)
+    if not low < high:
+        raise InvalidValue(f"--window {text!r}: the first force is not below the second")
+    return low, high
 
 
 def _finite(value: float) -> float | None:

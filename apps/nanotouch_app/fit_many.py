@@ -42,6 +42,7 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
                 branch=args.branch, groups=args.groups, long=args.long, **knowledge,
             )  # fmt: skip
         sheets = sheet.draw(summary.pictures, folder, out.stem)
+        depths = _stabilities(args, summary, out, reading, knowledge) if args.stability else []
     args.answer = {"table": str(out), "fitted": summary.count("ok"), "curves": summary.rows}
     print(summary)
     for found in summary.spreads:
@@ -52,8 +53,24 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     drawn = len(sheets) * sheet.ACROSS * sheet.DOWN
     if drawn < len(summary.pictures):
         print(f"  note: the sheets show the first {drawn} of {len(summary.pictures)} fits")
-    print(f"written to {folder}/: {', '.join([out.name, f'{out.name}.json', *(path.name for path in sheets)])}")
+    written = (out.name, f"{out.name}.json", *(path.name for path in (*depths, *sheets)))
+    print(f"written to {folder}/: {', '.join(written)}")
     return 0 if summary.fitted else 1
+
+
+def _stabilities(
+    args: argparse.Namespace, summary: batch.Summary, out: Path, reading: dict[str, Any], knowledge: dict[str, Any]
+) -> list[Path]:
+    """E(delta) of all fitted curves, as a table and a picture."""
+    files = [out.with_name(f"{out.stem}-stability.{ending}") for ending in ("csv", "png")]
+    with output.progress_bar("stability") as progress:
+        found = batch.stabilities(summary, sidecar=args.sidecar, reading=reading, progress=progress, **knowledge)
+    found.to_csv(files[0])
+    found.draw(save=files[1])
+    print(found)
+    if found.without:
+        print(f"  {len(found.without)} without: {found.without[0][2]}")
+    return files
 
 
 def _tell_without(rows: list[dict[str, Any]], most: int = 20) -> None:

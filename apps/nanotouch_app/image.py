@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import warnings
 from dataclasses import asdict
 from pathlib import Path
@@ -12,12 +13,13 @@ from typing import Any
 import numpy as np
 from nanotouch import images
 from nanotouch.errors import InvalidValue
+from nanotouch.units import engineering
 from numpy.typing import NDArray
 
-from nanotouch_app import output
+from nanotouch_app import image_many, output
 from nanotouch_app.quantity import parse_quantity
 
-FILES = ("image.json", "image.png", "image.gwy", "grains.csv", "tip.csv")
+FILES = ("image.json", "image.png", "image.gwy", "grains.csv", "tip.csv", "spectrum.csv", "spectrum.png")
 LISTED = 10  # particles printed; the table holds all
 
 
@@ -29,15 +31,16 @@ def add_parser(subparsers: Any) -> None:
         description=__doc__,
     )
     what = parser.add_argument_group("what is read")
-    what.add_argument("image", metavar="FILE", help="AFM image")
+    what.add_argument("image", nargs="+", metavar="FILE", help="AFM image; or several, folders, patterns")
+    what.add_argument("--config", metavar="FILE", help='TOML file of these options, as level = "plane", scars = true')
     what.add_argument("--channel", metavar="NAME", help="channel of the image (nanotouch info lists them)")
     what.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
     what.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
     what.add_argument("--untrusted", action="store_true", help="read it in a guarded process")
     steps = parser.add_argument_group("what is done, in this order")
     steps.add_argument(
-        "--level", default="auto", metavar="METHOD",
-        help="auto, or plane, poly2 .. poly6, lines, rows, medians, terraces, joined by +; none (default: %(default)s)",
+        "--level", metavar="METHOD",
+        help="auto, or plane, poly2 .. poly6, lines, rows, medians, terraces, joined by +; none (default: auto)",
     )  # fmt: skip
     steps.add_argument(
         "--mask", metavar="WHAT",
@@ -56,23 +59,46 @@ def add_parser(subparsers: Any) -> None:
         help="find particles: higher than this, as 2nm; flat, otsu or auto (default: auto)",
     )  # fmt: skip
     steps.add_argument("--pits", action="store_true", help="with --grains: find pits instead")
+    steps.add_argument(
+        "--spectrum", action="store_true", help="also the power spectral density and the autocorrelation"
+    )
     output.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
+    image_many.configured(args)
+    args.level = args.level or "auto"
     if args.pits and args.grains is None:
         raise InvalidValue("--pits goes with --grains")
-    smooth = None if args.smooth is None else parse_quantity(args.smooth, "m")
-    tip = _tip(args.tip)
+    _tip(args.tip), _smooth(args), _threshold(args)  # refused before anything is read
+    if image_many.is_meant(args.image):
+        return image_many.run(args, _one)
+    with output.folder(args, FILES) as out:
+        facts = _one(args, Path(args.image[0]), out)
+        args.answer = facts | {"folder": str(out), "files": [name for name in FILES if (out / name).exists()]}
+    return 0
+
+
+def _smooth(args: argparse.Namespace) -> float | None:
+    return None if args.smooth is None else parse_quantity(args.smooth, "m")
+
+
+def _threshold(args: argparse.Namespace) -> float | str | None:
     threshold = args.grains if args.grains in (None, "auto", "flat", "otsu") else parse_quantity(args.grains, "m")
     if isinstance(threshold, float) and not threshold > 0.0:
         raise InvalidValue(f"--grains {args.grains}: valid is a height above 0, as 2nm; --pits finds what is lower")
+    return threshold
+
+
+def _one(args: argparse.Namespace, file: Path, out: Path) -> dict[str, Any]:
+    """All of one image: told, and written into `out`."""
+    tip, smooth, threshold = _tip(args.tip), _smooth(args), _threshold(args)
     with output.busy("reading"):
-        raw = _read(args)
+        raw = _read(args, file)
     print(_described(raw))
-    with output.folder(args, FILES) as out, output.busy("preparing the image"):
-        facts: dict[str, Any] = {"file": str(args.image), "channel": raw.channel, "reader": raw.source}
+    with output.busy("preparing the image"):
+        facts: dict[str, Any] = {"file": str(file), "channel": raw.channel, "reader": raw.source}
         mask = _mask(raw, args, facts)
         clean = _repaired(raw, args, facts, mask)
         if smooth is not None:
@@ -83,20 +109,44 @@ def run(args: argparse.Namespace) -> int:
         rough = images.roughness(clean, mask)
         facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
         print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
+        _tell_parameters(images.parameters(clean, mask), facts)
+        if args.spectrum:
+            found = images.spectrum(clean)
+            found.to_csv(out / "spectrum.csv")
+            found.draw(save=out / "spectrum.png")
         table = None if threshold is None else _grains(clean, threshold, args.pits)
         if table is not None:
             _tell(table, out, facts)
         output.write_json(out / "image.json", facts)
         images.write(out / "image.gwy", clean)
         images.draw({"as read": raw, "processed": clean}, grains=table, save=out / "image.png")
-        args.answer = facts | {"folder": str(out), "files": [name for name in FILES if (out / name).exists()]}
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
-    return 0
+    return facts
 
 
-def _read(args: argparse.Namespace) -> images.Topography:
+def _tell_parameters(found: dict[str, images.Parameter], facts: dict[str, Any]) -> None:
+    """All into the facts; those that nobody sees in the line of the roughness are printed, five to a line."""
+    facts["parameters"] = {
+        symbol: {"value": parameter.value if math.isfinite(parameter.value) else None, "unit": parameter.unit}
+        for symbol, parameter in found.items()
+    }
+    shown = [f"{symbol} {_shown(parameter)}" for symbol, parameter in found.items() if symbol not in ("Sa", "Sq", "Sz")]
+    for first in range(0, len(shown), 5):
+        print("  " + "".join(f"{text:23}" for text in shown[first : first + 5]).rstrip())
+
+
+def _shown(parameter: images.Parameter) -> str:
+    if not math.isfinite(parameter.value):
+        return "unknown"
+    if not parameter.unit:
+        return f"{parameter.value:.4g}"
+    unit, scale = engineering("m", np.array([parameter.value]))
+    return f"{parameter.value * scale:.4g} {unit if parameter.unit == 'm' else f'{unit}^3/{unit}^2'}"
+
+
+def _read(args: argparse.Namespace, file: Path) -> images.Topography:
     pixel_size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
-    return images.read(args.image, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
+    return images.read(file, args.channel, pixel_size=pixel_size, z_unit=args.z_unit, untrusted=args.untrusted)
 
 
 def _described(image: images.Topography) -> str:
@@ -202,17 +252,25 @@ def _grains(image: images.Topography, threshold: float | str, pits: bool) -> ima
 def _tell(table: images.GrainTable, out: Path, facts: dict[str, Any]) -> None:
     print(table)
     if len(table):
-        print("  number   height nm  diameter nm   volume nm3     x um     y um")
-    for k in range(min(len(table), LISTED)):
-        print(
-            f"  {k + 1:6d}{table.height[k] * 1e9:12.4g}{table.diameter[k] * 1e9:13.4g}{table.volume[k] * 1e27:13.4g}"
-            f"{table.x[k] * 1e6:9.4g}{table.y[k] * 1e6:9.4g}{'  border' if table.border[k] else ''}"
-        )
+        _list(table)
     if len(table) > LISTED:
         print(f"  and {len(table) - LISTED} more in grains.csv")
     table.to_csv(out / "grains.csv")
     facts["grains"] = {"count": len(table), "coverage": table.coverage, "threshold_m": table.threshold,
                        "warnings": list(table.warnings)}  # fmt: skip
+
+
+def _list(table: images.GrainTable) -> None:
+    """The first particles, each length in the prefix that suits it."""
+    lengths = {"height": table.height, "diameter": table.diameter, "x": table.x, "y": table.y}
+    units = {name: engineering("m", values) for name, values in lengths.items()}
+    cube, scale = units["diameter"]
+    headers = [f"{name} ({unit})" for name, (unit, _) in units.items()]
+    print("  number" + "".join(f"{header:>15}" for header in (*headers[:2], f"volume ({cube}^3)", *headers[2:])))
+    for k in range(min(len(table), LISTED)):
+        height, diameter, x, y = (f"{values[k] * units[name][1]:15.4g}" for name, values in lengths.items())
+        border = "  border" if table.border[k] else ""
+        print(f"  {k + 1:6d}{height}{diameter}{table.volume[k] * scale**3:15.4g}{x}{y}{border}")
 
 
 def _nm(metres: float) -> str:

@@ -25,8 +25,8 @@ from nanotouch_app.guard import REFUSED, guarded, one_line
 from nanotouch_app.output import as_json
 
 COMMANDS = (
-    "touch", "live", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review", "export",
-    "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
+    "touch", "live", "scan", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review",
+    "export", "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
 )  # fmt: skip
 STUDIES = ("reproduce", "tradeoff")
 EPILOG = """exit status:

@@ -26,6 +26,7 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("map", help="fit every curve of a force map", description=__doc__)
     parser.add_argument("file", metavar="FILE", help="force map (JPK .jpk-force-map, .jpk-qi-data, NanoScope, ...)")
     fit.add_knowledge(parser)
+    parser.add_argument("--sidecar", metavar="FILE", help="TOML file: exclusions, contact points and baselines by hand")
     parser.add_argument(
         "--threads", type=whole_number(0, 1024), default=0, metavar="N", help="default: one per processor"
     )
@@ -63,7 +64,7 @@ def _fitted(args: argparse.Namespace, blocks: Path) -> Any:
         with output.progress_bar("map") as progress:
             return maps.fit(
                 args.file, args.model, cluster=args.cluster, resume=blocks, threads=args.threads, progress=progress,
-                branch=args.branch, **fit.reading(args), **fit.knowledge(args),
+                branch=args.branch, sidecar=args.sidecar, **fit.reading(args), **fit.knowledge(args),
             )  # fmt: skip
     except stop.Stopped as stopped:
         raise stop.Stopped(stopped.number, f"--out {blocks.parent} goes on from what is finished") from None
@@ -94,6 +95,8 @@ def summarise(data: Any) -> dict[str, Any]:
         "flags": maps.flag_counts(data),
         "quantities": quantities,
         "settings": json.loads(data.attrs["settings"]),
+        "sidecar": json.loads(data.attrs["sidecar"]),
+        "sidecar_unused": json.loads(data.attrs["sidecar_unused"]),
         "calibration": json.loads(data.attrs["calibration"]),
         "assumptions": data.attrs["assumptions"],
         "versions": json.loads(data.attrs["versions"]),
@@ -112,6 +115,7 @@ def _text(data: Any, summary: dict[str, Any]) -> str:
         lines.append(f"  {name:18} {text} (median +- half the distance of the quartiles, {found['curves']} curves)")
     lines += [f"  {number} x no result: {reason}" for reason, number in summary["reasons"].items()]
     lines += [f"  {number} x flag {name}" for name, number in summary["flags"].items()]
+    lines += [f"  note: {name!r} of the sidecar is no curve of this map" for name in summary["sidecar_unused"]]
     return "\n".join([*lines, f"  assumed: {summary['assumptions']}"])
 
 

@@ -148,29 +148,30 @@ def as_json(value: Any) -> Any:
 
 
 @contextmanager
-def busy(title: str, after: float = 2.0) -> Iterator[None]:
-    """Seconds on the terminal, for what takes longer than ``after`` [s] and cannot tell how far it is."""
+def busy(title: str, after: float = 2.0) -> Iterator[Callable[[str], None]]:
+    """Seconds on the terminal, for what takes longer than ``after`` [s] and cannot tell how far it is. What it yields
+    is called with what is done from now on."""
     if not sys.stderr.isatty():
-        yield
+        yield lambda _: None
         return
-    done, start = threading.Event(), time.monotonic()
+    done, start, titles = threading.Event(), time.monotonic(), [title]
 
     def show() -> None:
         wait = after
         while not done.wait(wait):
             wait = 0.5
-            sys.stderr.write(f"\r{title} ... {time.monotonic() - start:.0f} s ")
+            sys.stderr.write(f"\r{titles[-1]} ... {time.monotonic() - start:.0f} s \033[K")
             sys.stderr.flush()
 
     shower = threading.Thread(target=show, daemon=True)
     shower.start()
     try:
-        yield
+        yield titles.append
     finally:
         done.set()
         shower.join()
         if time.monotonic() - start > after:
-            sys.stderr.write(f"\r{' ' * (len(title) + 16)}\r")
+            sys.stderr.write(f"\r{' ' * (max(map(len, titles)) + 16)}\r")
 
 
 @contextmanager

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fit every curve under a folder; write one HTML page of the results, and the table beside it."""
+"""Fit every curve under folders; write one HTML page of the results, and the table beside it."""
 
 from __future__ import annotations
 
@@ -20,9 +20,11 @@ JOURNAL = "results.csv.journal"
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser = subparsers.add_parser(
-        "report", help="one page about a folder of force curves: results, rejects, Methods", description=__doc__
+        "report", help="one page about folders of force curves: results, rejects, Methods", description=__doc__
     )
-    parser.add_argument("folder", metavar="FOLDER", help="force curves; folders in it are groups")
+    parser.add_argument(
+        "folder", nargs="+", metavar="FOLDER", help="force curves; folders, and folders in them, are groups"
+    )
     fit.add_knowledge(parser, auto=True)
     fit.add_table(parser)
     output.add_options(parser)
@@ -30,14 +32,15 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command; the status is 1 where not a single curve was fitted."""
-    folder = Path(args.folder)
-    if not folder.is_dir():
-        raise InvalidValue(f"{folder}: is no folder; nanotouch fit looks at single files")
+    named = [Path(name) for name in dict.fromkeys(args.folder)]
+    for folder in named:
+        if not folder.is_dir():
+            raise InvalidValue(f"{folder}: is no folder; nanotouch fit looks at single files")
     reading, known = fit.reading(args), fit.knowledge(args)
     with output.folder(args, FILES) as out:
         if args.overwrite:  # a journal of other settings too
             (out / JOURNAL).unlink(missing_ok=True)
-        folders = _folders(folder, out)
+        folders = list(dict.fromkeys(found for folder in named for found in _folders(folder, out)))
         groups = args.groups or (batch.FOLDER if len(folders) > 1 else None)
         with output.progress_bar("report") as progress:
             summary = batch.fit_files(
@@ -46,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
             )  # fmt: skip
         sheets = sheet.draw(summary.pictures, out, "results", most=10)
         settings = {"model": args.model, "branch": args.branch} | known
-        title = f"Force curves of {folder.resolve().name}"
+        title = f"Force curves of {', '.join(folder.resolve().name for folder in named)}"
         batch.write_report(out / "report.html", summary, title=title, settings=settings, reading=reading, sheets=sheets)
         print(summary)
         for found in summary.spreads:

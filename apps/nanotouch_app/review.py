@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Look at force curves one by one: keep or reject each, and set contact point and baseline by hand. What is decided is
-written at once to a sidecar, which fit and report take again (--sidecar). In a window with --window: drag the lines of
+written at once to a sidecar, which fit and report take again (--sidecar). In a window with --show: drag the lines of
 contact point and baseline; k keeps, x rejects, u forgets what was decided, left and right arrows turn over, q ends."""
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("curve", nargs="+", metavar="FILE", help="force curves, folders of them, or patterns")
     parser.add_argument("--sidecar", metavar="FILE", required=True, help="TOML file of what is decided; it may exist")
-    parser.add_argument("--window", action="store_true", help="a window in place of the terminal; needs a display")
+    parser.add_argument("--show", action="store_true", help="a window in place of the terminal; needs a display")
     fit.add_knowledge(parser, auto=True)
     parser.set_defaults(run=run)
 
@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     )
     for name, reason in review.unread.items():
         print(f"{name}: not read: {reason}", file=sys.stderr)
-    if args.window:
+    if args.show:
         from nanotouch_app.review_window import show
 
         show(review)

@@ -104,7 +104,7 @@ def show(review: Review) -> None:
     for key in ("keymap.save", "keymap.quit", "keymap.back", "keymap.forward", "keymap.xscale"):
         plt.rcParams[key] = []
     if plt.get_backend().lower() in _WITHOUT_WINDOW:
-        raise Error("no window can be opened here: leave out --window, and decide in the terminal")
+        raise Error("no window can be opened here: leave out --show, and decide in the terminal")
     figure = plt.figure(figsize=(9.0, 5.5))
     board = Board(review, figure)
     plt.show()

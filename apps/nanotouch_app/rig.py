@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``nanotouch rig``: is a rig file whole, and does this machine keep its rate? Nothing is moved."""
+"""``nanotouch rig``: is a rig file whole, does this machine keep its rate, and what are its numbers?
+
+Only calibrate moves anything.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,13 @@ import nanotouch as nt
 from nanotouch import rig_file
 from nanotouch.units import in_words
 
-from nanotouch_app import latency
+from nanotouch_app import calibrate, latency
 
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "rig", help="check a rig file, probe its machine", description=__doc__
+        "rig", help="check a rig file, probe its machine, calibrate it", description=__doc__
     )
     jobs = parser.add_subparsers(dest="job", required=True, metavar="JOB")
     for job, words in (
@@ -28,6 +31,10 @@ def add_parser(subparsers: Any) -> None:
         one.add_argument("file", type=Path, metavar="RIG.toml")
         if job == "probe":
             latency.add_options(one)
+    words = "drive the rig and fit its numbers, with their uncertainties"
+    one = jobs.add_parser("calibrate", help=words, description=words)
+    one.add_argument("file", type=Path, metavar="RIG.toml")
+    calibrate.add_options(one)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -38,21 +45,27 @@ def run(args: argparse.Namespace) -> int:
     args.answer = {name: _told(half) for name, half in halves.items()}
     for name, half in halves.items():
         print(f"{name}: {_told(half)}")
+    if args.job == "calibrate":
+        return calibrate.run(args, found)
     return 0 if args.job == "check" else _probe(args, halves)
 
 
-def _told(half: rig_file.Converters | None) -> str:
+def _told(half: rig_file.RealHalf | None) -> str:
     if half is None:
         return "simulated"
+    if isinstance(half, nt.hal.Mailbox):
+        return f"the program with the mailbox {half.name}"
+    if isinstance(half, nt.hal.SharedObject):
+        return f"the shared object {half.path}"
     chips = ", ".join(f"{chip['chip']} at {chip['device']}" for chip in half.setup["chips"])
     oldest = min(half.calibrated.values())
     return f"{chips}; {len(half.calibrated)} channels, calibrated {oldest} or later"
 
 
-def _probe(args: argparse.Namespace, halves: dict[str, rig_file.Converters | None]) -> int:
+def _probe(args: argparse.Namespace, halves: dict[str, rig_file.RealHalf | None]) -> int:
     frames = 0.0
     for half in halves.values():
-        if half is None:
+        if not isinstance(half, rig_file.Converters):
             continue
         for chip, times in zip(half.setup["chips"], rig_file.frame_times(half), strict=True):
             print(f"{chip['chip']}: a frame p50 {in_words(times.median, 's', 3)}, p99.9 {in_words(times.late, 's', 3)}")

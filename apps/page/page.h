@@ -107,6 +107,7 @@ void page_place(double x, double y, double found[4]);
 /* page_energy.c */
 void page_weigh(double spring, double zero, double alpha_p, double load);
 void page_weigh_anew(void);
+void page_weigh_let_go(void); /* the hand takes hold where the tip is next */
 void page_weigh_tick(const nt_frame *frame);
 void page_energies(double found[4]);
 

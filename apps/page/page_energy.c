@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Where the work of the hand goes in the last touch: into the spring, into the contact and, where the tip jumps, into
  * heat. Sums over the ticks, as nanotouch_app/live/energy.py: between two ticks the spring's mean force on both of its
- * ends is what it stores, exactly. */
+ * ends is what it stores, exactly. In x and y no spring lies between. */
 #include <math.h>
 #include <stdint.h>
 
@@ -12,9 +12,11 @@ static const double CALM = 0.015; /* for so long, until the touch is over [s] */
 
 static struct {
     double spring, zero, alpha_p, load;
-    double hand, tip, heat, began, now;         /* [J] */
-    double height, stretch, force, quiet_since; /* of the last tick */
-    int has_last, is_free;
+    double hand, tip, heat, began, now; /* [J] */
+    double stretch, quiet_since;        /* of the last tick */
+    double place[NT_AXES], force[NT_AXES];
+    double shift; /* of the zero since the hand has let go [m] */
+    int has_last, is_free, is_stopped;
 } sums;
 
 /* A spring [N/m] whose far end is at zero - alpha_p times the master's height; the largest load [N]. Begins anew where
@@ -33,8 +35,26 @@ PAGE_API(page_weigh) void page_weigh(double spring, double zero, double alpha_p,
 void page_weigh_anew(void)
 {
     sums.hand = sums.tip = sums.heat = sums.began = sums.now = 0.0;
-    sums.has_last = 0;
+    sums.shift = 0.0;
+    sums.has_last = sums.is_stopped = 0;
     sums.is_free = 1;
+}
+
+/* Outside of RUN the supervisor moves the tip: the hand has let go. */
+void page_weigh_let_go(void)
+{
+    sums.has_last = 0;
+    sums.is_free = sums.is_stopped = 1;
+}
+
+/* Of the spring [m]; it is taken hold of anew where the tip is after a stop. */
+static double stretch_now(const nt_frame *frame)
+{
+    const double found = frame->tip_position[NT_Z] - (sums.zero - sums.alpha_p * frame->master_position[NT_Z]);
+    if (sums.is_stopped)
+        sums.shift = found - frame->tip_force[NT_Z] / sums.spring;
+    sums.is_stopped = 0;
+    return found - sums.shift;
 }
 
 static void begin_touch(double stretch)
@@ -44,30 +64,49 @@ static void begin_touch(double stretch)
     sums.is_free = 0;
 }
 
+/* Of the mean force on the way since the last tick [J]. */
+static double work_along(const nt_frame *frame, int axis)
+{
+    return 0.5 * (frame->tip_force[axis] + sums.force[axis]) * (frame->tip_position[axis] - sums.place[axis]);
+}
+
+static int is_known(const nt_frame *frame)
+{
+    int known = isfinite(frame->master_position[NT_Z]);
+    for (int i = 0; i < NT_AXES; i++)
+        known = known && isfinite(frame->tip_position[i]) && isfinite(frame->tip_force[i]);
+    return known;
+}
+
 void page_weigh_tick(const nt_frame *frame)
 {
-    const double height = frame->tip_position[NT_Z], force = frame->tip_force[NT_Z];
-    const double stretch = height - (sums.zero - sums.alpha_p * frame->master_position[NT_Z]);
-    if (!isfinite(height) || !isfinite(force) || !isfinite(stretch))
+    if (frame->state != NT_RUN) {
+        page_weigh_let_go();
         return;
-    if (!(fabs(force) < QUIET * sums.load)) {
+    }
+    if (!is_known(frame))
+        return;
+    const double height = frame->tip_position[NT_Z], stretch = stretch_now(frame);
+    if (!(fabs(frame->tip_force[NT_Z]) < QUIET * sums.load)) {
         if (sums.is_free)
             begin_touch(sums.has_last ? sums.stretch : stretch);
         sums.quiet_since = frame->time;
     }
     if (!sums.is_free && sums.has_last) {
-        const double pull = sums.spring * 0.5 * (stretch + sums.stretch), law = 0.5 * (force + sums.force);
-        const double moved = height - sums.height;
-        sums.hand -= pull * (moved - (stretch - sums.stretch));
-        sums.tip -= law * moved;
-        sums.heat -= (pull - law) * moved;
+        const double pull = sums.spring * 0.5 * (stretch + sums.stretch), moved = height - sums.place[NT_Z];
+        const double law = work_along(frame, NT_Z), sideways = work_along(frame, NT_X) + work_along(frame, NT_Y);
+        sums.hand -= pull * (moved - (stretch - sums.stretch)) + sideways;
+        sums.tip -= law + sideways;
+        sums.heat -= pull * moved - law;
         sums.now = 0.5 * sums.spring * stretch * stretch;
     }
     if (frame->time - sums.quiet_since > CALM)
         sums.is_free = 1;
-    sums.height = height;
+    for (int i = 0; i < NT_AXES; i++) {
+        sums.place[i] = frame->tip_position[i];
+        sums.force[i] = frame->tip_force[i];
+    }
     sums.stretch = stretch;
-    sums.force = force;
     sums.has_last = 1;
 }
 

@@ -271,6 +271,7 @@ PAGE_API(page_rewind) int page_rewind(double duration)
         }
     page.newest = best;
     page_weigh_anew();
+    page_weigh_let_go();
     return page_run(1);
 }
 

@@ -163,7 +163,8 @@ class Bridge:
             due = loop.time() + TIMEOUT
             try:
                 while (left := due - loop.time()) > 0.0:
-                    message = await asyncio.wait_for(link.receive(), left)
+                    async with asyncio.timeout(left):
+                        message = await link.receive()
                     if message.type not in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY):
                         return  # closed
                     if await self._answer(link, message.data):
@@ -174,7 +175,8 @@ class Bridge:
             finally:  # a hand that is let go feels nothing
                 if self.device:
                     with contextlib.suppress(*_losses()):
-                        await asyncio.wait_for(link.send_str(command(self.device, (0.0, 0.0, 0.0))), TIMEOUT)
+                        async with asyncio.timeout(TIMEOUT):
+                            await link.send_str(command(self.device, (0.0, 0.0, 0.0)))
 
     async def _answer(self, link: Any, data: str | bytes) -> bool:
         """Publish a good frame; send the force in any case, so that the next frame comes. Was it good?"""
@@ -185,7 +187,8 @@ class Bridge:
             self.mailbox.publish(Reading(position=frame.position, buttons=frame.buttons))
         if self.device:
             force = self.mailbox.ask().target if frame else (0.0, 0.0, 0.0)
-            await asyncio.wait_for(link.send_str(command(self.device, force)), TIMEOUT)
+            async with asyncio.timeout(TIMEOUT):
+                await link.send_str(command(self.device, force))
         return frame is not None
 
 

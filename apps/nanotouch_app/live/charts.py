@@ -127,7 +127,8 @@ def _energies(seen: Seen) -> str:
     unit, factor = ("fJ", 1e15) if max(abs(hand), abs(stored)) > 1e-15 else ("aJ", 1e18)
     hand, stored, tip, heat = _alike([factor * value for value in (hand, stored, tip, heat)])
     told = [f"{name} {value:.3g}" for name, value in (("spring", stored), ("tip", tip), ("heat", heat))]
-    return f"work of the hand {hand:.3g} {unit} = {' + '.join(told)}".replace("-0 ", "0 ").replace("+ -", "- ")
+    about = "" if seen.balance.whole else "about "  # ticks that were not drawn are bridged by straight lines
+    return f"work of the hand {about}{hand:.3g} {unit} = {' + '.join(told)}".replace("-0 ", "0 ").replace("+ -", "- ")
 
 
 TITLED, UNTITLED = 210.0, 130.0  # what the names of the axes take of the upper and the lower line [pixels]

@@ -16,7 +16,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
 from nanotouch_app import output, properties, stop
-from nanotouch_app.live import display, files, hands
+from nanotouch_app.live import display, files, hands, real
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.reel import surface_of
@@ -34,6 +34,7 @@ EPILOG = """examples:
   nanotouch live image.ibw               your own surface
   nanotouch live curve.jpk-force --radius 30nm      what you have measured: its fit becomes the scene
   nanotouch live silicon_in_air --record touch.mcap; nanotouch live touch.mcap
+  nanotouch live rig.toml                what lies under the stage of your own that a rig file names
   nanotouch live --browser               the same in a browser: here, or through ssh -L
   nanotouch live silicon_in_air --film touch.gif    a film of a touch; needs no display"""
 
@@ -48,9 +49,9 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "what", nargs="?", metavar="PRESET|IMAGE|CURVE|MAP|SCENE|RECORDING",
-        help="what is touched: a preset, an AFM image, a force curve, a map.nc, a TOML file; or a recording "
-             "(default: silicon_in_air, or the sample of the task)",
+        "what", nargs="?", metavar="PRESET|IMAGE|CURVE|MAP|SCENE|RIG|RECORDING",
+        help="what is touched: a preset, an AFM image, a force curve, a map.nc, a TOML file, which may name a real "
+             "slave; or a recording (default: silicon_in_air, or the sample of the task)",
     )  # fmt: skip
     parser.add_argument("--task", metavar="NAME", help="begin a task, or the lesson: see --list; its CSV is kept here")
     parser.add_argument("--list", action="store_true", help="show the presets and end")
@@ -78,6 +79,8 @@ def run(args: argparse.Namespace) -> int:
     task = None if args.task is None else named(args.task)
     if args.what is None:
         args.what = "silicon_in_air" if task is None else task.preset
+    if real.is_named(args.what):
+        return real.touch(args)
     is_recording = _checked(args)
     if args.film is not None:
         return _film(args)
@@ -167,7 +170,8 @@ def _subject(args: argparse.Namespace) -> Subject:
         None if text is None else parse_quantity(text, unit)
         for text, unit in ((args.radius, "m"), (args.spring_constant, "N/m"))
     )
-    return files.of(args.what, radius, spring, named)
+    with output.busy(f"reading {args.what}", 0.5) as told:
+        return files.of(args.what, radius, spring, named, told)
 
 
 def _film(args: argparse.Namespace) -> int:

@@ -5,6 +5,7 @@ scene."""
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 
 import nanotouch as nt
@@ -30,16 +31,18 @@ def check_named(what: str) -> None:
 
 
 def of(
-    what: str, radius: float | None = None, spring_constant: float | None = None, named: nt.SurfaceFile | None = None
-) -> Subject:
+    what: str, radius: float | None = None, spring_constant: float | None = None, named: nt.SurfaceFile | None = None,
+    told: Callable[[str], object] = str,
+) -> Subject:  # fmt: skip
     """A preset by its name, or what a file says; ``radius`` [m] of the tip and ``spring_constant`` [N/m] of the lever
-    that measured a curve; ``named`` where more is said of an image."""
+    that measured a curve; ``named`` where more is said of an image. ``told`` is called with what is done now."""
     if named is not None:
         return of_surface(named, *nt.presets.silicon_in_air(), Path(what).stem)
     if what in PRESETS:
         return of_preset(what)
     path = Path(what)
     check_named(what)
+    told(f"reading {path.name}")
     if path.suffix.lower() == ".toml":
         return of_scene(path)
     if path.suffix.lower() == ".nc":
@@ -49,16 +52,17 @@ def of(
     if radius is not None or spring_constant is not None:
         return _of_curve_alone(path, radius, spring_constant)
     try:
-        return of_image(path)
+        return of_image(path, told)
     except Error as no_image:
+        told(f"fitting {path.name}")
         try:
             return of_curve(path)
         except Error as no_curve:
             reasons = [_reason(error, path) for error in (no_image, no_curve)]
-            told = (
+            why = (
                 reasons[0] if reasons[0] == reasons[1] else f"no image ({reasons[0]}) and no force curve ({reasons[1]})"
             )
-            raise Error(f"{what}: {told}") from no_curve
+            raise Error(f"{what}: {why}") from no_curve
 
 
 def _of_curve_alone(path: Path, radius: float | None, spring_constant: float | None) -> Subject:
@@ -104,9 +108,10 @@ def _made_for(scene: nt.Scene, name: str) -> nt.Topography:
     return relief(size, ROUGHNESS * size, name)
 
 
-def of_image(path: Path) -> Subject:
-    """The relief of an AFM image, silicon in air."""
+def of_image(path: Path, told: Callable[[str], object] = str) -> Subject:
+    """The relief of an AFM image, silicon in air. ``told`` is called with what is done now."""
     raw = nt.images.read(path)
+    told(f"levelling {raw.shape[1]} x {raw.shape[0]} pixels of {path.name}")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # what was done to it is told by nanotouch image
         topography, _ = nt.images.prepare(raw)

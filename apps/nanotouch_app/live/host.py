@@ -318,7 +318,7 @@ class Host:
 
     def _do_open(self, message: Message) -> None:
         """A file was dropped on the window: an image, a curve, a map, a scene."""
-        self._lay(files.of(message["path"]))
+        self._lay(files.of(message["path"], told=lambda now: self.tell({"tell": "note", "text": f"{now} ..."})))
 
     def _lay(self, subject: Subject) -> None:
         self._check_unrecorded("another sample")

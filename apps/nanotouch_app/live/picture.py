@@ -24,6 +24,7 @@ NARROW = 900.0  # below this width the right column goes away
 BAND = 0.15  # of the picture's height: the band under the largest planned force
 ROOMY = 760.0, 520.0  # for the cards [pixels]
 RING, MARGIN = 13.0, 16.0  # [pixels]
+BAR, COLOURS = 80.0, 120.0  # least length of the scale bar; of the bar of colours [pixels]
 
 
 class Layout:
@@ -217,35 +218,48 @@ class Picture:
         painter.ring(x, y - length, RING, palette.quiet if seen.stale else palette.ink, 2.5)
 
     def _scales(self, painter: Painter) -> None:
-        """A bar along the near edge of the surface, and how much heights are drawn larger."""
+        """A bar at the depth of what the camera looks at, and how much heights are drawn larger."""
         stage, palette, layout = self.stage, self.palette, self.layout
-        size = stage.heights.shape[1] * stage.dx * stage.unit
-        length = step_up(0.12 * size)
-        start = np.array([0.02, 0.0, 0.0])
-        a, b = stage.pixel(start), stage.pixel(start + np.array([length / stage.unit, 0.0, 0.0]))
+        camera = self.scene.GetActiveCamera()
+        place = np.array(camera.GetFocalPoint())
+        across = np.cross(camera.GetDirectionOfProjection(), camera.GetViewUp())
+        step = 1e-3 * across / np.linalg.norm(across)
+        per_metre = float(np.hypot(*(stage.pixel(place + step) - stage.pixel(place)))) / (1e-3 * stage.unit)
+        length = step_up(BAR / per_metre)
+        pixels = length * per_metre
+        told, drawn = self._heights_told()
+        has_heights = float(np.ptp(stage.heights)) > 0.0 or len(stage.maps) > 1
+        room = painter.width_of(f"{told}, {drawn}", SMALL) <= layout.bars[0] - layout.view[0] - COLOURS - 46
+        if room:
+            told, drawn = ", ".join(filter(None, (told, drawn))), ""
         x, y = layout.view[0] + 18, layout.view[1] + 22
-        pixels = float(np.hypot(*(b - a)))
+        second = max(COLOURS, pixels + 60) + 10
+        wide = max(pixels + 10 + painter.width_of(digits(length, "m", 1), SMALL),
+                   has_heights * (COLOURS + 10 + painter.width_of(told, SMALL)),
+                   bool(drawn) * (second + painter.width_of(drawn, SMALL)))  # fmt: skip
+        painter.box((x - 10, y - 13, wide + 20, 52 if has_heights else 26), palette.panel, palette.line)
         painter.line([[x, y], [x + pixels, y]], palette.ink, 3.0)
         painter.text(x + pixels + 10, y, digits(length, "m", 1), palette.ink, SMALL)
-        relief = float(np.ptp(stage.heights))
-        if relief > 0.0 or len(stage.maps) > 1:
-            self._heights(painter, x, y + 26, relief, pixels)
+        if has_heights:
+            self._colours(painter, x, y + 26)
+            painter.text(x + COLOURS + 10, y + 26, told, palette.ink, SMALL)
+            painter.text(x + second, y, drawn, palette.ink, SMALL)
 
-    def _heights(self, painter: Painter, x: float, y: float, relief: float, scale: float) -> None:
-        width, table = 120.0, np.array(self.stage.table, dtype=float)
+    def _colours(self, painter: Painter, x: float, y: float) -> None:
+        table = np.array(self.stage.table, dtype=float)
         for part, place in enumerate(np.linspace(0.0, len(table) - 1.0, 24)):
             colour = [int(np.interp(place, np.arange(len(table)), table[:, one])) for one in range(3)]
-            painter.box((x + part * width / 24, y - 5, width / 24 + 1, 10), (colour[0], colour[1], colour[2]))
-        drawn = "" if self.stage.factor == 1.0 else f"drawn {self.stage.factor:g} times as high"
-        told = f"heights 0 to {digits(relief, 'm')}"
-        if painter.width_of(f"{told}, {drawn}", SMALL) <= self.layout.bars[0] - x - width - 20:
-            told, drawn = ", ".join(filter(None, (told, drawn))), ""
-        if self.stage.shown in PROPERTY_NAMES:
-            name, unit_name = PROPERTY_NAMES[self.stage.shown]
-            told = f"{name} {' to '.join(digits(end, unit_name) for end in self.stage.ends)}"
-        more = "   K: next" if len(self.stage.maps) > 1 else ""
-        painter.text(x + width + 10, y, told + more, self.palette.ink, SMALL)
-        painter.text(x + max(width, scale + 60) + 10, y - 26, drawn, self.palette.ink, SMALL)
+            painter.box((x + part * COLOURS / 24, y - 5, COLOURS / 24 + 1, 10), (colour[0], colour[1], colour[2]))
+
+    def _heights_told(self) -> tuple[str, str]:
+        """What the colours mean, and how much higher than they are heights are drawn."""
+        stage = self.stage
+        told = f"heights 0 to {digits(float(np.ptp(stage.heights)), 'm')}"
+        if stage.shown in PROPERTY_NAMES:
+            name, unit_name = PROPERTY_NAMES[stage.shown]
+            told = f"{name} {' to '.join(digits(end, unit_name) for end in stage.ends)}"
+        drawn = "" if stage.factor == 1.0 else f"drawn {stage.factor:g} times as high"
+        return told + ("   K: next" if len(stage.maps) > 1 else ""), drawn
 
     def _about(self) -> str:
         """What is typed for a slider; what it does, while the pointer is over it."""

@@ -11,10 +11,11 @@ from nanotouch.touch.supervisor import REASONS
 
 from nanotouch_app.live.look import SMALL, TITLE, Colour, Palette, digits
 from nanotouch_app.live.painter import Painter
-from nanotouch_app.live.seen import Seen
+from nanotouch_app.live.seen import DOTS, Seen
 
 Frame = tuple[float, float, float, float]
 NOTED = 9.0  # a note stays for so long [s]
+LONGEST = 300.0  # one of what is being done till the next [s]
 AGE, HELP_HEAD, HELP_LINE = 190.0, 70.0, 25.0  # for the age of a frame; of the help [pixels]
 TIP_STEP = 3.0  # forces at the tip are told apart from so many RMS noises of the lever on
 HAND_STEPS = (0.06, 0.01)  # just noticeable difference of a force at the hand: this share, at least this [N]
@@ -125,7 +126,8 @@ def status(painter: Painter, palette: Palette, frame: Frame, seen: Seen, about: 
     else:
         painter.text(x + 110, upper, painter.fitted(_facts(seen), width - 122), palette.ink)
     lower = y + 16
-    age = f"frame {1e3 * min(seen.age, 9.999):.0f} ms old, missed {seen.missed}"
+    skipped = f", {seen.missed} ticks not drawn" if seen.missed else ""
+    age = f"frame {1e3 * min(seen.age, 9.999):.0f} ms old{skipped}"
     painter.text(x + width - 12, lower, age, palette.quiet, SMALL, "right")
     left = rest if first and not (seen.stale or state) else words
     painter.text(x + 32, lower, painter.fitted(left, room, SMALL), tint, SMALL)
@@ -144,9 +146,13 @@ def _lower(palette: Palette, seen: Seen, about: str) -> tuple[str, Colour]:
     """The second line: what a slider does, what was told last, or what to try."""
     if about:
         return about, palette.accent
-    note = next((entry for entry in reversed(seen.notes) if time.monotonic() - entry[0] < NOTED), None)
-    if note is not None:
-        return note[1], palette.bad if note[2] else palette.hold
+    if seen.notes:
+        at, words, is_bad = seen.notes[-1]
+        age = time.monotonic() - at
+        if words.endswith(DOTS) and 0.0 <= age < LONGEST:  # a caption of a film is from the future
+            return f"{words} {age:.0f} s", palette.hold
+        if age < NOTED:
+            return words, palette.bad if is_bad else palette.hold
     return str(seen.world.get("hint", "")), palette.quiet
 
 

@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 HISTORY = 10.0  # of the chart over time [s]
 SLICES = 400  # of it; each keeps its least and largest force
 TAIL = 0.5  # of the point on the force curve [s]
+DOTS = " ..."  # end a note of what is being done
 TRACE = 30.0  # of the path on the surface [s]
 TRACE_STEP = 0.05  # [s]
 STALE = 0.1  # [s]: what is felt ends when the newest frame is older
@@ -76,6 +77,7 @@ class Seen:
                 self.forget()
                 self.frame = self.reading = None
                 self.world = {}
+                self.notes.clear()
             case "clock":
                 self.clock = message
                 self._stand(message.get("here", {}))
@@ -83,10 +85,16 @@ class Seen:
                 self.task = message if message["name"] else {}
             case "refused":
                 self.waiting.discard(str(message.get("field")))
+                self._ends()
                 self.notes.append((time.monotonic(), str(message["why"]), True))
             case "note":
                 if not self.notes or self.notes[-1][1] != message["text"]:
+                    self._ends()
                     self.notes.append((time.monotonic(), message["text"], False))
+
+    def _ends(self) -> None:
+        """What was being done is done, or has failed."""
+        self.notes = deque((note for note in self.notes if not note[1].endswith(DOTS)), maxlen=self.notes.maxlen)
 
     def asks(self, what: str) -> None:
         """The hand asks again: no refusal of its last answer stays beside a good one."""
@@ -188,6 +196,7 @@ class Seen:
             kept.clear()
         if self.balance is not None:
             self.balance = Balance(self.balance.spring, self.balance.zero, self.balance.alpha_p, self.balance.load)
+            self.balance.stopped = True  # where the hand has hold now, the frames say
 
     def _keep(self, frames: Any) -> None:
         force = frames["tip_force"][:, 2]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Surface, tip, lever, shadow and trace in three dimensions. The surface is sent once: that the tip moves changes no
-byte of it. One scene unit is the longer side of the surface."""
+"""Surface, tip, lever, shadow and trace in three dimensions. The surface is sent once, with the first picture: that the
+tip moves only changes which of its tiles are shown fine. One scene unit is the longer side of the surface."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from nanotouch_app.live.arrays import points, quads, to_vtk
 from nanotouch_app.live.look import LIGHT, PROPERTY_COLOURS, Colour, Palette, unit
 from nanotouch_app.live.relief import coarse, exaggeration, stepped
 from nanotouch_app.live.seen import TRACE, Seen
+from nanotouch_app.live.tiles import MOST_FINE, Tiles
 
 Floats = NDArray[np.float64]
 
@@ -36,24 +37,30 @@ class Stage:
 
     def __init__(self, vtk: Any, renderer: Any, heights: Floats, pixel_size: Floats) -> None:
         self.vtk, self.renderer = vtk, renderer
-        self.heights, merged = coarse(heights)
+        self.heights, merged = coarse(heights, MOST_FINE)
         dy, dx = pixel_size * merged
+        seen, more = coarse(self.heights)
         self.unit = float(max(heights.shape * np.asarray(pixel_size)))
         self.dx, self.dy = dx / self.unit, dy / self.unit
-        self.factor = self.built = exaggeration(self.heights, (dy, dx), self.unit)
+        self.factor = self.built = exaggeration(seen, (dy * more, dx * more), self.unit)
         self.scale = np.array([1.0, 1.0, self.factor]) / self.unit
         self.lowest = float(self.heights.min())
         self.centre = np.array([0.5 * self.dx * self.heights.shape[1], 0.5 * self.dy * self.heights.shape[0], 0.0])
         self.maps: dict[str, Floats] = {"height": self.heights}
         self.shown = "height"
-        self.surface, self.colours = self._surface()
-        self.rebuilt = 0  # bytes of the surface that were made anew after the first time
+        self.tiles = Tiles(vtk, self.heights - self.lowest, (self.dy, self.dx), float(self.scale[2]))
+        self.tiles.colour(self.heights)
+        self.colours = vtk.vtkColorTransferFunction()
+        self.coarse = {tile: self._tile(mesh) for tile, mesh in self.tiles.coarse.data.items()}
+        self.fine = {tile: self._tile(mesh) for tile, mesh in self.tiles.fine.data.items()}
+        self.near: set[tuple[int, int]] | None = None  # what is shown fine; None: nothing is drawn yet
         self.tip: Any = None
         self.lever: Any = None
         self.ribbon: Any = None
         self.palette = LIGHT
         self.shape: tuple[Any, ...] = ()
         self.shades: list[Any] = []
+        self.dark = False
         self.shadows = [self._shadow(share) for share in (1.0, 0.7, 0.4)]
         self.trace, self.trace_data = self._line()
         self.origin = np.zeros(2)  # of the surface in the frame of the tip [m]
@@ -61,27 +68,19 @@ class Stage:
 
     # --- made once ---
 
-    def _surface(self) -> tuple[Any, Any]:
-        rows, columns = self.heights.shape
-        x, y = np.meshgrid((np.arange(columns) + 0.5) * self.dx, (np.arange(rows) + 0.5) * self.dy)
-        z = (self.heights - self.lowest) * self.scale[2]
-        mesh = self.vtk.vtkPolyData()
-        mesh.SetPoints(points(self.vtk, np.stack([x, y, z], axis=-1)))
-        mesh.SetPolys(quads(self.vtk, rows, columns))
-        mesh.GetPointData().SetScalars(to_vtk(self.heights.ravel()))
-        slope_y, slope_x = np.gradient(z, self.dy, self.dx)
-        normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1).reshape(-1, 3)
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        mesh.GetPointData().SetNormals(to_vtk(normals.astype(np.float32)))
-        self.mesh = mesh
-        colours = self.vtk.vtkColorTransferFunction()
+    def _tile(self, mesh: Any) -> Any:
         actor = self._actor(mesh)
-        actor.GetMapper().SetLookupTable(colours)
+        actor.GetMapper().SetLookupTable(self.colours)
         actor.GetMapper().InterpolateScalarsBeforeMappingOn()
         actor.GetProperty().SetAmbient(0.28)
         actor.GetProperty().SetDiffuse(0.8)
         actor.GetProperty().SetSpecular(0.12)
-        return actor, colours
+        return actor
+
+    @property
+    def surface(self) -> list[Any]:
+        """The actors of all tiles."""
+        return [*self.coarse.values(), *self.fine.values()]
 
     def _actor(self, data: Any) -> Any:
         mapper = self.vtk.vtkPolyDataMapper()
@@ -109,7 +108,7 @@ class Stage:
             x, y = middle[0] + np.outer(r, np.cos(turn)), middle[1] + np.outer(r, np.sin(turn))
             rim = self.centre * 2.0
             x, y = np.clip(x, 0.0, rim[0]), np.clip(y, 0.0, rim[1])
-            z = (self._ground(x * self.unit, y * self.unit) - self.lowest) * self.scale[2] + LIFTED
+            z = self.tiles.cover(*self._pixels(x * self.unit, y * self.unit)) * self.scale[2] + LIFTED
             data.SetPoints(points(self.vtk, np.stack([x, y, z], axis=-1)))
             data.Modified()
 
@@ -128,7 +127,8 @@ class Stage:
         table = self.table
         for value, colour in zip(np.linspace(low, high, len(table)), table, strict=True):
             self.colours.AddRGBPoint(float(value), *unit(colour))
-        self.surface.GetMapper().SetScalarRange(low, high)
+        for actor in self.surface:
+            actor.GetMapper().SetScalarRange(low, high)
         self.renderer.SetBackground(*unit(palette.panel))
         for actor in (self.tip, self.lever):
             if actor is not None:
@@ -136,8 +136,20 @@ class Stage:
 
     def lights(self, on: bool) -> None:
         """Whether surface, shadow and trace are seen."""
-        for actor in (self.surface, self.trace, *self.shades):
+        if self.dark is not on:
+            return
+        self.dark = not on
+        for actor in (self.trace, *self.shades):
             actor.SetVisibility(on)
+        self._show(self.near or set())
+
+    def _show(self, near: set[tuple[int, int]]) -> None:
+        """These tiles fine, the others coarse; none in the dark."""
+        self.near = near
+        for tile, actor in self.coarse.items():
+            actor.SetVisibility(not self.dark and tile not in near)
+        for tile, actor in self.fine.items():
+            actor.SetVisibility(not self.dark and tile in near)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -153,13 +165,13 @@ class Stage:
 
     def give(self, maps: dict[str, Floats]) -> None:
         """Properties of each place, of the shape of the heights that were given; they may be shown by colour."""
-        self.maps |= {name: coarse(np.asarray(values, dtype=float))[0] for name, values in maps.items()}
+        self.maps |= {name: coarse(np.asarray(values, dtype=float), MOST_FINE)[0] for name, values in maps.items()}
 
     def colour_by_next(self) -> str:
         """Height, then each property there is; its name."""
         names = list(self.maps)
         self.shown = names[(names.index(self.shown) + 1) % len(names)]
-        self.mesh.GetPointData().SetScalars(to_vtk(self.maps[self.shown].ravel()))
+        self.tiles.colour(self.maps[self.shown])
         self.paint(self.palette)
         return self.shown
 
@@ -167,7 +179,8 @@ class Stage:
         """Draw heights one step higher or lower; the surface that was sent is stretched, not sent again."""
         self.factor = stepped(self.factor, up, float(np.ptp(self.heights)) / self.unit)
         self.scale[2] = self.factor / self.unit
-        self.surface.SetScale(1.0, 1.0, self.factor / self.built)
+        for actor in self.surface:
+            actor.SetScale(1.0, 1.0, self.factor / self.built)
 
     # --- the instrument: made anew when another tip is mounted ---
 
@@ -224,19 +237,20 @@ class Stage:
         x, y = np.asarray(seen.frame["tip_position"][:2]) - self.origin
         return float(x), float(y)
 
+    def _pixels(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Row and column of a place [m]."""
+        return np.asarray(y) / self.unit / self.dy - 0.5, np.asarray(x) / self.unit / self.dx - 0.5
+
     def _ground(self, x: Any, y: Any) -> Any:
-        """Height of the drawn surface [m], linear between its points."""
-        rows, columns = self.heights.shape
-        column = np.clip(np.asarray(x) / self.unit / self.dx - 0.5, 0.0, columns - 1.001)
-        row = np.clip(np.asarray(y) / self.unit / self.dy - 0.5, 0.0, rows - 1.001)
-        i, j = column.astype(int), row.astype(int)
-        u, v = column - i, row - j
-        near = (1 - u) * self.heights[j, i] + u * self.heights[j, i + 1]
-        far = (1 - u) * self.heights[j + 1, i] + u * self.heights[j + 1, i + 1]
-        return (1 - v) * near + v * far
+        """Height of the surface as it is drawn near the tip [m], linear between its points."""
+        return self.tiles.fine.lattice.at(*self._pixels(x, y)) + self.lowest
 
     def update(self, seen: Seen) -> None:
-        """Move tip, lever, shadow and trace; never the surface."""
+        """Move tip, lever, shadow and trace; never the surface, of which other tiles are shown fine."""
+        if self.near is None and self.fine:
+            self.near = set()  # with this picture all tiles are sent
+        elif (near := self.tiles.near(*self._pixels(*self._place(seen)))) != self.near:
+            self._show(near)
         apex = self.apex(seen)
         self.tip.SetPosition(*apex)
         self._bend(apex, seen)
@@ -263,8 +277,8 @@ class Stage:
             return
         rows[:, 1:3] -= self.origin
         now = rows[-1, 0]
-        ground = self._ground(rows[:, 1], rows[:, 2])
-        places = np.stack([rows[:, 1], rows[:, 2], ground - self.lowest], axis=1) * self.scale + [0.0, 0.0, LIFTED]
+        ground = self.tiles.cover(*self._pixels(rows[:, 1], rows[:, 2]))
+        places = np.stack([rows[:, 1], rows[:, 2], ground], axis=1) * self.scale + [0.0, 0.0, LIFTED]
         cells = self.vtk.vtkCellArray()
         cells.InsertNextCell(len(rows), list(range(len(rows))))
         share = np.clip(rows[:, 4] / max(seen.load, 1e-15) * 3.0, -1.0, 1.0)

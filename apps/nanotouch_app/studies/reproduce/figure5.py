@@ -134,10 +134,11 @@ def _sticking(approach: Path, retraction: Path) -> Statement:
     ratio = retraction.pull_off / approach.pull_off
     before = -float(approach.force[snap_in(approach)])
     return Statement(
-        "sticking is small during the approach and very large when retracting", "VI-B", holds(ratio > 1.0 / COMPARABLE),
+        "sticking is larger when retracting than during the approach", "VI-B", holds(ratio > 1.0 / COMPARABLE),
         "largest attraction on retraction over that on approach", ratio, "",
         f"{quantity(before, 'N')} before the snap-in, {quantity(approach.pull_off, 'N')} after it, where the spring "
-        f"has given way, {quantity(retraction.pull_off, 'N')} when it is stretched to the pull-off.",
+        f"has given way, {quantity(retraction.pull_off, 'N')} when it is stretched to the pull-off. "
+        "Whether that is very large, as the text says of the hand, Fig. 17 judges.",
     )  # fmt: skip
 
 
