@@ -87,6 +87,7 @@ lint:  ## format, style and types, without changing anything
 	@$(VENV)/ruff check .
 	@$(VENV)/ruff format --check .
 	@$(VENV)/mypy
+	@$(VENV)/python -m pytest -q tests/python/test_docs_types.py
 
 format:  ## format all sources
 	@tools/setup.sh lint

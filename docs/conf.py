@@ -37,6 +37,8 @@ autodoc_typehints = "description"
 autodoc_preserve_defaults = True
 napoleon_use_ivar = True
 doctest_global_setup = """
+import os, tempfile
+os.chdir(tempfile.mkdtemp())  # what a page writes stays out of the checkout
 import numpy as np
 import nanotouch as nt
 from nanotouch import *

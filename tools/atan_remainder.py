@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the coefficients of nt_maugis_atan_remainder() in libnanotouch/contact/maugis/shape.h.
+"""Makes the coefficients of nt_maugis_atan_remainder() in libnanotouch/contact/maugis/functions.h.
 
 A(z) = (sqrt z - atan sqrt z)/z^1.5 on 0 <= z <= 1, as the ratio of a polynomial of degree 6 to one of degree 7 that
 equals A at 14 Chebyshev points, computed with 80 digits. Prints the coefficients and the largest relative error.

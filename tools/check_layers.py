@@ -37,10 +37,10 @@ USES = {
     "fit": "core forces contact contact/maugis curves",
 }
 
-# The layer that each public header belongs to, where it is not named after it (contact.h, contact_table.h).
+# The layer that each public header belongs to, where it is not named after it (contact.h, contact_equilibrium.h).
 HEADERS = {
     **dict.fromkeys(["status", "types", "material", "rig", "field", "version", "random"], "core"),
-    "geometry": "contact",
+    **dict.fromkeys(["geometry", "maugis_bank", "maugis_table"], "contact"),
     **dict.fromkeys(["guarantee", "margins", "passivity", "preflight", "scaling", "servo"], "control"),
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     **dict.fromkeys(["plan", "interaction", "terms"], "scene"),
@@ -69,9 +69,9 @@ PYTHON_LAYERS = {
     "what all need": "extras _core errors formats units _arrays _io",
     "laws": "contact forces",
     "measured": "images curves",
-    "what there is": "scene reference tapping",
+    "what there is": "scene reference scan",
     "a touch": "touch",
-    "results": "plots fit maps batch",
+    "results": "plots fit batch maps",
     "a process of its own": "_worker_process __main__",
 }
 # Methods for convenience, such as Recording.plot, may import what makes their answer: in a function, or for its type.

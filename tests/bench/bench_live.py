@@ -81,7 +81,7 @@ def updates() -> None:
     """A row for each size: to lay the surface once; then, for a moved tip, its bytes, CPU time and a whole picture."""
     vtk = parts.load()
     host = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True)
-    print("pixels      laid once   tip moved: bytes of surface   stage CPU   picture CPU")
+    print("pixels      laid once   tip moved: bytes of surface   triangles   stage CPU   picture CPU")
     for size in SIZES:
         window = vtk.vtkRenderWindow()
         window.SetOffScreenRendering(True)
@@ -94,7 +94,9 @@ def updates() -> None:
         picture.seen.look(host.observer)
         picture.render()
         laid = time.process_time() - begun
-        before, stage, whole = picture.stage.mesh.GetMTime(), [], []
+        tiles = picture.stage.tiles
+        meshes = [*tiles.coarse.data.values(), *tiles.fine.data.values()]
+        before, stage, whole = [mesh.GetMTime() for mesh in meshes], [], []
         for _ in range(MOVES):
             host.answer({"do": "move", "way": (2e-9, 1e-9, 0.0)})
             host.advance(0.02)
@@ -105,9 +107,12 @@ def updates() -> None:
             begun = time.process_time()
             picture.render()
             whole.append(time.process_time() - begun)
-        sent = 0 if picture.stage.mesh.GetMTime() == before else picture.stage.mesh.GetActualMemorySize() * 1024
+        sent = sum(1024 * mesh.GetActualMemorySize()
+                   for mesh, made in zip(meshes, before, strict=True) if mesh.GetMTime() != made)  # fmt: skip
+        drawn = sum(2 * actor.GetMapper().GetInput().GetNumberOfPolys()
+                    for actor in picture.stage.surface if actor.GetVisibility())  # fmt: skip
         times = (1e3 * statistics.median(stage), 1e3 * statistics.median(whole))
-        print(f"{size:4d}²  {1e3 * laid:12.0f} ms   {sent:27d}   {times[0]:6.2f} ms   {times[1]:8.1f} ms")
+        print(f"{size:4d}²  {1e3 * laid:12.0f} ms   {sent:27d}   {drawn:9d}   {times[0]:6.2f} ms   {times[1]:8.1f} ms")
         window.Finalize()
     host.close()
 

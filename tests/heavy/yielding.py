@@ -134,6 +134,9 @@ def compare_wet(rng: np.random.Generator, made: Callable[[np.random.Generator], 
     except Error as refusal:
         return f"around, refused: {str(refusal).split(' = ')[0]}", 0.0, 0.0
     facts = plan.explain()
+    alone = facts["yields"] and facts["terms"][0]["form"] != "yielding" and scene.adhesion.hamaker_constant > 0.0
+    if alone and facts["capture_gap"] <= 1.001 * 9.0 * np.sqrt(3.0) / 16.0 * scene.adhesion.equilibrium_distance:
+        return "around: tail goes on into contact, which the reference does not know", 0.0, plan.bound
     if facts["lambda"] < 1.0:  # is let go with no radius of contact, which the reference does not know
         return "around: too hard for the reference", 0.0, plan.bound
     try:
@@ -215,13 +218,14 @@ def main() -> int:
     for seed in range(wanted.first, wanted.first + wanted.count):
         kind, error, bound = compare(seed)
         kinds[kind] += 1
-        if not any(word in kind for word in ("refused", "failed", "too hard")):
+        if not any(word in kind for word in ("refused", "failed", "too hard", "not know")):
             shares.append(error / bound)
         if error > bound:
             broken += 1
             print(f"  VIOLATION: seed {seed}: {kind}, error {error:.3g}, bound {bound:.3g}", flush=True)
     print(f"{wanted.count} scenes from seed {wanted.first} in {time.monotonic() - start:.0f} s: {dict(kinds)}")
-    print(f"violations: {broken}; error over bound: median {np.median(shares):.2f}, largest {np.max(shares):.2f}")
+    told = f"median {np.median(shares):.2f}, largest {np.max(shares):.2f}" if shares else "none was compared"
+    print(f"violations: {broken}; error over bound: {told}")
     return broken
 
 

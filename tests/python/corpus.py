@@ -86,7 +86,7 @@ def judged(file: Path) -> Row | None:
 
 
 def _unknown(reason: str) -> bool:
-    return "not a force curve file" in reason or ("its content is not" in reason and "unpacked first" not in reason)
+    return "not a force curve file" in reason or "its content is not" in reason
 
 
 def _our_image(file: Path) -> tuple[Image, str, list[str]]:

@@ -46,6 +46,9 @@ def test_dots_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "a tilt of 1.28 degrees" in said.out
     assert "chosen: plane+lines, " in said.out
     assert "runner-up: plane+rows, " in said.out
+    table = said.out.split("  number")[1].splitlines()
+    assert table[0].split() == ["height", "(nm)", "diameter", "(nm)", "volume", "(nm^3)", "x", "(nm)", "y", "(nm)"]
+    assert all(len(line.removesuffix("  border").split()) == 6 for line in table[1:11])
     with open(out / "grains.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 12
@@ -142,3 +145,31 @@ def test_what_touch_makes_of_every_real_image(file: Path) -> None:
     assert rows <= 0.25 * plane.height_range
     assert np.abs((clean.heights - plane.heights)[~clean.mask]).max() <= 1.2 * rows + 1e-9
     assert touch.describe(clean).startswith(file.name)
+
+
+def test_several_images_with_one_configuration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder for each, a table of all; what is no image is a row; the command line goes before the file."""
+    made, out, config = tmp_path / "day", tmp_path / "out", tmp_path / "day.toml"
+    made.mkdir()
+    dotted(made / "a.gwy")
+    dotted(made / "b.gwy", noise=0.2e-9)
+    (made / "notes.txt").write_text("a good day")
+    config.write_text('level = "plane"\ngrains = "auto"\nspectrum = true\n')
+    asked = ["image", str(made), "--config", str(config), "--grains", "2nm"]
+    assert main([*asked, "--out", str(out)]) == 0
+    assert "2 images of 3" in capsys.readouterr().out
+    with (out / "images.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["status"] for row in rows] == ["ok", "ok", "failed"]
+    assert [row["grains"] for row in rows[:2]] == ["12", "12"]
+    for row in rows[:2]:
+        facts = results(out / row["folder"])
+        assert facts["removed"] == {"1_plane_m": pytest.approx(10e-9, rel=1.0)}
+        assert facts["grains"]["threshold_m"] == 2e-9  # type: ignore[index]
+        assert facts["parameters"]["Sq"]["value"] == float(row["Sq [m]"])  # type: ignore[index]
+        assert (out / row["folder"] / "spectrum.png").stat().st_size > 10_000
+    for wrong in ("levl = 'plane'", "scars = 'yes'", "level = 3"):
+        config.write_text(wrong)
+        assert main([*asked, "--out", str(tmp_path / "b")]) == 2
+        assert "day.toml" in capsys.readouterr().err
+    assert main(["image", str(made / "notes.txt"), str(made / "no.gwy")]) == 2

@@ -186,6 +186,32 @@ def test_report_of_a_folder(folder: Path, tmp_path: Path, capsys: pytest.Capture
         assert len(next(csv.reader(stream))) > 40
 
 
+def test_report_of_folders_of_one_name(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each is a group, told apart by what stands above it; a folder named twice counts once."""
+    other = tmp_path / "night" / "wild"
+    other.mkdir(parents=True)
+    write_ibw_curve(other / "1.ibw", known_curve(seed=5))
+    out, named = tmp_path / "out", [str(folder / "wild"), str(other), str(other)]
+    assert main(["report", *named, "--radius", "30nm", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "4 curves: " in said
+    assert "day/wild: pull-off force" in said
+    assert "night/wild: pull-off force" in said
+    assert "Force curves of wild, wild" in (out / "report.html").read_text()
+    assert main(["report", str(folder), str(tmp_path / "none"), "--out", str(tmp_path / "b")]) == 2
+
+
+def test_a_tip_that_the_file_states(tmp_path: Path) -> None:
+    """It is taken and said; what is given comes before it."""
+    made = curves.read(write_ibw_curve(tmp_path / "1.ibw", known_curve()))[0]
+    stated = curves.ForceCurve(made.segments, dict(made.meta) | {"tip radius": 27.5e-6}, made.name)
+    result = nt.fit.fit_curve(stated, "hertz")
+    assert result.radius == 27.5e-6
+    assert "tip radius 27.5 µm (as the file states)" in result.assumptions
+    assert result.radius_given
+    assert nt.fit.fit_curve(stated, "hertz", radius=1e-6).radius == 1e-6
+
+
 def test_report_without_a_radius_says_so(folder: Path, tmp_path: Path) -> None:
     assert main(["report", str(folder), "--out", str(tmp_path / "out")]) == 0
     assert "NOT given" in (tmp_path / "out" / "report.html").read_text()

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,51 @@ def test_the_half_with_the_heights_is_refused_as_the_curve_would_count_twice(tmp
     (tmp_path / NAMES[1]).unlink()
     with pytest.raises(ReadError):
         curves.read(tmp_path / NAMES[0])
+
+
+def test_a_folder_of_pairs_is_fitted_without_the_halves_that_hold_heights(tmp_path: Path) -> None:
+    write_pair(tmp_path)
+    files = pytest.importorskip("nanotouch.batch.files")
+    assert [file.name for file in files._without(files.files_of([tmp_path]), ())] == [NAMES[0]]
+
+
+def test_an_archive_is_the_curves_of_its_files(tmp_path: Path) -> None:
+    pieces = [curves.ForceCurve((curves.Segment("approach", KNOWN.approach_z * 0, KNOWN.approach_z, "height (measured)",
+                                                KNOWN.approach_force * factor),), {"spring constant": K})
+              for factor in (1.0, 2.0)]  # fmt: skip
+    with zipfile.ZipFile(tmp_path / "sent.zip", "w") as archive:
+        for number, curve in enumerate(pieces):
+            curves.write(tmp_path / f"{number}.tab", [curve])
+            archive.write(tmp_path / f"{number}.tab", f"../day/{number}.tab")
+        archive.writestr("__MACOSX/x.tab", b"no curve")
+    found = curves.read(tmp_path / "sent.zip")
+    assert [curve.name for curve in found] == ["0.tab", "1.tab"]
+    assert [curve.meta["enum"] for curve in found] == [0, 1]
+    for curve, piece in zip(found, pieces, strict=True):
+        np.testing.assert_allclose(curve.segments[0].force, piece.segments[0].force, atol=1e-18)  # type: ignore[arg-type]
+    with zipfile.ZipFile(tmp_path / "sent.zip", "a") as archive:
+        archive.writestr("read me.txt", b"words")
+    with pytest.raises(ReadError, match=r"sent\.zip: read me\.txt in it: its content is not that of a \.txt"):
+        curves.read(tmp_path / "sent.zip")
+
+
+def test_a_thermal_spectrum_among_curves_is_named(tmp_path: Path) -> None:
+    (tmp_path / "cal.tnd").write_text("# thermal noise data\n1 2\n")
+    with pytest.raises(ReadError, match=r"curves\.thermal_spectrum reads it"):
+        curves.read(tmp_path / "cal.tnd")
+
+
+def test_a_chiaro_file_says_its_setpoint_in_newtons(tmp_path: Path) -> None:
+    found = sorted((Path(__file__).parents[3] / "shared/data/corpus/curves").glob("*chiaro*.zip"))
+    if not found:
+        pytest.skip("no Chiaro file at hand")
+    (curve,) = curves.read(found[0])
+    assert curve.meta["setpoint"] == pytest.approx(50e-9)
+    assert curve.meta["speed approach"] == pytest.approx(7e-6)
+    assert curve.tip_radius == pytest.approx(27.5e-6)
+    assert curve.approach is not None
+    assert curve.approach.force is not None
+    assert curve.approach.force.max() == pytest.approx(curve.meta["setpoint"], rel=0.05)
 
 
 def write_dat(path: Path, columns: dict[str, np.ndarray], experiment: str = "Z spectroscopy") -> Path:

@@ -30,7 +30,7 @@ LONG = (
     "nanotouch bench --quick",
     "nanotouch reproduce --figure 5",
 )
-NEEDS = {"map": "xarray", "live": "PIL"}
+NEEDS = {"map": "xarray", "live": "PIL", "scan": "gwyfile"}
 WINDOW = ("nanotouch live",)  # needs a display and a hand
 
 

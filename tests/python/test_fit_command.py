@@ -31,8 +31,21 @@ def test_leaves_numbers_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixt
     assert found["tip_radius_m"] == 30e-9
     assert not found["identifiable"]["effective_modulus"]
     assert (tmp_path / "out" / "fit.png").stat().st_size > 20_000
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["fit.json", "fit.png"]
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["fit.json", "fit.png", "ruptures.csv"]
     assert "not determined" in capsys.readouterr().out
+
+
+def test_a_window_and_a_baseline_are_those_of_the_fit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = str(write_ibw_curve(tmp_path / "curve.ibw", known_curve()))
+    asked = ["fit", file, "--model", "hertz", "--radius", "30nm", "--out", str(tmp_path / "out"), "--overwrite"]
+    points = []
+    for more in ([], ["--window", "1nN,30nN", "--baseline", "line"]):
+        assert main([*asked, *more]) == 0
+        points.append(int(capsys.readouterr().out.split(" points,")[0].split()[-1]))
+    assert 0 < points[1] < points[0]
+    for more in (["--window", "3nN,1nN"], ["--window", "1nN"], ["--window", "1nN,3nN", "--stability"]):
+        assert main([*asked, *more]) != 0
+        assert "window" in capsys.readouterr().err
 
 
 def test_scene_gives_tip_sample_and_adhesion(tmp_path: Path) -> None:

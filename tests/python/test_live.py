@@ -8,14 +8,15 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch_app.live import display, relief, stage
+from nanotouch_app.live import display, files, readings, relief, stage
 from nanotouch_app.live.host import Host
-from nanotouch_app.live.look import digits, step_up
+from nanotouch_app.live.look import LIGHT, digits, step_up
 from nanotouch_app.live.seen import Seen
 from nanotouch_app.live.sliders import offered
 from nanotouch_app.live.subject import PRESETS, of_preset
@@ -327,3 +328,30 @@ def test_what_is_no_display_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
                 display.check()
         thread.join()
     server.close()
+
+
+def test_a_large_file_is_told_of_until_it_is_laid(tmp_path: Path) -> None:
+    """In the lower line, with the seconds since; then what to try."""
+    image, told = tmp_path / "large.gsf", []
+    nt.images.write(image, nt.surface.dots(size=400e-9, pixels=64, count=6, seed=4))
+    files.of(str(image), told=told.append)
+    assert told == ["reading large.gsf", "levelling 64 x 64 pixels of large.gsf"]
+    host, seen = Host(of_preset("silicon_in_air"), lambda message: seen.hear(message), stepped=True), Seen()
+    seen.hear({"tell": "note", "text": f"{told[1]} ..."})
+    at, words, is_bad = seen.notes[-1]
+    seen.notes[-1] = (at - 20.0, words, is_bad)
+    assert readings._lower(LIGHT, seen, "")[0] == f"{words} 20 s"
+    host.answer({"do": "open", "path": str(tmp_path / "none.gsf")})
+    assert "none.gsf" in readings._lower(LIGHT, seen, "")[0]
+    seen.notes[-1] = (at - 20.0, *seen.notes[-1][1:])
+    assert readings._lower(LIGHT, seen, "")[0] == ""  # that it is read is told no more
+    host.answer({"do": "open", "path": str(image)})
+    assert readings._lower(LIGHT, seen, "")[0] == "Feel your own surface."
+    host.close()
+
+
+def test_a_caption_of_a_film_is_no_progress() -> None:
+    """It ends with dots, too, and is from the future, so that it stays."""
+    seen = Seen()
+    seen.notes.append((time.monotonic() + 1e6, "the water holds ...", False))
+    assert readings._lower(LIGHT, seen, "")[0] == "the water holds ..."

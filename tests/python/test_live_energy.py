@@ -57,6 +57,44 @@ def test_frames_balance_and_the_heat_is_that_of_the_folds() -> None:
     assert np.isfinite(list(balance.energies)).all()
 
 
+def test_work_over_terraces_is_that_of_all_three_axes() -> None:
+    """Pressed and dragged over edges, the hand pays for what the spring takes; the law has what its depth says.
+
+    Places are as read: noise of the stage (0.4 nm) times the force is what a part is known to.
+    """
+    host = Host(of_preset("silicon_on_gold"), lambda message: None, stepped=True)
+    world, width = host.world(), host.session.surface.size[0]
+    balance = Balance(world["stiffness"], world["zero"], world["settings"]["gains"]["alpha_p"],
+                      float(host.session.scene.range.maximum_load))  # fmt: skip
+
+    def go(count: int) -> None:
+        for _ in range(count):
+            host.advance(0.02)
+            balance.add(host.observer.read())
+
+    host.observer.read()
+    go(5)
+    host.answer({"do": "press", "on": True})
+    go(60)
+    host.hand.presses = False  # holds its height
+    go(5)
+    hand, stored, tip, _ = balance.energies
+    spans = []
+    for way in (0.02,) * 15 + (-0.02,) * 30:
+        host.answer({"do": "move", "way": (way * width, 0.3 * way * width, 0.0)})
+        go(1)
+        spans.append(np.subtract(balance.energies, (hand, stored, tip, 0.0)))
+    energies, force = balance.energies, float(host.observer.newest()["tip_force"][2])
+    host.close()
+    told = 4.0 * force * 0.4e-9  # J, of the noise
+    on_hand, in_spring, at_tip, _ = np.transpose(spans)
+    assert np.ptp(in_spring) > 3.0 * told  # up and down the terraces
+    assert np.abs(at_tip).max() < told
+    assert np.abs(on_hand - in_spring).max() < 1.5 * told
+    assert abs(energies[0] - sum(energies[1:])) < 1e-6 * abs(energies[0])
+    assert energies[3] > 0.0
+
+
 def test_the_view_shows_where_the_work_goes() -> None:
     host, seen = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True), Seen()
     seen.hear(host.world())
@@ -71,6 +109,54 @@ def test_the_view_shows_where_the_work_goes() -> None:
     assert abs(hand - (stored + tip + heat)) < 1e-6 * abs(hand)
     assert charts._energies(seen).startswith("work of the hand ")
     assert charts._energies(Seen()) == ""
+
+
+def test_after_a_stop_the_hand_takes_hold_where_the_tip_is() -> None:
+    """The lift is the supervisor's work: the same press asks the same work of the hand before and after."""
+    host, seen = Host(of_preset("silicon_on_gold"), lambda message: None, stepped=True), Seen()
+    seen.hear(host.world())
+    found = []
+
+    def go(count: int) -> None:
+        for _ in range(count):
+            host.advance(0.02)
+            seen.look(host.observer)
+
+    for what in ("press", "stop"):
+        if what == "stop":
+            host.answer({"do": "press", "on": False})
+            go(30)
+            host.answer({"do": "stop"})
+            go(30)
+            assert host.session.state == "LATCHED"
+            host.answer({"do": "arm"})
+            go(5)
+        host.answer({"do": "press", "on": True})
+        go(150)
+        assert seen.balance is not None
+        found.append(seen.balance.energies)
+    host.close()
+    before, after = found
+    assert before.stored > 0.5e-15
+    assert after.stored == pytest.approx(before.stored, rel=0.1)
+    assert after.hand == pytest.approx(before.hand, rel=0.1)
+
+
+def test_a_balance_with_missed_ticks_is_only_about_right() -> None:
+    host, seen = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True), Seen()
+    seen.hear(host.world())
+    host.answer({"do": "press", "on": True})
+    for _ in range(10):
+        host.advance(0.1)
+        seen.look(host.observer)
+    assert seen.balance is not None
+    assert seen.balance.whole
+    host.advance(0.1)
+    host.observer.read()  # nobody draws these
+    host.advance(0.1)
+    seen.look(host.observer)
+    host.close()
+    assert charts._energies(seen).startswith("work of the hand about ")
 
 
 def test_energies_have_the_digits_of_the_largest() -> None:

@@ -35,28 +35,6 @@ def vtk_works() -> None:
 
 
 @pytest.mark.usefixtures("vtk_works")
-def test_a_moving_tip_rebuilds_nothing_of_the_surface(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film, "RATE", 4.0)
-    studio = film.Studio(of_preset("silicon_in_air"))
-    try:
-        stage = studio.picture.stage
-        assert stage.mesh.GetNumberOfPolys() * 2 <= 2**17
-        made = (stage.mesh.GetMTime(), stage.mesh.GetPoints().GetMTime(), stage.mesh.GetPolys().GetMTime())
-        studio.host.advance(0.02)
-        studio.look()
-        before = stage.apex(studio.picture.seen)
-        pictures = list(studio.play([(0.3, {}), (0.8, {"do": "press", "on": True})]))
-        assert (stage.mesh.GetMTime(), stage.mesh.GetPoints().GetMTime(), stage.mesh.GetPolys().GetMTime()) == made
-        assert stage.apex(studio.picture.seen)[2] < before[2]
-        assert pictures[-1].shape == (900, 1440, 3)
-        assert np.any(pictures[-1] != pictures[0])
-        x, y = stage.dragged(before, stage.pixel(before + np.array([0.05, 0.02, 0.0])) - stage.pixel(before))
-        assert (x, y) == (pytest.approx(0.05 * stage.unit, rel=0.05), pytest.approx(0.02 * stage.unit, rel=0.05))
-    finally:
-        studio.close()
-
-
-@pytest.mark.usefixtures("vtk_works")
 def test_a_film_is_made_without_a_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     image = pytest.importorskip("PIL.Image")
     monkeypatch.setattr(film, "RATE", 1.0)

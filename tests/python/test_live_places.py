@@ -78,7 +78,8 @@ def test_properties_have_colours_with_units() -> None:
     made.colours.GetColor(4e9, colour)
     assert [round(255 * part) for part in colour] == list(PROPERTY_COLOURS["youngs_modulus"][-1])
     assert made.colour_by_next() == "height"
-    assert made.mesh.GetPointData().GetScalars().GetRange() == (0.0, 0.0)
+    meshes = made.tiles.coarse.data.values()
+    assert {mesh.GetPointData().GetScalars().GetRange() for mesh in meshes} == {(0.0, 0.0)}
 
 
 @pytest.mark.parametrize("name", sorted(PROPERTY_COLOURS))

@@ -21,6 +21,7 @@ from nanotouch_app.live.host import Host
 from nanotouch_app.live.picture import Layout
 from nanotouch_app.live.subject import of_preset
 
+ROOT = Path(__file__).parents[2]
 XDND = Path(__file__).with_name("xdnd.py")
 PATIENCE = 60.0  # of a loaded machine that draws in software [s]
 
@@ -192,6 +193,40 @@ def test_a_window_leads_the_session_of_this_program(screen: str, monkeypatch: py
         session.halt()
         window.communicate(timeout=PATIENCE)
         observer.close()
+
+
+def _real_stage(folder: Path) -> Path:
+    """A rig file whose slave is a shared object that calls itself real."""
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    source = ROOT / "tests" / "c" / "real_backend.c"
+    flags = ["-std=c11", "-O1", "-fPIC", "-shared", "-D_POSIX_C_SOURCE=200809L", f"-I{ROOT}/libnanotouch/include"]
+    subprocess.run([compiler, *flags, "-o", str(folder / "stage.so"), str(source)], check=True)
+    file = folder / "rig.toml"
+    file.write_text("[stage]\naxes = 1\n[slave]\nbackend = 'shared_object'\npath = 'stage.so'\n")
+    return file
+
+
+def test_the_command_leads_a_real_stage_at_hard_pace(screen: str, tmp_path: Path) -> None:
+    """The wheel moves its hand, whatever the scheduler does with the deadlines; Q leaves, and the stage is lifted."""
+    environment = {**os.environ, "DISPLAY": screen}
+    command = [sys.executable, "-m", "nanotouch_app", "live", str(_real_stage(tmp_path))]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as view:
+        assert view.stdout is not None
+        assert "rig.toml: hard pace, your mouse leads the hand" in view.stdout.readline()
+        observer, end = nt.frames.attach(f"session-{view.pid}-1"), time.monotonic() + PATIENCE
+        subprocess.run(["xdotool", "mousemove", "440", "380"], env=environment, check=True)
+        start = None
+        while start is None or not observer.newest()["master_position"][2] > start + 1e-5:
+            assert time.monotonic() < end, "the hand does not move"
+            subprocess.run(["xdotool", "click", "5"], env=environment, check=True)
+            if start is None and observer.newest() is not None:
+                start = observer.newest()["master_position"][2]
+            time.sleep(0.02)
+        observer.close()
+        subprocess.run(["xdotool", "key", "q"], env=environment, check=True)
+        assert view.wait(PATIENCE) == 0
 
 
 def test_no_window_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from nanotouch import curves
+from nanotouch.errors import InvalidValue
 from nanotouch_app.main import main
 from synthetic import write_nanoscope
 
@@ -18,6 +20,7 @@ pytest.importorskip("h5netcdf")
 pytest.importorskip("matplotlib")
 
 from nanotouch import maps
+from nanotouch.fit import fit_curve
 
 RAMP, SENSITIVITY, STIFFNESS = 300e-9, 41e-9, 0.5  # m, m/V, N/m
 KNOWN = ["--model", "dmt", "--radius", "20nm", "--spring-constant", "0.5N/m"]
@@ -84,3 +87,30 @@ def test_a_file_that_is_no_map_is_refused(tmp_path: Path, capsys: pytest.Capture
     (tmp_path / "notes.txt").write_text("a good day")
     assert main(["map", str(tmp_path / "notes.txt"), "--out", str(tmp_path / "out")]) == 2
     assert "notes.txt" in capsys.readouterr().err
+
+
+def test_a_sidecar_holds_for_maps_too(volume_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Left out, a contact point and a baseline by hand: as one fit of that curve; all others as without."""
+    plain = maps.fit(volume_file, "dmt", radius=20e-9, spring_constant=STIFFNESS)
+    contact = float(plain.contact_point[1, 0]) + 1e-9
+    sidecar = tmp_path / "day.toml"
+    sidecar.write_text(
+        '["volume.000#1"]\nexclude = "dust"\n\n'
+        f'["volume.000#2"]\ncontact_point_nm = {contact * 1e9!r}\n\n'
+        '["volume.000#3"]\nbaseline_nm = [150.0, 250.0]\n\n["volume.000#4"]\nexclude = "beyond"\n'
+    )
+    out = tmp_path / "out"
+    assert main(["map", str(volume_file), *KNOWN, "--sidecar", str(sidecar), "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "1 x no result: excluded: dust" in said
+    assert "'volume.000#4' of the sidecar is no curve of this map" in said
+    data = maps.read(out / "map.nc")
+    assert np.isnan(data.effective_modulus.values[0, 1])
+    assert float(data.contact_point[1, 0]) == pytest.approx(contact, rel=1e-12)
+    curve = curves.read(volume_file, spring_constant=STIFFNESS)[3]
+    one = fit_curve(curve, "dmt", radius=20e-9, baseline=(150e-9, 250e-9))
+    assert float(data.effective_modulus[1, 1]) == pytest.approx(one.values["effective_modulus"], rel=1e-6)
+    assert float(data.effective_modulus[1, 1]) != float(plain.effective_modulus[1, 1])
+    assert float(data.effective_modulus[0, 0]) == float(plain.effective_modulus[0, 0])
+    with pytest.raises(InvalidValue, match="names curves of a file"):
+        maps.fit(np.zeros((1, 1, 64)), z=np.arange(64.0), spring_constant=1.0, sidecar=sidecar)

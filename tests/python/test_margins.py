@@ -232,7 +232,7 @@ def test_response_at_low_and_high_frequency() -> None:
 
 
 def test_resolution_is_the_papers() -> None:
-    """Sec. IV-C: N_p = 40 and 400, N_f = 66 and 400 for steps of 10 and 1 nm; 500 of master and gauge."""
+    """Sec. IV-C: N_p = 40 and 400, N_f = 66 (printed: 67) and 400 for steps of 10 and 1 nm; 500 of master and gauge."""
     for step, steps, forces in ((1e-9, 400, 400), (10e-9, 40, 66)):
         rig = nt.Rig(stage={"command_resolution": step, "resolution": step})
         found = margins.resolution(rig, nt.Settings.for_rig(rig), 0.4e-6)

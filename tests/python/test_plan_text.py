@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Callable
 from typing import get_args
 
 import pytest
@@ -51,6 +53,24 @@ def test_words_name_what_the_bound_is_measured_by() -> None:
     hertz = force.split("Hertz would err by ")[1].split(" %")[0]
     for plan in (stiffness, radius):  # of the force, whatever is demanded
         assert f"in force Hertz would err by {hertz} %" in str(plan)
+
+
+RADIUS_UNDER_LOAD: dict[str, Callable[[float, float], float]] = {
+    "punch": lambda F, E: 20e-9,
+    "cone": lambda F, E: math.sqrt(2.0 * F * math.tan(0.3) / (math.pi * E)),  # F = pi/2 E* a^2 cot psi
+    "paraboloid": lambda F, E: (0.75 * F * 20e-9 / E) ** (1.0 / 3.0),
+}
+
+
+@pytest.mark.parametrize("shape", list(RADIUS_UNDER_LOAD))
+def test_scale_of_a_radius_is_that_at_the_largest_load(shape: str) -> None:
+    scene = Scene(
+        tip={"shape": shape}, medium={"kind": "vacuum"}, adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0}
+    )
+    plan = scene.plan(rtol=0.1, quantity="radius")
+    expected = RADIUS_UNDER_LOAD[shape](scene.range.maximum_load, plan.explain()["effective_modulus"])
+    assert plan.scale == pytest.approx(expected, rel=1e-9)
+    assert f"of the larger of itself and {plan.scale * 1e9:.4g} nm;" in str(plan)
 
 
 def test_words_of_what_is_not_there() -> None:

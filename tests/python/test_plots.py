@@ -260,3 +260,13 @@ def test_the_band_of_a_line_is_explained() -> None:
     step = 1e9 * rig.master.resolution * scale * rig.probe.spring_constant
     told = f"line: mean; band: least to largest; one step: the master's position {step:.3g} nN"
     assert any(told in one for one in texts)
+
+
+def test_the_legend_of_a_magnified_force_gap_hides_no_title() -> None:
+    figure = plots.force_gap(touch())
+    assert len(figure.axes) == 2
+    assert all(panel.get_legend() is None for panel in figure.axes)
+    figure.draw_without_rendering()
+    [legend] = figure.legends
+    assert {text.get_text() for text in legend.get_texts()} >= {"approach", "retraction"}
+    assert not any(legend.get_window_extent().overlaps(panel.get_tightbbox()) for panel in figure.axes)

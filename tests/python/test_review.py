@@ -88,5 +88,5 @@ def test_mouse_and_keys_of_the_window(folder: Path) -> None:
 def test_without_a_display_the_terminal_is_named(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
     monkeypatch.setattr(pyplot, "get_backend", lambda: "agg")
-    with pytest.raises(Error, match="leave out --window"):
+    with pytest.raises(Error, match="leave out --show"):
         show(batch.Review([folder], folder.parent / "side.toml", "hertz", radius=1e-6))

@@ -27,7 +27,8 @@ def test_the_file_of_the_docs():
     found = rig_file.read(FILE)
     assert found.master is None
     assert found.slave is not None
-    assert found.rig == {"probe": {"spring_constant_N_per_m": 8}, "stage": {"axes": 1}}
+    probe = {"spring_constant_N_per_m": 8, "sensitivity_m_per_V": 33e-9, "sensitivity_sigma": 0.02}
+    assert found.rig == {"probe": pytest.approx(probe), "stage": {"axes": 1}}
     assert nt.Rig.from_tables(found.rig).probe.spring_constant == 8.0
     setup = found.slave.setup
     assert [chip["chip"] for chip in setup["chips"]] == ["AD5791", "AD7606"]
@@ -86,7 +87,7 @@ WRONG = {
     ("slave", "lines", "emergency_stop"): (4, "estop"),
     ("slave", "lines", "stop"): ("x", "no key 'stop'"),
     ("slave", "axes"): (4, "axes"),
-    ("slave", "backend"): ("comedi", "valid are spidev, simulated"),
+    ("slave", "backend"): ("comedi", "valid are spidev, shared_object, mailbox, simulated"),
     ("slave", "speed"): (1, "no key 'speed'"),
 }
 
@@ -195,3 +196,35 @@ def test_dice_are_refused_in_words_or_taken(seed: int):
         except InvalidValue as refused:
             assert str(refused)  # noqa: PT017  some are refused, some not
     assert taken < 400
+
+
+def test_a_half_of_a_program_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "stage.so").touch()
+    file = tmp_path / "rig.toml"
+    file.write_text("[stage]\naxes = 1\n[slave]\nbackend = 'shared_object'\npath = 'stage.so'\noption = 'a b'\n"
+                    "[master]\nbackend = 'mailbox'\nname = 'falcon'\nmax_force_N = 3\n")  # fmt: skip
+    found = rig_file.read(file)
+    assert found.slave == nt.hal.SharedObject(tmp_path / "stage.so", "a b")
+    assert found.master == nt.hal.Mailbox("falcon")
+    assert found.rig == {"stage": {"axes": 1}, "master": {"max_force_N": 3}}
+    assert rig_file.is_real(tomllib.loads(file.read_text()))
+    assert not rig_file.is_real({"slave": {"backend": "simulated"}, "master": {"max_force_N": 3}})
+    assert main(["rig", "check", str(file)]) == 0
+    assert f"slave: the shared object {tmp_path / 'stage.so'}" in capsys.readouterr().out
+
+
+ELSEWHERE = {
+    "no such file": {"backend": "shared_object", "path": "none.so"},
+    "path is missing": {"backend": "shared_object"},
+    "name is missing": {"backend": "mailbox"},
+    "no key 'path'": {"backend": "mailbox", "name": "stage", "path": "stage.so"},
+    "write option": {"backend": "shared_object", "path": "here", "option": 3},
+    "valid are spidev, shared_object, mailbox, simulated": {"backend": "usb"},
+}
+
+
+@pytest.mark.parametrize("words", ELSEWHERE)
+def test_a_wrong_half_of_a_program_of_its_own_is_refused(words: str, tmp_path: Path) -> None:
+    (tmp_path / "here").touch()
+    with pytest.raises(InvalidValue, match=words):
+        rig_file.from_tables({"slave": ELSEWHERE[words]}, tmp_path)

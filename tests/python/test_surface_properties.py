@@ -125,6 +125,26 @@ def test_a_scan_over_a_level_edge_is_the_law_of_each_place() -> None:
     np.testing.assert_allclose(columns["tip_force"][touching], law.Fz, rtol=0.0, atol=1e-3 * np.abs(law.Fz).max())
 
 
+def test_a_touch_beside_an_edge_is_pulled_sideways_as_the_law_says() -> None:
+    """Of the scene's material, and of a slope."""
+    scene, (_, modulus, work) = dry(), stripes()
+    rise = np.broadcast_to(np.linspace(0.0, 20e-9, 32), (32, 32))
+    slope = Topography(rise, (10e-9, 10e-9))
+    body = Surface.touched_by(scene, slope, youngs_modulus=modulus, work_of_adhesion=work)
+    rig = nt.Rig(master={"axes": 3})  # its recording has the forces in x and y, too
+    session = nt.Session(scene, rig, surface=body, path=[(150e-9, 150e-9)], rtol=1e-4, probe_model="quasi-static")
+    columns = session.run(1.0).columns
+    touching = columns["gap"] < -0.05e-9
+    gap, height = columns["gap"][touching], columns["surface_height"][touching]
+    assert len(gap) > 100
+    places = np.column_stack([columns[axis][touching] for axis in ("x", "y")] + [gap + height])
+    law = Interaction(session.plan, "retract").eval(places)
+    least = 0.01 * np.abs(law.Fz).max()
+    for name, force in (("tip_force_x", law.Fx), ("tip_force_y", law.Fy)):
+        np.testing.assert_allclose(columns[name][touching], force, rtol=0.0, atol=0.1 * least)
+    assert np.abs(law.Fx).max() > least
+
+
 def test_a_hand_that_may_go_anywhere_is_planned_for_the_worst_place() -> None:
     """Stiffest contact and strongest pull are those of the whole surface, wherever the touch begins."""
     scene, (flat, modulus, work) = dry(), stripes()

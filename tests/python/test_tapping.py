@@ -9,7 +9,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import InvalidValue
-from nanotouch.tapping import Drive, Tapping, TappingState
+from nanotouch.scan.tapping import Drive, Tapping, TappingState
 
 A0, K, Q, F0 = 20e-9, 40.0, 50.0, 300e3
 

@@ -229,6 +229,7 @@ def test_what_it_states_wrongly_is_refused_by_name() -> None:
     with pytest.raises(InvalidValue, match=r"terms\.gel\.law") as refusal:
         gelled().plan()
     assert isinstance(refusal.value.__cause__, ZeroDivisionError)
+    assert "it raised ZeroDivisionError" in str(refusal.value)
 
 
 def test_names_and_parameters_are_refused_by_name(tmp_path: Path) -> None:

@@ -170,7 +170,7 @@ plan silicon_in_air --budget -inf   | '-inf' | 1 .. 1e+09
 plan silicon_in_air --budget nan    | 'nan' | 1 .. 1e+09
 plan silicon_in_air --budget ten    | 'ten' | 1 .. 1e+09
 plan silicon_in_air --budget 2e9    | '2e9' | 1 .. 1e+09
-plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 1.8 .. 1e+09
+plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 1.9 .. 1e+09
 plan silicon_in_air --budget        | --budget: expected one argument
 plan silicon_in_air --quantity x    | 'x' | force, stiffness, radius, folds
 touch --minimum-margin -1           | '-1' | 0 .. 1e+06
@@ -212,6 +212,19 @@ touch --mode scan --at 0um,0um      | --at goes with
 touch --mode scan --line 0um,0um    | 2 lengths instead of 4
 touch --mode scan --line 1um,1um,1um,1um | length
 touch --mode scan --line 0um,0um,7um,0um | (7 um, 0 um) is outside | 0 .. 6 um
+scan nowhere.ibw                   | nowhere.ibw
+scan dots --mode tap               | 'tap' | contact, tapping
+scan dots --set-point 20nN         | '20nN'
+scan dots --mode contact --set-point 0.7 | no unit
+scan dots --mode contact --free-amplitude 20nm | goes with tapping
+scan dots --area 0um,0um,1um,1um   | 0.5 um
+scan dots --area 1um,2um           | --area
+scan dots --pixels 2               | raster.pixels = 2
+scan dots --gain 10MHz             | zloop.integral
+scan dots --set-point 1.5          | zloop.set_amplitude = 1.5
+scan dots --line-rate 0Hz          | raster.line_rate
+scan polyester                     | the sample holds the tip
+scan cell_in_liquid                | set point
 touch --mode hover                  | 'hover' | point, scan
 touch --surface moon                | 'moon' | grating, dots, flat
 touch --control mind                | 'mind' | paper, impedance
@@ -297,7 +310,7 @@ fit prose.txt noise.dat --out t.csv --sidecar deep_side.toml | nested too deep
 fit prose.txt noise.dat --out t.csv --sidecar reason_side.toml | exclude is 1 | reason in words
 fit prose.txt noise.dat --out t.csv --sidecar order_side.toml | baseline_nm is [2.0, 1.0] | two numbers that grow
 fit prose.txt noise.dat --out t.csv --sidecar key_side.toml | expected one or more of | exclude
-fit prose.txt noise.dat --out t.csv --compare | --compare and --stability look at one curve
+fit prose.txt noise.dat --out t.csv --compare | --compare looks at one curve
 fit prose.txt noise.dat --out t.csv --index 1 | --index picks a curve of one file
 fit ''                              | curve is empty
 fit                                 | required: CURVE

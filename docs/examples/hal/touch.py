@@ -35,7 +35,7 @@ def touch(port: int, seconds: float, file: Path, name: str = "pointer") -> None:
         writer.update(session.metadata())
 
 
-def main(seconds: float = 8.0, file: str = "pointer.mcap") -> None:
+def main(seconds: float, file: str) -> None:
     """Start the device, touch, say what happened."""
     with subprocess.Popen([sys.executable, str(HERE / "device.py")], stdout=subprocess.PIPE, text=True) as device:
         assert device.stdout is not None
@@ -51,4 +51,4 @@ def main(seconds: float = 8.0, file: str = "pointer.mcap") -> None:
 
 
 if __name__ == "__main__":
-    main(*(kind(text) for kind, text in zip((float, str), sys.argv[1:], strict=False)))
+    main(float(sys.argv[1]) if len(sys.argv) > 1 else 8.0, sys.argv[2] if len(sys.argv) > 2 else "pointer.mcap")

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The bridge to a controller that owns its z servo, against a mock that speaks Nanonis' TCP protocol: set points,
+garbage, silence, losses in a touch."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import pytest
+from mock_nanonis import MANGLES, SURFACE, Controller
+from nanotouch.errors import DeviceError, InvalidValue
+from nanotouch_app.devices import nanonis
+from nanotouch_app.devices.nanonis_link import LinkError
+
+PATIENCE = 60.0  # with a machine that is busy [s]
+GUARD = 100e-9
+NOBODY = nt.mailbox.Request(False, "RUN", 0, 0, (math.nan,) * 3, 0.0)
+
+
+@pytest.fixture
+def controller() -> Iterator[Controller]:
+    made = Controller()
+    yield made
+    made.stop()
+
+
+# --- the bridge ---
+
+
+class Box:
+    """A mailbox without a session: a test says what is asked."""
+
+    def __init__(self) -> None:
+        self.request = NOBODY
+        self.readings: list[nt.hal.Reading] = []
+
+    def ask(self) -> nt.mailbox.Request:
+        return self.request
+
+    def publish(self, reading: nt.hal.Reading) -> None:
+        self.readings.append(reading)
+
+    def now(self) -> int:
+        return time.monotonic_ns()
+
+    def want(self, travel: float, x: float = math.nan, y: float = math.nan) -> None:
+        self.request = NOBODY._replace(is_armed=True, target=(x, y, travel))
+
+
+def until(condition: Any) -> None:
+    due = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < due
+        time.sleep(2e-3)
+
+
+class Running:
+    """A bridge in a thread. `error` is what it ended with."""
+
+    def __init__(self, controller: Controller, **more: Any) -> None:
+        setup = {"guard": GUARD, "ports": (controller.port,), "patience": 0.3} | more
+        self.bridge, self.box, self.error = nanonis.Bridge(nanonis.Setup(**setup)), Box(), ""
+        self.bridge.connect()
+        self.thread = threading.Thread(target=self._run)
+
+    def _run(self) -> None:
+        try:
+            self.bridge.serve(self.box)  # type: ignore[arg-type]
+        except LinkError as error:
+            self.error = str(error)
+        finally:
+            self.bridge.rescue()
+
+    def __enter__(self) -> Running:
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.bridge.stopped.set()
+        self.thread.join(PATIENCE)
+        assert not self.thread.is_alive()
+
+
+def test_the_servo_goes_on_after_its_set_points_are_read_back(controller: Controller) -> None:
+    with Running(controller) as run:
+        run.box.want(50e-9)
+        until(lambda: controller.tip.z == pytest.approx(-50e-9, abs=1e-12))
+        told = [name for name, _ in controller.log if name.endswith(("Set", "LimitsGet", "SetpntGet"))][1:]
+        assert told[:7] == ["ZCtrl.LimitsSet", "ZCtrl.LimitsEnabledSet", "ZCtrl.SetpntSet", "ZCtrl.LimitsGet",
+                            "ZCtrl.SetpntGet", "ZCtrl.OnOffSet", "ZCtrl.LimitsSet"]  # fmt: skip
+        assert controller.tip.set_point == pytest.approx(GUARD)
+        until(lambda: run.box.readings and run.box.readings[-1].position[2] == pytest.approx(50e-9, abs=1e-12))
+    assert controller.count("ZCtrl.Withdraw") == 1  # at its end
+    assert (controller.tip.high, controller.tip.low) == pytest.approx((1e-6, -1e-6))
+    assert controller.tip.limited == 0  # as the user had them
+
+
+def test_the_guard_is_held_by_the_controller_and_its_range_by_us(controller: Controller) -> None:
+    with Running(controller) as run:
+        run.box.want(1.0)  # far beyond sample and range
+        until(lambda: run.box.readings and run.box.readings[-1].felt[2] == pytest.approx(GUARD, rel=1e-3))
+        time.sleep(0.05)
+        assert min(values[1] for name, values in controller.log if name == "ZCtrl.LimitsSet") >= -1.0001e-6
+        assert run.box.readings[-1].felt[2] <= GUARD + 10e-12
+
+
+def test_three_axes(controller: Controller) -> None:
+    with Running(controller, axes=3) as run:
+        run.box.want(0.0, 1e-6, -2e-6)
+        until(lambda: run.box.readings and run.box.readings[-1].position[:2] == (1e-6, -2e-6))
+
+
+def test_a_session_that_ends_withdraws_once_and_another_may_come(controller: Controller) -> None:
+    with Running(controller) as run:
+        for number in (1, 2):
+            run.box.want(10e-9)
+            until(lambda: controller.tip.status == nanonis.ON)
+            run.box.request = NOBODY
+            until(lambda number=number: controller.count("ZCtrl.Withdraw") == number)
+            until(lambda: controller.tip.z > 0.5e-6)
+    assert controller.count("ZCtrl.Withdraw") == 2
+
+
+def test_a_servo_that_somebody_else_switches_off_is_an_emergency_stop(controller: Controller) -> None:
+    with Running(controller) as run:
+        run.box.want(10e-9)
+        until(lambda: controller.tip.status == nanonis.ON)
+        controller.tip.status = 5  # safe tip
+        until(lambda: run.box.readings and run.box.readings[-1].flags == ["emergency_stop"])
+
+
+def test_no_number_is_no_zero(controller: Controller) -> None:
+    with Running(controller) as run:
+        controller.tip.z = math.inf
+        until(lambda: run.box.readings and math.isnan(run.box.readings[-1].position[2]))
+        assert math.isnan(run.box.readings[-1].felt[2]) or run.box.readings[-1].felt[2] >= 0.0
+
+
+LOSSES = {"silent": ("mangle", MANGLES["silent"]), "half": ("mangle", MANGLES["half"]),
+          "garbage": ("mangle", MANGLES["garbage"]), "closed": ("mangle", MANGLES["closed"]),
+          "refused": ("refuse", {"ZCtrl.LimitsSet"}), "blind": ("refuse", {"Signals.ValGet"}),
+          "dead": ("delay", 0.6)}  # fmt: skip
+
+
+@pytest.mark.parametrize("loss", LOSSES)
+def test_each_loss_in_a_touch_withdraws_until_it_is_acknowledged(controller: Controller, loss: str) -> None:
+    with Running(controller) as run:
+        run.box.want(150e-9)
+        until(lambda: controller.tip.z < SURFACE)
+        what, value = LOSSES[loss]
+        before = getattr(controller, what)
+        setattr(controller, what, value)
+        until(lambda: controller.count("ZCtrl.Withdraw") > 0)  # blindly, or by a new connection
+        until(lambda: run.bridge.counts["attempts"] > 0)
+        published = len(run.box.readings)
+        time.sleep(0.05)
+        assert len(run.box.readings) == published  # nothing is made up
+        setattr(controller, what, before)
+        until(lambda: not run.bridge.is_ours)
+        run.thread.join(PATIENCE)
+    assert run.error
+    assert run.bridge.counts["withdrawals"] == 1
+
+
+def test_set_points_that_are_not_kept_switch_nothing_on(controller: Controller) -> None:
+    controller.tip.move = lambda: setattr(controller.tip, "set_point", 0.0)  # type: ignore[method-assign]
+    with Running(controller) as run:
+        run.box.want(10e-9)
+        run.thread.join(PATIENCE)
+        assert "the controller kept a lower limit" in run.error
+    assert controller.count("ZCtrl.OnOffSet") == 0
+    assert controller.count("ZCtrl.Withdraw") > 0
+
+
+def test_what_cannot_begin_is_told(controller: Controller, capsys: pytest.CaptureFixture[str]) -> None:
+    port = ["--port", str(controller.port)]
+    for arguments, words in [
+        (["--signal", "Height (m)"], "this controller has Current (A)"),
+        (["--signal", "Bias (V)"], "is not in m"),
+        (["--guard-nm", "nan"], "guard-nm = nan: it must be above 0"),
+        (["--guard-nm", "-5"], "guard-nm = -5"),
+        (["--period-ms", "0"], "period-ms = 0"),
+        (["--port", "1"], "no controller at 127.0.0.1:1"),
+    ]:
+        assert nanonis.main(["a", "--guard-nm", "100", *port, *arguments]) == 2
+        assert words in capsys.readouterr().err
+    controller.tip.low = 2e-6
+    capsys.readouterr()
+    with pytest.raises(InvalidValue, match="z limits"):
+        nanonis.Bridge(nanonis.Setup(GUARD, ports=(controller.port,))).connect()
+
+
+# --- controller, bridge and session, each a process of its own ---
+
+
+@contextmanager
+def program(*arguments: object) -> Iterator[subprocess.Popen[str]]:
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    command = [sys.executable, *map(str, arguments)]
+    with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as made:
+        try:
+            yield made
+        finally:
+            made.kill()
+
+
+class Rig:
+    """A touch over the bridge: the session is in RUN, the lever bent."""
+
+    def __init__(self, mock: subprocess.Popen[str], port: int, name: str) -> None:
+        self.mock, self.port = mock, port
+        rig = nt.Rig(stage={"axes": 1})
+        chosen = nt.Settings.for_rig(rig)
+        chosen.gains.rate, chosen.gains.force_gain, chosen.gains.stage_integral = 50.0, 0.1, 5.0
+        due = time.monotonic() + PATIENCE
+        while True:
+            try:
+                self.session = nt.Session(rig=rig, settings=chosen, slave=nt.hal.Mailbox(name), preflight=False)
+                break
+            except DeviceError:  # not there yet
+                assert time.monotonic() < due
+                time.sleep(0.05)
+        self.session.aim(nt.Input(1.5, math.nan, math.nan, 0.3))
+        self.session.start("wall")
+
+    def tell(self, line: str = "") -> dict[str, Any]:
+        assert self.mock.stdin is not None
+        assert self.mock.stdout is not None
+        print(line, file=self.mock.stdin, flush=True)
+        return json.loads(self.mock.stdout.readline())
+
+    def awaited(self, *states: str) -> None:
+        due = time.monotonic() + PATIENCE
+        while self.session.state not in states:
+            assert time.monotonic() < due, f"{self.session.state} instead of {states}"
+            time.sleep(0.01)
+
+    def touch(self) -> None:
+        due = time.monotonic() + PATIENCE
+        while self.tell()["z"] > SURFACE - 10e-9:
+            if self.session.state != "RUN":
+                pytest.skip(f"the machine is too busy: {self.session.state} before the touch")
+            assert time.monotonic() < due
+            time.sleep(0.02)
+
+
+@contextmanager
+def touching() -> Iterator[tuple[Rig, subprocess.Popen[str]]]:
+    name = f"test-nanonis-{os.getpid()}-{time.monotonic_ns()}"
+    with program(Path(__file__).with_name("mock_nanonis.py")) as mock:
+        assert mock.stdout is not None
+        port = int(mock.stdout.readline())
+        options = ["--guard-nm", 100, "--port", port, "--timeout", 0.5]
+        with program("-m", "nanotouch_app.devices.nanonis", name, *options) as bridge:
+            rig = Rig(mock, port, name)
+            try:
+                rig.touch()
+                yield rig, bridge
+            finally:
+                rig.session.halt()
+
+
+def test_a_connection_lost_in_a_touch_latches_and_withdraws() -> None:
+    with touching() as (rig, bridge):
+        rig.tell("cut")
+        rig.awaited("LATCHED")
+        until(lambda: rig.tell()["asked"]["ZCtrl.Withdraw"] > 0)
+        until(lambda: rig.tell()["z"] > 0.5e-6)  # lifted
+        assert bridge.wait(PATIENCE) == 2
+
+
+def test_a_dead_controller_latches_and_is_withdrawn_once_it_answers() -> None:
+    with touching() as (rig, bridge):
+        rig.tell("mangle silent")
+        rig.awaited("LATCHED")
+        rig.tell("mangle no")
+        until(lambda: rig.tell()["z"] > 0.5e-6)
+        assert bridge.wait(PATIENCE) == 2
+
+
+def test_a_slow_controller_holds_or_lifts() -> None:
+    """40 ms a command, five in a round: readings of more than five periods."""
+    with touching() as (rig, bridge):
+        rig.tell("delay 0.04")
+        rig.awaited("RETRACT", "LATCHED")
+        rig.tell("delay 0")
+        until(lambda: rig.tell()["z"] > SURFACE)
+        assert bridge.poll() is None
+
+
+def test_a_killed_bridge_latches_and_the_controller_keeps_its_guard() -> None:
+    with touching() as (rig, bridge):
+        bridge.kill()
+        rig.awaited("LATCHED")
+        found = rig.tell()
+        assert found["status"] == nanonis.ON  # nobody is left to withdraw: docs/devices.md says what remains
+        assert found["z"] > SURFACE - GUARD / 0.5
