@@ -22,7 +22,7 @@ from nanotouch_app import output, properties, scenes
 from nanotouch_app.quantity import number, parse_quantity
 from nanotouch_app.scenes import PAPER, PRESETS
 
-OPTIONS = {"demand.relative_accuracy": "--rtol", "demand.budget": "--budget"}
+OPTIONS = {"demand.relative_accuracy": "--relative-accuracy", "demand.budget": "--budget"}
 
 
 def add_parser(subparsers: Any) -> None:
@@ -35,9 +35,11 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("scene", metavar="SCENE", help=f"TOML file, or a preset: {', '.join(PRESETS + PAPER)}")
     parser.add_argument(
-        "--rtol", metavar="SHARE", help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6; 0: exact"
+        "--relative-accuracy",
+        metavar="SHARE",
+        help="largest error, over the larger of quantity and pull-off: 1%%, 1e-6; 0: exact",
     )
-    parser.add_argument("--atol", metavar="FORCE", help="forces below this cannot be felt, such as 10pN")
+    parser.add_argument("--force-floor", metavar="FORCE", help="forces below this cannot be felt, such as 10pN")
     parser.add_argument(
         "--quantity", choices=("force", "stiffness", "radius", "folds"), help="of what (default: force)"
     )
@@ -54,10 +56,10 @@ def run(args: argparse.Namespace) -> int:
     scene, rig, demand = _descriptions(args.scene)
     with output.busy("reading the surface"):
         surface = _surface(args, scene)
-    if args.rtol is not None:
-        demand["demand.relative_accuracy"] = parse_quantity(args.rtol, "")
-    if args.atol is not None:
-        demand["demand.force_floor"] = parse_quantity(args.atol, "N")
+    if args.relative_accuracy is not None:
+        demand["demand.relative_accuracy"] = parse_quantity(args.relative_accuracy, "")
+    if args.force_floor is not None:
+        demand["demand.force_floor"] = parse_quantity(args.force_floor, "N")
     if args.quantity is not None:
         demand["demand.quantity"] = args.quantity
     if args.budget is not None:

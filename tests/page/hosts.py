@@ -22,7 +22,7 @@ ALLOWED = 1e-4
 # of gold, below 2e-5 elsewhere); where a line begins is that of the dilated surface there, of the
 # bare one here
 LARGER = {"bound": 5e-3, "force": 5e-3, "zero": 1e-3}
-NUMBERS = ("stiffness", "bound", "margin", "force", "clearance", "zero", "rtol", "undo", "redo")
+NUMBERS = ("stiffness", "bound", "margin", "force", "clearance", "zero", "relative_accuracy", "undo", "redo")
 CHANGES: list[dict[str, Any]] = [
     {"do": "change", "what": "scene", "field": "sample.youngs_modulus", "factor": 0.9},
     {"do": "change", "what": "settings", "field": "gains.alpha_f", "factor": 0.7},

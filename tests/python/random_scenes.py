@@ -121,7 +121,7 @@ def largest_error(value: Any, truth: Any, quantity: str, scale: float) -> float:
     return float(share.max(initial=0.0)) if np.isfinite(share).all() else math.inf
 
 
-def keeps(plan: Plan, rtol: float) -> bool:
+def keeps(plan: Plan, accuracy: float) -> bool:
     """Its bound is inside the demand; or what the rigid sum errs by is beyond it, is warned of, and the rest is.
 
     Where the sample jumps there is no bound, and a warning says so.
@@ -131,13 +131,13 @@ def keeps(plan: Plan, rtol: float) -> bool:
         return any("jumps to the tip" in warning.text for warning in plan.warnings)
     warned = any("more than demanded" in warning.text for warning in plan.warnings)
     rigid = max(facts["rigid_error"], facts["around_error"]) if warned and not facts["yields"] else 0.0
-    return bool(plan.bound <= rtol + rigid * (1.0 + 1e-12))
+    return bool(plan.bound <= accuracy + rigid * (1.0 + 1e-12))
 
 
-def compare(scene: Scene, rtol: float, quantity: str = "force", count: int = 40) -> Outcome | Error:
+def compare(scene: Scene, accuracy: float, quantity: str = "force", count: int = 40) -> Outcome | Error:
     """Plan and measure; a refusal is an answer, too."""
     try:
-        plan = scene.plan(rtol, quantity=quantity)  # type: ignore[arg-type]
+        plan = scene.plan(accuracy, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
         return refusal
     if plan.explain()["yields"]:  # has a truth of its own, which is slow: test_yielding, tests/heavy/yielding.py
@@ -146,10 +146,12 @@ def compare(scene: Scene, rtol: float, quantity: str = "force", count: int = 40)
     return _compare_at(Place(0.0, 0.0, 0.0, None), plan, truth, gaps_of(plan, scene, count, truth.roots()))
 
 
-def compare_over(scene: Scene, body: Surface, rtol: float, rng: np.random.Generator, quantity: str = "force") -> Any:
+def compare_over(
+    scene: Scene, body: Surface, accuracy: float, rng: np.random.Generator, quantity: str = "force"
+) -> Any:
     """A plan over a surface, and its largest error against the oracle with the radius of each place."""
     try:
-        plan = scene.plan(rtol, surface=body, quantity=quantity)  # type: ignore[arg-type]
+        plan = scene.plan(accuracy, surface=body, quantity=quantity)  # type: ignore[arg-type]
     except Error as refusal:
         return refusal
     worst, hold = 0.0, True

@@ -102,9 +102,9 @@ def test_costs_are_those_of_the_rows() -> None:
                      tip={"surface_potential": 0.02}, sample={"surface_potential": 0.02})]  # fmt: skip
     seen = set()
     for scene in scenes:
-        for rtol in (0.0, 1e-2, 1e-3, 1e-4, 1e-8):
+        for accuracy in (0.0, 1e-2, 1e-3, 1e-4, 1e-8):
             try:
-                plan = scene.plan(rtol=rtol)
+                plan = scene.plan(relative_accuracy=accuracy)
             except ValueError:  # refused: nothing to compare
                 continue
             if plan.explain()["yields"]:  # all terms are computed as one
@@ -120,7 +120,7 @@ def test_numbers_of_the_plan_page() -> None:
     assert plan.maximum_stiffness == pytest.approx(665, abs=0.5)
     assert plan.cutoff_gap(10e-12) == pytest.approx(5.6e-9, abs=0.05e-9)
     assert plan.stable_step(1e-12) == pytest.approx(78e-9, abs=0.5e-9)
-    exact = Scene().plan(rtol=0.0)
+    exact = Scene().plan(relative_accuracy=0.0)
     assert exact.cost == exact.explain()["full_cost"]
     for preset, lam in ((presets.paper_inas, 0.0597), (presets.paper_mica, 5.23)):  # both ends of its table
         found = preset()[0].plan()
@@ -132,7 +132,7 @@ def test_numbers_of_the_plan_page() -> None:
 def test_bound_of_each_quantity_is_the_sum_of_its_terms() -> None:
     quantities: tuple[Quantity, ...] = ("force", "stiffness", "radius", "folds")
     for quantity in quantities:
-        plan = Scene(adhesion={"contact_potential": 0.5}).plan(rtol=0.05, quantity=quantity)
+        plan = Scene(adhesion={"contact_potential": 0.5}).plan(relative_accuracy=0.05, quantity=quantity)
         terms = [*plan.terms, *plan.omitted]
         facts = plan.explain()
         yielding = facts["rigid_error"] + facts["around_error"]  # what a sample that is taken as rigid would give way
@@ -145,7 +145,7 @@ def test_bound_of_each_quantity_is_the_sum_of_its_terms() -> None:
 def test_dry_silicon_steps_by_dugdales_own_fold() -> None:
     """Page on interactions: P = 128 lambda^3/(9 pi) pi w R where the range begins, with what the tail leaves of w."""
     scene = Scene(medium={"relative_humidity": 0.0})
-    plan = scene.plan(rtol=0.0)
+    plan = scene.plan(relative_accuracy=0.0)
     facts = plan.explain()
     lam, w, capture = facts["lambda"], facts["work_of_adhesion"], facts["capture_gap"]
     assert (lam, w) == (pytest.approx(0.166, abs=5e-4), pytest.approx(83e-3, abs=0.5e-3))
@@ -154,16 +154,16 @@ def test_dry_silicon_steps_by_dugdales_own_fold() -> None:
     assert outside - inside == pytest.approx(0.108e-9, abs=5e-13)
     assert plan.pull_off_force == pytest.approx(12.07e-9, abs=5e-12)
     assert (outside - inside) / plan.pull_off_force == pytest.approx(0.009, abs=2e-4)
-    assert scene.plan(rtol=0.01).minimum_spring == pytest.approx(118, abs=0.5)
-    assert math.isinf(scene.plan(rtol=0.001).minimum_spring)
+    assert scene.plan(relative_accuracy=0.01).minimum_spring == pytest.approx(118, abs=0.5)
+    assert math.isinf(scene.plan(relative_accuracy=0.001).minimum_spring)
 
 
 def test_tail_acts_in_every_state_and_is_held() -> None:
     """With a meniscus, too: near the release gap and far out the force is the tail's, on both histories."""
-    plan = Scene().plan(rtol=0.0)
+    plan = Scene().plan(relative_accuracy=0.0)
     facts = plan.explain()
     tail = next(term for term in plan.terms if term.name == "vdw")
-    bare = Scene(adhesion={"hamaker_constant": 0.0}).plan(rtol=0.0).explain()
+    bare = Scene(adhesion={"hamaker_constant": 0.0}).plan(relative_accuracy=0.0).explain()
     left = bare["work_of_adhesion"] - tail.force / (2 * math.pi * 20e-9)
     assert facts["work_of_adhesion"] == pytest.approx(left, rel=1e-12)
     assert bare["work_of_adhesion"] / bare["cohesive_stress"] == pytest.approx(

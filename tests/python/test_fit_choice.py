@@ -50,7 +50,7 @@ def test_the_plan_goes_by_lambda() -> None:
     assert choice.transition_parameter == pytest.approx(7.1, abs=0.2)
     assert choice.by_plan == "jkr"
     assert choice.errors["jkr"] < 0.01 < choice.errors["dmt"]
-    assert choose("jkr", rtol=1e-4).by_plan == "maugis"
+    assert choose("jkr", relative_accuracy=1e-4).by_plan == "maugis"
 
 
 def test_a_cone_beside_a_sphere() -> None:

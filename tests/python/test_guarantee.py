@@ -87,7 +87,9 @@ def test_a_slide_from_soft_to_hard_is_promised() -> None:
     settings.limits.stage_speed, settings.limits.follow_error = 0.5e-6, 25e-9
     settings.gains.alpha_f, settings.gains.alpha_p = 2.5e6, 5e-6
     scene = Scene(sample={"youngs_modulus": 1e9})
-    session = Session(scene, rig, surface=sample, settings=settings, path=[(20e-9, 80e-9)], clearance=5e-9, rtol=0.1)
+    session = Session(
+        scene, rig, surface=sample, settings=settings, path=[(20e-9, 80e-9)], clearance=5e-9, relative_accuracy=0.1
+    )
     promised = session.guarantee().force
     soft = session.advance(3.0, Input(0.93, 20e-9, 80e-9, 0.5))["tip_force"][-1]
     hard = session.advance(0.1, Input(0.93, 140e-9, 80e-9, 0.0))["tip_force"].max()

@@ -113,14 +113,14 @@ def test_plans_keep_the_bound_over_topography(seed: int) -> None:
         scene = random_scenes.near_preset(rng)
         scene.tip.shape = "paraboloid"
         scene.range.minimum_gap = min(scene.range.minimum_gap, 0.0)
-        rtol = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
+        accuracy = 10.0 ** rng.uniform(-6.0, math.log10(0.3))
         quantity = random_scenes.QUANTITIES[index % 4]
-        outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed * 100 + index), rtol, rng, quantity)
+        outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed * 100 + index), accuracy, rng, quantity)
         if isinstance(outcome, Error):
             continue
         forms.append(outcome.plan.terms[0].form)
         assert outcome.error <= outcome.plan.bound, (index, repr(outcome.plan))
-        assert random_scenes.keeps(outcome.plan, rtol), (index, repr(outcome.plan))
+        assert random_scenes.keeps(outcome.plan, accuracy), (index, repr(outcome.plan))
     assert "local" in forms
 
 
@@ -130,13 +130,13 @@ def test_any_accuracy_over_topography(name: str) -> None:
     scene = scene_of(name)
     body = cycles.bumpy(scene, 7)
     costs = []
-    for rtol, form in ((1e-3, "local"), (1e-5, "local"), (1e-9, "local exact")):
-        outcome = random_scenes.compare_over(scene, body, rtol, np.random.default_rng(5))
+    for accuracy, form in ((1e-3, "local"), (1e-5, "local"), (1e-9, "local exact")):
+        outcome = random_scenes.compare_over(scene, body, accuracy, np.random.default_rng(5))
         assert isinstance(outcome, random_scenes.Outcome)
         plan = outcome.plan
         assert plan.terms[0].form == form
         assert outcome.error <= plan.bound
-        assert random_scenes.keeps(plan, rtol)
+        assert random_scenes.keeps(plan, accuracy)
         facts = plan.explain()  # what the rigid sum errs by is no error against it
         rest = plan.bound - max(facts["rigid_error"], facts["around_error"])
         assert form == "local exact" or outcome.error > 0.01 * rest

@@ -194,7 +194,7 @@ def test_a_sharp_place_that_would_yield_has_a_law_that_is_drawn() -> None:
     scene = seen.scene.copy()
     scene["tip.radius"] = sharp["radius"]
     with pytest.raises(nt.Error, match="yield"):
-        scene.plan(rtol=0.01)
+        scene.plan(relative_accuracy=0.01)
     seen.hear({"tell": "clock", "speed": 1.0, "paused": False, "slowdown": 1.0, "recorded": False, "here": sharp})
     assert float(seen.scene.tip.radius) == sharp["radius"]
     assert float(seen.scene.range.maximum_load) < load == seen.load

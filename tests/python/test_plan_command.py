@@ -102,17 +102,19 @@ def test_demand_of_the_file(file: str, capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_what_is_given_replaces_the_demand_of_the_file(file: str, capsys: pytest.CaptureFixture[str]) -> None:
-    data = ask(capsys, file, "--quantity", "force", "--rtol", "1e-7", "--atol", "2pN")
+    data = ask(capsys, file, "--quantity", "force", "--relative-accuracy", "1e-7", "--force-floor", "2pN")
     assert (data["quantity"], data["force_floor"]) == ("force", 2e-12)
     rigid = max(data["rigid_error"], data["around_error"])
     assert 0.0 < rigid < data["bound"] <= rigid + 1e-7
-    wanted = Scene.from_toml(file).plan(rtol=1e-7, atol=2e-12)
+    wanted = Scene.from_toml(file).plan(relative_accuracy=1e-7, force_floor=2e-12)
     assert data == as_json(wanted.explain())
 
 
 def test_rtol_with_and_without_per_cent(capsys: pytest.CaptureFixture[str]) -> None:
-    assert ask(capsys, "polyester", "--rtol", "1%") == ask(capsys, "polyester", "--rtol", "0.01")
-    exact = ask(capsys, "polyester", "--rtol", "0")
+    assert ask(capsys, "polyester", "--relative-accuracy", "1%") == ask(
+        capsys, "polyester", "--relative-accuracy", "0.01"
+    )
+    exact = ask(capsys, "polyester", "--relative-accuracy", "0")
     assert exact["cost"] == exact["full_cost"]
 
 
@@ -134,13 +136,13 @@ def test_budget(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--rtol", "1e-15"], "plan: demand.relative_accuracy (--rtol) = 1e-15: valid is 1."),
-        (["--rtol", "60%"], "demand.relative_accuracy = 0.6"),
-        (["--rtol", "1nm"], "the unit 'nm'"),
-        (["--rtol=-1%"], "demand.relative_accuracy = -0.01"),
-        (["--rtol", "little"], "'little' is not a number"),
-        (["--atol", "10"], "no unit; write it like 100nN"),
-        (["--atol", "10pm"], "the unit 'pm'"),
+        (["--relative-accuracy", "1e-15"], "plan: demand.relative_accuracy (--relative-accuracy) = 1e-15: valid is 1."),
+        (["--relative-accuracy", "60%"], "demand.relative_accuracy = 0.6"),
+        (["--relative-accuracy", "1nm"], "the unit 'nm'"),
+        (["--relative-accuracy=-1%"], "demand.relative_accuracy = -0.01"),
+        (["--relative-accuracy", "little"], "'little' is not a number"),
+        (["--force-floor", "10"], "no unit; write it like 100nN"),
+        (["--force-floor", "10pm"], "the unit 'pm'"),
     ],
 )
 def test_one_sentence_and_status_2(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:

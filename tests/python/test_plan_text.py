@@ -41,14 +41,14 @@ def test_words_name_what_the_bound_is_measured_by() -> None:
     assert re.search(
         r"force within 0.\d+ % of the larger of itself and 27.29 nN, the pull-off; folds within 0.\d+ pm", force
     )
-    floor = str(scene.plan(rtol=0.01, atol=2e-9))
+    floor = str(scene.plan(relative_accuracy=0.01, force_floor=2e-9))
     assert "of the larger of itself and 200 nN;" in floor
-    stiffness = scene.plan(rtol=0.1, quantity="stiffness")
+    stiffness = scene.plan(relative_accuracy=0.1, quantity="stiffness")
     assert f"of the larger of itself and {stiffness.scale:.4g} N/m;" in str(stiffness)
-    radius = scene.plan(rtol=0.1, quantity="radius")
+    radius = scene.plan(relative_accuracy=0.1, quantity="radius")
     assert f"of the larger of itself and {radius.scale * 1e9:.4g} nm;" in str(radius)
     assert lines_of(radius)["van der Waals"].endswith("no part of the contact radius")
-    folds = str(scene.plan(rtol=0.1, quantity="folds"))
+    folds = str(scene.plan(relative_accuracy=0.1, quantity="folds"))
     assert re.search(r"\nfolds within 0.\d+ pm; cost", folds)
     hertz = force.split("Hertz would err by ")[1].split(" %")[0]
     for plan in (stiffness, radius):  # of the force, whatever is demanded
@@ -67,7 +67,7 @@ def test_scale_of_a_radius_is_that_at_the_largest_load(shape: str) -> None:
     scene = Scene(
         tip={"shape": shape}, medium={"kind": "vacuum"}, adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0}
     )
-    plan = scene.plan(rtol=0.1, quantity="radius")
+    plan = scene.plan(relative_accuracy=0.1, quantity="radius")
     expected = RADIUS_UNDER_LOAD[shape](scene.range.maximum_load, plan.explain()["effective_modulus"])
     assert plan.scale == pytest.approx(expected, rel=1e-9)
     assert f"of the larger of itself and {plan.scale * 1e9:.4g} nm;" in str(plan)
@@ -86,7 +86,7 @@ def test_words_of_what_is_not_there() -> None:
     assert "100 % of the pull-off" in str(dry.plan())  # not 1e+02 %
     dry.adhesion.hamaker_constant = 0.0
     assert "no pull-off; no jump-in; stiffest contact 657 N/m" in str(dry.plan())
-    unfelt = str(Scene().plan(atol=1e-6))
+    unfelt = str(Scene().plan(force_floor=1e-6))
     assert "no adhesion that could be felt" in unfelt
     assert "folds within 1.1 nm" in unfelt
 
@@ -104,8 +104,8 @@ def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
     for name in PRESETS:
         scene = getattr(presets, name)()[0]
         for limit, ask in (
-            ("relative_accuracy", lambda value, scene=scene: scene.plan(rtol=value, quantity=quantity)),
-            ("budget", lambda value, scene=scene: scene.plan(rtol=5e-3, budget=value, quantity=quantity)),
+            ("relative_accuracy", lambda value, scene=scene: scene.plan(relative_accuracy=value, quantity=quantity)),
+            ("budget", lambda value, scene=scene: scene.plan(relative_accuracy=5e-3, budget=value, quantity=quantity)),
         ):
             with pytest.raises(InvalidValue, match=limit) as refusal:
                 ask(1e-18 if limit == "relative_accuracy" else 0.5)
@@ -114,4 +114,4 @@ def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
     with pytest.raises(InvalidValue, match="hamaker_constant") as refusal:
         scene.plan()
     scene.adhesion.hamaker_constant = float(re.findall(r"\.\. (\S+) J", str(refusal.value))[0])
-    scene.plan(rtol=0.3)
+    scene.plan(relative_accuracy=0.3)

@@ -95,7 +95,7 @@ FACTS = {
 def test_the_numbers_of_what_is_felt(name: str) -> None:
     """By the plan that is exact, everything on."""
     scene, rig = getattr(presets, name)()
-    plan, facts = scene.plan(rtol=0.0), FACTS[name]
+    plan, facts = scene.plan(relative_accuracy=0.0), FACTS[name]
     gaps = np.geomspace(1e-7, 1e-10, 20001)
     law = plan.run(gaps)
     gives_way = (-law.k > rig.probe.spring_constant) | (np.diff(law.F, prepend=0.0) < -0.2 * plan.pull_off_force)
@@ -123,7 +123,7 @@ def test_the_noise_of_the_lever_is_as_said() -> None:
         scene, rig = getattr(presets, name)()
         plan = scene.plan(rig=rig)
         assert plan.pull_off_force / plan.explain()["probe_noise"] == pytest.approx(times, abs=0.1)
-    gold = presets.silicon_on_gold()[0].plan(rtol=0.0)
+    gold = presets.silicon_on_gold()[0].plan(relative_accuracy=0.0)
     assert -float(gold.law("electrostatic", 0.0).F) == pytest.approx(0.26e-9, rel=0.01)
 
 

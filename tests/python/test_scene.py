@@ -316,8 +316,10 @@ def test_gold_pulls_as_in_figure_6() -> None:
     plan = scene.plan()
     assert plan.explain()["adhesion_source"] == "meniscus"
     assert plan.pull_off_force == pytest.approx(4 * math.pi * 0.072 * 30e-9, rel=0.02)
-    assert "electrostatic: left out, at most 261.7 pN, 0.96 % of the pull-off" in str(scene.plan(rtol=0.02))
-    assert "electrostatic: of the sphere" in str(scene.plan(rtol=1e-3))
+    assert "electrostatic: left out, at most 261.7 pN, 0.96 % of the pull-off" in str(
+        scene.plan(relative_accuracy=0.02)
+    )
+    assert "electrostatic: of the sphere" in str(scene.plan(relative_accuracy=1e-3))
 
 
 @pytest.mark.parametrize("value", ["3e-8", "20", b"3", None, True, np.bool_(True), [2e-8], 1j, np.array([2e-8])])

@@ -312,7 +312,7 @@ def test_threads_may_share_a_session() -> None:
         ({"clearance": math.nan}, ["clearance = nan m"]),
         ({"seed": -1}, ["seed = -1", "0 .. 2^64 - 1"]),
         ({"seed": 2**64}, ["seed"]),
-        ({"rtol": -0.1}, ["relative_accuracy = -0.1"]),
+        ({"relative_accuracy": -0.1}, ["relative_accuracy = -0.1"]),
         ({"minimum_margin": 1e9}, ["stability margin", "1e+09"]),
     ],
 )

@@ -102,7 +102,7 @@ def test_snapshots_of_other_sessions_name_what_differs() -> None:
     kept = nt.Session(seed=1).snapshot()
     for options, words in (
         ({"seed": 2}, "seed = 1"),
-        ({"rtol": 0.05}, "relative_accuracy"),
+        ({"relative_accuracy": 0.05}, "relative_accuracy"),
         ({"mode": "curve"}, "mode"),
     ):
         with pytest.raises(Error, match=words):

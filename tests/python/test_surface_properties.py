@@ -38,15 +38,15 @@ def test_bounds_hold_at_random_places_of_random_materials(seed: int) -> None:
     rng = np.random.default_rng(seed)
     scene = random_scenes.near_preset(rng)
     scene.tip.shape = "paraboloid"
-    rtol, quantity = 10.0 ** rng.uniform(-5.0, -0.6), random_scenes.QUANTITIES[seed % 4]
+    accuracy, quantity = 10.0 ** rng.uniform(-5.0, -0.6), random_scenes.QUANTITIES[seed % 4]
     try:
         body = cycles.made_of(scene, cycles.bumpy(scene, seed), seed)
     except Error:
         return  # no such scene either
-    outcome = random_scenes.compare_over(scene, body, rtol, rng, quantity)
+    outcome = random_scenes.compare_over(scene, body, accuracy, rng, quantity)
     if not isinstance(outcome, Error):
         assert outcome.error <= outcome.plan.bound
-        assert random_scenes.keeps(outcome.plan, rtol)
+        assert random_scenes.keeps(outcome.plan, accuracy)
         assert outcome.folds_hold
 
 
@@ -92,9 +92,9 @@ def test_a_session_feels_what_is_under_the_tip() -> None:
     body = Surface.touched_by(scene, flat, youngs_modulus=modulus, work_of_adhesion=work)
     deepest, pulls = [], []
     for x in (60e-9, 260e-9):
-        session = nt.Session(scene, surface=body, path=[(x, 150e-9)], rtol=1e-4)
+        session = nt.Session(scene, surface=body, path=[(x, 150e-9)], relative_accuracy=1e-4)
         record = session.run(2.0)
-        again = nt.Session(scene, surface=body, path=[(x, 150e-9)], rtol=1e-4).run(2.0)
+        again = nt.Session(scene, surface=body, path=[(x, 150e-9)], relative_accuracy=1e-4).run(2.0)
         assert all(np.array_equal(record.columns[name], again.columns[name], equal_nan=True) for name in record.columns)
         assert np.array_equal(record.replay().columns["stage_command"], record.columns["stage_command"])
         touching = record.columns["gap"] < -0.02e-9
@@ -114,7 +114,9 @@ def test_a_scan_over_a_level_edge_is_the_law_of_each_place() -> None:
     scene, (flat, modulus, work) = dry(), stripes()
     body = Surface.touched_by(scene, flat, youngs_modulus=modulus, work_of_adhesion=work)
     path = [(100e-9, 150e-9), (220e-9, 150e-9)]
-    session = nt.Session(scene, surface=body, mode="scan", path=path, rtol=1e-4, probe_model="quasi-static")
+    session = nt.Session(
+        scene, surface=body, mode="scan", path=path, relative_accuracy=1e-4, probe_model="quasi-static"
+    )
     columns = session.run(3.0).columns
     touching = columns["gap"] < -0.05e-9
     x, gap = columns["x"][touching], columns["gap"][touching]
@@ -132,7 +134,9 @@ def test_a_touch_beside_an_edge_is_pulled_sideways_as_the_law_says() -> None:
     slope = Topography(rise, (10e-9, 10e-9))
     body = Surface.touched_by(scene, slope, youngs_modulus=modulus, work_of_adhesion=work)
     rig = nt.Rig(master={"axes": 3})  # its recording has the forces in x and y, too
-    session = nt.Session(scene, rig, surface=body, path=[(150e-9, 150e-9)], rtol=1e-4, probe_model="quasi-static")
+    session = nt.Session(
+        scene, rig, surface=body, path=[(150e-9, 150e-9)], relative_accuracy=1e-4, probe_model="quasi-static"
+    )
     columns = session.run(1.0).columns
     touching = columns["gap"] < -0.05e-9
     gap, height = columns["gap"][touching], columns["surface_height"][touching]

@@ -98,7 +98,7 @@ def test_double_layer_pressure_is_that_of_equal_plates() -> None:
 
 def test_yukawa_force_is_in_the_sum_and_in_the_reference() -> None:
     scene = Scene(medium={"relative_humidity": 0.0, "yukawa_energy": 2e-3, "yukawa_length": 4e-9})
-    plan = scene.plan(rtol=1e-4)
+    plan = scene.plan(relative_accuracy=1e-4)
     assert "Yukawa: computed, at most" in str(plan)
     factor = 1 - 0.2 + 1.2 * math.exp(-10)
     expected = 2 * math.pi * 20e-9 * 2e-3 * factor * math.exp(-3 / 4)
@@ -108,14 +108,14 @@ def test_yukawa_force_is_in_the_sum_and_in_the_reference() -> None:
     assert outcome.error <= plan.bound
 
 
-@pytest.mark.parametrize("rtol", [0.3, 1e-2, 1e-4, 1e-6])
-def test_ones_own_law_is_planned_within_its_bound(rtol: float) -> None:
+@pytest.mark.parametrize("accuracy", [0.3, 1e-2, 1e-4, 1e-6])
+def test_ones_own_law_is_planned_within_its_bound(accuracy: float) -> None:
     for strength in (1e-7, 1e-2, 0.4, -0.2):
         scene = gelled(strength)
-        outcome = random_scenes.compare(scene, rtol)
+        outcome = random_scenes.compare(scene, accuracy)
         assert isinstance(outcome, random_scenes.Outcome)
         assert outcome.error <= outcome.plan.bound
-        assert random_scenes.keeps(outcome.plan, rtol)
+        assert random_scenes.keeps(outcome.plan, accuracy)
     gap = np.geomspace(0.3e-9, 30e-9, 50)
     truth = [force(h, -0.2, 2e-9, 20e-9) for h in gap]
     law = outcome.plan.law("gel", gap)
@@ -156,12 +156,12 @@ def test_random_laws_in_random_scenes() -> None:
         scene.add_term(
             str(rng.choice(["power", "brush", "gel"])), strength=strength, length=10.0 ** rng.uniform(-10, -6)
         )
-        rtol = 10.0 ** rng.uniform(-5, -0.5)
-        outcome = random_scenes.compare(scene, rtol)
+        accuracy = 10.0 ** rng.uniform(-5, -0.5)
+        outcome = random_scenes.compare(scene, accuracy)
         if isinstance(outcome, random_scenes.Outcome):
             made += 1
             assert outcome.error <= outcome.plan.bound, scene
-            assert random_scenes.keeps(outcome.plan, rtol), scene
+            assert random_scenes.keeps(outcome.plan, accuracy), scene
             assert outcome.folds_hold, scene
         else:
             assert "terms." not in str(outcome)
@@ -294,7 +294,7 @@ def install_gel() -> None:
 
 
 def test_a_session_touches_it_and_records_its_name() -> None:
-    session = Session(gelled(), rtol=1e-4)
+    session = Session(gelled(), relative_accuracy=1e-4)
     assert "gel" in [term.name for term in session.plan.terms]
     session.advance(0.01)
     scene = session.metadata()["scene"]

@@ -154,16 +154,16 @@ plan folder                         | this is a folder
 plan ''                             | scene is empty
 plan                                | required: SCENE
 plan silicon_in_air polyester       | unrecognized arguments: polyester
-plan silicon_in_air --rtol 1e-15    | (--rtol) = 1e-15 | valid is 1.
-plan silicon_in_air --rtol 60%      | = 0.6 | 0 .. 0.5
-plan silicon_in_air --rtol -1%      | = -0.01 | 0 .. 0.5
-plan silicon_in_air --rtol nan      | 'nan' is not a number
-plan silicon_in_air --rtol 1nm      | the unit 'nm' | percent
-plan silicon_in_air --rtol ''       | rtol is empty
-plan silicon_in_air --atol 10       | no unit | 100nN
-plan silicon_in_air --atol -10pN    | force_floor = -1e-11 | 0 ..
-plan silicon_in_air --atol 10pm     | the unit 'pm' | pN
-plan silicon_in_air --atol 1e999N   | '1e999N' is not a finite number
+plan silicon_in_air --relative-accuracy 1e-15    | (--relative-accuracy) = 1e-15 | valid is 1.
+plan silicon_in_air --relative-accuracy 60%      | = 0.6 | 0 .. 0.5
+plan silicon_in_air --relative-accuracy -1%      | = -0.01 | 0 .. 0.5
+plan silicon_in_air --relative-accuracy nan      | 'nan' is not a number
+plan silicon_in_air --relative-accuracy 1nm      | the unit 'nm' | percent
+plan silicon_in_air --relative-accuracy ''       | relative_accuracy is empty
+plan silicon_in_air --force-floor 10       | no unit | 100nN
+plan silicon_in_air --force-floor -10pN    | force_floor = -1e-11 | 0 ..
+plan silicon_in_air --force-floor 10pm     | the unit 'pm' | pN
+plan silicon_in_air --force-floor 1e999N   | '1e999N' is not a finite number
 plan silicon_in_air --budget 0      | '0' | 1 .. 1e+09
 plan silicon_in_air --budget -1     | '-1' | 1 .. 1e+09
 plan silicon_in_air --budget -inf   | '-inf' | 1 .. 1e+09

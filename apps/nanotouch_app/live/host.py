@@ -63,7 +63,7 @@ class Host:
         surface = self.subject.touched(self.scene)
         load = float(self.scene.range.maximum_load)
         usual = settings_for_path(self.rig, self.subject.topography.height_range, load=load)
-        plan = self.scene.plan(rtol=self.subject.accuracy)
+        plan = self.scene.plan(relative_accuracy=self.subject.accuracy)
         usual["gains.alpha_f"] = felt_scale(self.rig, usual, plan.pull_off_force, load)
         settings = settings_of(usual, self.rig)
         deepest = INDENTATION_SHARE * float(plan.explain()["largest_indentation"])
@@ -76,7 +76,7 @@ class Host:
         self.session = nt.Session(
             self.scene, rig_of(self.rig, settings, extent, way_down), surface=surface, settings=settings, mode="scan",
             path=[middle, (0.6 * width, 0.5 * height)], clearance=self.subject.clearance(),
-            recorded=self.out is not None, rtol=self.subject.accuracy,
+            recorded=self.out is not None, relative_accuracy=self.subject.accuracy,
         )  # fmt: skip
         self.name = f"live-{os.getpid()}-{next(_NUMBERS)}"
         self.session.publish(self.name)
@@ -159,7 +159,8 @@ class Host:
             "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
             "force": session.guarantee().force, "undo": len(self.done), "redo": len(self.undone),
             "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
-            "rtol": session.rtol, "zero": self.hand.zero, "size": list(map(float, self.subject.topography.size)),
+            "relative_accuracy": session.relative_accuracy, "zero": self.hand.zero,
+            "size": list(map(float, self.subject.topography.size)),
         }  # fmt: skip
 
     def clock(self) -> Message:

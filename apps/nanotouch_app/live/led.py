@@ -24,7 +24,7 @@ class Led:
     def __init__(self, about: Mapping[str, Any], frame: Any, post: Post) -> None:
         self.scene, self.rig = nt.Scene(**about["scene"]), nt.Rig(**about["rig"])
         self.settings = nt.Settings(**about["settings"])
-        self.plan = self.scene.plan(rtol=max(float(about["rtol"]), float(about["bound"])))
+        self.plan = self.scene.plan(relative_accuracy=max(float(about["relative_accuracy"]), float(about["bound"])))
         self.path = [tuple(map(float, about["start"]))]
         self.clearance = float(about["clearance"])
         size = about.get("size")

@@ -114,13 +114,13 @@ def world_of(about: Mapping[str, Any], name: str, source: str) -> dict[str, Any]
     """As a host tells it: scene, rig and settings of a session's metadata, or of what it says of itself now."""
     scene = nt.Scene(**about["scene"])
     accuracy = float(about.get("relative_accuracy", 0.01))
-    plan = scene.plan(rtol=accuracy)
+    plan = scene.plan(relative_accuracy=accuracy)
     gains, lever = about["settings"]["gains"], float(about["spring_constant"])
     spring = float(gains.get("coupling_stiffness", 0.0) / (gains["alpha_p"] * gains["alpha_f"]))
     return {
         "tell": "world", "title": name, "source": source, "felt": "", "hint": "",
         "scene": scene.to_dict(), "rig": about["rig"], "settings": about["settings"], "bound": plan.bound,
-        "stiffness": spring * lever / (spring + lever) if spring > 0.0 else lever, "rtol": accuracy,
+        "stiffness": spring * lever / (spring + lever) if spring > 0.0 else lever, "relative_accuracy": accuracy,
         "margin": about.get("stability_margin") or np.inf, "undo": 0, "redo": 0,
         "force": about.get("guaranteed_force") or about["settings"]["limits"]["force"],
         "law": plan.contact_law, "warnings": [], "start": list(about.get("path", [(0.0, 0.0)])[0]),

@@ -129,7 +129,9 @@ class Seen:
                 break
 
     def _plan_for(self, scene: nt.Scene) -> None:
-        self.plan = scene.plan(rtol=max(float(self.world["rtol"]), LAXER * float(self.world["bound"])))
+        self.plan = scene.plan(
+            relative_accuracy=max(float(self.world["relative_accuracy"]), LAXER * float(self.world["bound"]))
+        )
         self.scene = scene
         facts = self.plan.explain()
         self.facts = facts

@@ -41,7 +41,7 @@ class Subject:
 
     def clearance(self) -> float:
         """Where the tip begins above the surface [m]: where it feels next to nothing."""
-        plan = self.scene.plan(rtol=self.accuracy)
+        plan = self.scene.plan(relative_accuracy=self.accuracy)
         facts = plan.explain()
         reach = plan.cutoff_gap(0.002 * max(float(self.scene.range.maximum_load), plan.pull_off_force))
         release = float(facts["release_gap"])

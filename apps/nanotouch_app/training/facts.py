@@ -31,15 +31,15 @@ class Facts:
     def of(cls, world: Mapping[str, Any]) -> Facts:
         """From the world that a host tells."""
         scene = nt.Scene(**world["scene"])
-        accuracy = float(world["rtol"])
-        load, pull_off = float(scene.range.maximum_load), scene.plan(rtol=accuracy).pull_off_force
+        accuracy = float(world["relative_accuracy"])
+        load, pull_off = float(scene.range.maximum_load), scene.plan(relative_accuracy=accuracy).pull_off_force
         return cls(scene, load, pull_off, float(world["stiffness"]), float(world["size"][0]), accuracy)
 
     def contact_stiffness(self, load: float, modulus_ratio: float = 1.0) -> float:
         """k_i = dF/d(indentation) of the contact under a load [N/m], the sample's modulus so many times as high."""
         scene = self.scene.copy()
         scene["sample.youngs_modulus"] = modulus_ratio * self.scene.sample.youngs_modulus
-        plan = scene.plan(rtol=self.accuracy)
+        plan = scene.plan(relative_accuracy=self.accuracy)
         deepest = 1.5 * float(plan.explain()["largest_indentation"])
         gaps = np.linspace(-deepest, 0.0, 4001)
         return float(np.interp(-load, -plan.force(gaps, "retract"), plan.run(gaps, "retract").k))

@@ -32,7 +32,7 @@ class Page:
 def jump_gap(scene: nt.Scene, spring: float, accuracy: float = 0.01) -> float:
     """The largest gap at which attraction grows faster with nearness than a spring [N/m] pulls back [m]; 0: none."""
     gaps = np.geomspace(1e-11, 1e-7, 6000)
-    steep = -scene.plan(rtol=accuracy).run(gaps, "approach").k > spring
+    steep = -scene.plan(relative_accuracy=accuracy).run(gaps, "approach").k > spring
     return float(gaps[steep].max(initial=0.0))
 
 
@@ -55,17 +55,17 @@ def _jump(facts: Facts) -> Found:
 
 
 def _stick(facts: Facts) -> Found:
-    dry = _changed(facts, "medium.relative_humidity", 0.0).plan(rtol=facts.accuracy).pull_off_force
+    dry = _changed(facts, "medium.relative_humidity", 0.0).plan(relative_accuracy=facts.accuracy).pull_off_force
     return _way(facts.pull_off, dry), {"wet": digits(facts.pull_off, "N"), "dry": digits(dry, "N")}
 
 
 def _deep(facts: Facts) -> Found:
     """The scene of this page has lost its adhesion; the explanation tells of the preset's own."""
-    plan, load = facts.scene.plan(rtol=facts.accuracy), 0.4 * facts.load
+    plan, load = facts.scene.plan(relative_accuracy=facts.accuracy), 0.4 * facts.load
     gaps = np.linspace(-1.5 * float(plan.explain()["largest_indentation"]), 0.0, 4001)
     depth = [float(np.interp(-part * load, -plan.force(gaps, "retract"), -gaps)) for part in (1.0, 2.0)]
     ratio = depth[1] / depth[0]
-    sticky = _changed(facts, "adhesion.work_of_adhesion", RUBBER_ADHESION).plan(rtol=facts.accuracy)
+    sticky = _changed(facts, "adhesion.work_of_adhesion", RUBBER_ADHESION).plan(relative_accuracy=facts.accuracy)
     law = sticky.run(gaps, "retract")
     radius = float(np.interp(0.0, -law.F, law.a))
     choice = int(np.argmin(np.abs(np.log(np.array([2**0.5, 2 ** (2 / 3), 2.0]) / ratio))))
@@ -73,16 +73,16 @@ def _deep(facts: Facts) -> Found:
 
 
 def _sticky(facts: Facts) -> Found:
-    soft = facts.scene.plan(rtol=facts.accuracy).maugis_lambda
+    soft = facts.scene.plan(relative_accuracy=facts.accuracy).maugis_lambda
     stiffer = _changed(facts, "sample.youngs_modulus", STIFFER * facts.scene.sample.youngs_modulus)
-    stiff = stiffer.plan(rtol=facts.accuracy).maugis_lambda
+    stiff = stiffer.plan(relative_accuracy=facts.accuracy).maugis_lambda
     return _way(soft, stiff), {"soft": digits(soft, "", 3), "stiff": digits(stiff, "", 3)}
 
 
 def _felt(facts: Facts) -> Found:
     """With the paper's rig, whose master has a motor."""
     rig = nt.Rig()
-    settings, stiffness = nt.Settings.for_rig(rig), facts.scene.plan(rtol=facts.accuracy).maximum_stiffness
+    settings, stiffness = nt.Settings.for_rig(rig), facts.scene.plan(relative_accuracy=facts.accuracy).maximum_stiffness
     before = nt.margins.compute(rig, settings, stiffness).margin
     settings["gains.alpha_f"] = 0.5 * settings.gains.alpha_f
     after = nt.margins.compute(rig, settings, stiffness).margin

@@ -189,7 +189,7 @@ export class Host {
     return { tell: "world", title: subject.title, felt: subject.felt, hint: subject.hint, preset: subject.name,
       scene: this.opened, rig: this.openedRig, settings: this.settings, stiffness: this.hand.stiffness,
       bound: own(OWN.bound), warnings: this.facts.warnings, terms: this.facts.terms, margin: own(OWN.margin),
-      force: own(OWN.force), rtol: this.accuracy, undo: this.done.length, redo: this.undone.length, start: this.start, size: this.size,
+      force: own(OWN.force), relative_accuracy: this.accuracy, undo: this.done.length, redo: this.undone.length, start: this.start, size: this.size,
       clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
   }
 

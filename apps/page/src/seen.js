@@ -73,7 +73,7 @@ export class Seen {
 
   async #planFor(here) {
     this.placedAt = performance.now();
-    const { scene, rig, rtol, bound } = this.world, accuracy = Math.max(rtol, this.constants.LAXER * bound);
+    const { scene, rig, relative_accuracy, bound } = this.world, accuracy = Math.max(relative_accuracy, this.constants.LAXER * bound);
     const made = await this.draw({ draw: "plan", scene, rig, here, accuracy });
     if (made.error || this.world?.scene !== scene) return;
     this.law = made;

@@ -14,7 +14,7 @@ accuracies = np.geomspace(1e-3, 0.3, 25)
 figure, axes = plt.subplots()
 for name in ("silicon_in_air", "silicon_on_gold", "cell_in_liquid"):
     scene, _ = getattr(nt.presets, name)()
-    costs = [scene.plan(rtol=float(r)).cost for r in accuracies]
+    costs = [scene.plan(relative_accuracy=float(r)).cost for r in accuracies]
     axes.step(100 * accuracies, costs, label=name)
 axes.set(xscale="log", xlabel="accuracy demanded (%)", ylabel="cost (Hertz evaluations)")
 axes.legend()

@@ -12,12 +12,12 @@ import matplotlib.pyplot as plt
 import nanotouch as nt
 
 scene, rig = nt.presets.silicon_on_gold()
-print(scene.plan(rtol=0.01))
+print(scene.plan(relative_accuracy=0.01))
 
 # %%
 # The tighter the demand, the dearer the plan. A cost of 1 is one evaluation of Hertz' formula.
 demands = [0.3, 0.1, 0.03, 0.01]
-plans = [scene.plan(rtol=demand) for demand in demands]
+plans = [scene.plan(relative_accuracy=demand) for demand in demands]
 figure, axes = plt.subplots()
 axes.semilogx([100 * demand for demand in demands], [plan.cost for plan in plans], "o-")
 axes.set(xlabel="accuracy that is asked for (%)", ylabel="cost of a force (Hertz = 1)")
@@ -26,6 +26,6 @@ assert all(plan.bound <= demand for plan, demand in zip(plans, demands, strict=T
 # %%
 # What cannot be kept is refused, and the message says what can.
 try:
-    nt.presets.cell_in_liquid()[0].plan(rtol=1e-6)
+    nt.presets.cell_in_liquid()[0].plan(relative_accuracy=1e-6)
 except nt.Error as refusal:
     print(refusal)

@@ -107,8 +107,9 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const nt_law_value law = law_there(&context, gap);
     slave->law = law;
     slave->law_gap = gap;
-    double sides[2];
-    nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, law.F, sides);
+    double sides[2] = {0.0, 0.0}; /* of a flat */
+    if (slave->plan->surface)
+        nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, law.F, sides);
     slave->truth = (nt_truth){.gap = gap,
                               .tip_force = {sides[0], sides[1], law.F},
                               .peak_force = fmax(context.peak, fabs(law.F)),

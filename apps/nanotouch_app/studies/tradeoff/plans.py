@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from nanotouch_app.scenes import PRESETS
 
-RTOLS = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
+ACCURACIES = tuple(float(f"{digit}e{power}") for power in range(-1, -11, -1) for digit in (3, 1))
 """0.3 .. 1e-10"""
 ROUNDING = 1e-12
 """smaller errors are those of arithmetic, on this machine"""
@@ -28,7 +28,7 @@ class Row(NamedTuple):
     """The plan of a preset for a demand of its force."""
 
     preset: str
-    rtol: float
+    relative_accuracy: float
     cost: float
     """of one evaluation [Hertz evaluations]"""
     full_cost: float
@@ -43,24 +43,24 @@ class Row(NamedTuple):
 
 def trade(quick: bool, progress: Callable[[float], None] = lambda done: None) -> list[Row]:
     """The plans of all presets at all demands; some seconds."""
-    rtols = RTOLS[::4] if quick else RTOLS
+    accuracies = ACCURACIES[::4] if quick else ACCURACIES
     rows: list[Row] = []
     for number, name in enumerate(PRESETS):
-        rows += _rows(name, getattr(presets, name)()[0], rtols)
+        rows += _rows(name, getattr(presets, name)()[0], accuracies)
         progress((number + 1) / len(PRESETS))
     return rows
 
 
-def _rows(name: str, scene: Scene, rtols: tuple[float, ...]) -> Iterator[Row]:
-    exact = scene.plan(rtol=0.0)
+def _rows(name: str, scene: Scene, accuracies: tuple[float, ...]) -> Iterator[Row]:
+    exact = scene.plan(relative_accuracy=0.0)
     gaps = _gaps(exact, scene)
     paths = {"approach": gaps[::-1], "retract": gaps}
     truth = {history: np.asarray(reference.force(scene, path, history=history)) for history, path in paths.items()}  # type: ignore[arg-type]
-    for rtol in rtols:
+    for accuracy in accuracies:
         try:
-            plan = scene.plan(rtol=rtol)
+            plan = scene.plan(relative_accuracy=accuracy)
         except InvalidValue:  # not even everything exact has a bound that small
-            yield Row(name, rtol, math.nan, exact.cost, exact.bound, 0.0, math.nan, REFUSED)
+            yield Row(name, accuracy, math.nan, exact.cost, exact.bound, 0.0, math.nan, REFUSED)
             continue
         facts = plan.explain()
         yields = facts["yields"]  # measured by tests/heavy/yielding.py: its truth is slow
@@ -69,7 +69,7 @@ def _rows(name: str, scene: Scene, rtols: tuple[float, ...]) -> Iterator[Row]:
         )
         forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in plan.terms)
         rigid = facts["rigid_error"] + facts["around_error"]
-        yield Row(name, rtol, plan.cost, exact.cost, plan.bound, rigid, error, forms)
+        yield Row(name, accuracy, plan.cost, exact.cost, plan.bound, rigid, error, forms)
 
 
 def _gaps(plan: Plan, scene: Scene) -> NDArray[np.float64]:
@@ -119,14 +119,15 @@ def section(rows: list[Row]) -> str:
     lines = ["| preset | demanded | cost | of exact | bound | error | computed |", "|" + " --- |" * 7]
     for step in steps(rows):
         first, last = step[0], step[-1]
-        demanded = f"{first.rtol:g}" if len(step) == 1 else f"{first.rtol:g} .. {last.rtol:g}"
+        loosest, tightest = first.relative_accuracy, last.relative_accuracy
+        demanded = f"{loosest:g}" if len(step) == 1 else f"{loosest:g} .. {tightest:g}"
         costs = ["", ""] if first.forms == REFUSED else [f"{first.cost:g}", f"{first.cost / first.full_cost:.0%}"]
         errors = [number(first.bound), number(first.error)]
         lines.append("| " + " | ".join([first.preset, demanded, *costs, *errors, first.forms]) + " |")
     table = "\n".join(lines)
     return f"""## Plans: accuracy demanded against cost reached
 
-Every preset with no topography, its force asked for with {RTOLS[0]:g} to {RTOLS[-1]:g} of max(|F|, pull-off force)
+Every preset with no topography, its force within {ACCURACIES[0]:g} to {ACCURACIES[-1]:g} of max(|F|, pull-off force)
 (docs/plan.md). A row says what the plan computes, what an evaluation costs in Hertz evaluations (`make bench`), and the
 bound that it states. The error is the largest against `nanotouch.reference`, on approach and retraction, from 1 cm to
 the largest load, away from folds (where the force jumps). A plan serves all demands of its row. `plans.png` shows the
@@ -141,10 +142,13 @@ def summary(rows: list[Row]) -> str:
     for step in steps(rows):
         row = step[0]
         if row.forms == REFUSED:
-            lines.append(f"{row.preset:16} {row.rtol:9.0e} {'':6} {number(row.bound):>9} {'':9}  {row.forms}")
+            lines.append(
+                f"{row.preset:16} {row.relative_accuracy:9.0e} {'':6} {number(row.bound):>9} {'':9}  {row.forms}"
+            )
             continue
         lines.append(
-            f"{row.preset:16} {row.rtol:9.0e} {row.cost:6g} {number(row.bound):>9} {number(row.error):>9}  {row.forms}"
+            f"{row.preset:16} {row.relative_accuracy:9.0e} {row.cost:6g} {number(row.bound):>9} {number(row.error):>9}"
+            f"  {row.forms}"
         )
     return "\n".join(lines)
 
@@ -157,7 +161,7 @@ def draw(rows: list[Row]) -> Any:
         kinds = [step[0] for step in steps(rows) if step[0].preset == name and step[0].forms != REFUSED]
         costs, bounds = [row.cost for row in kinds], [row.bound for row in kinds]
         # a plan serves demands down to its bound
-        (line,) = panel.step([RTOLS[0], *bounds], [costs[0], *costs], where="pre", label=name.replace("_", " "))
+        (line,) = panel.step([ACCURACIES[0], *bounds], [costs[0], *costs], where="pre", label=name.replace("_", " "))
         panel.plot(bounds, costs, "o", color=line.get_color())
         panel.plot([max(row.error, ROUNDING) for row in kinds], costs, "x", color=line.get_color())
     panel.set_xscale("log")

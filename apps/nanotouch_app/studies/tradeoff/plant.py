@@ -24,7 +24,7 @@ RATE = 10e3
 """of the loop in which plans are compared [Hz]"""
 SUBSTEP = 1.0
 """of the dynamic probe there [rad]"""
-RTOLS = (0.3, 1e-2, 1e-3, 0.0)
+ACCURACIES = (0.3, 1e-2, 1e-3, 0.0)
 """accuracies asked of the plans; 0: everything exact, the truth of the others"""
 
 
@@ -50,7 +50,7 @@ class Planned(NamedTuple):
     """The same touch with one plan, beside the one in which everything is exact."""
 
     probe: str
-    rtol: float
+    relative_accuracy: float
     forms: str
     bound: float
     """of the plan [-]"""
@@ -72,14 +72,14 @@ class Touch(NamedTuple):
     plan: Plan
 
 
-def touch(rate: float, model: ProbeModel, substep: float, duration: float, rtol: float | None = None) -> Touch:
+def touch(rate: float, model: ProbeModel, substep: float, duration: float, accuracy: float | None = None) -> Touch:
     """One touch without thermal motion: the same every time."""
     rig = Rig(probe={"temperature": 0.0})
     options: Options = {"rate": rate, "clearance": CLEARANCE, "preflight": False, "probe_model": model}
     if model != "quasi-static":
         options["substep"] = substep
-    if rtol is not None:
-        options["rtol"] = rtol
+    if accuracy is not None:
+        options["relative_accuracy"] = accuracy
     session = Session(rig=rig, settings=settings_for_path(rig, clearance=CLEARANCE), **options)
     push = Input(1.0, *session.path[0], 0.1 * duration)
     start = time.process_time()
@@ -117,18 +117,20 @@ def plans(quick: bool, progress: Callable[[float], None] | None = None) -> list[
     duration, runs = (0.05, 1) if quick else (0.2, 3)
     rows: list[Planned] = []
     for number, model in enumerate(models):
-        found = {rtol: _cheapest(model, duration, rtol, runs) for rtol in RTOLS}
-        for rtol, made in found.items():
+        found = {accuracy: _cheapest(model, duration, accuracy, runs) for accuracy in ACCURACIES}
+        for accuracy, made in found.items():
             forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in made.plan.terms)
-            rows.append(Planned(model, rtol, forms, made.plan.bound, made.cost, *differs(made.felt, found[0.0].felt)))
+            rows.append(
+                Planned(model, accuracy, forms, made.plan.bound, made.cost, *differs(made.felt, found[0.0].felt))
+            )
         if progress is not None:
             progress((number + 1) / len(models))
     return rows
 
 
-def _cheapest(model: ProbeModel, duration: float, rtol: float, runs: int) -> Touch:
+def _cheapest(model: ProbeModel, duration: float, accuracy: float, runs: int) -> Touch:
     """Of several equal runs: whatever else a machine does only adds."""
-    return min((touch(RATE, model, SUBSTEP, duration, rtol) for _ in range(runs)), key=lambda made: made.cost)
+    return min((touch(RATE, model, SUBSTEP, duration, accuracy) for _ in range(runs)), key=lambda made: made.cost)
 
 
 def columns(rows: list[Row]) -> dict[str, list[object]]:

@@ -65,13 +65,13 @@ class Choice:
     by_evidence : tuple of str
         Models that the curve does not tell from the best one (BIC within 6), the simplest first.
     by_plan : str or None
-        The simplest law whose error stays below `rtol` of the force at the adhesion and modulus found; None where the
-        best candidate does not describe a paraboloid.
+        The simplest law whose error stays below `relative_accuracy` of the force at the adhesion and modulus found;
+        None where the best candidate does not describe a paraboloid.
     transition_parameter : float
         Maugis' lambda there; NaN without adhesion.
     errors : dict
         Error of each simpler law there, of the force over max(\\|F\\|, pull-off force).
-    rtol : float
+    relative_accuracy : float
         What was asked.
     points, correlation, noise : float
         Number of points; by how much the correlation of the residuals lowers what they are worth; standard deviation of
@@ -85,7 +85,7 @@ class Choice:
     by_plan: str | None
     transition_parameter: float
     errors: dict[str, float]
-    rtol: float
+    relative_accuracy: float
     points: int
     correlation: float
     noise: float
@@ -112,14 +112,14 @@ class Choice:
                      f"{self.points / self.correlation:.0f}, of {self.noise * 1e12:.3g} pN)")  # fmt: skip
         if self.by_plan is not None:
             errors = ", ".join(f"{name} errs by {100 * error:.2g} %" for name, error in self.errors.items())
-            asked = f"{100 * self.rtol:.2g} %"
+            asked = f"{100 * self.relative_accuracy:.2g} %"
             lines.append(f"by plan: {self.by_plan} for {asked} (lambda {self.transition_parameter:.3g}; "
                          f"{errors})")  # fmt: skip
         return "\n".join(lines + [f"note: {text}" for text in self.notes])
 
 
 def choose_model(
-    curve: ForceCurve, models: tuple[str, ...] = PARABOLOIDS, *, rtol: float = 0.01, **options: Any
+    curve: ForceCurve, models: tuple[str, ...] = PARABOLOIDS, *, relative_accuracy: float = 0.01, **options: Any
 ) -> Choice:
     """Fit several models to the same points and compare them.
 
@@ -129,7 +129,7 @@ def choose_model(
         With forces and a spring constant.
     models : tuple of str
         Names of :func:`nanotouch.fit.models`.
-    rtol : float
+    relative_accuracy : float
         Error of the force that is still acceptable, for the choice by plan.
     **options
         As of :func:`nanotouch.fit.fit_curve`, the same for all.
@@ -153,7 +153,7 @@ def choose_model(
     alike = [c for c in candidates if c.bic - best.bic < _DECISIVE]
     notes = _notes(closest, report.noise, alike)
     try:
-        by_plan, transition, errors = _planned(best.result, _range_of(options), rtol)
+        by_plan, transition, errors = _planned(best.result, _range_of(options), relative_accuracy)
     except InvalidValue as error:  # what was found is no scene: a modulus at its bound, for instance
         by_plan, transition, errors = None, np.nan, {}
         notes = (*notes, f"no choice by plan: {error}")
@@ -163,7 +163,7 @@ def choose_model(
         by_plan=by_plan,
         transition_parameter=transition,
         errors=errors,
-        rtol=rtol,
+        relative_accuracy=relative_accuracy,
         points=min(result.z.size for result in found.values()),
         correlation=correlation,
         noise=noise,
@@ -212,7 +212,7 @@ def _range_of(options: dict[str, Any]) -> float:
 
 
 def _planned(
-    result: FitResult | None, cohesive_range: float, rtol: float
+    result: FitResult | None, cohesive_range: float, relative_accuracy: float
 ) -> tuple[str | None, float, dict[str, float]]:
     """The rules of a plan, at the adhesion and modulus that were found, up to the largest load of the curve."""
     if result is None or result.model not in PARABOLOIDS:
@@ -226,7 +226,9 @@ def _planned(
         adhesion={"work_of_adhesion": work, "hamaker_constant": 0.0, "equilibrium_distance": distance},
         range={"maximum_load": float(result.force.max())},
     )
-    facts = scene.plan(rtol=rtol).explain()
+    facts = scene.plan(relative_accuracy=relative_accuracy).explain()
     errors = {name: float(error) for name, error in facts["rivals"].items()}
-    by_plan = next((name for name in ("hertz", "dmt", "jkr") if errors.get(name, np.inf) <= rtol), "maugis")
+    by_plan = next(
+        (name for name in ("hertz", "dmt", "jkr") if errors.get(name, np.inf) <= relative_accuracy), "maugis"
+    )
     return by_plan, float(facts["lambda"]), errors

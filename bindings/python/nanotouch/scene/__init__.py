@@ -168,8 +168,8 @@ class Scene(SceneFields, core_type=_core.Scene):
 
     def plan(
         self,
-        rtol: float = 0.01,
-        atol: float = 0.0,
+        relative_accuracy: float = 0.01,
+        force_floor: float = 0.0,
         quantity: Quantity = "force",
         rig: Rig | None = None,
         budget: float | None = None,
@@ -179,10 +179,10 @@ class Scene(SceneFields, core_type=_core.Scene):
 
         Parameters
         ----------
-        rtol : float
+        relative_accuracy : float
             Largest error of the quantity over max(\\|it\\|, its scale), for a force the pull-off force; 0: everything
             on, exact.
-        atol : float
+        force_floor : float
             Forces below this cannot be felt [N].
         quantity : str
             What has to be that accurate: ``"force"``, ``"stiffness"``, ``"radius"`` (of contact), ``"folds"`` (their
@@ -204,7 +204,12 @@ class Scene(SceneFields, core_type=_core.Scene):
         from nanotouch.scene.plan import Plan  # the next layer, which needs this one: a method for convenience
 
         demand = Demand(
-            demand={"relative_accuracy": rtol, "force_floor": atol, "quantity": quantity, "budget": budget or 0.0}
+            demand={
+                "relative_accuracy": relative_accuracy,
+                "force_floor": force_floor,
+                "quantity": quantity,
+                "budget": budget or 0.0,
+            }
         )
         return Plan.make(self, demand, rig, surface)
 

@@ -77,8 +77,8 @@ class Plan:
 
     @property
     def scale(self) -> float:
-        """What small values are compared with [N, N/m or m]: for a force max(pull-off force, atol/rtol), a thousandth
-        of the largest load where nothing pulls."""
+        """What small values are compared with [N, N/m or m]: for a force max(pull-off force,
+        force_floor/relative_accuracy), a thousandth of the largest load where nothing pulls."""
         return float(self._facts["scale"])
 
     @property

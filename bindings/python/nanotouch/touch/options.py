@@ -57,7 +57,7 @@ class Options(TypedDict, total=False):
     (:func:`nanotouch.touch.margins.felt_alpha_f`)"""
     clearance: float
     """height of the tip above the surface at the start; 0.1 um [m]"""
-    rtol: float
+    relative_accuracy: float
     """largest relative error of the planned force; 0.01"""
     minimum_margin: float
     """refuse to open closer to the stability limit than this; 1.5"""
@@ -136,7 +136,7 @@ def settings_with(
     _choose(wanted, options.get("rate"), gains, options.get("delay", 0.0))
     choose_control(wanted, options.get("control", "default"))
     if not is_scaled:
-        plan = scene.plan(rtol=float(options.get("rtol", 0.01)), surface=surface)
+        plan = scene.plan(relative_accuracy=float(options.get("relative_accuracy", 0.01)), surface=surface)
         wanted.gains.alpha_f = margins.felt_alpha_f(rig, wanted, plan, load)
     return wanted
 

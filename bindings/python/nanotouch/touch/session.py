@@ -88,7 +88,7 @@ class Session(Runs, Frozen):
         self._mode: Mode = mode  # that it was opened in, or was asked for last
         self.seed = checked_seed(options.get("seed", 1))
         self.minimum_margin = float(options.get("minimum_margin", 1.5))
-        self.rtol = float(options.get("rtol", 0.01))
+        self.relative_accuracy = float(options.get("relative_accuracy", 0.01))
         self.clearance = options.get("clearance", 0.1e-6)
         self.path = tuple(checked_path(mode, path, surface))
         heights = self.path_heights()[1]
@@ -108,7 +108,7 @@ class Session(Runs, Frozen):
                     **dict(zip(("surface", "radii", "properties"), parts, strict=True)),
                     "mode": core_mode(mode), "path": np.asarray(self.path, dtype=float), "seed": self.seed,
                     "clearance": self.clearance, "rise": float(heights.max() - heights[0]),
-                    "minimum_margin": self.minimum_margin, "relative_accuracy": self.rtol,
+                    "minimum_margin": self.minimum_margin, "relative_accuracy": self.relative_accuracy,
                     "preflight": options.get("preflight", True), "law": control if callable(control) else None,
                     "master": options.get("master"), "slave": options.get("slave"),
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
@@ -306,7 +306,7 @@ class Session(Runs, Frozen):
             "start_height": None if math.isnan(self.core.start_height) else self.core.start_height,
             "master_start": self.core.master_start,
             "control": self.control,
-            "relative_accuracy": self.rtol,
+            "relative_accuracy": self.relative_accuracy,
             "amounts": self._amounts,
             "tare": list(self.core.tare),
             "events": self._asked(),
