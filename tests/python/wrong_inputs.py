@@ -159,7 +159,7 @@ plan silicon_in_air --relative-accuracy 60%      | = 0.6 | 0 .. 0.5
 plan silicon_in_air --relative-accuracy -1%      | = -0.01 | 0 .. 0.5
 plan silicon_in_air --relative-accuracy nan      | 'nan' is not a number
 plan silicon_in_air --relative-accuracy 1nm      | the unit 'nm' | percent
-plan silicon_in_air --relative-accuracy ''       | relative_accuracy is empty
+plan silicon_in_air --relative-accuracy ''       | relative-accuracy is empty
 plan silicon_in_air --force-floor 10       | no unit | 100nN
 plan silicon_in_air --force-floor -10pN    | force_floor = -1e-11 | 0 ..
 plan silicon_in_air --force-floor 10pm     | the unit 'pm' | pN
