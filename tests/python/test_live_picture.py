@@ -40,7 +40,7 @@ def test_a_film_is_made_without_a_display(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(film, "RATE", 1.0)
     monkeypatch.delenv("DISPLAY", raising=False)
     out = tmp_path / "touch.gif"
-    assert main(["live", "mica_in_air", "--film", str(out), "--dark"]) == 0
+    assert main(["live", "cell_in_liquid", "--film", str(out), "--dark"]) == 0
     with image.open(out) as made:
         assert made.n_frames >= 4
         assert made.width == film.GIF_WIDTH

@@ -72,7 +72,7 @@ class ContactPanel:
         painter.line(np.stack([x[visible], edge[visible]], axis=1), palette.ink, 1.5)
         flat = view.y(0.0)
         painter.line([[view.left, flat], [view.right, flat]], palette.quiet, 1.0, dashed=True)
-        if np.abs(tip - rigid)[shown].max(initial=0.0) * view.scale > 2.0:  # seen beside the deformed one
+        if np.abs(tip[shown] - rigid[shown]).max(initial=0.0) * view.scale > 2.0:  # seen beside the deformed one
             painter.line(np.stack([x[shown], view.y(rigid[shown])], axis=1), palette.panel, 1.0, dashed=True)
 
     @staticmethod
