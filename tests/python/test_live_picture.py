@@ -9,7 +9,8 @@ import shutil
 import subprocess
 import time
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import nanotouch as nt
 import numpy as np
@@ -19,7 +20,9 @@ from nanotouch import curves
 from nanotouch.errors import Error
 from nanotouch_app import view
 from nanotouch_app.live import cards, files, film, parts, picture, readings, reel
+from nanotouch_app.live.contact import ContactPanel, _View
 from nanotouch_app.live.host import Host
+from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.remote import Remote
 from nanotouch_app.live.subject import of_preset
 from nanotouch_app.main import main
@@ -40,10 +43,22 @@ def test_a_film_is_made_without_a_display(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(film, "RATE", 1.0)
     monkeypatch.delenv("DISPLAY", raising=False)
     out = tmp_path / "touch.gif"
-    assert main(["live", "cell_in_liquid", "--film", str(out), "--dark"]) == 0
+    assert main(["live", "mica_in_air", "--film", str(out), "--dark"]) == 0
     with image.open(out) as made:
         assert made.n_frames >= 4
         assert made.width == film.GIF_WIDTH
+
+
+def test_a_ball_that_ends_inside_the_picture_is_drawn() -> None:
+    """Beyond its radius there is no tip: its height is infinite there, and no difference of it is taken."""
+    scene, _ = nt.presets.cell_in_liquid()
+    section = nt.view.section(scene.plan(), scene, 1e-6, 0.0, np.linspace(0.0, 2.0 * scene.tip.radius, 50))
+    assert np.isinf(section.tip).any()
+    lines: list[int] = []
+    painter = SimpleNamespace(area=lambda *_: None, line=lambda points, *_, **__: lines.append(len(points)))
+    shown = _View((0.0, 0.0, 400.0, 400.0), 2.0 * scene.tip.radius)
+    ContactPanel._bodies(cast(Any, painter), LIGHT, shown, section)
+    assert min(lines) >= 2
 
 
 @pytest.mark.usefixtures("vtk_works")
