@@ -20,6 +20,7 @@ USES = {
     "contact": "core contact/maugis",
     "contact/maugis": "core contact",
     "contact/shapes": "core contact",
+    "friction": "core contact contact/maugis",
     "surface": "core",
     "control": "core",
     "curves": "core",

@@ -13,6 +13,7 @@
 #include "nanotouch/flow.h"
 #include "nanotouch/forces.h"
 #include "nanotouch/frames.h"
+#include "nanotouch/friction.h"
 #include "nanotouch/geometry.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
