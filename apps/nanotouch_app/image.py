@@ -235,11 +235,23 @@ def _without_tip(
             f"{_nm(estimate.threshold)} of noise{state}"
         )
         facts["tip"] = {"radius_at_most_m": None if flat else radius, "threshold_m": estimate.threshold}
+        facts["tip"] |= _apex(image)
     clean, certain = images.erode(image, shape)
     lowered = float((image.heights - clean.heights).max())
     print(f"tip undone: up to {_nm(lowered)} lower; {100 * certain.mean():.3g} % of the surface is certain")
     facts["certain_share"] = float(certain.mean())
     return clean
+
+
+def _apex(image: images.Topography) -> dict[str, Any]:
+    """The radius as an interval, where the image holds spikes."""
+    try:
+        apex = images.apex_radius(image)
+    except InvalidValue as reason:
+        print(f"no interval of the tip's radius: {reason}")
+        return {}
+    print(apex)
+    return {"apex_radius_m": [apex.low, apex.radius, apex.high], "spikes": apex.spikes}
 
 
 def _grains(image: images.Topography, threshold: float | str, pits: bool) -> images.GrainTable:

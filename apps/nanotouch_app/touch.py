@@ -23,6 +23,7 @@ SURFACES: dict[str, Callable[[], nt.Topography]] = {
     "grating": nt.surface.grating,
     "dots": nt.surface.dots,
     "flat": nt.surface.flat,
+    "spikes": nt.surface.spikes,
 }
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
 MOVING = ("scan", "topography")

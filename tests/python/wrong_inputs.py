@@ -226,7 +226,7 @@ scan dots --line-rate 0Hz          | raster.line_rate
 scan polyester                     | the sample holds the tip
 scan cell_in_liquid                | set point
 touch --mode hover                  | 'hover' | point, scan
-touch --surface moon                | 'moon' | grating, dots, flat
+touch --surface moon                | 'moon' | grating, dots, flat, spikes
 touch --control mind                | 'mind' | paper, impedance
 touch --probe-model rigid           | 'rigid' | quasi-static, dynamic
 touch --scene spring.toml           | spring_constant_N_per_m = 0 | 0.0001 .. 10000

@@ -5,6 +5,7 @@
 >>> topography, report = nt.images.prepare(nt.images.read("scan.ibw"))      # doctest: +SKIP
 """
 
+from .apex import ApexRadius, apex_radius
 from .blind import TipEstimate, estimate_tip
 from .channel import Channel, Plane
 from .despeckling import DespeckleReport, despeckle
@@ -29,6 +30,7 @@ from .values import ValueMap, read_values
 from .writing import write
 
 __all__ = [
+    "ApexRadius",
     "Candidate",
     "Channel",
     "DespeckleReport",
@@ -47,6 +49,7 @@ __all__ = [
     "TipEstimate",
     "Topography",
     "ValueMap",
+    "apex_radius",
     "channels",
     "despeckle",
     "dilate",

@@ -142,6 +142,14 @@ def eroded(z: NDArray[Any], tip: Floats) -> NDArray[Any]:
     return np.asarray(-dilated(-z, tip[::-1, ::-1]))
 
 
+def rounded_cone(r: Floats, radius: float, half_angle: float) -> Floats:
+    """How far from the apex the surface of a :class:`RoundedCone` is, along its axis, at distances r from it [m]."""
+    tangent = radius * np.cos(half_angle)
+    inside = np.minimum(r, tangent)
+    sphere = inside**2 / (radius + np.sqrt(radius**2 - inside**2))
+    return np.asarray(sphere + np.maximum(r - tangent, 0.0) / np.tan(half_angle))
+
+
 def _checked(tip: Floats) -> Floats:
     heights = np.asarray(tip, dtype=np.float64)
     if heights.ndim != 2 or not all(n % 2 for n in heights.shape):
@@ -181,10 +189,7 @@ def _raster(tip: Tip, topography: Topography) -> Floats:
     r = np.hypot(y[:, None], x)
     if isinstance(tip, Paraboloid):
         return np.asarray(r**2 / (2.0 * radius))
-    tangent = radius * np.cos(tip.half_angle)
-    inside = np.minimum(r, tangent)
-    sphere = inside**2 / (radius + np.sqrt(radius**2 - inside**2))
-    return np.asarray(sphere + np.maximum(r - tangent, 0.0) / np.tan(tip.half_angle))
+    return rounded_cone(r, radius, tip.half_angle)
 
 
 def _touched_alone(image: Floats, surface: Floats, tip: Floats) -> NDArray[np.bool_]:

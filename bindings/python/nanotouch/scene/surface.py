@@ -13,6 +13,7 @@ from nanotouch import _core
 from nanotouch._arrays import Floats, as_floats, check_between, plain
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography, ValueMap
+from nanotouch.images.tips import rounded_cone
 from nanotouch.scene import _properties
 from nanotouch.scene._properties import on_pixels
 from nanotouch.units import in_words
@@ -216,6 +217,30 @@ def dots(size: float = 500e-9, pixels: int = 512, *, count: int = 24, seed: int 
     pixel = _pixel(size, pixels)
     heights = _core.dots(pixels, pixels, pixel, pixel, count, size, seed)
     return Topography(heights=heights, pixel_size=(pixel, pixel), name="quantum dots")
+
+
+def spikes(
+    size: float = 400e-9,
+    pixels: int = 400,
+    *,
+    radius: float = 8e-9,
+    height: float = 400e-9,
+    half_angle: float = 0.436,
+    pitch: float = 2.12e-6,
+) -> Topography:
+    """Spikes like the tip characteriser TGT1: a square array of cones of 50 degrees with apexes of ``radius`` [m].
+
+    One of them stands in the middle of the scan.
+    """
+    pixel = _pixel(size, pixels)
+    check_between("radius", radius, "m", above=0.0, up_to=1e-3)
+    check_between("height", height, "m", above=0.0, up_to=1e-3)
+    check_between("half_angle", half_angle, "rad", above=0.0, up_to=1.5)
+    check_between("pitch", pitch, "m", above=0.0, up_to=1e-3)
+    along = np.arange(pixels) * pixel - 0.5 * size
+    away = along - pitch * np.round(along / pitch)
+    depth = rounded_cone(np.hypot(away[:, None], away), radius, half_angle)
+    return Topography(heights=np.maximum(height - depth, 0.0), pixel_size=(pixel, pixel), name="spikes")
 
 
 def flat(size: float = 6e-6, pixels: int = 64) -> Topography:

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Radius of the tip's apex as an interval, from the sharpest spikes of an image.
+
+The image of a spike is the spike widened by the tip: over spheres of R_s and R its apex is one of R_s + R. No tip that
+took the image is blunter than its sharpest spike. Blind reconstruction finds that bound pixel by pixel, so its noise
+threshold flattens the apex; here a sphere that runs into a cone is fitted to the whole apex, and the noise averages.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._arrays import Floats
+from ..errors import InvalidValue, require
+from ._robust import pixel_noise
+from .tips import rounded_cone
+from .topography import Topography
+
+_LEAST = 24  # pixels of an apex, for five parameters
+_SURE = 1.96  # standard deviations of an interval of 95 %
+_TALL = 20.0  # standard deviations of the noise that a spike stands over what is around it, at least
+_DEEP = 1.0  # depth of what is fitted below the apex, over its radius: sphere and the beginning of the cone
+_MOST = 25  # spikes, the highest first
+_ROUNDS = 8  # of choosing that depth
+_APART = 31  # side of the window in which a spike is highest [pixel]
+_WIDEST = 101  # of the window of what is fitted [pixel]
+_BETWEEN = 0.1  # of a pixel: what the heights between pixels can change the radius by, found with exact spikes
+
+
+@dataclass(frozen=True)
+class ApexRadius:
+    """Radius of the tip and of the sharpest spikes together, which is the bound of the tip's own.
+
+    Attributes
+    ----------
+    radius : float
+        R + R_s [m].
+    low, high : float
+        Interval of 95 % [m].
+    half_angle : float
+        Of the cone that goes on from the sphere [rad].
+    spikes : int
+        How many agree with the sharpest; those count.
+    threshold : float
+        How high a spike had to stand, of the noise found [m].
+    """
+
+    radius: float
+    low: float
+    high: float
+    half_angle: float
+    spikes: int
+    threshold: float
+
+    def __str__(self) -> str:
+        return (
+            f"apex and sharpest spikes: radius {self.radius * 1e9:.3g} nm, {self.low * 1e9:.3g} .. "
+            f"{self.high * 1e9:.3g} nm (95 %), of {self.spikes} spike{'s' * (self.spikes != 1)}"
+        )
+
+
+def apex_radius(topography: Topography) -> ApexRadius:
+    """The sum of the radii of tip and spike, from the sharpest spikes of an image.
+
+    Despeckle and repair scars first: a wrong pixel passes for a spike. Spikes that are sharper than a few pixels are
+    passed over. The interval holds noise, also along the lines, a tenth of a pixel, and the differences of the spikes;
+    not what the z loop did, nor an error of the scanner's scale.
+
+    Parameters
+    ----------
+    topography : Topography
+        The image.
+
+    Raises
+    ------
+    InvalidValue
+        If the image holds no spike whose apex spans 24 pixels.
+    """
+    threshold = _TALL * pixel_noise(topography.heights)
+    found = [one for at in _peaks(topography, threshold) if (one := _widened(topography, at)) is not None]
+    if not found:
+        raise InvalidValue(
+            f"no spike over {threshold * 1e9:.2g} nm of noise whose apex spans {_LEAST} pixels: smaller pixels, or a "
+            "sample with sharper spikes"
+        )
+    radius, sigma, angle = np.array(found).T
+    agree = radius - 2.0 * sigma <= (radius + 2.0 * sigma).min()
+    weight = agree / sigma**2
+    mean = float(weight @ radius / weight.sum())
+    count = int(agree.sum())
+    scatter = float(weight @ (radius - mean) ** 2) / max(count - 1, 1)
+    spread = _SURE * float(np.sqrt(max(scatter, 1.0) / weight.sum())) + _BETWEEN * max(topography.pixel_size)
+    half_angle = float(weight @ angle / weight.sum())
+    return ApexRadius(mean, max(mean - spread, 0.0), mean + spread, half_angle, count, threshold)
+
+
+def _peaks(topography: Topography, threshold: float) -> list[tuple[int, int]]:
+    """Pixels that are highest in a window and stand high over its lowest, away from borders and filled pixels."""
+    cv2, z = require("cv2", "images"), topography.heights
+    size = min(_APART, (min(z.shape) // 2 - 1) | 1)
+    around, half = np.ones((size, size), np.uint8), size // 2
+    is_peak = (z == cv2.dilate(z, around)) & (z - cv2.erode(z, around) > max(threshold, 1e-12 * np.abs(z).max()))
+    is_peak &= cv2.dilate(topography.mask.astype(np.uint8), around) == 0
+    inner = np.zeros_like(is_peak)
+    inner[half:-half, half:-half] = True
+    places = np.argwhere(is_peak & inner)
+    kept: list[tuple[int, int]] = []
+    for j, i in places[np.argsort(-z[tuple(places.T)], kind="stable")]:
+        if len(kept) < _MOST and all(max(abs(j - v), abs(i - u)) > half for v, u in kept):  # equal pixels: one peak
+            kept.append((int(j), int(i)))
+    return kept
+
+
+def _widened(topography: Topography, at: tuple[int, int]) -> tuple[float, float, float] | None:
+    """R, its standard deviation and the half angle of one spike, in a window that grows until the sphere ends in it."""
+    room = min(at[0], at[1], *(n - 1 - i for n, i in zip(topography.shape, at, strict=True)), _WIDEST // 2)
+    half = min(_APART // 3, room)
+    while True:
+        one = _fitted(topography, at, 2 * half + 1)
+        if one is None or one[0] * np.cos(one[2]) <= half * min(topography.pixel_size):
+            return one
+        if half == room:
+            return None
+        half = min(2 * half, room)
+
+
+def _fitted(topography: Topography, at: tuple[int, int], size: int) -> tuple[float, float, float] | None:
+    """R, its standard deviation and the half angle of one spike; None where its apex is not resolved."""
+    optimize = require("scipy.optimize", "images")
+    half, (dy, dx) = size // 2, topography.pixel_size
+    z = topography.heights[at[0] - half : at[0] + half + 1, at[1] - half : at[1] + half + 1]
+    top = z.max()
+    y, x = (np.arange(-half, half + 1) * d for d in (dy, dx))
+    rows = np.broadcast_to(np.arange(size)[:, None], z.shape)
+    guess = np.array([0.0, 0.0, 0.0, 3.0 * max(dx, dy), 0.5])  # x0, y0, height over the top, R, half angle
+    scale = np.array([dx, dy, dx, dx, 1.0])
+    depth = 0.5 * float(np.ptp(z))
+    for _ in range(_ROUNDS):
+        used = z > top + guess[2] - depth
+
+        def off(p: Floats, used: Floats = used) -> Floats:
+            r = np.hypot(y[:, None] - p[1], x - p[0])[used]
+            return np.asarray((top + p[2] - rounded_cone(r, p[3], p[4]) - z[used]) / dx)
+
+        if used.sum() < _LEAST:
+            return None
+        bounds = (-3 * dx, -3 * dy, -dx - depth, 0.1 * dx, 0.05), (3 * dx, 3 * dy, dx + depth, 1e3 * dx, 1.5)
+        fit = optimize.least_squares(off, np.clip(guess, *bounds), bounds=bounds, x_scale=scale, method="trf")
+        guess, wanted = fit.x, _DEEP * fit.x[3]
+        if abs(wanted - depth) < 0.05 * depth:
+            break
+        depth = wanted
+    sphere = np.pi * (guess[3] * np.cos(guess[4])) ** 2 / (dx * dy)
+    if sphere < _LEAST or not fit.success:
+        return None
+    sigma = _deviation(fit.jac * scale, fit.fun, rows[used])[3] * dx
+    return float(guess[3]), max(sigma, 1e-6 * guess[3]), float(guess[4])
+
+
+def _deviation(jacobian: Floats, residual: Floats, rows: NDArray[np.intp]) -> Floats:
+    """Standard deviations of the parameters: residuals of one line of the scan hang together (clusters)."""
+    inverse = np.linalg.pinv(jacobian.T @ jacobian)
+    scores = np.zeros((int(rows.max()) + 1, jacobian.shape[1]))
+    np.add.at(scores, rows, jacobian * residual[:, None])
+    free = max(len(residual) - jacobian.shape[1], 1)
+    plain = np.diag(inverse) * float(residual @ residual) / free
+    together = np.diag(inverse @ (scores.T @ scores) @ inverse) * len(residual) / free
+    return np.asarray(np.sqrt(np.maximum(plain, together)))
