@@ -55,7 +55,7 @@ set(nanotouch_sources_contact
     contact/stage_displacement.c
     contact/tabor.c
     contact/validity.c)
-set(nanotouch_sources_friction friction/friction.c friction/load.c)
+set(nanotouch_sources_friction friction/corrugation.c friction/friction.c friction/load.c)
 set(nanotouch_sources_surface
     surface/dilation.c
     surface/dots.c

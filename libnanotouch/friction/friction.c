@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "core/problem.h"
 #include "nanotouch/friction.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_friction, path, __VA_ARGS__)
