@@ -68,7 +68,7 @@ PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
     "what all need": "extras _core errors formats units _arrays _io",
-    "laws": "contact forces",
+    "laws": "contact forces friction",
     "measured": "images curves",
     "what there is": "scene reference scan",
     "a touch": "touch",

@@ -12,8 +12,10 @@ from nanotouch.errors import Error
 #: where each class of the package lives; modules load when they are first used
 _HOMES = {
     "Contact": "contact",
+    "Corrugation": "friction",
     "ForceCurve": "curves",
     "Faults": "touch.faults",
+    "Friction": "friction",
     "FitResult": "fit",
     "Topography": "images",
     "Input": "touch.operator",
@@ -36,7 +38,7 @@ _HOMES = {
 }
 #: the public modules by their rooms; all are names of the package: ``nt.margins`` is ``nanotouch.touch.margins``
 _ROOMS = {
-    "": "batch contact curves errors fit forces images maps plots reference scan scene touch units",
+    "": "batch contact curves errors fit forces friction images maps plots reference scan scene touch units",
     "contact.": "geometry",
     "scan.": "flow scanner tapping",
     "scene.": "interaction materials plan presets surface surface_file view",

@@ -7,6 +7,7 @@ from nanotouch import curves as curves
 from nanotouch import errors as errors
 from nanotouch import fit as fit
 from nanotouch import forces as forces
+from nanotouch import friction as friction
 from nanotouch import images as images
 from nanotouch import maps as maps
 from nanotouch import plots as plots
@@ -20,6 +21,8 @@ from nanotouch.contact import geometry as geometry
 from nanotouch.curves import ForceCurve as ForceCurve
 from nanotouch.errors import Error as Error
 from nanotouch.fit import FitResult as FitResult
+from nanotouch.friction import Corrugation as Corrugation
+from nanotouch.friction import Friction as Friction
 from nanotouch.images import Topography as Topography
 from nanotouch.scan import flow as flow
 from nanotouch.scan import scanner as scanner
@@ -63,12 +66,14 @@ from nanotouch.touch.supervisor import Supervisor as Supervisor
 __version__: str
 __all__ = [
     "Contact",
+    "Corrugation",
     "Demand",
     "Drive",
     "Error",
     "Faults",
     "FitResult",
     "ForceCurve",
+    "Friction",
     "Input",
     "Interaction",
     "Plan",
@@ -96,6 +101,7 @@ __all__ = [
     "flow",
     "forces",
     "frames",
+    "friction",
     "geometry",
     "hal",
     "images",

@@ -5,6 +5,8 @@ from typing import Any, Self
 from numpy import dtype, float64, void
 from numpy.typing import NDArray
 
+from nanotouch._friction import *  # noqa: F403
+
 Floats = NDArray[float64]
 LawColumns = tuple[Floats, Floats, Floats, Floats]
 
@@ -125,9 +127,7 @@ class Properties:
     def at(self, surface: Surface, x: Floats, y: Floats) -> tuple[Floats, Floats]: ...
 
 def dilate(heights: Floats, dy: float, dx: float, radius: float, half_angle: float, /) -> Floats: ...
-def grating(
-    ny: int, nx: int, dy: float, dx: float, period: float, height: float, duty: float, offset: float, /
-) -> Floats: ...
+def grating(ny: int, nx: int, dy: float, dx: float, pitch: float, step: float, duty: float, at: float, /) -> Floats: ...
 def dots(ny: int, nx: int, dy: float, dx: float, count: int, width: float, seed: int, /) -> Floats: ...
 
 class _Described:

@@ -16,6 +16,7 @@ void bind_contact(py::module_ &module);
 void bind_contact_reduced(py::module_ &module);
 void bind_maugis_bank(py::module_ &module);
 void bind_forces(py::module_ &module);
+void bind_friction(py::module_ &module);
 void bind_geometry(py::module_ &module);
 void bind_margins(py::module_ &module);
 void bind_materials(py::module_ &module);

@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, module)
     bind_contact_reduced(module);
     bind_maugis_bank(module);
     bind_forces(module);
+    bind_friction(module);
     bind_geometry(module);
     bind_materials(module);
     bind_surface(module);
