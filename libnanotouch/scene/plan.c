@@ -7,9 +7,15 @@
 
 #include "scene/terms/term.h"
 
-#define STIFF 0.1    /* elastic number of samples that may count as rigid */
-#define WORST 0.5    /* an error that is no bound any more: the largest that can be demanded */
-#define UNASKED 0.01 /* without a demand the sample is rigid up to this error */
+#define STIFF 0.1       /* elastic number of samples that may count as rigid */
+#define WORST 0.5       /* an error that is no bound any more: the largest that can be demanded */
+#define UNASKED 0.01    /* without a demand the sample is rigid up to this error */
+#define STRICTEST 1e-12 /* demand */
+#define COARSER 2.0     /* a table, where no finer one was found */
+
+static const char DEMANDED[] = "demand.relative_accuracy";
+
+enum { TRIES = 8 };
 
 const char *nt_form_name(nt_form form)
 {
@@ -156,7 +162,7 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
     const char *law = nt_term_rows[which]->refused;
     if (!law)
         law = NT_TERM_REFUSED("the forces before contact");
-    const int known = problem && problem->field && strcmp(problem->field, field->name) == 0;
+    const int known = problem && problem->field && strcmp(problem->field, DEMANDED) == 0;
     const int finer = known && problem->minimum < field->maximum; /* a table of another demand would do */
     if (problem && law && !finer && !(least < field->maximum)) {
         const double error = fmax(plan->rigid_error, plan->around_error);
@@ -187,6 +193,34 @@ static int is_left(const nt_plan *plan, double maximum_load)
     return plan->elastic_number <= STIFF || plan->rigid_error <= plan->demand.relative_accuracy;
 }
 
+/* Where no table keeps to the demand: the finest that does better than terms on the undeformed gap. What is the same
+ * for every demand is tried in the same order, so that a stricter demand has no looser bound. */
+static nt_status yield_at_best(nt_plan *plan, const nt_scene *scene)
+{
+    const double demanded = plan->demand.relative_accuracy, errs = fmax(plan->rigid_error, plan->around_error);
+    nt_problem least = {0};
+    if (!(demanded > 0.0) || plan->properties)
+        return NT_E_RANGE;
+    plan->demand.relative_accuracy = STRICTEST;
+    nt_status status = nt_plan_yield(plan, scene, &least);
+    double wanted = least.field && strcmp(least.field, DEMANDED) == 0 ? least.minimum : (double)INFINITY;
+    for (int i = 0; i < TRIES && status != NT_OK && wanted < errs; ++i) {
+        plan->demand.relative_accuracy = wanted;
+        status = nt_plan_yield(plan, scene, NULL);
+        wanted *= COARSER;
+    }
+    plan->demand.relative_accuracy = demanded;
+    return status;
+}
+
+/* As it was before a sample was to yield. */
+static nt_status unyield(nt_plan *plan, const nt_scene *scene, nt_plan_options *options, nt_problem *problem)
+{
+    const nt_status status = nt_plan_adhere(plan, scene, problem);
+    nt_plan_options_of(plan, scene, options);
+    return status;
+}
+
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by in its bound; if it errs by too much,
  * the sample yields. A demand of 0 asks for every law in full. */
 static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
@@ -203,17 +237,20 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     const double errs = fmax(plan->rigid_error, plan->around_error);
     if ((demanded > 0.0 || errs <= UNASKED) && choose_rigid(plan, &options, 1, NULL) == NT_OK)
         return NT_OK;
-    if (problem)
-        *problem = (nt_problem){0};
-    if (!plan->properties && nt_plan_yield(plan, scene, problem) == NT_OK)
+    nt_problem reason = {0};
+    if (!plan->properties && nt_plan_yield(plan, scene, &reason) == NT_OK)
         return NT_OK;
-    if (adheres) {
-        status = nt_plan_adhere(plan, scene, problem); /* as it was */
-        nt_plan_options_of(plan, scene, &options);
-    }
-    if (is_left(plan, scene->range.maximum_load))
-        return adheres && status != NT_OK ? status : choose_rigid(plan, &options, 0, problem);
-    return refuse(plan, &options, problem);
+    if (problem)
+        *problem = reason;
+    status = adheres ? unyield(plan, scene, &options, problem) : NT_OK;
+    if (!is_left(plan, scene->range.maximum_load))
+        return refuse(plan, &options, problem);
+    if (status == NT_OK)
+        status = choose_rigid(plan, &options, 0, problem); /* a demand or a budget that nothing keeps is refused */
+    if (status != NT_OK || yield_at_best(plan, scene) == NT_OK)
+        return status;
+    status = adheres ? unyield(plan, scene, &options, problem) : NT_OK;
+    return status == NT_OK ? choose_rigid(plan, &options, 0, problem) : status;
 }
 
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)

@@ -67,6 +67,7 @@ static void check_surface(nt_plan *plan)
                                                     "", share, UNRESOLVED});
 }
 
+#define ROUNDED (1.0 + 1e-9)
 #define SPHERE 0.1 /* over delta/R: what the force of a sphere lacks of its paraboloid's */
 
 /* A sample that yields has a paraboloid before it. With adhesion, or where something pulls, the terms beside contact
@@ -78,6 +79,10 @@ static void check_yielding(nt_plan *plan)
     if (plan->yield.count > 0 && plan->shape.kind == NT_SHAPE_SPHERE && flatter > demanded)
         nt_plan_add_warning(
             plan, (nt_plan_warning){"sphere taken for a paraboloid, whose force is larger by", "", flatter, demanded});
+    if (plan->yield.count > 0 && demanded > 0.0 && plan->bound.force_error > demanded * ROUNDED)
+        nt_plan_add_warning(plan, (nt_plan_warning){"error of a sample that yields, more than demanded: no finer table "
+                                                    "of it is made",
+                                                    "", plan->bound.force_error, demanded});
     const double rigid = fmax(plan->rigid_error, plan->around_error);
     const int left = plan->yield.count == 0 && rigid > 0.0 && plan->bound.force_error >= rigid;
     if (left && isinf(rigid)) /* beyond a jump no error is known */

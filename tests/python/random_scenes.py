@@ -122,7 +122,8 @@ def largest_error(value: Any, truth: Any, quantity: str, scale: float) -> float:
 
 
 def keeps(plan: Plan, accuracy: float) -> bool:
-    """Its bound is inside the demand; or what the rigid sum errs by is beyond it, is warned of, and the rest is.
+    """Its bound is inside the demand; or what the rigid sum errs by is beyond it, is warned of, and the rest is; or the
+    finest table of a sample that yields, which is warned of, errs by less than the rigid sum.
 
     Where the sample jumps there is no bound, and a warning says so.
     """
@@ -130,7 +131,9 @@ def keeps(plan: Plan, accuracy: float) -> bool:
     if math.isinf(plan.bound):
         return any("jumps to the tip" in warning.text for warning in plan.warnings)
     warned = any("more than demanded" in warning.text for warning in plan.warnings)
-    rigid = max(facts["rigid_error"], facts["around_error"]) if warned and not facts["yields"] else 0.0
+    rigid = max(facts["rigid_error"], facts["around_error"]) if warned else 0.0
+    if facts["yields"]:
+        return bool(plan.bound <= max(accuracy, rigid))
     return bool(plan.bound <= accuracy + rigid * (1.0 + 1e-12))
 
 

@@ -120,18 +120,42 @@ def test_a_surface_bulges_and_jumps_towards_the_tip(modulus: float, jumps: bool)
         assert np.all(errors_of(scene, plan, reference.yielded_scene(scene, 1e-5), history) <= plan.bound)
 
 
-@pytest.mark.parametrize(("modulus", "demand"), [(1e11, 1e-6), (1e12, 1e-7), (1e11, 0.0), (1e12, 0.0)])
-def test_a_bound_beyond_the_demand_has_what_a_rigid_sample_errs_by(modulus: float, demand: float) -> None:
-    """No table is that fine: beside contact the tail pulls more than the demand knows, and less than the bound."""
+@pytest.mark.parametrize("modulus", [3e10, 1e12])
+def test_beyond_what_a_table_keeps_the_finest_one_is_taken(modulus: float) -> None:
+    """With its own bound, far below what a rigid sample errs by, and a warning."""
     scene = sticky(modulus)
-    plan, truth = scene.plan(demand), reference.yielded_scene(scene, tolerance=1e-8)
+    plan, truth = scene.plan(1e-7), reference.yielded_scene(scene, tolerance=1e-8)
+    assert plan.explain()["yields"]
+    assert 1e-7 < plan.bound < 0.01 * plan.explain()["rigid_error"]
+    assert any("more than demanded" in warning.text for warning in plan.warnings)
+    for history in ("approach", "retract"):
+        assert np.all(errors_of(scene, plan, truth, history) <= plan.bound)
+
+
+@pytest.mark.parametrize("name", presets.FELT)
+@pytest.mark.parametrize("quantity", ["force", "stiffness", "radius", "folds"])
+def test_a_stricter_demand_has_no_looser_bound(name: str, quantity: str) -> None:
+    """But by the next coarser table, of twice the tolerance, where a finer one does not come to an end."""
+    scene, last = getattr(presets, name)()[0], np.inf
+    for demand in (0.3, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8):
+        try:
+            bound = scene.plan(demand, quantity=quantity).bound  # type: ignore[arg-type]
+        except InvalidValue:
+            continue
+        assert bound <= max(demand, 2.0 * last)
+        last = min(last, bound)
+
+
+@pytest.mark.parametrize("modulus", [1e11, 1e12])
+def test_with_no_demand_a_stiff_sample_is_rigid(modulus: float) -> None:
+    """Beside contact the tail pulls more than that, and less than the bound."""
+    scene = sticky(modulus)
+    plan, truth = scene.plan(0.0), reference.yielded_scene(scene, tolerance=1e-8)
     capture = plan.explain()["capture_gap"]
     gaps = capture * np.array([3.0, 1.5, 1.1])
     error = np.abs([plan.force(gap) for gap in gaps] - truth.force(gaps, "approach")) / plan.scale
     assert not plan.explain()["yields"]
-    assert demand < error.max() <= plan.bound
-    if demand > 0.0:
-        assert any("more than demanded" in warning.text for warning in plan.warnings)
+    assert 0.0 < error.max() <= plan.bound
 
 
 @pytest.mark.parametrize("demand", [1e-6, 0.0])

@@ -68,6 +68,7 @@ def _rows(name: str, scene: Scene, accuracies: tuple[float, ...]) -> Iterator[Ro
             math.nan if yields else max(_error(plan, path, truth[history], history) for history, path in paths.items())
         )
         forms = ", ".join(f"{term.name.replace('_', ' ')} {term.form}" for term in plan.terms)
+        forms += ", the sample yields" if yields and "yielding" not in forms else ""
         rigid = facts["rigid_error"] + facts["around_error"]
         yield Row(name, accuracy, plan.cost, exact.cost, plan.bound, rigid, error, forms)
 
