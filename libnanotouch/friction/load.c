@@ -54,20 +54,21 @@ static double maugis_load(const nt_contact *contact, double a, double hertz, dou
     pressure p = {1.5 * hertz / (NT_PI * a * a), 2.0 * contact->cohesive_stress / NT_PI, 0.0};
     double s0;
     if (nt_root_find(zone_beyond, &pull, (double[]){0.0, most}, &p.q, NULL) != NT_OK)
-        return NAN;
+        return (double)NAN;
     if (!(pressure_at(1.0, &p) > 0.0))
         return 0.0;
     if (nt_root_find(pressure_at, &p, (double[]){0.0, 1.0}, &s0, NULL) != NT_OK)
-        return NAN;
+        return (double)NAN;
     const double pressing = p.hertz * (1.0 - s0 * s0 * s0) / 3.0;
-    return 2.0 * NT_PI * a * a * (pressing - p.zone * (zone_integral(1.0, p.q) - zone_integral(s0, p.q)));
+    const double rim = p.zone * (zone_integral(1.0, p.q) - zone_integral(s0, p.q));
+    return 2.0 * NT_PI * a * a * fmax(pressing - rim, 0.0); /* below 0 by rounding only */
 }
 
 double nt_compressive_load(nt_model model, const nt_contact *contact, nt_law_value law)
 {
     const double a = law.a;
     if (isnan(a) || isnan(law.F))
-        return NAN;
+        return (double)NAN;
     if (!(a > 0.0))
         return 0.0;
     const double hertz = 4.0 / 3.0 * contact->effective_modulus * a * a * a / contact->radius;

@@ -79,13 +79,28 @@ static void nothing_presses_without_a_contact(void **unused)
     assert_true(nt_compressive_load(NT_JKR, &soft, (nt_law_value){.F = -20e-9, .a = 1e-10}) == 0.0);
 }
 
+/* Where the middle of a neck just still presses, rounding must not make the load negative: no step takes that. The
+ * zone of a radius below 1.57 nm can balance Hertz' p0 there: (2 sigma0/pi) arctan(q) = p0. */
+static void rounding_makes_no_load_negative(void **unused)
+{
+    (void)unused;
+    for (double share = 1e-17; share < 1e-3; share *= 1.1)
+        for (double a = 1e-10; a < 1.5e-9; a *= 1.07) {
+            const double hertz = hertz_load(a);
+            const nt_law_value jkr = {.F = hertz * (1.0 - 3.0 * (1.0 - share)), .a = a};
+            assert_true(nt_compressive_load(NT_JKR, &soft, jkr) >= 0.0);
+            const double q = (1.0 - share) * tan(0.75 * hertz / (a * a * soft.cohesive_stress));
+            const double pull = 2.0 * soft.cohesive_stress * a * a * ((1.0 + q * q) * atan(q) + q);
+            assert_true(nt_compressive_load(NT_MAUGIS, &soft, (nt_law_value){.F = hertz - pull, .a = a}) >= 0.0);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jkr_is_the_sum_of_its_rings),
-        cmocka_unit_test(maugis_is_the_sum_of_its_rings),
-        cmocka_unit_test(maugis_has_both_limits),
-        cmocka_unit_test(nothing_presses_without_a_contact),
+        cmocka_unit_test(jkr_is_the_sum_of_its_rings),     cmocka_unit_test(maugis_is_the_sum_of_its_rings),
+        cmocka_unit_test(maugis_has_both_limits),          cmocka_unit_test(nothing_presses_without_a_contact),
+        cmocka_unit_test(rounding_makes_no_load_negative),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,7 +99,7 @@ NT_API double nt_corrugation_largest_force(const nt_corrugation *corrugation);
  * between wells, forwards and backwards, at Kramers' rates with their integrals; within 2 % of Langevin's equation for
  * eta >= 3, kT/E0 1/500 .. 1/13 and gamma v/(pi E0/a) <= 0.1 (2 kT/E0)^1.5, where heat and not the speed decides when
  * the tip slips (docs/friction.md). NT_E_RANGE outside of these, with what is, in *problem (NULL allowed);
- * NT_E_NOT_FINITE, NT_E_NO_CONVERGENCE. Takes some 100 ms with T > 0. */
+ * NT_E_NOT_FINITE, NT_E_NO_CONVERGENCE. Takes some 20 ms with T > 0. */
 NT_API nt_status nt_corrugation_mean_force(const nt_corrugation *corrugation, double speed, double *force,
                                            nt_problem *problem);
 #define NT_CORRUGATION_ONSET_MAX 20.0
