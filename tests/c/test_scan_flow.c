@@ -117,7 +117,8 @@ static void a_free_lever(void **state)
 }
 
 /* Through a table as by the averages themselves: a lever that is lowered onto the surface and lifted again, 100 times
- * slower than it settles. They may part where it leaves one motion for the other, a little sooner or later. */
+ * slower than it settles. They part where it leaves one motion for the other, dry in 44 steps, and by less than half of
+ * A0/Q where a lever takes a meniscus in every fifth step or so: not in the same one. That is 559 of 20000 steps. */
 static void a_table_changes_nothing(void **state)
 {
     (void)state;
@@ -133,15 +134,17 @@ static void a_table_changes_nothing(void **state)
         nt_flow_state one = nt_flow_free(&t), other = one;
         nt_flow_table table = {0};
         const int steps = 20000;
-        int apart = 0;
+        int apart = 0, far = 0;
         for (int i = 0; i < steps; i++) {
             const nt_tapping_over over = {&plan, NULL, 25e-9 - 20e-9 * sin(NT_PI * i / steps)};
             const nt_flow_value by_itself = nt_flow_step(&t, &one, &over, 2e-5);
             const nt_flow_value in_cell = nt_flow_step_in(&t, &other, &over, 2e-5, &table);
-            apart += fabs(in_cell.amplitude - by_itself.amplitude) > 0.1 * 20e-9 / probe.quality ||
-                     fabs(in_cell.peak_force - by_itself.peak_force) > 0.1 * plan.pull_off_force;
+            const double off = fabs(in_cell.amplitude - by_itself.amplitude) * probe.quality / 20e-9;
+            apart += off > 0.1 || fabs(in_cell.peak_force - by_itself.peak_force) > 0.1 * plan.pull_off_force;
+            far += off > 0.5;
         }
-        assert_true(apart < steps / 20);
+        assert_true(apart < (wet ? steps / 25 : steps / 100));
+        assert_true(far < (wet ? 1 : steps / 200));
     }
 }
 

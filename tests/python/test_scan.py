@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any, Literal
 
@@ -139,6 +141,34 @@ def test_the_grating_after_our_own_levelling_and_tip_correction(tmp_path: Path) 
     # near the top: beside the foot of a wall the tip does not reach, and nothing can be undone
     widths = np.count_nonzero(z > top - 30e-9, axis=1) * 6e-6 / 256
     assert np.median(widths) == pytest.approx(3e-6, abs=2 * 6e-6 / 256)  # two ridges
+
+
+def test_gwyfile_and_gwyddion_read_what_a_scan_writes(tmp_path: Path) -> None:
+    """Every channel by gwyfile, values and sizes as they were, the first row at the top; and Gwyddion's own reader."""
+    gwyfile = pytest.importorskip("gwyfile")
+    settings = nt.Scan(raster={"pixels": 12, "lines": 5, "line_rate": 50.0, "width": 60e-9, "height": 20e-9},
+                       zloop={"rate": 20e3})  # fmt: skip
+    image = nt.Scanner(dry().plan(), settings, rig()).run()
+    path = image.write(tmp_path / "scan.gwy", images.Paraboloid(10e-9))
+    held = gwyfile.util.get_datafields(gwyfile.load(str(path)))
+    expected = {
+        "Height": "height",
+        "Amplitude": "signal",
+        "Phase": "phase",
+        "Error": "error",
+        "Peak force": "peak_force",
+    }
+    for name, key in expected.items():
+        for direction, channels in (("", image.trace), (" retrace", image.retrace)):
+            field = held[name + direction]
+            np.testing.assert_array_equal(field.data[::-1], getattr(channels, key))
+            assert (field.xreal, field.yreal) == pytest.approx((60e-9, 20e-9), rel=1e-12)
+            assert field.si_unit_z.unitstr == {"phase": "rad", "peak_force": "N"}.get(key, "m")
+    assert set(held) == {name + way for name in expected for way in ("", " retrace")} | {scan.UNDONE}
+    if gwyddion := shutil.which("gwyddion"):
+        again = tmp_path / "again.gwy"
+        subprocess.run([gwyddion, f"--convert-to-gwy={again}", str(path)], check=True, timeout=120)
+        assert set(gwyfile.util.get_datafields(gwyfile.load(str(again)))) == set(held)
 
 
 def test_the_speed_limit_of_the_grating() -> None:
