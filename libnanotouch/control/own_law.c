@@ -22,18 +22,21 @@
 static const double shares[] = {-1.0, -0.25, -0.01, 0.01, 0.25, 1.0};
 enum { POINTS = (int)(sizeof shares / sizeof *shares) };
 
+/* The signals that are moved: the rules know the first six, the other four must not be heard. */
+enum { FELT, SLAVE, RAW, SMOOTH, SPEED, TARGET, MASTER, MASTER_SPEED, STAGE, STAGE_SPEED, SIGNALS };
+
 typedef struct own_trial {
     const nt_settings *settings;
-    nt_signals at;     /* at rest */
-    nt_effort effort;  /* there */
-    double force_unit; /* of a motor force that counts [N] */
-    double way_unit;   /* of a travel of the stage that counts [m] */
+    nt_signals at;   /* at rest, but for the signal that is moved */
+    nt_effort there; /* the answer at rest */
+    nt_effort least; /* a motor force that counts [N], a travel of the stage that counts [m] */
+    int gauge;       /* of the master: without one no f_m is asked about */
 } own_trial;
 
-static nt_effort ask(const own_trial *trial, const nt_signals *signals)
+static nt_effort ask(const own_trial *trial)
 {
     const nt_control *control = &trial->settings->control;
-    return control->law(control->context, &trial->settings->gains, signals);
+    return control->law(control->context, &trial->settings->gains, &trial->at);
 }
 
 /* The largest force at which the loop can be pressed and read [N]. */
@@ -48,7 +51,8 @@ static own_trial trial_at(const nt_rig *rig, const nt_settings *settings, double
 {
     const nt_gains *gains = &settings->gains;
     const double alpha_f = gains->alpha_f * fmax(1.0, fmax(gains->alpha_f_approach, gains->alpha_f_retract));
-    const double felt = rig->master.gauge != 0.0 ? alpha_f * slave_force : 0.0;
+    const int gauge = rig->master.gauge != 0.0;
+    const double felt = gauge ? alpha_f * slave_force : 0.0;
     own_trial made = {.settings = settings,
                       .at = {.period = 1.0 / gains->rate,
                              .operator_force = felt,
@@ -58,92 +62,84 @@ static own_trial trial_at(const nt_rig *rig, const nt_settings *settings, double
                              .scaling = {gains->alpha_p, alpha_f},
                              .master_damping = rig->master.damping,
                              .gain_factor = 1.0},
-                      .force_unit = STEP * rig->master.max_force,
-                      .way_unit = STEP * rig->master.travel * gains->alpha_p};
-    made.effort = ask(&made, &made.at);
+                      .least = {STEP * rig->master.max_force, STEP * rig->master.travel * gains->alpha_p},
+                      .gauge = gauge};
+    made.there = ask(&made);
     return made;
 }
 
 /* The law's answer to a signal that moves by `step` to either side; NaN where the two differ. */
-static nt_effort slope(const own_trial *trial, double *signal, const nt_signals *moved, double step)
+static nt_effort slope(own_trial *trial, double *signal, double step)
 {
     const double kept = *signal;
+    const nt_effort there = trial->there, least = trial->least;
     *signal = kept + step;
-    const nt_effort above = ask(trial, moved);
+    const nt_effort above = ask(trial);
     *signal = kept - step;
-    const nt_effort below = ask(trial, moved);
+    const nt_effort below = ask(trial);
     *signal = kept;
-    const nt_effort up = {above.motor_force - trial->effort.motor_force, above.stage - trial->effort.stage};
-    const nt_effort down = {trial->effort.motor_force - below.motor_force, trial->effort.stage - below.stage};
-    const int straight = fabs(up.motor_force - down.motor_force) <= BEND * (trial->force_unit + fabs(up.motor_force)) &&
-                         fabs(up.stage - down.stage) <= BEND * (trial->way_unit + fabs(up.stage));
+    const nt_effort up = {above.motor_force - there.motor_force, above.stage - there.stage};
+    const nt_effort down = {there.motor_force - below.motor_force, there.stage - below.stage};
+    const int straight = fabs(up.motor_force - down.motor_force) <= BEND * (least.motor_force + fabs(up.motor_force)) &&
+                         fabs(up.stage - down.stage) <= BEND * (least.stage + fabs(up.stage));
     return straight
                ? (nt_effort){0.5 * (up.motor_force + down.motor_force) / step, 0.5 * (up.stage + down.stage) / step}
                : (nt_effort){(double)NAN, (double)NAN};
 }
 
-/* dtau of a signal that the stage must not hear; NaN if it does. */
-static double force_slope(const own_trial *trial, double *signal, const nt_signals *moved, double step)
+/* The motor force's slopes by the signals. The stage must go to its target and hear nothing else. */
+static nt_status slopes_of(own_trial *trial, double slopes[SIGNALS])
 {
-    const nt_effort found = slope(trial, signal, moved, step);
-    return fabs(found.stage * step) <= BEND * trial->way_unit ? found.motor_force : (double)NAN;
+    nt_signals *s = &trial->at;
+    const double force = trial->least.motor_force, way = trial->least.stage, near = STEP * fabs(s->slave_force);
+    const double travel = way / s->scaling.alpha_p, rate = 1.0 / s->period;
+    const struct {
+        double *signal, step;
+    } moves[SIGNALS] = {[FELT] = {&s->felt_force, near},
+                        [SLAVE] = {&s->slave_force, near},
+                        [RAW] = {&s->operator_force, force},
+                        [SMOOTH] = {&s->smooth_force, force},
+                        [SPEED] = {&s->smooth_speed, force / s->master_damping},
+                        [TARGET] = {&s->target, way},
+                        [MASTER] = {&s->master_position, travel},
+                        [MASTER_SPEED] = {&s->master_speed, travel * rate},
+                        [STAGE] = {&s->stage_position, way},
+                        [STAGE_SPEED] = {&s->stage_speed, way * rate}};
+    for (int i = 0; i < SIGNALS; ++i) {
+        slopes[i] = 0.0;
+        if ((i == RAW || i == SMOOTH) && !trial->gauge)
+            continue;
+        const nt_effort found = slope(trial, moves[i].signal, moves[i].step);
+        const double stage = (found.stage - (i == TARGET)) * moves[i].step;
+        if (!(fabs(stage) <= BEND * way) || /* NaN is not */
+            (i >= TARGET && !(fabs(found.motor_force * moves[i].step) <= BEND * force)))
+            return NT_E_UNSUPPORTED;
+        slopes[i] = found.motor_force;
+    }
+    return NT_OK;
 }
 
-/* Does neither motor nor stage hear this signal? NaN is heard. */
-static int is_unheard(const own_trial *trial, double *signal, const nt_signals *moved, double step)
+/* Is the answer a number, and the same once more? Else the law has memory. */
+static int is_settled(const own_trial *trial)
 {
-    return fabs(force_slope(trial, signal, moved, step) * step) <= BEND * trial->force_unit;
-}
-
-static int goes_to_target(const own_trial *trial, nt_signals *moved)
-{
-    const nt_effort found = slope(trial, &moved->target, moved, trial->way_unit);
-    return fabs(found.stage - 1.0) <= BEND && fabs(found.motor_force * trial->way_unit) <= BEND * trial->force_unit;
-}
-
-/* Of everything but forces, smooth speed and target. */
-static int is_deaf(const own_trial *trial, nt_signals *moved)
-{
-    const double way = trial->way_unit, travel = way / trial->at.scaling.alpha_p, rate = 1.0 / trial->at.period;
-    return is_unheard(trial, &moved->master_position, moved, travel) &&
-           is_unheard(trial, &moved->master_speed, moved, travel * rate) &&
-           is_unheard(trial, &moved->stage_position, moved, way) &&
-           is_unheard(trial, &moved->stage_speed, moved, way * rate);
-}
-
-/* A: of f_s as it is felt or as it is. */
-static double reflection(const own_trial *trial, nt_signals *moved)
-{
-    const double step = STEP * fabs(trial->at.slave_force);
-    return -force_slope(trial, &moved->felt_force, moved, step) - force_slope(trial, &moved->slave_force, moved, step);
-}
-
-static int is_between(double value, double least, double most)
-{
-    return value >= least && value <= most; /* NaN is not */
+    const nt_effort there = trial->there, again = ask(trial);
+    return isfinite(there.motor_force) && isfinite(there.stage) && again.motor_force == there.motor_force &&
+           again.stage == there.stage;
 }
 
 /* The gains at one force. */
 static nt_status amounts_at(const nt_rig *rig, const nt_settings *settings, double slave_force, nt_settings *amounts)
 {
-    const own_trial made = trial_at(rig, settings, slave_force);
-    const double b = rig->master.damping, force = made.force_unit;
-    nt_signals moved = made.at;
-    if (!isfinite(made.effort.motor_force) || !isfinite(made.effort.stage) || !is_deaf(&made, &moved) ||
-        !goes_to_target(&made, &moved))
+    own_trial made = trial_at(rig, settings, slave_force);
+    double slopes[SIGNALS];
+    if (slopes_of(&made, slopes) != NT_OK || !is_settled(&made))
         return NT_E_UNSUPPORTED;
-    const double reflected = reflection(&made, &moved);
-    const double raw = rig->master.gauge != 0.0 ? force_slope(&made, &moved.operator_force, &moved, force) : 0.0;
-    const double smooth = rig->master.gauge != 0.0 ? force_slope(&made, &moved.smooth_force, &moved, force) : 0.0;
-    const double share = force_slope(&made, &moved.smooth_speed, &moved, force / b) / b;
-    const nt_effort again = ask(&made, &made.at); /* the same once more, or it has memory */
-    const int forgets = again.motor_force == made.effort.motor_force && again.stage == made.effort.stage;
+    const double reflected = -slopes[FELT] - slopes[SLAVE]; /* A: of f_s as it is felt or as it is */
+    const double raw = slopes[RAW], smooth = slopes[SMOOTH], share = slopes[SPEED] / rig->master.damping;
     const double K_f = fmax(0.0, fmax(raw, smooth)), alpha_f = reflected / (1.0 + K_f);
-    const int coupled = settings->gains.coupling_stiffness > 0.0; /* its rule takes the session's alpha_f */
-    if (coupled && !(fabs(alpha_f - made.at.scaling.alpha_f) <= BEND * alpha_f))
-        return NT_E_UNSUPPORTED;
-    if (!forgets || !is_between(reflected, 0.0, INFINITY) || !is_between(share, -BEND, LARGEST_FEEDFORWARD + BEND) ||
-        !is_between(raw, -BEND, INFINITY) || !is_between(smooth, -BEND, INFINITY) || fmin(raw, smooth) > BEND)
+    const int is_coupled = settings->gains.coupling_stiffness > 0.0; /* its rule takes the session's alpha_f */
+    if (!(reflected >= 0.0 && share >= -BEND && share <= LARGEST_FEEDFORWARD + BEND) || fmin(raw, smooth) < -BEND ||
+        fmin(raw, smooth) > BEND || (is_coupled && fabs(alpha_f - made.at.scaling.alpha_f) > BEND * alpha_f))
         return NT_E_UNSUPPORTED;
     nt_gains gains = settings->gains;
     gains.force_gain = K_f;
