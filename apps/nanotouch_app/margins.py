@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     if not args.no_map:
         require("matplotlib", "app")
     with output.folder(args, FILES) as out:
-        print(
+        output.say(
             "\n".join(
                 [
                     *(f"warning: {warning}" for warning in plan.warnings),
@@ -87,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
         output.write_json(out / "margins.json", args.answer)
         if not args.no_map:
             _map(rig, settings, out)
-        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+        output.say(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0 if found.refusal is None else 1
 
 
@@ -100,7 +100,7 @@ def _recorded(args: argparse.Namespace) -> int:
         recording = record.read(args.scene)
         felt = margins.of_recording(recording)
     with output.folder(args, FILES) as out:
-        print(_felt(felt))
+        output.say(_felt(felt))
         facts = {
             "contact_stiffness": felt.contact_stiffness, "felt_stiffness": felt.felt_stiffness,
             "drag": felt.free_damping, "energy": float(felt.energy[-1]), "dissipated": float(felt.dissipated[-1]),
@@ -110,7 +110,7 @@ def _recorded(args: argparse.Namespace) -> int:
         output.write_json(out / "margins.json", args.answer)
         if not args.no_map:
             plots.z_width(recording, save=out / "z_width.png")
-        print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
+        output.say(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return 0 if felt.is_passive else 1
 
 

@@ -6,7 +6,10 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
+import shutil
 import sys
+import textwrap
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -145,6 +148,26 @@ def as_json(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     return value
+
+
+def wrapped(text: str, width: int) -> str:
+    """The lines, none longer than ``width`` where blanks allow it. What goes on stands below the text, right of a
+    label and its column (``limits:  force ...``)."""
+    lines = []
+    for line in text.splitlines():
+        label = re.match(r" *(\S+( \S+)?(  +|: ))?", line)
+        column = label.end() if label else 0
+        indent = " " * (column if 0 < column <= width // 3 else 4)
+        lines += textwrap.wrap(
+            line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+        ) or [""]
+    return "\n".join(lines)
+
+
+def say(text: object) -> None:
+    """Print; on a terminal no line is wider than it. A file or a pipe gets the lines as they are."""
+    width = max(40, shutil.get_terminal_size().columns - 1)
+    print(wrapped(str(text), width) if sys.stdout.isatty() else text)
 
 
 @contextmanager

@@ -75,17 +75,17 @@ def run(args: argparse.Namespace) -> int:
     args.answer = plan.explain()
     if args.json:  # the measurement below takes its time
         return 0
-    print(plan)
+    output.say(plan)
     one = hertz_nanoseconds()
     full = one * plan.explain()["full_cost"]
-    print(
+    output.say(
         f"on this machine a Hertz evaluation takes {in_words(one * 1e-9, 's', 3)}, this plan "
         f"{in_words(one * plan.cost * 1e-9, 's', 3)}, everything exact {in_words(full * 1e-9, 's', 3)}"
     )
     if surface is not None:
-        print("\n".join(surface.notes))
+        output.say("\n".join(surface.notes))
     if args.scene in PRESETS:
-        print(f"felt: {presets.FELT[args.scene]}")
+        output.say(f"felt: {presets.FELT[args.scene]}")
     return 0
 
 

@@ -63,9 +63,11 @@ def run(args: argparse.Namespace) -> int:
     with output.busy("forecasting"):
         told = scan.forecast(scanner, scene, surface)
     duration = scanner.scan["raster.lines"] / scanner.scan["raster.line_rate"]
-    print(told)
+    output.say(told)
     if plan.bound > ACCURACIES[0]:
-        print(f"forces of the scan are within {100 * plan.bound:.2g} %: the surface has edges sharper than the tip")
+        output.say(
+            f"forces of the scan are within {100 * plan.bound:.2g} %: the surface has edges sharper than the tip"
+        )
     print(f"the scan takes {_time(duration)} on an instrument")
     args.answer = {"forecast": told._asdict() | {"motions": [one._asdict() for one in told.motions]},
                    "duration": duration}  # fmt: skip
@@ -86,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
             print(f"picture left out: {missing}")
         written = [name for name in FILES if (out / name).exists()]
         args.answer = facts | {"folder": str(out), "files": written}
-        print(
+        output.say(
             f"image: heights over {facts['height_range'] * 1e9:.4g} nm, largest force "
             f"{facts['peak_force'] * 1e9:.3g} nN, trace and retrace differ by {facts['difference'] * 1e9:.3g} nm rms"
         )

@@ -96,9 +96,9 @@ def run(args: argparse.Namespace) -> int:
             missing = _draw(session, topography, recording, out)
         written = [name for name in FILES if (out / name).exists()]
         args.answer = facts | {"folder": str(out), "files": written}
-        print(summary.words(facts) if args.verbose else told.report(session, facts, describe(topography), args))
+        output.say(summary.words(facts) if args.verbose else told.report(session, facts, describe(topography), args))
         print("".join(f"picture left out: {reason}\n" for reason in missing), end="")
-        print(f"written to {out}/: {', '.join(written)}")
+        output.say(f"written to {out}/: {', '.join(written)}")
     if not args.no_window and view.has_display():
         view.open_window(topography, recording, session.scene.tip.radius)
     return 0
@@ -110,7 +110,7 @@ def _say_before(session: nt.Session, args: argparse.Namespace) -> None:
     assert surface is not None
     print("".join(f"{note}\n" for note in surface.notes), end="")
     if args.verbose:
-        print(f"surface: {describe(surface.topography)}\n{summary.before(session)}")
+        output.say(f"surface: {describe(surface.topography)}\n{summary.before(session)}")
 
 
 def describe(topography: nt.Topography) -> str:

@@ -166,6 +166,31 @@ class Terminal(io.StringIO):
         return True
 
 
+@pytest.mark.parametrize("command", [["plan", "silicon_in_air"], ["live", "--list"], ["scan", "--forecast"]])
+@pytest.mark.parametrize("columns", [60, 80])
+def test_a_terminal_gets_no_line_that_is_too_wide(
+    command: list[str], columns: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The words are those that a file gets."""
+    assert main(command) == 0
+    plain = capsys.readouterr().out
+    shown = Terminal()
+    monkeypatch.setenv("COLUMNS", str(columns))
+    monkeypatch.setattr(sys, "stdout", shown)
+    assert main(command) == 0
+    lines = shown.getvalue().splitlines()
+    timed = "on this machine"  # measured anew each time
+    assert max(map(len, lines)) < columns < max(map(len, plain.splitlines()))
+    assert shown.getvalue().partition(timed)[0].split() == plain.partition(timed)[0].split()
+
+
+def test_a_wrapped_line_goes_on_below_its_text() -> None:
+    assert output.wrapped("limits:  one two three", 17) == "limits:  one two\n    three"
+    assert output.wrapped("limits:  one two three four", 27) == "limits:  one two three four"
+    assert output.wrapped("hand:  one two three four", 21) == "hand:  one two three\n       four"
+    assert output.wrapped("written to /a/long-path/that/is/one/word", 20).split()[-1] == "/a/long-path/that/is/one/word"
+
+
 def test_seconds_are_shown_of_what_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = Terminal()
     monkeypatch.setattr(sys, "stderr", shown)

@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _list() -> int:
     for name, preset in PRESETS.items():
-        print(f"{name:16} {preset.title}: {preset.hint}")
+        output.say(f"{name:16} {preset.title}: {preset.hint}")
     for name, one in TASKS.items():
         print(f"--task {name:9} {one.title}")
     print("--task lesson    predict, touch, explain: five pages")

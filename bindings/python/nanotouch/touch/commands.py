@@ -7,10 +7,10 @@ taken, renewed or used. Anyone may stop.
 
 from __future__ import annotations
 
-from types import TracebackType
 from typing import NamedTuple
 
 from nanotouch import _core
+from nanotouch._io.closing import Closing
 from nanotouch.errors import Error
 from nanotouch.touch.frames import attached
 
@@ -30,7 +30,7 @@ class Answer(NamedTuple):
     """the status in words"""
 
 
-class Client:
+class Client(Closing):
     """One who may ask; made by :func:`attach`. For one thread."""
 
     def __init__(self, name: str) -> None:
@@ -63,14 +63,6 @@ class Client:
     def close(self) -> None:
         """Give the lease back and detach. May be repeated."""
         self._handle.close()
-
-    def __enter__(self) -> Client:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         return f"Client({self._name!r})"

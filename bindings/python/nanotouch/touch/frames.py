@@ -14,13 +14,13 @@ An observer that stops, crashes or lags changes nothing for the session. It must
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import TracebackType
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch import _core
+from nanotouch._io.closing import Closing
 from nanotouch.errors import DeviceError, InvalidValue
 
 #: a frame, in SI units, axes and signs as on the page "Frames and signs"; NaN where a number is not known
@@ -45,7 +45,7 @@ def attached(end: Callable[[str], End], name: str) -> End:
         raise DeviceError(f"no session {name!r} of this user and this version of nanotouch is running") from error
 
 
-class Observer:
+class Observer(Closing):
     """A reader of one session's frames; made by :func:`attach`. For one thread."""
 
     def __init__(self, name: str) -> None:
@@ -93,14 +93,6 @@ class Observer:
     def close(self) -> None:
         """Detach. May be repeated."""
         self._handle.close()
-
-    def __enter__(self) -> Observer:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         return f"Observer({self._name!r})"

@@ -15,10 +15,10 @@ then latches. If the session dies, :meth:`Device.ask` says so.
 
 from __future__ import annotations
 
-from types import TracebackType
-from typing import Literal, NamedTuple, Self
+from typing import Literal, NamedTuple
 
 from nanotouch import _core
+from nanotouch._io.closing import Closing
 from nanotouch.errors import InvalidValue
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.hal import Capabilities, Reading
@@ -40,7 +40,7 @@ class Request(NamedTuple):
     """slave: how far to lift at the least, once nobody drives any more [m]"""
 
 
-class Device:
+class Device(Closing):
     """The program's end. One program has a name at a time; what a dead one left is removed.
 
     Parameters
@@ -95,11 +95,3 @@ class Device:
     def close(self) -> None:
         """Remove the mailbox; a session sees in its next tick that the device is gone."""
         self._mailbox.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
-    ) -> None:
-        self.close()
