@@ -129,7 +129,7 @@ class Friction:
         _check_at_least_zero("compressive_load", points[3], "N")
         begun = FrictionState(float(points[0][0]), float(points[1][0]), *np.zeros(6)) if state is None else state
         ways = [np.diff(line, prepend=start) for line, start in zip(points[:2], begun[:2], strict=True)]
-        states = self._core.run(np.array(begun[2:]), np.stack([*ways, *points[2:]], axis=1))
+        states = self._core.run(np.array(begun[2:]), np.stack(ways, axis=1), np.stack(points[2:], axis=1))
         last = FrictionState(float(points[0][-1]), float(points[1][-1]), *map(float, states[-1]))
         force_x, force_y, _, stored, dissipated, work = states.T
         return FrictionPath(force_x, force_y, stored, dissipated, work, last)

@@ -4,26 +4,24 @@
 
 #include "chapters.h"
 
-// Rows of (way x, way y, radius, load) from a state (6 numbers, as nt_friction_state): rows of states after each.
-static Array run(const nt_friction &friction, const Array &from, const Array &steps)
+// Rows of (way x, way y) and (radius, load) from a state (6 numbers, as nt_friction_state): rows of states after each.
+static Array run(const nt_friction &friction, const Array &from, const Array &ways, const Array &contacts)
 {
-    static_assert(sizeof(nt_friction_state) == 6 * sizeof(double));
-    if (from.size() != 6 || steps.ndim() != 2 || steps.shape(1) != 4)
-        throw std::invalid_argument("friction: a state of 6 and rows of 4 numbers");
-    const py::ssize_t count = steps.shape(0);
+    static_assert(sizeof(nt_friction_state) == 6 * sizeof(double) && sizeof(nt_friction_contact) == 2 * sizeof(double));
+    const py::ssize_t count = ways.shape(0);
+    if (from.size() != 6 || ways.size() != 2 * count || contacts.size() != 2 * count)
+        throw std::invalid_argument("friction: a state of 6, and rows of 2 numbers");
     Array after(std::vector<py::ssize_t>{count, 6});
     nt_friction_state state;
     std::memcpy(&state, from.data(), sizeof state);
-    const double *in = steps.data();
-    double *out = after.mutable_data();
-    nt_status status = NT_OK;
+    const nt_friction_path path = {reinterpret_cast<const nt_friction_contact *>(contacts.data()),
+                                   reinterpret_cast<const double (*)[2]>(ways.data()),
+                                   reinterpret_cast<nt_friction_state *>(after.mutable_data()),
+                                   static_cast<long>(count)};
+    nt_status status;
     {
         py::gil_scoped_release release;
-        for (py::ssize_t i = 0; i < count && status == NT_OK; ++i) {
-            const nt_friction_contact contact = {in[4 * i + 2], in[4 * i + 3]};
-            status = nt_friction_advance(&friction, &state, &contact, in + 4 * i);
-            std::memcpy(out + 6 * i, &state, sizeof state);
-        }
+        status = nt_friction_run_n(&friction, &state, &path);
     }
     raise_on(status, "friction");
     return after;
