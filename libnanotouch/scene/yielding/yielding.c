@@ -24,7 +24,7 @@
 #define STIFF 0.3    /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
 #define DEEPER 1.05  /* than the largest load */
 
-enum { ATTEMPTS = 4, SAMPLES = 1000 };
+enum { ATTEMPTS = 4, SAMPLES = 1000, HALVINGS = 60 };
 
 static int adheres(const nt_plan *plan)
 {
@@ -126,12 +126,24 @@ nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap)
     return value;
 }
 
+/* Where the largest load is reached, which lies between nodes [N/m]. */
+static double stiffness_at_load(const nt_plan *plan, double load)
+{
+    const nt_yield_table *table = &plan->yield;
+    double nearer = table->last, farther = table->first + table->hold;
+    for (int i = 0; i < HALVINGS && nt_plan_yield_at(plan, table->last).F > load; ++i) {
+        const double middle = 0.5 * (nearer + farther);
+        *(nt_plan_yield_at(plan, middle).F > load ? &nearer : &farther) = middle;
+    }
+    return nt_plan_yield_at(plan, nearer).k;
+}
+
 /* Numbers of the force as it is now. */
 static void facts_of(nt_plan *plan, double load)
 {
     const nt_yield_table *table = &plan->yield;
     double pull = 0.0, growth = 0.0;
-    plan->maximum_stiffness = 0.0;
+    plan->maximum_stiffness = fmax(stiffness_at_load(plan, DEEPER * load), 0.0);
     for (int i = 0; i < table->count; ++i)
         if (table->node[i].F <= DEEPER * load)
             plan->maximum_stiffness = fmax(plan->maximum_stiffness, table->node[i].k);
