@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy windows bench lint format clean
+.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy windows kernel bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -72,14 +72,20 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 windows:  ## the C tests of the portable core on 64-bit Windows, by MinGW and Wine; some minutes
 	@tests/windows/run.sh
 
+kernel:  ## the SPI and GPIO drivers on a Linux kernel that runs as a program; builds that kernel once, some minutes; then seconds
+	@tools/setup.sh kernel
+	@cmake --preset release --log-level WARNING >/dev/null
+	@cmake --build --preset release --target test_kernel
+	@tests/kernel/run.sh build/release/tests/kernel/test_kernel
+
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target bench
 	@$(VENV)/python tests/bench/bench_session.py
 
-# generated tables keep the generator's lines
-C_FILES = $(filter-out tests/reference/%_table.h, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
+# generated tables keep the generator's lines, a part of a kernel the kernel's style
+C_FILES = $(filter-out tests/reference/%_table.h tests/kernel/spi_bus.c, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
 
 lint:  ## format, style and types, without changing anything
 	@tools/setup.sh lint

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|page
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|kernel|page
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|page}
+profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|kernel|page}
 say() {
   if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then printf '\033[1m%s\033[0m\n' "-- $*" >&2; else echo "-- $*" >&2; fi
 }
@@ -21,6 +21,9 @@ elif [ "$profile" = lint ]; then
   extras=all,test,lint
 elif [ "$profile" = fuzz ]; then
   packages="build-essential cmake ninja-build pkg-config clang libclang-rt-dev"
+elif [ "$profile" = kernel ]; then
+  packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libcmocka-dev linux-source-6.12 flex bison bc
+    xz-utils"
 fi
 
 # --- system packages -------------------------------------------------------------------------------------------------
@@ -131,6 +134,7 @@ install_packages
 make_venv
 mkdir -p build
 fetch_libgpiod
+[ "$profile" != kernel ] || exit 0 # C alone
 
 # lint's packages include test's, and test's include demo's.
 key=$(hash_of pyproject.toml)
