@@ -97,6 +97,7 @@ set(nanotouch_sources_scene
     scene/yielding/adhere.c
     scene/yielding/contact.c
     scene/yielding/follow.c
+    scene/yielding/layer.c
     scene/yielding/mesh.c
     scene/yielding/solve.c
     scene/yielding/table.c

@@ -133,6 +133,12 @@ double nt_plan_share(const nt_plan *plan, double error);
  * exponential. */
 #define NT_ELASTIC_JUMP 0.55
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
+/* Whether contact is that of the layer, and not of a half-space. */
+static inline int nt_plan_solves_layer(const nt_plan *plan)
+{
+    return plan->yield.count > 0 && plan->source == NT_ADHESION_NONE;
+}
+
 /* Of what acts around an adhesive contact; of folds and radius, with `tails`, also of what the tail pulls more. */
 double nt_plan_around_error(const nt_plan *plan, int tails);
 /* How far the folds of an adhesive contact are from where they would be on a sample that yields [m]. */

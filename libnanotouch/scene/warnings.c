@@ -70,6 +70,19 @@ static void check_surface(nt_plan *plan)
 #define ROUNDED (1.0 + 1e-9)
 #define SPHERE 0.1 /* over delta/R: what the force of a sphere lacks of its paraboloid's */
 
+/* A layer in contact is solved with what it yields to; Hertz' contact and one with adhesion are those of a half-space.
+ * Two terms of Dimitriadis et al. (2002), bonded, say by how much more force the layer takes. */
+static void check_layer(nt_plan *plan, const nt_scene *scene)
+{
+    const double nu = scene->sample.poisson_ratio, chi = plan->validity.thickness_ratio;
+    const double alpha = 2.0 / NT_PI * (1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1.0 - nu) * chi;
+    const double more = alpha + alpha * alpha, demanded = plan->demand.relative_accuracy;
+    if (scene->sample.thickness > 0.0 && !nt_plan_solves_layer(plan) && more > demanded)
+        nt_plan_add_warning(
+            plan, (nt_plan_warning){"layer taken for a half-space in contact, whose force is smaller by about", "",
+                                    more, demanded});
+}
+
 /* A sample that yields has a paraboloid before it. With adhesion, or where something pulls, the terms beside contact
  * may add on the undeformed gap though that errs by more than is demanded: it is part of the bound. */
 static void check_yielding(nt_plan *plan)
@@ -107,6 +120,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_drag(plan, scene);
     check_surface(plan);
     check_yielding(plan);
+    check_layer(plan, scene);
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         check_facts(plan, scene, term);
     check_facts(plan, scene, NT_PLAN_CONTACT);

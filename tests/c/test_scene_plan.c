@@ -40,16 +40,17 @@ static void the_contact_law_follows_from_the_scene(void **state)
     (void)state;
     nt_demand demand = nt_demand_defaults();
     const nt_scene silicon = nt_scene_defaults();
-    nt_scene none = dry_silicon(), cone = dry_silicon(), far = dry_silicon();
+    nt_scene none = dry_silicon(), cone = dry_silicon(), far = dry_silicon(), tailless = silicon;
     none.adhesion.work_of_adhesion = 0.0;
     cone.tip.shape = NT_SHAPE_CONE;
     far.range.minimum_gap = 10e-9;
+    tailless.adhesion.hamaker_constant = 0.0; /* with a tail the sample yields, and its table has no such bound */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_TABLE);
     assert_int_equal(contact_form(&none, &demand), NT_FORM_SHAPE);
     assert_int_equal(contact_form(&cone, &demand), NT_FORM_JKR);
     assert_int_equal(contact_form(&far, &demand), NT_FORM_OFF); /* never touches */
     demand.relative_accuracy = 1e-8;                            /* below the table's error */
-    assert_int_equal(contact_form(&silicon, &demand), NT_FORM_POLISHED);
+    assert_int_equal(contact_form(&tailless, &demand), NT_FORM_POLISHED);
     demand.relative_accuracy = 0.0; /* everything, exact */
     assert_int_equal(contact_form(&silicon, &demand), NT_FORM_POLISHED);
     demand.relative_accuracy = 0.01;

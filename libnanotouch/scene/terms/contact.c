@@ -297,7 +297,8 @@ static void warn(nt_plan *plan, const nt_scene *scene)
           NT_VALID_THICKNESS_RATIO}},
     };
     for (int i = 0; i < 4 && plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF; ++i)
-        if (v->outside & limits[i].outside)
+        if (v->outside & limits[i].outside &&
+            !(limits[i].outside == NT_OUTSIDE_THICKNESS && nt_plan_solves_layer(plan)))
             nt_plan_add_warning(plan, limits[i].warning);
     nt_capillary_warn(plan, scene);
 }

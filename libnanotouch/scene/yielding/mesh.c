@@ -112,17 +112,13 @@ static void abel_row(const nt_yield_mesh *mesh, const basis *b, double tau, doub
     }
 }
 
-/* Wave numbers [1/m], and weights times X(k t) - 1, of a bonded layer (Chen and Engel 1972). */
-typedef struct spectrum {
-    double k[NT_YIELD_WAVES], weight[NT_YIELD_WAVES];
-} spectrum;
-
-static spectrum spectrum_of(const nt_yield_sample *sample)
+/* Of a bonded layer (Chen and Engel 1972). */
+static nt_yield_spectrum spectrum_of(const nt_yield_sample *sample)
 {
     static const double pieces[PIECES + 1] = {0.0, 0.5, 1.5, 3.0, 6.0, 10.0, 16.0};
     const double nu = sample->poisson_ratio;
     const basis b = basis_of();
-    spectrum s;
+    nt_yield_spectrum s;
     for (int i = 0; i < NT_YIELD_WAVES; ++i) {
         const double from = pieces[i / N], width = pieces[i / N + 1] - from, kappa = from + width * b.x[i % N];
         const double top = (3.0 - 4.0 * nu) * sinh(2.0 * kappa) - 2.0 * kappa;
@@ -145,24 +141,14 @@ static void add_row(nt_yield_mesh *mesh, const double row[NT_YIELD_NODES], doubl
     }
 }
 
-static void add_waves(const nt_yield_mesh *mesh, const spectrum *s, const double row[NT_YIELD_NODES], double *waves,
-                      const double tw[2])
+static void add_waves(const nt_yield_mesh *mesh, const nt_yield_spectrum *s, const double row[NT_YIELD_NODES],
+                      double *waves, const double tw[2])
 {
     for (int n = 0; n < NT_YIELD_WAVES; ++n) {
         const double wave = tw[1] * cos(s->k[n] * tw[0]);
         for (int i = 0; i < mesh->count; ++i)
             waves[n * NT_YIELD_NODES + i] += wave * row[i];
     }
-}
-
-static void add_layer(nt_yield_mesh *mesh, const nt_yield_sample *sample, const spectrum *s, const double *waves)
-{
-    for (int n = 0; n < NT_YIELD_WAVES; ++n, waves += NT_YIELD_NODES)
-        for (int i = 0; i < mesh->count; ++i) {
-            mesh->K0[i] += 2.0 / sample->modulus * s->weight[n] * waves[i];
-            for (int j = i; j < mesh->count; ++j)
-                mesh->K[i][j] += s->weight[n] * waves[i] * waves[j];
-        }
 }
 
 static void place_nodes(nt_yield_mesh *mesh, const basis *b)
@@ -180,7 +166,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     const basis b = basis_of();
     const int layered = sample->thickness > 0.0;
     double y[NT], w[NT], row[NT_YIELD_NODES];
-    spectrum s;
+    nt_yield_spectrum s;
     if (layered)
         s = spectrum_of(sample);
     gauss(NT, y, w);
@@ -188,6 +174,9 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     memset(mesh->K, 0, sizeof mesh->K);
     memset(mesh->load, 0, sizeof mesh->load);
     memset(mesh->K1, 0, sizeof mesh->K1);
+    memset(mesh->bend, 0, sizeof mesh->bend);
+    memset(mesh->edge, 0, sizeof mesh->edge);
+    memset(mesh->push, 0, sizeof mesh->push);
     memset(waves, 0, NT_YIELD_WAVES * NT_YIELD_NODES * sizeof *waves);
     for (int panel = 0; panel < mesh->panels; ++panel)
         for (int i = 0; i < NT; ++i) {
@@ -205,7 +194,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     for (int i = 0; i < mesh->count; ++i)
         mesh->K0[i] = 2.0 / sample->modulus * row[i];
     if (layered)
-        add_layer(mesh, sample, &s, waves);
+        nt_yield_layer_add(mesh, sample, &s, waves);
     for (int i = 0; i < mesh->count; ++i)
         for (int j = i; j < mesh->count; ++j) {
             const double twice = 8.0 / sample->modulus * mesh->K[i][j];

@@ -22,6 +22,18 @@ double nt_yield_rim(const nt_yield_solver *s, double h, double x, double *slope)
     return 2.0 / NT_PI * ((-h - 0.5 * r2 / R) * arc + 0.5 * a / R * sqrt(x));
 }
 
+/* The same at a node, with what a layer adds. */
+static double rim_at(const nt_yield_solver *s, int node, double *slope)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    *slope = 0.0;
+    if (!(m->a > 0.0))
+        return 0.0;
+    const double u = nt_yield_rim(s, s->h, m->x[node], slope);
+    *slope += m->bend[1][node];
+    return u + m->bend[0][node] + m->bend[1][node] * s->h;
+}
+
 int nt_yield_eliminate(nt_yield_solver *s, double *b, int n)
 {
     for (int c = 0; c < n; ++c) {
@@ -65,10 +77,12 @@ static double held(nt_yield_solver *s, nt_yield_hold hold, double value, const n
         u0 += m->K0[j] * p[j].pressure;
         s->A[n][j] = hold == NT_YIELD_GAP ? 0.0 : sign * m->K0[j] * p[j].slope;
     }
-    s->A[n][n] = hold == NT_YIELD_CONTACT ? -1.0 : 1.0;
+    s->A[n][n] = hold == NT_YIELD_CONTACT ? -1.0 - m->edge[1] : 1.0;
     if (hold == NT_YIELD_GAP)
         return value - s->h;
-    return hold == NT_YIELD_CENTRE ? value - s->h - u0 : s->h + m->a * m->a / s->sample->radius + u0;
+    if (hold == NT_YIELD_CENTRE)
+        return value - s->h - u0;
+    return s->h + m->a * m->a / s->sample->radius + u0 + m->edge[0] + m->edge[1] * s->h;
 }
 
 /* One step of Newton; how far it went over the largest gap, NaN where it cannot. */
@@ -81,7 +95,7 @@ static double newton_step(nt_yield_solver *s, nt_yield_hold hold, double value)
     for (int j = 0; j < n; ++j)
         p[j] = nt_yield_law(s, s->gap[j]);
     for (int i = 0; i < n; ++i) {
-        double slope = 0.0, u = m->a > 0.0 ? nt_yield_rim(s, s->h, m->x[i], &slope) : 0.0;
+        double slope, u = rim_at(s, i, &slope);
         for (int j = 0; j < n; ++j) {
             u += m->K[i][j] * p[j].pressure;
             s->A[i][j] = -m->K[i][j] * p[j].slope;
@@ -167,9 +181,8 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
     for (int j = 0; j < n; ++j)
         p[j] = nt_yield_law(s, s->gap[j]);
     for (int i = 0; i < n; ++i) {
-        double slope = 0.0;
-        if (a > 0.0)
-            (void)nt_yield_rim(s, s->h, m->x[i], &slope);
+        double slope;
+        (void)rim_at(s, i, &slope);
         y[i] = 1.0 + slope;
         for (int j = 0; j < n; ++j)
             s->A[i][j] = (i == j) - m->K[i][j] * p[j].slope;
@@ -186,8 +199,10 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
         u0_slope += m->K0[j] * p[j].slope * y[j];
     }
     *point = (nt_yield_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a};
-    if (a > 0.0)
-        *point = (nt_yield_point){s->h, F + 2.0 * E * a * (-s->h - a * a / (3.0 * R)), k + 2.0 * E * a, 0.0, 0.0, a};
+    if (a > 0.0) {
+        F += 2.0 * E * a * (-s->h - a * a / (3.0 * R)) + m->push[0] + m->push[1] * s->h;
+        *point = (nt_yield_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a};
+    }
     return isfinite(point->F) && isfinite(point->k);
 }
 

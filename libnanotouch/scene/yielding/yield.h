@@ -42,13 +42,24 @@ typedef struct nt_yield_mesh {
     double K0[NT_YIELD_NODES];                /* u(0) = K0 . p; in contact 2 q(a)/E* = K0 . p [m/Pa] */
     double K1[NT_YIELD_NODES];                /* u at the first edge, where adhesion ends [m/Pa] */
     double load[NT_YIELD_NODES];              /* 4 Int q dt = load . p [m^2] */
+    /* What the contact of a layer adds at h, value and slope in h; 0 on a half-space. */
+    double bend[2][NT_YIELD_NODES]; /* to u [m, -] */
+    double edge[2];                 /* to 2 q(a)/E* [m, -] */
+    double push[2];                 /* to F [N, N/m] */
 } nt_yield_mesh;
-/* From edges, panels and a; `waves` is room for NT_YIELD_WAVES times NT_YIELD_NODES numbers. */
+/* From edges, panels and a; `waves` is room for 2 times NT_YIELD_WAVES times NT_YIELD_NODES numbers. */
 void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, double *waves);
 /* Values at the nodes, taken to an x; beyond the mesh they fall as 1/r. */
 double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double x);
 /* The last two Legendre coefficients of values on a panel, the larger. */
 double nt_yield_mesh_tail(const double *values, int panel);
+
+/* yield_layer.c: wave numbers [1/m], and weights times X(k t) - 1, of a bonded layer. */
+typedef struct nt_yield_spectrum {
+    double k[NT_YIELD_WAVES], weight[NT_YIELD_WAVES];
+} nt_yield_spectrum;
+/* Adds what a layer answers; `waves`: Int cos(k t) q dt of each node, at each k, and as much room behind them. */
+void nt_yield_layer_add(nt_yield_mesh *mesh, const nt_yield_sample *sample, const nt_yield_spectrum *s, double *waves);
 
 /* yield_solve.c: what is held while the gaps are found. */
 typedef enum nt_yield_hold {
