@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Hertz 1881: a paraboloid of radius R on an elastic half-space without adhesion (paper, Eq. 4-6). Valid for a << R. */
+#include "core/same_bits.h"
 #include "nanotouch/contact.h"
 
 #include <math.h>
@@ -24,6 +25,6 @@ double nt_hertz_indentation(const nt_contact *contact, double force)
     if (force < 0.0)
         return NAN;
     /* a^3 = R F/K, delta = a^2/R; cube roots taken one by one, so that no product leaves the range of a double */
-    const double scale = cbrt(force) / cbrt(4.0 / 3.0 * contact->effective_modulus);
-    return scale * scale / cbrt(contact->radius);
+    const double scale = cube_root(force) / cube_root(4.0 / 3.0 * contact->effective_modulus);
+    return scale * scale / cube_root(contact->radius);
 }

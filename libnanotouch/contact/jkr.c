@@ -16,6 +16,7 @@
 #include <math.h>
 
 #include "contact/reduced.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 #define SQRT_6 2.44948974278317809820
@@ -96,7 +97,7 @@ nt_status nt_jkr_indentation(const nt_contact *contact, double force, nt_branch 
     }
     const double P = force / units.load;
     const double larger = P + 3.0 + sqrt(fmax(6.0 * P + 9.0, 0.0)); /* a^3; the two roots multiply to P^2 */
-    const double s2 = cbrt(unstable ? P * P / larger : larger), s = sqrt(s2);
+    const double s2 = cube_root(unstable ? P * P / larger : larger), s = sqrt(s2);
     *indentation = s * (s * s2 - 4.0 * FOLD_S * FOLD_S * FOLD_S) * units.indentation;
     return NT_OK;
 }

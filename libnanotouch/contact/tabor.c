@@ -2,6 +2,7 @@
  * Two balls as a ball on a flat, and the numbers that choose the theory of their adhesion: see geometry.h. */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/geometry.h"
 
 double nt_effective_radius(double radius, double other_radius)
@@ -32,6 +33,6 @@ double nt_cohesive_stress_laplace(double surface_tension, double meniscus_radius
 double nt_tabor_mu(const nt_contact *contact, double equilibrium_distance)
 {
     const double strain = contact->work_of_adhesion / contact->effective_modulus / equilibrium_distance;
-    const double root = cbrt(strain);
-    return root * root * cbrt(contact->radius / equilibrium_distance);
+    const double root = cube_root(strain);
+    return root * root * cube_root(contact->radius / equilibrium_distance);
 }

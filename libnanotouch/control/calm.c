@@ -16,6 +16,7 @@
 
 #include "control/sampled.h"
 #include "core/clamp.h"
+#include "core/same_bits.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
@@ -97,11 +98,11 @@ static void add_up(const source *sources, const walk *found, nt_calm *calm)
         const double white = PEAK_TO_PEAK * sqrt(found->squares[i]), noise = white * from->noise;
         const double whole = from->rings ? sqrt(found->highest[i]) : 0.0;
         const double step = fmax(fmax(LIMIT_CYCLE * white / sqrt(12.0), from->least), whole) * from->step;
-        calm->parts[i] = hypot(step, noise);
+        calm->parts[i] = hypotenuse(step, noise);
         steps += step;
-        noises = hypot(noises, noise);
+        noises = hypotenuse(noises, noise);
     }
-    calm->ripple = hypot(steps, noises);
+    calm->ripple = hypotenuse(steps, noises);
 }
 
 static void list(const nt_rig *rig, const nt_gains *gains, double contact_stiffness, source *sources)
@@ -118,7 +119,7 @@ static void list(const nt_rig *rig, const nt_gains *gains, double contact_stiffn
     sources[NT_RIPPLE_GAUGE] = (source){0.0, 0.0, 0.0, 0.0, 0};
     if (gauge) /* a step of the gauge is no step at the hand: the master's mass and the low-pass are in between */
         sources[NT_RIPPLE_GAUGE] =
-            (source){0.0, hypot(rig->master.gauge_noise, rig->master.gauge_resolution / sqrt(12.0)), 0.0, 0.0, 0};
+            (source){0.0, hypotenuse(rig->master.gauge_noise, rig->master.gauge_resolution / sqrt(12.0)), 0.0, 0.0, 0};
 }
 
 static void judge(nt_calm *calm, double needed)

@@ -5,6 +5,7 @@
  * the stiffest contact in series, as stiff as it is on the mean of that way (hazard.h). */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/guarantee.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
@@ -144,7 +145,7 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
                           .tare = hazard->tared,
                           .help_time = 0.5 * rig->stage.travel / rig->stage.drift};
     /* (1 + a)/(1 - b) of the limit, a^2/sigma_k^2 + b^2/sigma_S^2 = 9: a + b is at most 3 hypot */
-    const double off = NT_GUARANTEE_SIGMAS * hypot(probe->spring_constant_sigma, probe->sensitivity_sigma);
+    const double off = NT_GUARANTEE_SIGMAS * hypotenuse(probe->spring_constant_sigma, probe->sensitivity_sigma);
     found.calibration = limits->force * off / (1.0 - off);
     found.speed = b.vertical + (found.moves_sideways ? hazard->slope * limits->lateral_speed : 0.0);
     const double closer = found.speed * b.reaction + falls_behind(&b, &rig->stage);

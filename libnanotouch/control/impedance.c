@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "control/sampled.h"
+#include "core/same_bits.h"
 #include "nanotouch/margins.h"
 #include "nanotouch/material.h"
 
@@ -53,7 +54,7 @@ static int is_transparent(const nt_rig *rig, const nt_gains *gains, double conta
     const nt_loop_response at = nt_margins_response(rig, gains, contact_stiffness, frequency);
     const double k_c = rig->probe.spring_constant;
     const double k_r = gains->alpha_f * gains->alpha_p * k_c / (1.0 + k_c / contact_stiffness);
-    const double ratio = hypot(at.impedance[0], at.impedance[1]) * 2.0 * NT_PI * frequency / k_r;
+    const double ratio = hypotenuse(at.impedance[0], at.impedance[1]) * 2.0 * NT_PI * frequency / k_r;
     return ratio < SQRT2 && ratio * SQRT2 > 1.0;
 }
 

@@ -9,6 +9,7 @@
 
 #include "control/known_law.h"
 #include "control/sampled.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
 
@@ -46,7 +47,7 @@ static double loop_delay(const nt_rig *rig, const nt_gains *gains)
 static double filtered_gauge_noise(const nt_master *master, const nt_gains *gains)
 {
     const double c = -expm1(-2.0 * NT_PI * gains->force_filter / gains->rate);
-    return sqrt(c / (2.0 - c)) * hypot(master->gauge_noise, master->gauge_resolution / sqrt(12.0));
+    return sqrt(c / (2.0 - c)) * hypotenuse(master->gauge_noise, master->gauge_resolution / sqrt(12.0));
 }
 
 /* R2: v[k+1] = v[k] - (K_f b_h T/m) v[k-d] turns over at 2 sin(pi/(4 d + 2)). */
@@ -75,8 +76,8 @@ static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double conta
         .pad_limit = pad_limit(rig, gains),
         .mass_limit = 1.0 + rig->master.mass / rig->hand.mass,
         .quantisation_step = (1.0 + K_f) * k_r / gains->alpha_p * step,
-        .force_noise = hypot((1.0 + K_f) * gains->alpha_f * nt_probe_force_noise(&rig->probe),
-                             K_f * filtered_gauge_noise(&rig->master, gains)),
+        .force_noise = hypotenuse((1.0 + K_f) * gains->alpha_f * nt_probe_force_noise(&rig->probe),
+                                  K_f * filtered_gauge_noise(&rig->master, gains)),
     };
     /* R1. Above its corner the stage's integral g lifts C by 1 + g times the lag that it sees. */
     const double lift = 1.0 + gains->stage_integral * (margins.loop_delay - hop_delay(rig, gains));

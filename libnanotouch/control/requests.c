@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/clamp.h"
+#include "core/same_bits.h"
 #include "nanotouch/touch.h"
 
 nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, double y, double duration)
@@ -11,7 +12,8 @@ nt_status nt_touch_aim(const nt_touch *touch, nt_touch_state *state, double x, d
         return NT_E_NOT_FINITE;
     if (duration < 0.0)
         return NT_E_RANGE;
-    const double distance = hypot(x - state->command.stage_position[NT_X], y - state->command.stage_position[NT_Y]);
+    const double distance =
+        hypotenuse(x - state->command.stage_position[NT_X], y - state->command.stage_position[NT_Y]);
     state->target_x = x;
     state->target_y = y;
     state->target_time = greater(duration, distance / touch->settings.limits.lateral_speed);

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "core/clamp.h"
+#include "core/same_bits.h"
 #include "nanotouch/scaling.h"
 #include "nanotouch/servo.h"
 
@@ -20,7 +21,7 @@ nt_rescale nt_rescale_make(const nt_rig *rig, const nt_settings *settings)
     const double T = 1.0 / settings->gains.rate;
     const nt_probe *probe = &equivalent.rig.probe;
     const double noise =
-        probe->spring_constant * probe->sensitivity * hypot(FREE_SIGMA * probe->noise / 6.0, probe->resolution);
+        probe->spring_constant * probe->sensitivity * hypotenuse(FREE_SIGMA * probe->noise / 6.0, probe->resolution);
     return (nt_rescale){.share = lesser(FASTEST_SHARE, T / greater(settings->gains.ramp_time, T)),
                         .threshold = noise,
                         .spring_constant = rig->probe.spring_constant,

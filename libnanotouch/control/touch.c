@@ -9,6 +9,7 @@
 #include "control/modes.h"
 #include "control/motor.h"
 #include "core/clamp.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 #define SPEED_BANDWIDTH 20.0 /* of the estimate of the master's speed [Hz]: its position comes in steps */
@@ -60,7 +61,7 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
 static double spike_of(const nt_rig *rig, const nt_settings *settings)
 {
     const double motion = settings->limits.stage_speed + settings->limits.lateral_speed;
-    const double noise = rig->probe.sensitivity * hypot(rig->probe.noise / 6.0, rig->probe.resolution);
+    const double noise = rig->probe.sensitivity * hypotenuse(rig->probe.noise / 6.0, rig->probe.resolution);
     return SPIKE_SIGMA * noise + SPIKE_MOTION * motion / settings->gains.rate;
 }
 
@@ -242,7 +243,7 @@ static void follow_sideways(const nt_touch *touch, nt_touch_state *state)
     double *stage = state->command.stage_position, way[2];
     for (int i = NT_X; i < NT_Z; ++i)
         way[i] = state->signals.scaling.alpha_p * state->sideways[i];
-    const double length = hypot(way[NT_X], way[NT_Y]), share = length > most ? most / length : 1.0;
+    const double length = hypotenuse(way[NT_X], way[NT_Y]), share = length > most ? most / length : 1.0;
     for (int i = NT_X; i < NT_Z; ++i) {
         const double wanted = stage[i] + share * way[i];
         stage[i] = clamp(wanted, touch->borders[i][0], touch->borders[i][1]);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_rig, path, __VA_ARGS__)
@@ -130,7 +131,7 @@ const nt_field *nt_rig_fields(int *count)
 /* Bits over +-range. */
 static double coarser(double own, double range, double bits)
 {
-    return bits > 0.0 ? fmax(own, range * exp2(1.0 - bits)) : own;
+    return bits > 0.0 ? fmax(own, range * power_of_two(1.0 - bits)) : own;
 }
 
 nt_rig nt_rig_with_steps(const nt_rig *rig)

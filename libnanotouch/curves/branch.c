@@ -2,6 +2,7 @@
  * What happens on one branch: snap-in or pull-off, the tearing-off, the work of adhesion, the slope in contact. */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
 
@@ -99,7 +100,7 @@ static nt_curve_measured adhesion_work(const nt_curve_branch *branch)
     }
     const double level = nt_curve_baseline_sigma(&branch->baseline, branch->z[branch->lowest]);
     return (nt_curve_measured){area,
-                               hypot(level * (branch->z[last] - branch->z[first]), branch->noise * sqrt(squares))};
+                               hypotenuse(level * (branch->z[last] - branch->z[first]), branch->noise * sqrt(squares))};
 }
 
 static nt_curve_measured contact_slope(const nt_curve_branch *branch)
@@ -144,7 +145,7 @@ static void order_outwards(const nt_curve_segment *segment, const nt_curve_basel
 
 double nt_curve_branch_sigma(const nt_curve_branch *branch, double z)
 {
-    return hypot(branch->noise, nt_curve_baseline_sigma(&branch->baseline, z));
+    return hypotenuse(branch->noise, nt_curve_baseline_sigma(&branch->baseline, z));
 }
 
 void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work,

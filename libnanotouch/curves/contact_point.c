@@ -3,6 +3,7 @@
  * its baseline taken off. */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
 
@@ -132,7 +133,7 @@ static double hertz(const outward *branch, double *scratch)
     long count = 0;
     for (long i = 0; i < branch->crossing; i++)
         if (branch->force[i] > branch->visible) {
-            const double root = cbrt(branch->force[i]);
+            const double root = cube_root(branch->force[i]);
             power[count] = root * root;
             above[count++] = branch->z[i] + branch->force[i] / branch->stiffness;
         }
@@ -197,5 +198,5 @@ void nt_curve_find_contact(const nt_curve_branch *first, double spring_constant,
     reading->contact_point = spread_of(points);
     const double rise = steepness(first, peak, after, crossing);
     const double statistical = rise > 0.0 ? nt_curve_branch_sigma(first, crossing) / rise : (double)NAN;
-    reading->contact_point.sigma = hypot(statistical, reading->contact_point.sigma);
+    reading->contact_point.sigma = hypotenuse(statistical, reading->contact_point.sigma);
 }

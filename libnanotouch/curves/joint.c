@@ -4,8 +4,7 @@
  * tilt and wave; where its level is further below the approach than drag explains, nothing is free. */
 #include "curves/joint.h"
 
-#include <math.h>
-
+#include "core/same_bits.h"
 #include "curves/film.h"
 #include "curves/line.h"
 #include "curves/parts.h"
@@ -230,7 +229,7 @@ static void refine_dip(const outside *out, nt_curve_reading *reading)
     if (torn)
         better = (nt_curve_measured){reading->rupture[row].force, out->sigma[row]};
     if (fabs(better.value - retract->dip.value) < deepest_of_many * retract->noise + better.sigma)
-        retract->dip = (nt_curve_measured){better.value, hypot(known, fmax(better.sigma, retract->noise))};
+        retract->dip = (nt_curve_measured){better.value, hypotenuse(known, fmax(better.sigma, retract->noise))};
 }
 
 /* The same wave seen from another zero of x. */
@@ -331,7 +330,7 @@ static void widen(const nt_curve *curve, double most, double unseen, nt_curve_re
         reading->pull_off_sigma = sqrt(fmax(dip->sigma * dip->sigma - width * width / 12.0, 0.0));
     } else if (offset > curve->least_drag + contradiction * reading->offset_sigma || reading->retract.dips) {
         above = fmax(offset - curve->least_drag, 0.0);
-        dip->sigma = hypot(dip->sigma, above / sqrt(12.0));
+        dip->sigma = hypotenuse(dip->sigma, above / sqrt(12.0));
     }
     reading->pull_off_least = dip->value - below;
     reading->pull_off_most = dip->value + above + unseen;
@@ -349,12 +348,12 @@ static void take_off_film(const outside *out, long free, nt_curve_reading *readi
     const double doubt = there * film.sigma / film.strength;
     reading->pull_off_least = fmax(reading->pull_off_least - there - 2.0 * doubt, 0.0);
     if (!nt_curve_film_is_odd(&film, out->z, out->over, out->count, free ? out->z[free] : out->z[0])) {
-        dip->sigma = hypot(dip->sigma, there / sqrt(12.0));
+        dip->sigma = hypotenuse(dip->sigma, there / sqrt(12.0));
         return;
     }
     dip->value -= there;
-    dip->sigma = hypot(dip->sigma, doubt);
-    reading->pull_off_sigma = hypot(reading->pull_off_sigma, doubt);
+    dip->sigma = hypotenuse(dip->sigma, doubt);
+    reading->pull_off_sigma = hypotenuse(reading->pull_off_sigma, doubt);
     if (dip->value < retract->visible) {
         dip->value = 0.0;
         retract->dips = 0;

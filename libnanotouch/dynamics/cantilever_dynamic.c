@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "oscillator.h"
 
 #define CLOSE 1e-5 /* Newton steps below this many field lengths are exact to about its square */
@@ -172,7 +173,7 @@ static int flies_free(const nt_cantilever_model *model, const nt_cantilever_stat
                       const nt_law_value *law, double lowest_base)
 {
     const double spring = model->probe.spring_constant, shift = law->F / spring;
-    const double swing = hypot(state->deflection - shift, state->speed / model->rate);
+    const double swing = hypotenuse(state->deflection - shift, state->speed / model->rate);
     const double low = lowest_base + model->cosine * (shift - swing - 6.0 * model->steps[0].noise[0]);
     const nt_law_value lowest = field->eval(field->context, low);
     return is_negligible(model, lowest.k);

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/friction.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_friction, path, __VA_ARGS__)
@@ -81,7 +82,7 @@ static void change_contact(nt_friction_state *state, double stiffness, double li
         give_up(state, ratio, ratio);
     }
     state->stiffness = stiffness;
-    const double pull = hypot(state->force[0], state->force[1]);
+    const double pull = hypotenuse(state->force[0], state->force[1]);
     if (pull > limit) {
         const double share = limit / pull;
         give_up(state, share, share * share);
@@ -91,7 +92,7 @@ static void change_contact(nt_friction_state *state, double stiffness, double li
 /* The part of a way s that is stuck: until |p + K s n| = F. along: n.p */
 static double stuck_part(const nt_friction_state *state, double along, double limit)
 {
-    const double pull = hypot(state->force[0], state->force[1]);
+    const double pull = hypotenuse(state->force[0], state->force[1]);
     const double room = fmax((limit - pull) * (limit + pull), 0.0); /* F^2 - p^2 */
     const double root = sqrt(along * along + room);
     return (along > 0.0 ? room / (along + root) : root - along) / state->stiffness;
@@ -141,7 +142,7 @@ nt_status nt_friction_advance(const nt_friction *friction, nt_friction_state *st
         return status;
     const double limit = nt_friction_limit(friction, contact);
     change_contact(state, nt_friction_stiffness(friction, contact->radius), limit);
-    const double length = hypot(way[0], way[1]);
+    const double length = hypotenuse(way[0], way[1]);
     if (!(length > 0.0) || !(state->stiffness > 0.0))
         return NT_OK;
     const double n[2] = {way[0] / length, way[1] / length};

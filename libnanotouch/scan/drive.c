@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "core/problem.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/tapping.h"
 
@@ -56,8 +57,8 @@ static nt_status check_lever(const nt_probe *probe, nt_problem *problem)
 /* Free, q = D/(1 - r^2 + i r/Q); the deflection is q, or q - D where the base is driven. */
 static double answer(double ratio, double quality, int at_base)
 {
-    const double swing = hypot(1.0 - ratio * ratio, ratio / quality);
-    return (at_base ? ratio * hypot(ratio, 1.0 / quality) : 1.0) / swing;
+    const double swing = hypotenuse(1.0 - ratio * ratio, ratio / quality);
+    return (at_base ? ratio * hypotenuse(ratio, 1.0 / quality) : 1.0) / swing;
 }
 
 nt_status nt_tapping_init(nt_tapping *tapping, const nt_probe *probe, const nt_drive *drive, double tolerance,

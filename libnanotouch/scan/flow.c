@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/flow.h"
 #include "nanotouch/material.h"
 
@@ -227,8 +228,8 @@ nt_flow_state nt_flow_free(const nt_tapping *tapping)
 static nt_flow_value value_of(const nt_tapping *lever, const nt_flow_state *state, const nt_flow_average *sum)
 {
     const double real = state->real - (lever->at_base ? lever->strength : 0.0);
-    const double amplitude = hypot(state->real, state->imaginary);
-    return (nt_flow_value){.amplitude = hypot(real, state->imaginary),
+    const double amplitude = hypotenuse(state->real, state->imaginary);
+    return (nt_flow_value){.amplitude = hypotenuse(real, state->imaginary),
                            .phase = atan2(-state->imaginary, real),
                            .mean = sum->mean,
                            .peak_force = sum->peak,
@@ -239,7 +240,7 @@ static nt_flow_value value_of(const nt_tapping *lever, const nt_flow_state *stat
 
 nt_flow_value nt_flow_now(const nt_tapping *tapping, const nt_flow_state *state, const nt_tapping_over *over)
 {
-    const nt_flow_average sum = average_of(tapping, state, over, hypot(state->real, state->imaginary));
+    const nt_flow_average sum = average_of(tapping, state, over, hypotenuse(state->real, state->imaginary));
     return value_of(tapping, state, &sum);
 }
 
@@ -259,7 +260,7 @@ static int step_by(const nt_tapping *lever, nt_flow_state *state, const nt_tappi
 {
     nt_flow_state next = *state;
     swing_freely(lever, &next, 0.5 * t);
-    const double r = lever->ratio, amplitude = hypot(next.real, next.imaginary);
+    const double r = lever->ratio, amplitude = hypotenuse(next.real, next.imaginary);
     const nt_flow_average sum = average_in(lever, &next, over, amplitude, table);
     /* Z' = -i/(2 r) (fc - i fs) Z/|Z| */
     const double turn = -0.5 * sum.cosine / (r * amplitude) * t, c = cos(turn), s = sin(turn);
@@ -317,8 +318,8 @@ nt_status nt_flow_settle(const nt_tapping *tapping, nt_flow_state *state, const 
     for (; n < most && change > still; n++) {
         const nt_flow_state before = *state;
         *value = nt_flow_step(tapping, state, over, step);
-        change =
-            hypot(hypot(state->real - before.real, state->imaginary - before.imaginary), state->mean - before.mean);
+        change = hypotenuse(hypotenuse(state->real - before.real, state->imaginary - before.imaginary),
+                            state->mean - before.mean);
         if (!isfinite(change))
             return NT_E_NOT_FINITE;
     }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/tapping.h"
 
 #define NEAR 3e-4    /* change in one period, over A0, from which Newton's method may try */
@@ -49,7 +50,7 @@ static int newton_step(const search *s, nt_tapping_state *x, const nt_tapping_st
     const double q = image->position - x->position, v = image->speed - x->speed;
     const double determinant = j[0] * j[3] - j[2] * j[1];
     const double dq = -(j[3] * q - j[2] * v) / determinant, dv = -(j[0] * v - j[1] * q) / determinant;
-    if (!(hypot(dq, dv) <= REACH * s->tapping->free_amplitude))
+    if (!(hypotenuse(dq, dv) <= REACH * s->tapping->free_amplitude))
         return 0;
     x->position += dq;
     x->speed += dv;

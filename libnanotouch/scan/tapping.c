@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "dop853.h"
 #include "nanotouch/material.h"
 
@@ -237,7 +238,7 @@ static void tell(const course *c, const nt_tapping_state *first, const nt_tappin
     const double virial = sums[SPEED2] - sums[WAY2] + sums[VIRIAL] / k + sums[DRIVE_VIRIAL] - drag - moved;
     const double per = 1.0 / (double)periods;
     *value = (nt_tapping_value){
-        .amplitude = hypot(x, y),
+        .amplitude = hypotenuse(x, y),
         .phase = atan2(y, x),
         .mean = sums[DEFLECTION] / time,
         .peak_force = c->peak,
@@ -252,7 +253,7 @@ static void tell(const course *c, const nt_tapping_state *first, const nt_tappin
         .virial = sums[VIRIAL] / time,
         .energy_error = relative(energy, fmax(fabs(sums[DRIVE_WORK]), medium)),
         .virial_error = relative(virial, time * lever->free_amplitude * lever->free_amplitude),
-        .change = hypot(end->position - first->position, end->speed - first->speed) / lever->free_amplitude,
+        .change = hypotenuse(end->position - first->position, end->speed - first->speed) / lever->free_amplitude,
         .steps = c->steps,
         .evaluations = c->evaluations};
 }

@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "core/problem.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/scan.h"
 
@@ -69,11 +70,11 @@ static double open_loop(const nt_scanner *s, double w, double *lag)
 {
     const nt_stage *stage = &s->stage.stage;
     const double r = w / (2.0 * NT_PI * stage->resonance), real = 1.0 - r * r, imaginary = r / stage->quality;
-    double size = 1.0 / w / hypot(real, imaginary);
+    double size = 1.0 / w / hypotenuse(real, imaginary);
     *lag = 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
     if (s->scan.zloop.mode != NT_ZLOOP_CONTACT) {
         const double amplifier = w * s->scan.zloop.lock_in, lever = 2.0 * w * s->lever.quality / s->lever.rate;
-        size /= hypot(1.0, amplifier) * hypot(1.0, lever);
+        size /= hypotenuse(1.0, amplifier) * hypotenuse(1.0, lever);
         *lag += atan(amplifier) + atan(lever);
     }
     return size;

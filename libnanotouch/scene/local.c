@@ -2,6 +2,7 @@
  * A contact with the radius of each place: where it lets go there, and what others need to know of all places. */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "scene/parts.h"
 
 double nt_plan_release_gap(const nt_plan *plan, const nt_place *place)
@@ -52,7 +53,7 @@ int nt_plan_wants_bank(const nt_plan *plan, nt_maugis_bank_options *options)
     lambdas_of(plan, lambda);
     const double accuracy = plan->demand.relative_accuracy, least = plan->least.radius / plan->contact.radius;
     /* reduced by (pi^2 w^2 R/K^2)^(1/3) of the sharpest place, where the same load goes deeper */
-    const double deepest = plan->largest_indentation / plan->maugis.indentation_scale / cbrt(least * least);
+    const double deepest = plan->largest_indentation / plan->maugis.indentation_scale / cube_root(least * least);
     const double first = fmin(fmax(floor(log10(lambda[0] / 1.5)), -15.0), 14.0);
     const double last = fmin(fmax(ceil(log10(lambda[1] * 1.5)), first + 1.0), 15.0);
     *options = nt_maugis_bank_defaults();

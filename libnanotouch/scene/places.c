@@ -5,6 +5,7 @@
  * all corners. */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "scene/parts.h"
 
 static int has(const nt_surface *property)
@@ -98,11 +99,11 @@ double nt_plan_largest_unit(const nt_plan *plan, nt_quantity quantity)
         plan->contact.work_of_adhesion > 0.0 ? plan->most.work_of_adhesion / plan->contact.work_of_adhesion : 1.0;
     switch (quantity) {
     case NT_QUANTITY_STIFFNESS:
-        return cbrt(R * R * K * K * w);
+        return cube_root(R * R * K * K * w);
     case NT_QUANTITY_RADIUS:
-        return cbrt(R * R * w);
+        return cube_root(R * R * w);
     default:
-        return cbrt(R * w * w);
+        return cube_root(R * w * w);
     }
 }
 

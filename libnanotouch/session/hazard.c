@@ -11,6 +11,7 @@
 
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/preflight.h"
 #include "nanotouch/servo.h"
@@ -179,7 +180,7 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
                        double clearance)
 {
     const nt_probe *lever = &rig->probe;
-    const double off = NT_GUARANTEE_SIGMAS * hypot(lever->spring_constant_sigma, lever->sensitivity_sigma);
+    const double off = NT_GUARANTEE_SIGMAS * hypotenuse(lever->spring_constant_sigma, lever->sensitivity_sigma);
     const double free_force = nt_supervisor_make(rig, settings).free_force / (1.0 - off); /* as it may be */
     nt_hazard hazard = {.slope = slope,
                         .pull_off_force = plan->largest_pull_off_force,

@@ -8,6 +8,7 @@
  * the peak of the parabola through it and its neighbours is taken. Smooth: the second difference of body less tip does
  * not fall below a half of its value there over the neighbours; at an edge (below a quarter) it is the pixel's own
  * height, in between a part of the difference. */
+#include "core/same_bits.h"
 #include "nanotouch/field.h"
 #include "nanotouch/surface.h"
 
@@ -75,7 +76,7 @@ static void lift_by_row(block *b, long dj)
         return;
     const long near = pixels_within(sqrt(fmax(distance * distance - away * away, 0.0)), map->dx, map->nx);
     for (long di = -near; di <= near; di++) {
-        const double tip = nt_tip_shape_height(b->tip, hypot((double)di * map->dx, away));
+        const double tip = nt_tip_shape_height(b->tip, hypotenuse((double)di * map->dx, away));
         const long start = b->first + di < 0 ? -di : b->first;
         const long end = b->last + di < map->nx ? b->last : map->nx - 1 - di;
         const long offset = dj * map->nx + di;
@@ -123,7 +124,7 @@ static double apex_at(const patch *p, long ei, long ej)
     if (i < 0 || i >= map->nx || j < 0 || j >= map->ny)
         return -HUGE_VAL;
     const double x = (double)(p->di + ei) * map->dx, y = (double)(p->dj + ej) * map->dy;
-    return map->heights[j * map->nx + i] - nt_tip_shape_height(p->b->tip, hypot(x, y));
+    return map->heights[j * map->nx + i] - nt_tip_shape_height(p->b->tip, hypotenuse(x, y));
 }
 
 /* Slope and curvature (> 0) of body less tip along an axis, per pixel; 0 slope where it is not smooth. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Quantum dots: spherical caps on a flat (the paper's Fig. 19). */
+#include "core/same_bits.h"
 #include "nanotouch/random.h"
 #include "nanotouch/surface.h"
 
@@ -10,7 +11,7 @@ enum { TRIES = 1000 }; /* per dot, before the area counts as full */
 static int overlaps(const nt_dots *dots, double x, double y, double diameter)
 {
     for (int k = 0; k < dots->count; k++) {
-        const double distance = hypot(dots->dot[k].x - x, dots->dot[k].y - y);
+        const double distance = hypotenuse(dots->dot[k].x - x, dots->dot[k].y - y);
         if (distance < (dots->dot[k].diameter + diameter) / 2.0)
             return 1;
     }
@@ -59,7 +60,7 @@ double nt_dots_height(const nt_dots *dots, double x, double y)
     if (isnan(x) || isnan(y))
         return x + y;
     for (int k = 0; k < dots->count; k++) {
-        const double r = hypot(x - dots->dot[k].x, y - dots->dot[k].y);
+        const double r = hypotenuse(x - dots->dot[k].x, y - dots->dot[k].y);
         const double top = dots->dot[k].height, edge = dots->dot[k].diameter / 2.0;
         if (r >= edge)
             continue;

@@ -5,6 +5,7 @@
  * largest value found so far is halved. Both shrink together: the bound exceeds the truth in proportion to the square
  * of the piece. */
 #include "surface/extremes.h"
+#include "core/same_bits.h"
 
 #include <math.h>
 
@@ -154,7 +155,7 @@ static estimate height_of(const search *s, const nt_surface_value *v, const deri
 /* |dz/ds| of a path: its slope and two more derivatives along it. */
 static estimate slope_along(const nt_surface_value *v, const derivatives *d, const piece *p)
 {
-    const double a = fabs(p->a), b = fabs(p->b), length = hypot(a, b);
+    const double a = fabs(p->a), b = fabs(p->b), length = hypotenuse(a, b);
     if (!(length > 0.0))
         return (estimate){0.0, 0.0, 0.0, 0.0};
     const double bend = v->zxx * p->a * p->a + 2.0 * v->zxy * p->a * p->b + v->zyy * p->b * p->b;
@@ -232,12 +233,12 @@ static void halve(search *s, int what, const derivatives *d, piece p, int halvin
  * at once and enough for most cells. */
 static double steepest_of(const search *s, const cells *c, const double range[2])
 {
-    const double span = range[1] - range[0], roughly = hypot(span / s->surface->dx, span / s->surface->dy);
+    const double span = range[1] - range[0], roughly = hypotenuse(span / s->surface->dx, span / s->surface->dy);
     derivatives d;
     if (roughly <= enough(s, STEEPEST))
         return roughly;
     derivatives_of(s->surface, c, 1, &d);
-    return hypot(d.of[1][0], d.of[0][1]);
+    return hypotenuse(d.of[1][0], d.of[0][1]);
 }
 
 /* The largest in a piece of some cells, if it may be larger than what has been found. */
@@ -323,7 +324,7 @@ static void search_area(search *s, const double x[2], const double y[2], const n
             const nt_height_value at = nt_surface_height(s->surface, p.x, p.y);
             s->found[HIGHEST] = fmax(s->found[HIGHEST], at.z);
             s->found[LOWEST] = fmax(s->found[LOWEST], -at.z);
-            s->found[STEEPEST] = fmax(s->found[STEEPEST], hypot(at.zx, at.zy));
+            s->found[STEEPEST] = fmax(s->found[STEEPEST], hypotenuse(at.zx, at.zy));
         }
     for (long j = c.first[1]; j <= c.last[1]; j++)
         for (long i = c.first[0]; i <= c.last[0]; i++) {

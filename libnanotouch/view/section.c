@@ -2,6 +2,7 @@
  * The section through a contact: how far the surfaces have come closer at each distance from the axis. */
 #include <math.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/view.h"
 #include "scene/parts.h"
 
@@ -36,7 +37,7 @@ static double cohesive_radius(const nt_view_contact *contact, double force)
     if (a == 0.0)
         return sqrt(fmax(-force, 0.0) / (NT_PI * stress));
     const double width = (a * a / contact->radius - contact->indentation) * contact->modulus / (2.0 * stress);
-    return hypot(a, fmax(width, 0.0));
+    return hypotenuse(a, fmax(width, 0.0));
 }
 
 static int has_range(nt_form form)

@@ -54,6 +54,12 @@ static nt_scene with_well(nt_scene scene, const well *w)
     return scene;
 }
 
+/* The two plans let go at the same gap but for rounding. */
+static double last_hold(void)
+{
+    return plan.release_gap - 1e-12 * fabs(plan.release_gap);
+}
+
 static nt_law_value everything(int attached, double gap)
 {
     const nt_interaction_state history = {attached, 0.0, 0.0};
@@ -66,7 +72,7 @@ enum { GAPS = 4000 };
  * in even steps or ratios. */
 static double largest_between(int growth, double first, double last)
 {
-    const double fold = growth ? plan.capture_gap : plan.release_gap;
+    const double fold = growth ? plan.capture_gap : last_hold();
     double most = 0.0;
     for (int i = 0; i <= GAPS; i++) {
         const double t = (double)i / GAPS, even = first + t * (last - first);
@@ -80,7 +86,7 @@ static double largest_between(int growth, double first, double last)
 /* ... of all gaps, just outside the folds, where terms are held and around a well included. */
 static double largest_of_all(int growth, double hold, const well *w)
 {
-    const double fold = growth ? plan.capture_gap : plan.release_gap, near = larger(fold, 1e-13);
+    const double fold = growth ? plan.capture_gap : last_hold(), near = larger(fold, 1e-13);
     double most = larger(growth ? 0.0 : -everything(1, fold).F,
                          largest_between(growth, -larger(plan.largest_indentation, near), fold));
     most = larger(most, largest_between(growth, -1e-18, -1e-9));

@@ -30,6 +30,7 @@
 #include <math.h>
 
 #include "contact/maugis/functions.h"
+#include "core/same_bits.h"
 
 void nt_maugis_equilibrium_at(double lambda, double y, nt_maugis_equilibrium *point)
 {
@@ -94,7 +95,8 @@ double nt_maugis_parameter_guess(double lambda, double a)
 {
     /* (Griffith) with g1 ~ 4/(3 (y + 0.85)), g2 ~ 1/(2 (y + 0.85)), right at both ends: y^3 + 0.85 y^2 = 2 p y + 3 q */
     const double p = lambda * lambda * a / 3.0, q = 2.0 / 9.0 * lambda * a * a;
-    double y = 4.0 * p / (0.85 + sqrt(0.7225 + 8.0 * p)) + fmin(cbrt(3.0 * q), sqrt(3.0 * q / 0.85)); /* not below it */
+    double y =
+        4.0 * p / (0.85 + sqrt(0.7225 + 8.0 * p)) + fmin(cube_root(3.0 * q), sqrt(3.0 * q / 0.85)); /* not below it */
     for (int i = 0; i < 2; i++) /* Newton from above, convex: it stays above */
         y = (2.0 * y * y * y + 0.85 * y * y + 3.0 * q) / (3.0 * y * y + 1.7 * y - 2.0 * p);
     return y;

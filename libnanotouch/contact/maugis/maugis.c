@@ -18,6 +18,7 @@
 
 #include "contact/maugis/apart.h"
 #include "contact/maugis/solve.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 static nt_reduced_units units_of(const nt_maugis *maugis)
@@ -116,9 +117,9 @@ double nt_maugis_lambda(const nt_contact *contact)
     if (contact->work_of_adhesion == 0.0)
         return INFINITY;
     const double K = 4.0 / 3.0 * contact->effective_modulus;
-    const double root_K = cbrt(K);
-    return 2.0 * contact->cohesive_stress / (root_K * root_K) * cbrt(contact->radius) /
-           cbrt(NT_PI * contact->work_of_adhesion);
+    const double root_K = cube_root(K);
+    return 2.0 * contact->cohesive_stress / (root_K * root_K) * cube_root(contact->radius) /
+           cube_root(NT_PI * contact->work_of_adhesion);
 }
 
 /* Scales and folds of a checked contact. */

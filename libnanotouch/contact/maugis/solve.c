@@ -13,6 +13,7 @@
 
 #include "contact/maugis/functions.h"
 #include "core/roots.h"
+#include "core/same_bits.h"
 
 enum { MAX_ITERATIONS = 100 };
 
@@ -55,7 +56,7 @@ nt_status nt_maugis_fold_find(double lambda, nt_maugis_given given, nt_maugis_eq
 static double guess_above(double lambda, const nt_maugis_goal *goal, double Z)
 {
     const double a_fold = goal->fold->a;
-    const double radius = goal->given == NT_GIVEN_LOAD ? cbrt(a_fold * sqrt(a_fold) + Z) : 0.0;
+    const double radius = goal->given == NT_GIVEN_LOAD ? cube_root(a_fold * sqrt(a_fold) + Z) : 0.0;
     return nt_maugis_parameter_guess(lambda, goal->given == NT_GIVEN_LOAD ? radius * radius : a_fold + Z);
 }
 

@@ -15,6 +15,7 @@
 #include <stddef.h>
 
 #include "core/roots.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 #define SMALL 1e-9 /* its square is below the last bit */
@@ -165,5 +166,5 @@ double nt_sphere_find_depth(double depth)
 double nt_sphere_find_force(double force)
 {
     const double F = 2.0 * force;
-    return root_between(force_residual, F, fmax(cbrt(0.75 * F), 0.5 * F), fmax(cbrt(1.8 * F), 1.8 * F));
+    return root_between(force_residual, F, fmax(cube_root(0.75 * F), 0.5 * F), fmax(cube_root(1.8 * F), 1.8 * F));
 }

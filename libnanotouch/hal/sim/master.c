@@ -8,6 +8,7 @@
 
 #include "core/axes.h"
 #include "core/clamp.h"
+#include "core/same_bits.h"
 #include "parts.h"
 
 static void init_sensors(nt_sim_master *master)
@@ -17,7 +18,7 @@ static void init_sensors(nt_sim_master *master)
     master->position_sensor = (nt_sensor){0.0, arm->resolution, 0.5 * arm->travel};
     master->gauge = (nt_sensor){arm->gauge_noise, arm->gauge_resolution, arm->gauge_range};
     const double bits = real.converters.dac_bits;
-    master->motor_step = bits > 0.0 ? arm->max_force * exp2(1.0 - bits) : 0.0;
+    master->motor_step = bits > 0.0 ? arm->max_force * power_of_two(1.0 - bits) : 0.0;
 }
 
 /* A command acts after delay and latency; a part of a period splits the period in two. */

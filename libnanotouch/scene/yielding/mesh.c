@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/same_bits.h"
 #include "scene/yielding/yield.h"
 
 enum { N = NT_YIELD_ORDER, NT = 2 * NT_YIELD_ORDER + 4, PIECES = 6 };
@@ -181,7 +182,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     for (int panel = 0; panel < mesh->panels; ++panel)
         for (int i = 0; i < NT; ++i) {
             const double span = sqrt(mesh->edges[panel + 1]) - sqrt(mesh->edges[panel]);
-            const double tau = sqrt(mesh->edges[panel + 1]) - span * y[i] * y[i], t = hypot(tau, mesh->a);
+            const double tau = sqrt(mesh->edges[panel + 1]) - span * y[i] * y[i], t = hypotenuse(tau, mesh->a);
             abel_row(mesh, &b, tau, row);
             const double weight = 2.0 * span * y[i] * w[i] * tau / t;
             add_row(mesh, row, weight);
