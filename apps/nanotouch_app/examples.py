@@ -27,7 +27,7 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
         ("nanotouch info result/recording.mcap --json", "what a touch left, as data"),
     ),
     "plan": (
-        ("nanotouch plan silicon_on_gold --relative-accuracy 1%", "the cheapest models that keep to 1 %"),
+        ("nanotouch plan silicon_on_gold", "the cheapest models that keep to 1 %"),
         ("nanotouch plan scene.toml --json", "your own scene, as data"),
     ),
     "curve": (("nanotouch curve --scene scene.toml", "force against gap, for four contact models"),),

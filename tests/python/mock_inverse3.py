@@ -38,6 +38,8 @@ class Service:
     wrong: list[str] = field(default_factory=list)
     """commands that the service would not understand"""
     connections: int = 0
+    open: int = 0
+    """of them"""
     port: int = 0
 
     async def start(self) -> None:
@@ -62,13 +64,16 @@ class Service:
         link = web.WebSocketResponse()
         await link.prepare(request)
         self.connections += 1
-        with suppress(ConnectionError):  # the other end has gone
+        self.open += 1
+        try:
             await self._send(link)
-            async for message in link:
+            async for message in link:  # to its end: what the other end said last is taken, though it has gone
                 if message.type != WSMsgType.TEXT or not self._take(message.data):
                     self.wrong.append(str(message.data))
                 if not await self._send(link):
                     break
+        finally:
+            self.open -= 1
         return link
 
     def _take(self, text: str) -> bool:
@@ -88,7 +93,8 @@ class Service:
         if what is None:
             await link.close()
             return False
-        await (link.send_bytes(what) if isinstance(what, bytes) else link.send_str(what))
+        with suppress(ConnectionError):  # the other end has gone
+            await (link.send_bytes(what) if isinstance(what, bytes) else link.send_str(what))
         return True
 
 

@@ -118,6 +118,7 @@ def play(story: Callable[[Service, Box, inverse3.Bridge], Awaitable[None]]) -> t
             finally:
                 running.cancel()
                 await asyncio.gather(running, return_exceptions=True)
+                await until(lambda: service.open == 0)  # it has heard all that was said
                 await service.stop()
         return service, box, bridge
 
