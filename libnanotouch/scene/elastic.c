@@ -207,6 +207,15 @@ double nt_plan_rigid_shift(const nt_plan *plan)
     return shift_of(plan, plan->yield.count == 0); /* of a table the tail is right */
 }
 
+double nt_plan_yield_touch(const nt_plan *plan)
+{
+    const int touches = plan->yield.count > 0 && plan->source == NT_ADHESION_NONE && !isinf(plan->yield.touch);
+    if (!touches || plan->demand.quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
+        return 0.0;
+    const double root = 0.5 * plan->yield.jump_error / plan->bound.force_error;
+    return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->yield.jump_error;
+}
+
 /* Of an adhesive contact with another w, at an indentation; NaN beyond its fold. */
 static nt_law_value contact_with(const nt_plan *plan, double more, double indentation)
 {

@@ -15,7 +15,7 @@
 
 static const char DEMANDED[] = "demand.relative_accuracy";
 
-enum { TRIES = 8 };
+enum { TRIES = 8, SAID = 3 };
 
 const char *nt_form_name(nt_form form)
 {
@@ -23,6 +23,12 @@ const char *nt_form_name(nt_form form)
                                         "paraboloid", "series", "shape",     "jkr",         "table",
                                         "polished",   "exact",  "local",     "local exact", "yielding"};
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
+}
+
+/* Another demand would do. */
+static int is_accuracy(const nt_problem *problem)
+{
+    return problem->field && strcmp(problem->field, DEMANDED) == 0;
 }
 
 /* What belongs to a surface has its grid. */
@@ -147,6 +153,14 @@ static int strongest(const nt_plan *plan)
     return found;
 }
 
+/* By the name of that law. */
+static nt_problem by_law(const nt_plan *plan, double error)
+{
+    const char *law = nt_term_rows[strongest(plan)]->refused;
+    return (nt_problem){law ? law : NT_TERM_REFUSED("the forces before contact"), NT_UNIT_ERROR, error, 0.0,
+                        plan->demand.relative_accuracy};
+}
+
 /* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
  */
 static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
@@ -158,15 +172,10 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
         return NT_E_RANGE;
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         least += options->option[term][options->count[term] - 1].error;
-    const int which = strongest(plan);
-    const char *law = nt_term_rows[which]->refused;
-    if (!law)
-        law = NT_TERM_REFUSED("the forces before contact");
-    const int known = problem && problem->field && strcmp(problem->field, DEMANDED) == 0;
-    const int finer = known && problem->minimum < field->maximum; /* a table of another demand would do */
-    if (problem && law && !finer && !(least < field->maximum)) {
-        const double error = fmax(plan->rigid_error, plan->around_error);
-        *problem = (nt_problem){law, NT_UNIT_ERROR, error, 0.0, plan->demand.relative_accuracy};
+    const int finer =
+        problem && is_accuracy(problem) && problem->minimum < field->maximum; /* a table of another demand would do */
+    if (problem && !finer && !(least < field->maximum)) {
+        *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
         return NT_E_RANGE;
     }
     const int better = problem && (problem->field != field->name || least < problem->minimum);
@@ -203,7 +212,7 @@ static nt_status yield_at_best(nt_plan *plan, const nt_scene *scene)
         return NT_E_RANGE;
     plan->demand.relative_accuracy = STRICTEST;
     nt_status status = nt_plan_yield(plan, scene, &least);
-    double wanted = least.field && strcmp(least.field, DEMANDED) == 0 ? least.minimum : (double)INFINITY;
+    double wanted = is_accuracy(&least) ? least.minimum : (double)INFINITY;
     for (int i = 0; i < TRIES && status != NT_OK && wanted < errs; ++i) {
         plan->demand.relative_accuracy = wanted;
         status = nt_plan_yield(plan, scene, NULL);
@@ -253,13 +262,70 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     return status == NT_OK ? choose_rigid(plan, &options, 0, problem) : status;
 }
 
-nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+/* From a plan as it was begun. */
+static nt_status decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
     plan->bank = inputs->bank;
-    nt_status status = choose(plan, &scene, problem);
-    if (status == NT_OK)
-        status = nt_plan_check_plastic(plan, &scene, problem);
+    return choose(plan, &scene, problem);
+}
+
+/* Whether there is a plan of another accuracy, if not of that budget, too. */
+static int is_planned(nt_plan *plan, const nt_plan_inputs *inputs, double accuracy, nt_problem *problem)
+{
+    nt_plan_inputs asked = *inputs;
+    nt_demand demand = plan->demand;
+    demand.relative_accuracy = accuracy;
+    demand.budget = 0.0;
+    asked.demand = &demand;
+    return nt_plan_begin(plan, &asked, problem) == NT_OK && decide(plan, &asked, problem) == NT_OK;
+}
+
+/* The least of six digits that is not below. */
+static double printed(double accuracy)
+{
+    const double digit = pow(10.0, floor(log10(accuracy)) - 5.0);
+    return ceil(accuracy / digit - 1e-9) * digit;
+}
+
+/* A refusal names an accuracy that there is a plan of: what it named, or what that names, or one to which a coarser
+ * table keeps. Where there is none it names the law. */
+static void keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
+    const nt_demand demand = plan->demand;
+    const nt_problem law = by_law(plan, fmax(plan->rigid_error, plan->around_error));
+    const double most = problem->maximum;
+    nt_problem reason = *problem;
+    int found = 0;
+    double named = 0.0;
+    for (int i = 0; i < SAID && !found && is_accuracy(&reason) && reason.minimum > named; ++i) {
+        named = printed(reason.minimum);
+        found = is_planned(plan, inputs, named, &reason);
+    }
+    const int coarser = !found && is_planned(plan, inputs, most, NULL);
+    while (coarser && !found) {
+        named = fmin(COARSER * named, most);
+        found = named >= most || is_planned(plan, inputs, named, NULL);
+    }
+    problem->minimum = named;
+    if (!found)
+        *problem = law;
+    plan->demand = demand;
+}
+
+nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
+    nt_problem reason = {0};
+    const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
+    nt_status status = decide(plan, inputs, &reason);
+    if (status != NT_OK) {
+        if (problem && is_accuracy(&reason))
+            keep_word(plan, inputs, &reason);
+        if (problem)
+            *problem = reason;
+        return status;
+    }
+    status = nt_plan_check_plastic(plan, &scene, problem);
     if (status != NT_OK)
         return status;
     finish(plan, scene.range.maximum_load);

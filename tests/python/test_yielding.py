@@ -286,3 +286,28 @@ def test_beside_a_neck_a_law_acts_in_full() -> None:
     value = Interaction(plan, "retract").eval([0.0, 0.0, pulled.gap])
     error = abs(float(value.Fz) - pulled.force) / plan.scale
     assert 0.3 * plan.bound < error <= plan.bound
+
+
+def watery(modulus: float, radius: float, load: float, work: float = 0.0, **medium: float) -> Scene:
+    return Scene(
+        tip={"radius": radius},
+        sample={"youngs_modulus": modulus, "poisson_ratio": 0.3},
+        medium={"kind": "liquid", **medium},
+        adhesion={"work_of_adhesion": work, "hamaker_constant": 0.0, "equilibrium_distance": 70e-12},
+        range={"maximum_load": load},
+    )
+
+
+def test_what_a_stricter_demand_is_planned_for_a_looser_one_is() -> None:
+    """At 1e-2 the coarse tables do not come to an end, and a finer one does."""
+    scene = watery(39e6, 60e-9, 1e-9, hydration_energy=2e-6, hydration_length=0.7e-9)
+    for demand in (1e-2, 1e-3, 1.1e-4):
+        assert scene.plan(demand).bound <= demand
+
+
+@pytest.mark.parametrize(("modulus", "length"), [(4.2e3, 4e-9), (144e3, 0.23e-9)])
+def test_a_refusal_names_the_law_where_no_accuracy_can_be_planned(modulus: float, length: float) -> None:
+    """A surface that jumps to a pull has no table at all."""
+    scene = watery(modulus, 13e-9, 14e-15, hydration_energy=-0.028, hydration_length=length)
+    with pytest.raises(InvalidValue, match="yields to hydration"):
+        scene.plan(1e-6)

@@ -6,11 +6,12 @@
 #include "scene/terms/term.h"
 #include "scene/yielding/yield.h"
 
-#define GAPS 1.1      /* ratio of gaps that are looked at */
-#define FARTHEST 1e-2 /* [m] */
-#define SEAM 0.1      /* of the tolerance: where the table begins */
-#define PARTS 2.5     /* a table's bound over its tolerance */
-#define ROUGHEST 1e-2 /* tolerances of a table */
+#define GAPS 1.1           /* ratio of gaps that are looked at */
+#define FARTHEST 1e-2      /* [m] */
+#define SEAM 0.1           /* of the tolerance: where the table begins */
+#define PARTS 2.5          /* a table's bound over its tolerance */
+#define ROUGHEST 8.6177e-3 /* tolerances of a table: so that there is one for each power of ten of the demand */
+#define FINER 0.46415888   /* from one to the next: three a decade */
 #define FINEST 2e-6
 #define UNASKED 0.01 /* without a demand all that a table does not know comes to less */
 #define ENDED 20.0   /* times the finest, where a law ends with a kink */
@@ -18,7 +19,6 @@
 #define INSIDE 0.9   /* of what is left, in a second attempt */
 #define LEAVES 0.7   /* of the demand; the rest is for the form of contact */
 #define WEAKER 0.7   /* of the pull-off of rigid bodies: that of a sample that yields, at least */
-#define FINER 0.45   /* each attempt */
 #define CLOSER 1.02  /* ratio of gaps at which forces are sampled */
 #define FLAT 10.0    /* tables of a stiffness are coarser by */
 #define STIFF 0.3    /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
@@ -230,10 +230,11 @@ static double held_pull(const nt_plan *plan)
 /* What a table is made for. */
 typedef struct wanted {
     nt_quantity quantity; /* of the demand; tables themselves are of forces or stiffnesses */
-    double tolerance;
-    double scale;        /* of that quantity */
-    double around;       /* error of laws around an adhesive contact that are not in the table */
-    double radius_scale; /* 0: not demanded [m] */
+    double tolerance;     /* a rung of the ladder */
+    double finest;        /* the last rung */
+    double scale;         /* of that quantity */
+    double around;        /* error of laws around an adhesive contact that are not in the table */
+    double radius_scale;  /* 0: not demanded [m] */
 } wanted;
 
 static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const wanted *of)
@@ -259,6 +260,17 @@ static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_t
     return nt_plan_yield_hold(plan, scene, &range) == NT_OK ? NT_OK : NT_E_RANGE; /* no finer one would do */
 }
 
+/* Tables have the tolerances of one ladder, so that a looser demand can have every table that a stricter one can. */
+static double rung_below(double tolerance, double finest)
+{
+    double rung = ROUGHEST;
+    if (!(tolerance >= finest))
+        return tolerance;
+    while (rung > tolerance)
+        rung *= FINER;
+    return fmax(rung, finest);
+}
+
 /* With a tolerance, or finer, where Newton or the mesh do not come to an end. */
 static nt_status tabulate(nt_plan *plan, const nt_scene *scene, const wanted *of)
 {
@@ -267,10 +279,11 @@ static nt_status tabulate(nt_plan *plan, const nt_scene *scene, const wanted *of
     nt_status status = NT_E_NO_CONVERGENCE;
     if (adheres(plan)) /* inside the range of adhesion, too */
         nt_plan_prepare_laws(plan, scene, 0.0);
-    for (int i = 0; i < ATTEMPTS && status == NT_E_NO_CONVERGENCE; ++i) {
-        wanted finer = *of;
-        finer.tolerance = tolerance * pow(FINER, i);
+    wanted finer = *of;
+    for (int i = 0, last = 0; status == NT_E_NO_CONVERGENCE && !last; ++i) {
         status = table_of(plan, scene, &in, &finer);
+        last = finer.tolerance <= of->finest || (adheres(plan) && i + 1 >= ATTEMPTS); /* those take long */
+        finer.tolerance = fmax(FINER * finer.tolerance, of->finest);
     }
     plan->yield.hold = in.hold;
     plan->yield.jump_error = tolerance * fmax(fabs(plan->yield.touch), plan->length);
@@ -345,7 +358,9 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, wanted *of, nt_prob
     const double others = (felt ? other_errors(plan, nearest) : 0.0) + (surrounded ? 0.0 : of->around);
     const double finest = finest_of(plan, scene);
     const double left = (demanded > 0.0 ? demanded - others : fmin(UNASKED - others, PLENTY * PARTS * finest)) / PARTS;
-    of->tolerance = fmin(adheres(plan) && !surrounded ? LEAVES * left : left, ROUGHEST);
+    const double share = adheres(plan) && !surrounded ? LEAVES : 1.0;
+    of->finest = share * finest;
+    of->tolerance = rung_below(share * left, of->finest);
     if (!(left >= finest))
         return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,
                                             (others + PARTS * finest) * (1.0 + 1e-9), 0.5});
@@ -353,7 +368,7 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, wanted *of, nt_prob
     const double error = plan->bound.force_error - others;
     if (status != NT_OK || !(demanded > 0.0) || others + error <= demanded)
         return status;
-    of->tolerance *= INSIDE * (demanded - others) / error; /* of folds */
+    of->tolerance = rung_below(of->tolerance * INSIDE * (demanded - others) / error, of->finest); /* of folds */
     plan->demand.quantity = NT_QUANTITY_FORCE;
     plan->scale = nt_plan_scale_of(plan, scene->range.maximum_load);
     return yield_within(plan, scene, of, others, problem);
@@ -380,13 +395,4 @@ nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     if (status != NT_OK)
         plan->yield.count = plan->yield.holds = 0; /* no table: the facts are those of the laws again */
     return status;
-}
-
-double nt_plan_yield_touch(const nt_plan *plan)
-{
-    const int touches = plan->yield.count > 0 && !adheres(plan) && !isinf(plan->yield.touch);
-    if (!touches || plan->demand.quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
-        return 0.0;
-    const double root = 0.5 * plan->yield.jump_error / plan->bound.force_error;
-    return root * root * plan->contact.radius / (plan->scale * plan->scale) + plan->yield.jump_error;
 }
