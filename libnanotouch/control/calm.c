@@ -110,7 +110,7 @@ static void list(const nt_rig *rig, const nt_gains *gains, double contact_stiffn
     const nt_probe *probe = &rig->probe;
     const double k_c = probe->spring_constant, k_eff = k_c / (1.0 + k_c / contact_stiffness);
     const double meter = gains->alpha_f * k_eff, volt = gains->alpha_f * k_c * probe->sensitivity;
-    const int gauge = rig->master.gauge != 0.0 && gains->force_gain > 0.0;
+    const int gauge = rig->master.gauge && gains->force_gain > 0.0;
     sources[NT_RIPPLE_MASTER] =
         (source){rig->master.resolution, 0.0, meter * gains->alpha_p, meter * gains->alpha_p, 1};
     sources[NT_RIPPLE_STAGE_COMMAND] = (source){rig->stage.command_resolution, 0.0, meter, meter, 1};
@@ -145,7 +145,7 @@ nt_calm nt_margins_calm(const nt_rig *rig, const nt_settings *settings, double c
     nt_calm calm = {.felt = fmin(NT_CLEARLY_FELT, SHARE_OF_LIMIT * settings->gains.alpha_f * settings->limits.force),
                     .slewing = INFINITY};
     source sources[NT_RIPPLE_SOURCES];
-    if (rig->master.motor == 0.0 || contact_stiffness == 0.0) {
+    if (!rig->master.motor || contact_stiffness == 0.0) {
         judge(&calm, 1.0);
         return calm;
     }

@@ -20,7 +20,7 @@ double nt_margins_felt_alpha_f(const nt_rig *rig, const nt_settings *settings, d
                                double contact_stiffness)
 {
     const nt_master *master = &rig->master;
-    const double reach = master->gauge != 0.0 ? fmin(master->gauge_range, master->max_force) : master->max_force;
+    const double reach = master->gauge ? fmin(master->gauge_range, master->max_force) : master->max_force;
     const double wanted = pull_off_force > 0.0 ? NT_CLEARLY_FELT / (SEEN * pull_off_force) : HUGE_VAL;
     nt_settings trial = *settings;
     double low = settings->gains.alpha_f, high = fmin(wanted, 2.0 * reach / (pull_off_force + load));

@@ -87,7 +87,7 @@ static nt_margins compute(const nt_rig *rig, const nt_gains *gains, double conta
                          slave_delay(rig, gains); /* integral gain times lag */
     const double hand_hop = hop_delay(rig, gains) + 2.0 * nt_sampled_master_hold(rig, gains);
     const double height = rig->master.damping / (hand_hop * gains->height_stiffness);
-    margins.height_margin = rig->master.motor != 0.0 ? fmin(1.0 / servo, height) : 1.0 / servo;
+    margins.height_margin = rig->master.motor ? fmin(1.0 / servo, height) : 1.0 / servo;
     const nt_sampled_limits limits = nt_sampled_limits_of(loop, K_f, k_r);
     margins.exact_limit = limits.loop_stiffness;
     margins.exact_frequency = limits.angle / (2.0 * NT_PI) * gains->rate;
@@ -152,9 +152,8 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
                                                      hop_delay(&equivalent.rig, &equivalent.gains) +
                                                          slave_delay(&equivalent.rig, &equivalent.gains));
     const nt_verdict stage = NT_VERDICT(nt_servo_stage_margin(rig, settings), "stage of Eq. 17");
-    const nt_verdict touch = rig->master.motor != 0.0
-                                 ? judge_touch(margins, &equivalent.rig, &equivalent.gains, coupling)
-                                 : judge_without_motor(margins, &equivalent.gains, coupling);
+    const nt_verdict touch = rig->master.motor ? judge_touch(margins, &equivalent.rig, &equivalent.gains, coupling)
+                                               : judge_without_motor(margins, &equivalent.gains, coupling);
     return stage.margin >= touch.margin ? touch : stage;
 }
 
@@ -163,11 +162,11 @@ nt_resolution nt_resolution_compute(const nt_rig *own, const nt_gains *gains, do
     const nt_rig real = nt_rig_with_steps(own), *rig = &real;
     const double k_c = rig->probe.spring_constant;
     const double range = 2.0 * k_c * nt_probe_deflection_range(&rig->probe); /* 20 k_c S in the paper */
-    nt_resolution found = {
-        .slave_step = fmax(rig->stage.command_resolution, rig->stage.resolution),
-        .master_steps = rig->master.travel / rig->master.resolution,
-        .gauge_steps = rig->master.gauge > 0.0 ? 2.0 * rig->master.gauge_range / rig->master.gauge_resolution : 0.0,
-        .master_travel = slave_path / gains->alpha_p};
+    nt_resolution found = {.slave_step = fmax(rig->stage.command_resolution, rig->stage.resolution),
+                           .master_steps = rig->master.travel / rig->master.resolution,
+                           .gauge_steps =
+                               rig->master.gauge ? 2.0 * rig->master.gauge_range / rig->master.gauge_resolution : 0.0,
+                           .master_travel = slave_path / gains->alpha_p};
     found.slave_force = fmax(6.0 * nt_probe_force_noise(&rig->probe), k_c * found.slave_step);
     found.slave_steps = slave_path / found.slave_step;
     found.force_steps = range / found.slave_force;

@@ -43,7 +43,7 @@ static nt_effort ask(const own_trial *trial)
 static double largest_force(const nt_rig *rig, const nt_settings *settings)
 {
     const double reach =
-        rig->master.gauge != 0.0 ? fmin(rig->master.gauge_range, rig->master.max_force) : rig->master.max_force;
+        rig->master.gauge ? fmin(rig->master.gauge_range, rig->master.max_force) : rig->master.max_force;
     return fmin(settings->limits.force, reach / settings->gains.alpha_f);
 }
 
@@ -51,7 +51,7 @@ static own_trial trial_at(const nt_rig *rig, const nt_settings *settings, double
 {
     const nt_gains *gains = &settings->gains;
     const double alpha_f = gains->alpha_f * fmax(1.0, fmax(gains->alpha_f_approach, gains->alpha_f_retract));
-    const int gauge = rig->master.gauge != 0.0;
+    const int gauge = rig->master.gauge;
     const double felt = gauge ? alpha_f * slave_force : 0.0;
     own_trial made = {.settings = settings,
                       .at = {.period = 1.0 / gains->rate,

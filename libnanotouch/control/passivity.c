@@ -32,7 +32,7 @@ nt_passivity nt_passivity_make(const nt_rig *rig, const nt_gains *gains)
                           .due = DUE_SHARE * rig->master.damping * T,
                           .force_gain = gains->force_gain,
                           .damping = rig->master.damping,
-                          .credit = rig->master.gauge != 0.0 ? 0.0 : rig->master.damping,
+                          .credit = rig->master.gauge ? 0.0 : rig->master.damping,
                           .speed_filter = filter,
                           .speed_floor = master_step * filter / T,
                           .speed_limit =

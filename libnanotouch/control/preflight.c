@@ -47,7 +47,7 @@ double nt_preflight_time(const nt_preflight *preflight)
 
 static int is_good(const nt_preflight *preflight, const nt_sample *sample)
 {
-    const int measures_hand = preflight->rig.master.gauge != 0.0;
+    const int measures_hand = preflight->rig.master.gauge;
     return sample->flags == 0u && isfinite(sample->deflection[NT_Z]) && isfinite(sample->stage_position[NT_Z]) &&
            (!measures_hand || isfinite(sample->operator_force[NT_Z]));
 }
@@ -97,7 +97,7 @@ static void weigh(const nt_preflight *preflight, nt_preflight_state *state, cons
 {
     nt_tare *sum = &state->sums[state->tick >= preflight->ticks];
     sum->deflection += sample->deflection[NT_Z];
-    if (preflight->rig.master.gauge != 0.0)
+    if (preflight->rig.master.gauge)
         sum->operator_force += sample->operator_force[NT_Z];
     state->rest += sample->stage_position[NT_Z];
 }

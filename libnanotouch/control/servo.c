@@ -83,7 +83,7 @@ nt_servo_equivalent nt_servo_equivalent_of(const nt_rig *rig, const nt_settings 
     const nt_control_choice choice = settings->control.choice;
     if (choice == NT_CONTROL_DEFAULT || choice == NT_CONTROL_IMPEDANCE)
         equivalent.rig.master.damping *= 1.0 - settings->gains.velocity_feedforward;
-    if (choice == NT_CONTROL_IMPEDANCE || rig->master.gauge == 0.0)
+    if (choice == NT_CONTROL_IMPEDANCE || !rig->master.gauge)
         equivalent.gains.force_gain = 0.0;
     if (choice == NT_CONTROL_PAPER || !nt_stage_loop_notches(&rig->stage, &settings->gains))
         equivalent.gains.stage_damping = 0.5 / rig->stage.quality;

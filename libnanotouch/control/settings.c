@@ -96,7 +96,7 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
                    .deflection_drift = 0.3 * nt_probe_deflection_range(&rig->probe),
                    .gauge_bias = 0.1 * rig->master.gauge_range,
                    .gauge_drift = 0.3 * rig->master.gauge_range},
-        .control = {.choice = rig->master.gauge != 0.0 ? NT_CONTROL_DEFAULT : NT_CONTROL_IMPEDANCE},
+        .control = {.choice = rig->master.gauge ? NT_CONTROL_DEFAULT : NT_CONTROL_IMPEDANCE},
     };
     return settings;
 }

@@ -91,7 +91,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .free_force = probe->spring_constant * (FREE_SIGMA * sigma + step),
                            .master_range = rig->master.travel,
                            .leads_sideways = rig->master.axes > 1.0 && rig->stage.axes > 1.0,
-                           .gauge_range = rig->master.gauge != 0.0 ? rig->master.gauge_range : 0.0,
+                           .gauge_range = rig->master.gauge ? rig->master.gauge_range : 0.0,
                            .stage_range = rig->stage.travel,
                            .stuck_distance = shows_noise ? travelled : 0.0,
                            .stage_share = period / (period + stage_lag(rig, &equivalent.gains)),

@@ -45,7 +45,7 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
         {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},
         {"limits.retract_speed", "m/s", limits->retract_speed, 0.0, rig->stage.max_speed},
         {"limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force},
-        {"gains.force_gain", "", needs_gauge && rig->master.gauge == 0.0 ? settings->gains.force_gain : 0.0, 0.0, 0.0},
+        {"gains.force_gain", "", needs_gauge && !rig->master.gauge ? settings->gains.force_gain : 0.0, 0.0, 0.0},
     };
     for (size_t i = 0; i < sizeof promises / sizeof promises[0]; ++i) {
         if (promises[i].value <= promises[i].maximum)
@@ -98,7 +98,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .rescale = nt_rescale_make(rig, settings),
                      .supervisor = nt_supervisor_make(rig, settings)};
     made.passivity.damping = rig->master.damping; /* what the motor feeds forward is in its force already */
-    made.passivity.credit = rig->master.gauge != 0.0 ? 0.0 : rig->master.damping;
+    made.passivity.credit = rig->master.gauge ? 0.0 : rig->master.damping;
     *touch = made;
     return NT_OK;
 }
@@ -167,8 +167,7 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
     const nt_scaling *scaling = &signals->scaling;
     nt_passivity_state *passivity = &state->passivity;
     const uint64_t acting = state->ticks + NT_TOUCH_SENT - 1u - touch->delay; /* the tick whose force has been held */
-    const double hand_force =
-        touch->rig.master.gauge != 0.0 ? signals->operator_force : -state->sent[acting % NT_TOUCH_SENT];
+    const double hand_force = touch->rig.master.gauge ? signals->operator_force : -state->sent[acting % NT_TOUCH_SENT];
     const nt_port hand = {hand_force, signals->master_position};
     const int coupled = touch->settings.gains.coupling_stiffness > 0.0;
     const double tip_step =
@@ -202,12 +201,12 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     follow_motion(touch, signals, sample);
     if (touch->leads_sideways)
         follow_hand_sideways(state, sample);
-    signals->operator_force = touch->rig.master.gauge != 0.0 ? sample->operator_force[NT_Z] : 0.0;
+    signals->operator_force = touch->rig.master.gauge ? sample->operator_force[NT_Z] : 0.0;
     signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
     signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
     rescale(touch, state);
-    const int closes = touch->rig.master.motor != 0.0; /* without a motor no loop closes through the hand */
-    if (closes && state->mode == NT_MODE_TOUCH)        /* a servo is meant to move the hand */
+    const int closes = touch->rig.master.motor; /* without a motor no loop closes through the hand */
+    if (closes && state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
         watch_energy(touch, state, stage_step);
 }
 

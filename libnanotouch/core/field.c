@@ -5,16 +5,50 @@
 #include <math.h>
 #include <string.h>
 
+#define NO_CHOICE 127 /* fits every enum, and no list of words is as long */
+
+/* An enum has the size of an int, but for compilers that take the least that holds its values. */
+typedef union number {
+    double real;
+    int choice;
+    short small;
+    signed char least;
+} number;
+
 double nt_field_get(const nt_field *field, const void *object)
 {
-    double value;
-    memcpy(&value, (const char *)object + field->offset, sizeof value);
-    return value;
+    number n;
+    memcpy(&n, (const char *)object + field->offset, field->size);
+    switch (field->size) {
+    case sizeof n.real:
+        return n.real;
+    case sizeof n.choice:
+        return n.choice;
+    case sizeof n.small:
+        return n.small;
+    default:
+        return n.least;
+    }
 }
 
 void nt_field_set(const nt_field *field, void *object, double value)
 {
-    memcpy((char *)object + field->offset, &value, sizeof value);
+    number n;
+    const int choice = value >= 0.0 && value < NO_CHOICE && value == floor(value) ? (int)value : NO_CHOICE;
+    switch (field->size) {
+    case sizeof n.real:
+        n.real = value;
+        break;
+    case sizeof n.choice:
+        n.choice = choice;
+        break;
+    case sizeof n.small:
+        n.small = (short)choice;
+        break;
+    default:
+        n.least = (signed char)choice;
+    }
+    memcpy((char *)object + field->offset, &n, field->size);
 }
 
 nt_status nt_field_check(const nt_field *fields, int count, const void *object, nt_problem *problem)

@@ -106,11 +106,11 @@ nt_rig nt_rig_defaults(void)
                 .travel = 0.02,
                 .resolution = 4e-5,
                 .max_force = 5.0,
-                .gauge = 1.0,
+                .gauge = 1,
                 .gauge_range = 5.0,
                 .gauge_noise = 0.02 / 6.0, /* the paper's 0.02 N include the noise: peak to peak within one step */
                 .gauge_resolution = 0.02,
-                .motor = 1.0,
+                .motor = 1,
                 .axes = 1.0,
             },
     };

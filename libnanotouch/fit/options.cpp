@@ -35,8 +35,7 @@ const nt_fit_quantity quantities[NT_FIT_PARAMETERS] = {
     {"sensitivity", "", 1.0, 0.1, 10.0},
 };
 
-#define FIELD(path, unit, minimum, maximum)                                                                            \
-    {#path, unit, minimum, maximum, static_cast<unsigned>(offsetof(nt_fit_options, path)), ""}
+#define FIELD(path, ...) NT_FIELD(nt_fit_options, path, __VA_ARGS__, "")
 const nt_field fields[] = {
     FIELD(radius, "m", 1e-10, 1.0),       FIELD(half_angle, "rad", 0.01, 1.56), FIELD(spring_constant, "N/m", 0.0, 1e6),
     FIELD(tilt_position, "m", -1.0, 1.0), FIELD(loss_scale, "N", 1e-18, 1.0),   FIELD(force_noise, "N", 0.0, 1.0),

@@ -27,7 +27,7 @@ enum { DRIVE_FIELDS = (int)(sizeof drive_fields / sizeof drive_fields[0]) };
 
 nt_drive nt_drive_defaults(void)
 {
-    return (nt_drive){.at = 1.0, .frequency = 0.0, .free_amplitude = 20e-9};
+    return (nt_drive){.at = NT_DRIVE_BASE, .frequency = 0.0, .free_amplitude = 20e-9};
 }
 
 const nt_field *nt_drive_fields(int *count)
@@ -78,7 +78,7 @@ nt_status nt_tapping_init(nt_tapping *tapping, const nt_probe *probe, const nt_d
                               RATIO_MAX * probe->resonance);
     if (!(tolerance >= 1e-13 && tolerance <= 1e-3))
         return nt_problem_set(problem, "tolerance", "", tolerance, 1e-13, 1e-3);
-    const int at_base = drive->at > 0.0;
+    const int at_base = drive->at == NT_DRIVE_BASE;
     *tapping = (nt_tapping){.spring_constant = probe->spring_constant,
                             .quality = probe->quality,
                             .rate = 2.0 * NT_PI * probe->resonance,

@@ -32,8 +32,7 @@ double nt_scene_potential(const nt_scene *scene)
 {
     const nt_tip *tip = &scene->tip;
     const nt_specimen *sample = &scene->sample;
-    if (scene->medium.kind == NT_MEDIUM_LIQUID || tip->conducting == 0.0 || sample->conducting == 0.0 ||
-        sample->grounded == 0.0)
+    if (scene->medium.kind == NT_MEDIUM_LIQUID || !tip->conducting || !sample->conducting || !sample->grounded)
         return 0.0;
     const int known = tip->work_function > 0.0 && sample->work_function > 0.0;
     return scene->adhesion.contact_potential + (known ? tip->work_function - sample->work_function : 0.0);

@@ -2,8 +2,7 @@
  * How accurate which quantity has to be: the description of a demand. */
 #include "nanotouch/plan.h"
 
-#define ROW(path, unit, minimum, maximum, doc)                                                                         \
-    {"demand." #path, unit, minimum, maximum, (unsigned)offsetof(nt_demand, path), doc}
+#define ROW(path, ...) NT_FIELD_NAMED("demand." #path, nt_demand, path, __VA_ARGS__)
 
 static const nt_field demand_fields[] = {
     ROW(relative_accuracy, "", 0.0, 0.5, "largest error of the quantity over max(|it|, its scale); 0: exact"),
@@ -20,7 +19,8 @@ nt_demand nt_demand_defaults(void)
 
 const nt_field *nt_demand_fields(int *count)
 {
-    *count = (int)(sizeof demand_fields / sizeof demand_fields[0]);
+    if (count != NULL)
+        *count = (int)(sizeof demand_fields / sizeof demand_fields[0]);
     return demand_fields;
 }
 

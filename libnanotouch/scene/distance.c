@@ -42,7 +42,7 @@ double nt_plan_scale_of(const nt_plan *plan, double maximum_load)
     const int maugis = nt_plan_contact_form(plan) == NT_FORM_EXACT;
     const nt_maugis *m = &plan->maugis;
     const double accuracy = plan->demand.relative_accuracy;
-    switch ((int)plan->demand.quantity) {
+    switch (plan->demand.quantity) {
     case NT_QUANTITY_STIFFNESS:
         return maugis ? m->load_scale / m->indentation_scale : plan->maximum_stiffness;
     case NT_QUANTITY_RADIUS:
@@ -118,7 +118,7 @@ typedef struct rivals {
 
 static double difference(const nt_plan *plan, const rivals *laws, double indentation)
 {
-    const double scale = laws->quantity == (nt_quantity)(int)plan->demand.quantity ? plan->scale : pull_of(plan);
+    const double scale = laws->quantity == plan->demand.quantity ? plan->scale : pull_of(plan);
     const double truth = nt_plan_pick(laws->truth(plan, indentation), laws->quantity);
     return fabs(nt_plan_pick(laws->other(plan, indentation), laws->quantity) - truth) / fmax(fabs(truth), scale);
 }
@@ -140,7 +140,7 @@ static double distance(const nt_plan *plan, const rivals *laws, double lowest)
 
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     return distance(plan, &(rivals){full_at, form == NT_FORM_SERIES ? series_at : hertz_at, quantity}, -INFINITY);
 }
 
@@ -166,7 +166,7 @@ static double curvature_distance(const nt_plan *plan, const rivals *laws)
 
 double nt_plan_curvature_distance(const nt_plan *plan)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     return fmax(curvature_distance(plan, &(rivals){sharpest_at, full_at, quantity}),
                 curvature_distance(plan, &(rivals){bluntest_at, full_at, quantity}));
 }

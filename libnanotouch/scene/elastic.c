@@ -294,7 +294,7 @@ static double error_of_radius(const nt_plan *plan, int tails)
 
 double nt_plan_around_error(const nt_plan *plan, int tails)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     if (quantity == NT_QUANTITY_FOLDS)
         return shift_of(plan, tails) / plan->scale;
     if (quantity == NT_QUANTITY_RADIUS)
@@ -307,7 +307,7 @@ double nt_plan_around_error(const nt_plan *plan, int tails)
 /* Beside contact there is no radius and, but for a jump, no fold. */
 static double error_of(const nt_plan *plan, double worst)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     if (quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS)
         return worst;
     return isinf(worst) ? worst : 0.0;

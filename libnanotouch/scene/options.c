@@ -34,7 +34,7 @@ double nt_plan_share(const nt_plan *plan, double error)
 
 static double difference(const nt_plan *plan, int term, nt_form form, double gap)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     return fabs(nt_plan_pick(nt_plan_law_eval(plan, term, form, gap), quantity) -
                 nt_plan_pick(nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap), quantity));
 }
@@ -43,7 +43,7 @@ static double difference(const nt_plan *plan, int term, nt_form form, double gap
  * hold, where both are steepest. */
 static double form_distance(const nt_plan *plan, int term, nt_form form, double nearest)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     if (form == nt_plan_full_form(plan, term) || quantity == NT_QUANTITY_RADIUS || quantity == NT_QUANTITY_FOLDS)
         return 0.0;
     const double outside = fmax(nearest, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12));
@@ -57,7 +57,7 @@ static double form_distance(const nt_plan *plan, int term, nt_form form, double 
 static void offer_law(const nt_plan *plan, int term, double nearest, nt_plan_options *options)
 {
     const double blunter = nt_plan_largest_ratio(plan);
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     const nt_form full = nt_plan_full_form(plan, term);
     const nt_term_words *words = &nt_term_rows[term]->words;
     const double limit = nt_plan_law_limit(plan, term, nearest, quantity);
@@ -119,7 +119,7 @@ static void burden_contact(const nt_plan *plan, nt_plan_options *options, double
 void nt_plan_options_of(nt_plan *plan, const nt_scene *scene, nt_plan_options *options)
 {
     static const nt_plan_options none = {0};
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     const double nearest = fmax(scene->range.minimum_gap, 0.0);
     double beside = 0.0;
     *options = none;

@@ -116,7 +116,7 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
 /* Nothing but a contact of its own is computed, and what is not cannot be felt. */
 static int is_alone(const nt_plan *plan)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
     return felt && plan->on_count == 0 && plan->source == NT_ADHESION_NONE;
 }

@@ -77,13 +77,10 @@ nt_scene nt_scene_defaults(void)
                 .half_angle = 0.30,
                 .youngs_modulus = 135e9,
                 .poisson_ratio = 0.35,
-                .conducting = 1.0,
+                .conducting = 1,
                 .isoelectric_point = 2.0},
-        .sample = {.youngs_modulus = 135e9,
-                   .poisson_ratio = 0.35,
-                   .conducting = 1.0,
-                   .grounded = 1.0,
-                   .isoelectric_point = 2.0},
+        .sample =
+            {.youngs_modulus = 135e9, .poisson_ratio = 0.35, .conducting = 1, .grounded = 1, .isoelectric_point = 2.0},
         .medium = {.kind = NT_MEDIUM_AIR,
                    .temperature = 298.15,
                    .relative_humidity = 0.40,
@@ -102,7 +99,8 @@ nt_scene nt_scene_defaults(void)
 
 const nt_field *nt_scene_fields(int *count)
 {
-    *count = (int)(sizeof scene_fields / sizeof scene_fields[0]);
+    if (count != NULL)
+        *count = (int)(sizeof scene_fields / sizeof scene_fields[0]);
     return scene_fields;
 }
 
@@ -123,10 +121,8 @@ static nt_status refuse(nt_problem *problem, const char *field, double value, do
 nt_shape nt_scene_shape(const nt_scene *scene)
 {
     const nt_tip *tip = &scene->tip;
-    nt_shape shape = {.kind = (nt_shape_kind)(int)tip->shape,
-                      .sides = (int)tip->sides,
-                      .radius = tip->radius,
-                      .half_angle = tip->half_angle};
+    nt_shape shape = {
+        .kind = tip->shape, .sides = (int)tip->sides, .radius = tip->radius, .half_angle = tip->half_angle};
     return shape;
 }
 

@@ -117,10 +117,10 @@ static nt_status check_halves(const nt_session *session, nt_problem *problem)
                               slave->axes);
     if (!(slave->can & NT_CAN_FEEL))
         return nt_problem_set(problem, "slave that measures its deflection", "no|yes", 0.0, 1.0, 1.0);
-    if (described->gauge != 0.0 && !(master->can & NT_CAN_FEEL))
+    if (described->gauge && !(master->can & NT_CAN_FEEL))
         return nt_problem_set(problem, "master.gauge (this master measures no force)", "no|yes", described->gauge, 0.0,
                               0.0);
-    if (described->motor != 0.0 && !(master->can & NT_CAN_PUSH))
+    if (described->motor && !(master->can & NT_CAN_PUSH))
         return nt_problem_set(problem, "master.motor (this master has none)", "no|yes", described->motor, 0.0, 0.0);
     if (described->axes > master->axes)
         return nt_problem_set(problem, "master.axes (this master has fewer)", "", described->axes, 1.0, master->axes);

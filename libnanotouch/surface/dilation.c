@@ -182,8 +182,8 @@ double nt_tip_shape_height(const nt_tip_shape *tip, double r)
 nt_status nt_surface_dilate(const nt_height_map *map, const nt_tip_shape *tip, double *dilated)
 {
     static const nt_field fields[] = {
-        {"tip.radius", "m", 1e-10, 1e-3, offsetof(nt_tip_shape, radius), "radius R of the apex"},
-        {"tip.half_angle", "rad", 0.0, 1.5, offsetof(nt_tip_shape, half_angle), "half angle psi of the cone"},
+        NT_FIELD_NAMED("tip.radius", nt_tip_shape, radius, "m", 1e-10, 1e-3, "radius R of the apex"),
+        NT_FIELD_NAMED("tip.half_angle", nt_tip_shape, half_angle, "rad", 0.0, 1.5, "half angle psi of the cone"),
     };
     nt_status status = nt_height_map_check(map, NULL);
     if (status == NT_OK)

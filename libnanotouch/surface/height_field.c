@@ -117,8 +117,8 @@ static nt_height_value height_at(const nt_surface *surface, const reach *rx, con
 nt_status nt_height_map_check(const nt_height_map *map, nt_problem *problem)
 {
     static const nt_field fields[] = {
-        {"map.dx", "m", 1e-12, 1e-3, offsetof(nt_height_map, dx), "pixel size along x"},
-        {"map.dy", "m", 1e-12, 1e-3, offsetof(nt_height_map, dy), "pixel size along y"},
+        NT_FIELD_NAMED("map.dx", nt_height_map, dx, "m", 1e-12, 1e-3, "pixel size along x"),
+        NT_FIELD_NAMED("map.dy", nt_height_map, dy, "m", 1e-12, 1e-3, "pixel size along y"),
     };
     nt_problem ignored;
     if (problem == NULL)

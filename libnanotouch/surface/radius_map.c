@@ -27,8 +27,10 @@ static nt_status inputs_check(const nt_surface *dilated, double tip_radius, cons
                               const double *coefficients)
 {
     static const nt_field fields[] = {
-        {"limits.minimum", "", 1e-3, 1.0, offsetof(nt_radius_limits, minimum), "least ratio of the effective radius"},
-        {"limits.maximum", "", 1.0, 1e3, offsetof(nt_radius_limits, maximum), "largest ratio of the effective radius"},
+        NT_FIELD_NAMED("limits.minimum", nt_radius_limits, minimum, "", 1e-3, 1.0,
+                       "least ratio of the effective radius"),
+        NT_FIELD_NAMED("limits.maximum", nt_radius_limits, maximum, "", 1.0, 1e3,
+                       "largest ratio of the effective radius"),
     };
     if (!isfinite(tip_radius))
         return NT_E_NOT_FINITE;

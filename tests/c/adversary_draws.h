@@ -101,9 +101,9 @@ static inline void draw_master(plot *p, dice *d)
     master->travel = magnitude(d, 5e-3, 0.1);
     master->resolution = magnitude(d, 1e-6, 1e-4);
     master->max_force = magnitude(d, 2.0, 20.0);
-    master->gauge = chance(d, 0.25) ? 0.0 : 1.0;
+    master->gauge = !chance(d, 0.25);
     master->gauge_resolution = magnitude(d, 1e-3, 2e-2);
-    master->motor = chance(d, 0.15) ? 0.0 : 1.0;
+    master->motor = !chance(d, 0.15);
     master->rate = chance(d, 0.8) ? 0.0 : magnitude(d, 200.0, 2000.0);
     master->axes = chance(d, 0.8) ? 1.0 : 3.0;
     if (chance(d, 0.7))
@@ -175,7 +175,7 @@ static inline void draw_settings(plot *p, dice *d)
 {
     const nt_rig *rig = &p->setup.rig;
     nt_gains *gains = &p->settings.gains;
-    const int gauge = rig->master.gauge != 0.0;
+    const int gauge = rig->master.gauge;
     p->settings.control.choice = gauge ? NT_CONTROL_DEFAULT : NT_CONTROL_IMPEDANCE;
     gains->rate = p->rate;
     gains->delay = floor(between(d, 0.0, 4.0));

@@ -127,9 +127,9 @@ static void where_nothing_can_be_told(void **state)
     nt_rig rig = nt_rig_defaults();
     nt_settings settings = nt_settings_defaults(&rig);
     assert_true(isinf(nt_margins_calm(&rig, &settings, 0.0).margin));
-    rig.master.motor = 0.0;
+    rig.master.motor = 0;
     assert_true(isinf(nt_margins_calm(&rig, &settings, 600.0).margin));
-    rig.master.motor = 1.0;
+    rig.master.motor = 1;
     rig.master.damping = 0.0;
     assert_true(isnan(nt_margins_calm(&rig, &settings, 600.0).margin));
     rig.master.damping = 100.0;

@@ -128,7 +128,7 @@ static void a_clutch_indexes_the_master_anew(void **state)
     bench_run(&b, 1.0, 4.0);
     const double stage = b.command.stage_position[NT_Z], x = b.x;
     nt_touch_clutch(&b.state, 1);
-    b.fastest_motor = 0.0;
+    b.fastest_motor = 0;
     bench_run(&b, -0.5, 0.5);
     assert_true(b.x < x - 1e-3);
     assert_true(fabs(b.command.stage_position[NT_Z] - stage) < 1e-13 && b.command.motor_force[NT_Z] == 0.0);
@@ -232,7 +232,7 @@ static void a_master_without_a_gauge_is_felt_by_impedance(void **state)
 {
     (void)state;
     nt_rig rig = quiet_rig();
-    rig.master.gauge = 0.0;
+    rig.master.gauge = 0;
     nt_settings settings = settings_of(&rig);
     assert_int_equal(settings.control.choice, NT_CONTROL_IMPEDANCE);
     bench b;

@@ -126,7 +126,7 @@ static void without_a_gauge_none_is_asked(void **state)
 {
     (void)state;
     nt_rig rig = nt_rig_defaults();
-    rig.master.gauge = 0.0;
+    rig.master.gauge = 0;
     const nt_settings settings = nt_settings_defaults(&rig);
     const nt_preflight preflight = nt_preflight_make(&rig, &settings);
     const trouble none = {.gain = 1.0, .hand_bias = NAN};

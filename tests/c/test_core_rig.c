@@ -55,7 +55,8 @@ static void each_field_is_refused_by_name(void **state)
             nt_rig rig = nt_rig_defaults();
             nt_problem problem = {0};
             nt_field_set(&fields[i], &rig, bad[k]);
-            assert_int_equal(nt_rig_check(&rig, &problem), k < 2 ? NT_E_RANGE : NT_E_NOT_FINITE);
+            const int is_choice = fields[i].size != sizeof(double);
+            assert_int_equal(nt_rig_check(&rig, &problem), k < 2 || is_choice ? NT_E_RANGE : NT_E_NOT_FINITE);
             assert_string_equal(problem.field, fields[i].name);
         }
     }

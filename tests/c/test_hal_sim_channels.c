@@ -151,8 +151,8 @@ static void valid_is_what_has_a_row(void **state)
     for (int variant = 0; variant < 8; variant++) {
         nt_rig rig = nt_rig_defaults();
         rig.master.axes = variant & 1 ? 3.0 : 1.0;
-        rig.master.gauge = variant & 2 ? 1.0 : 0.0;
-        rig.master.motor = variant & 4 ? 1.0 : 0.0;
+        rig.master.gauge = (variant & 2) != 0;
+        rig.master.motor = (variant & 4) != 0;
         begin(&rig, 0.0);
         nt_reading readings[2] = {{0}, {0}};
         tick(0.0, 0.0, &readings[NT_HALF_MASTER], &readings[NT_HALF_SLAVE]);

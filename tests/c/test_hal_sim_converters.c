@@ -154,7 +154,7 @@ static void without_a_gauge_nothing_is_said(void **state)
 {
     (void)state;
     nt_rig rig = nt_rig_defaults();
-    rig.master.gauge = 0.0;
+    rig.master.gauge = 0;
     nt_sim sim = sim_of(&rig, T, 0.0);
     nt_sample sample;
     assert_int_equal(nt_sim_read(&sim, &sample), NT_OK);

@@ -125,7 +125,8 @@ static void nonsense_is_refused(void **state)
             static nt_sim sim;
             nt_field_set(&fields[i], &rig, bad[k]);
             const nt_sim_setup setup = {.plan = &plan, .rig = &rig, .period = 1e-4, .clearance = 5e-9};
-            assert_int_equal(nt_sim_init(&sim, &setup), k < 2 ? NT_E_RANGE : NT_E_NOT_FINITE);
+            const int is_choice = fields[i].size != sizeof(double);
+            assert_int_equal(nt_sim_init(&sim, &setup), k < 2 || is_choice ? NT_E_RANGE : NT_E_NOT_FINITE);
         }
     }
 }

@@ -69,7 +69,7 @@ static void the_error_of_contact_knows_every_pull_beside_it(void **state)
         scene.tip.surface_potential = n == 3 ? 0.05 : 0.0;
         scene.sample.surface_potential = n == 3 ? -0.05 : 0.0;
         if (n == 1)
-            scene.tip.conducting = scene.sample.conducting = scene.sample.grounded = 1.0;
+            scene.tip.conducting = scene.sample.conducting = scene.sample.grounded = 1;
         const nt_demand exact = {.relative_accuracy = 0.0};
         assert_int_equal(make(&plan, &scene, &exact), NT_OK);
         double pull = 0.0;

@@ -7,6 +7,8 @@
 
 #include <cmocka.h>
 
+#include "nanotouch/plan.h"
+#include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 
 static void defaults_are_valid(void **state)
@@ -22,18 +24,34 @@ static void every_field_is_refused_by_name(void **state)
     (void)state;
     int count = 0;
     const nt_field *fields = nt_scene_fields(&count);
-    assert_int_equal((size_t)count * sizeof(double), offsetof(nt_scene, custom)); /* no number is without a check */
+    size_t end = 0;
     for (int i = 0; i < count; i++) {
         const nt_field *field = &fields[i];
+        assert_true(field->offset - end < sizeof(double)); /* no number is without a check */
+        end = field->offset + field->size;
+        const int is_choice = field->size != sizeof(double);
         const double outside[] = {nextafter(field->minimum, -HUGE_VAL), nextafter(field->maximum, HUGE_VAL), NAN,
                                   HUGE_VAL};
         for (int j = 0; j < 4; j++) {
             nt_scene scene = nt_scene_defaults();
             nt_problem problem = {0};
             nt_field_set(field, &scene, outside[j]);
-            assert_int_equal(nt_scene_check(&scene, &problem), j < 2 ? NT_E_RANGE : NT_E_NOT_FINITE);
+            assert_int_equal(nt_scene_check(&scene, &problem), j < 2 || is_choice ? NT_E_RANGE : NT_E_NOT_FINITE);
             assert_string_equal(problem.field, field->name);
         }
+    }
+    assert_int_equal(end, offsetof(nt_scene, custom));
+}
+
+/* Each table is given without its length, too. */
+static void the_length_of_a_table_is_optional(void **state)
+{
+    (void)state;
+    const nt_field *(*const tables[])(int *) = {nt_scene_fields, nt_demand_fields, nt_rig_fields};
+    for (int i = 0; i < 3; i++) {
+        int count = 0;
+        assert_ptr_equal(tables[i](NULL), tables[i](&count));
+        assert_true(count > 0);
     }
 }
 
@@ -107,6 +125,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_are_valid),
         cmocka_unit_test(every_field_is_refused_by_name),
+        cmocka_unit_test(the_length_of_a_table_is_optional),
         cmocka_unit_test(mistakes_of_units_are_refused),
         cmocka_unit_test(adhesion_has_one_source),
         cmocka_unit_test(meniscus_radius_is_kelvins_unless_given),

@@ -40,7 +40,7 @@ static void what_is_not_used_is_told(void **state)
     nt_scene scene = dry_silicon();
     make(&scene);
     assert_int_equal(warns_of("not used") + warns_of("does not act"), 0);
-    scene.sample.conducting = 0.0;
+    scene.sample.conducting = 0;
     scene.adhesion.contact_potential = 1.0;
     scene.adhesion.pull_off_force = 12e-9;
     scene.medium.ionic_strength = 100.0;
@@ -52,7 +52,7 @@ static void what_is_not_used_is_told(void **state)
                                 "meniscus radius",   "surface potential"};
     for (int i = 0; i < 6; ++i)
         assert_int_equal(warns_of(told[i]), 1);
-    scene.sample.conducting = 1.0;
+    scene.sample.conducting = 1;
     scene.adhesion.given = NT_ADHESION_GIVEN_PULL_OFF;
     scene.medium.kind = NT_MEDIUM_LIQUID;
     scene.tip.surface_potential = 0.0;

@@ -20,7 +20,7 @@ static nt_record records[MOST];
 static nt_session_setup held_setup(void)
 {
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.rig.master.rate = 125.0;
     setup.settings = nt_settings_defaults(&setup.rig);
     const nt_gains *gains = &setup.settings.gains;

@@ -198,7 +198,8 @@ static void contact_that_stiffens_beyond_the_limit_is_promised(void **state)
     setup.rig.probe.resolution = 1e-5;
     setup.rig.stage.max_speed = 2e-3;
     setup.rig.stage.resolution = setup.rig.stage.command_resolution = 0.0;
-    setup.rig.master.motor = setup.rig.master.gauge = setup.rig.master.resolution = 0.0;
+    setup.rig.master.motor = setup.rig.master.gauge = 0;
+    setup.rig.master.resolution = 0.0;
     setup.settings.control.choice = NT_CONTROL_IMPEDANCE;
     setup.settings.gains.force_gain = 0.0;
     setup.settings.gains.stage_integral = 5.0;

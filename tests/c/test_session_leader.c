@@ -110,7 +110,7 @@ static nt_backend backend_for(nt_half half)
 static nt_session_setup setup_of(void)
 {
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.rig.stage.axes = 1.0;
     setup.rig.stage.resonance = 100.0;
     setup.rig.stage.quality = 1.0;

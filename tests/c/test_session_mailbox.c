@@ -93,7 +93,7 @@ static void begin(life *l, long number)
     l->half.clock = follow;
     nt_session_setup setup = nt_session_defaults();
     setup.preflight = 0;
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.rig.stage.resonance = 200.0; /* far from the rate of the loop */
     setup.rig.stage.quality = 1.0;
     setup.settings = nt_settings_defaults(&setup.rig);

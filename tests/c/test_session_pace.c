@@ -231,7 +231,7 @@ static void catching_up_makes_no_device_stale(void **state)
                                        .write = write_pointer};
     pointer device = {.host = NULL};
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.motor = setup.rig.master.gauge = 0.0;
+    setup.rig.master.motor = setup.rig.master.gauge = 0;
     setup.rig.master.rate = 1.0 / POINTER_PERIOD;
     setup.settings = nt_settings_defaults(&setup.rig);
     setup.master = (nt_hal_choice){&backend, &device};

@@ -34,7 +34,7 @@ static void hear(void *context, const char *text)
 static nt_session_setup setup_of(const nt_module *master, const nt_module *slave)
 {
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.rig.stage.axes = 1.0;
     setup.rig.stage.resonance = 100.0; /* far from the rate of the loop */
     setup.rig.stage.quality = 1.0;

@@ -81,7 +81,7 @@ static const nt_backend mouse_backend = {.size = sizeof(nt_backend),
 static nt_session *open_moved_by(mouse *m)
 {
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.settings = nt_settings_defaults(&setup.rig);
     setup.master = (nt_hal_choice){&mouse_backend, m};
     return open_session(&setup);

@@ -185,7 +185,7 @@ static void a_tip_that_stands_feels_a_change_of_the_scene(void **state)
 {
     (void)state;
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.rig.stage.quality = 0.5;
     setup.probe_model = NT_PROBE_QUASI_STATIC;
     setup.rig.probe.temperature = 0.0;

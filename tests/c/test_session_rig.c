@@ -39,7 +39,7 @@ static uint32_t line_flags(void *context)
 static nt_session_setup setup_on(nt_converter_half *half)
 {
     nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0.0;
+    setup.rig.master.gauge = setup.rig.master.motor = 0;
     setup.rig.stage.axes = 1.0;
     setup.rig.stage.resonance = 100.0; /* far from the rate of the loop */
     setup.rig.stage.quality = 1.0;

@@ -8,15 +8,16 @@ import json
 import math
 import pickle
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from nanotouch import Demand, Rig, Scene, Settings, presets
+from nanotouch.contact import geometry
 from nanotouch.errors import InvalidValue, ReadError
-from nanotouch.scene import read_toml
+from nanotouch.scene import Quantity, read_toml
 from nanotouch.scene.description import Description, Field
 from nanotouch.units import UNITS, from_si, key_spellings, to_si
 
@@ -35,6 +36,12 @@ every_field = pytest.mark.parametrize(("kind", "field"), FIELDS)
 
 
 # ---- fields ----
+
+
+def test_the_words_of_a_choice_are_those_of_its_field() -> None:
+    """Type checkers need them written out; they are in the order of the C library's numbers."""
+    assert get_args(Quantity) == Demand.fields["demand.quantity"].choices
+    assert Scene.fields["tip.shape"].choices == geometry.KINDS
 
 
 @every_field

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // plan.h: the plan as data
 #include "chapters.h"
+#include <sstream>
 
 static py::list terms_of(const nt_plan &plan)
 {
@@ -75,14 +76,25 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["properties"] = properties_of(plan);
 }
 
+// The word of a choice: those of the field stand in its unit, in the order of their numbers.
+static std::string word_of(const nt_field *fields, const char *name, const void *object)
+{
+    while (std::string(fields->name) != name)
+        ++fields;
+    std::istringstream words(fields->unit);
+    std::string word;
+    for (double left = nt_field_get(fields, object); left >= 0.0; left -= 1.0)
+        std::getline(words, word, '|');
+    return word;
+}
+
 static py::dict as_dict(const nt_plan &plan)
 {
     static const char *const sources[] = {"none", "solid", "meniscus"};
-    static const char *const quantities[] = {"force", "stiffness", "radius", "folds"};
     py::dict out;
     out["terms"] = terms_of(plan);
     out["adhesion_source"] = sources[plan.source];
-    out["quantity"] = quantities[static_cast<int>(plan.demand.quantity)];
+    out["quantity"] = word_of(nt_demand_fields(nullptr), "demand.quantity", &plan.demand);
     out["shape"] = nt_shape_name(plan.shape.kind);
     add_numbers(plan, out);
     out["rivals"] = py::dict(py::arg("hertz") = plan.rivals.hertz, py::arg("dmt") = plan.rivals.dmt,

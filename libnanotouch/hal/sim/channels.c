@@ -54,11 +54,11 @@ void nt_sim_list_master(nt_sim_master *master)
     if (first == NT_X)
         add_sideways(link, 0.5 * arm->travel);
     add_sensor(link, position_names[NT_Z], "m", &master->position_sensor);
-    if (arm->gauge != 0.0) {
+    if (arm->gauge) {
         add_sensor(link, "operator force z", "N", &master->gauge);
         link->valid |= 1u << (NT_READS_FELT + NT_Z);
     }
-    for (int i = first; i < NT_AXES && arm->motor != 0.0; i++)
+    for (int i = first; i < NT_AXES && arm->motor; i++)
         add(link, &(nt_channel_row){.name = motor_names[i],
                                     .unit = "N",
                                     .driven = 1,

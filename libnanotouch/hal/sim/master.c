@@ -42,7 +42,7 @@ static double effort_of(const nt_sim_master *master)
 static void moment_now(const nt_sim_master *master, double moment[2])
 {
     const nt_master_state *arm = &master->arm[NT_Z];
-    const int measures = master->link.rig.master.gauge != 0.0;
+    const int measures = master->link.rig.master.gauge;
     moment[0] = arm->position;
     moment[1] =
         measures ? nt_master_grip_force(&master->models[1], arm, effort_of(master), master->hand.rest) : (double)NAN;
@@ -96,7 +96,7 @@ nt_status nt_sim_master_read(nt_sim_master *master, nt_reading *reading)
 static double drive_motor(const nt_sim_master *master, double command)
 {
     const nt_master *arm = &master->link.rig.master;
-    if (arm->motor == 0.0)
+    if (!arm->motor)
         return 0.0;
     const double force = nt_sim_spoil_motor(&master->link, command);
     return nt_sim_in_steps(clamp(force, -arm->max_force, arm->max_force), master->motor_step);

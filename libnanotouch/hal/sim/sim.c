@@ -28,7 +28,7 @@ static void list_channels(const nt_sim_link *link, nt_capabilities *capabilities
 static nt_status describe_master(void *context, nt_capabilities *capabilities)
 {
     const nt_master *master = &((nt_sim_master *)context)->link.rig.master;
-    capabilities->can = (master->motor != 0.0 ? NT_CAN_PUSH : 0u) | (master->gauge != 0.0 ? NT_CAN_FEEL : 0u);
+    capabilities->can = (master->motor ? NT_CAN_PUSH : 0u) | (master->gauge ? NT_CAN_FEEL : 0u);
     capabilities->axes = (int)master->axes;
     capabilities->period = master->rate > 0.0 ? 1.0 / master->rate : 0.0;
     list_channels(&((nt_sim_master *)context)->link, capabilities);

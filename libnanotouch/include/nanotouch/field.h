@@ -12,18 +12,21 @@
 extern "C" {
 #endif
 
-/* One field of a description; all fields in a table are doubles. */
+/* One field of a description: a double, or a choice, which is an enum or an int. */
 typedef struct nt_field {
     const char *name;        /* dotted, "probe.spring_constant"; static storage */
-    const char *unit;        /* SI, "" if none; "no|yes": a choice, of which the field holds the number 0, 1, .. */
+    const char *unit;        /* SI, "" if none; of a choice its words, "no|yes", which are 0, 1, .. */
     double minimum, maximum; /* valid range, both ends included [unit] */
-    unsigned offset;         /* of the double inside the description [byte] */
+    unsigned offset;         /* of the number inside the description [byte] */
+    unsigned size;           /* of it: a double's, or an enum's [byte] */
     const char *doc;         /* what it is, in a few words, with the paper's symbol */
 } nt_field;
 
-/* One row of the table of a struct `type`; the field is named by its path in it. */
-#define NT_FIELD(type, path, unit, minimum, maximum, doc)                                                              \
-    {#path, unit, minimum, maximum, (unsigned)offsetof(type, path), doc}
+/* One row of the table of a struct `type`, under a name. */
+#define NT_FIELD_NAMED(name, type, path, unit, minimum, maximum, doc)                                                  \
+    {name, unit, minimum, maximum, (unsigned)offsetof(type, path), (unsigned)sizeof(((type *)0)->path), doc}
+/* Named by its path. */
+#define NT_FIELD(type, path, ...) NT_FIELD_NAMED(#path, type, path, __VA_ARGS__)
 
 /* Checks the fields of *object in the order of the table. NT_OK; NT_E_NOT_FINITE (NaN or infinite) or NT_E_RANGE with
  * the first offending field in *problem (NULL allowed); NT_E_ARGUMENT if fields or object is NULL. Thread-safe. */
@@ -31,8 +34,8 @@ NT_API nt_status nt_field_check(const nt_field *fields, int count, const void *o
 
 /* Reads and writes one field of an object; no range check. */
 NT_API double nt_field_get(const nt_field *field, const void *object);
-/* Writes a value in the field's SI unit, of a choice its number. It is not checked: that is for the object's own check.
- */
+/* Writes a value in the field's SI unit, of a choice its number. It is not checked: that is for the object's own check,
+ * which refuses what is no number of a choice. */
 NT_API void nt_field_set(const nt_field *field, void *object, double value);
 
 #ifdef __cplusplus

@@ -27,7 +27,7 @@ typedef enum nt_quantity {
 typedef struct nt_demand {
     double relative_accuracy; /* of the quantity, over max(|it|, its scale) [-], 1e-11 .. 0.5; 0: everything, exact */
     double force_floor;       /* forces below this cannot be felt [N], >= 0 */
-    double quantity;          /* nt_quantity: "force|stiffness|radius|folds" */
+    nt_quantity quantity;     /* "force|stiffness|radius|folds" */
     double budget;            /* of one evaluation, in Hertz evaluations; 0: none [-] */
 } nt_demand;
 /* 1 % of the force, no floor, no budget. */

@@ -52,11 +52,11 @@ typedef struct nt_master {
     double travel;           /* x_m runs over -travel/2 .. +travel/2 [m] */
     double resolution;       /* step of the position sensor [m] */
     double max_force;        /* motor limit, +- [N] */
-    double gauge;            /* "no|yes": an operator force sensor (strain gauge); without, f_m is not measured */
+    int gauge;               /* "no|yes": an operator force sensor (strain gauge); without, f_m is not measured */
     double gauge_range;      /* strain gauge, +- [N] */
     double gauge_noise;      /* standard deviation of the strain gauge [N] */
     double gauge_resolution; /* step of the strain gauge [N] */
-    double motor;            /* "no|yes": it can push back; without, it is a position device, as a mouse is */
+    int motor;               /* "no|yes": it can push back; without, it is a position device, as a mouse is */
     double rate;             /* of its own measurements, 0: that of the loop [Hz] */
     double axes;             /* that it has: 1 (it presses), or 3 (it moves the tip sideways, too) [-] */
 } nt_master;

@@ -12,13 +12,13 @@
 extern "C" {
 #endif
 
-enum { NT_ZLOOP_CONTACT, NT_ZLOOP_TAPPING, NT_ZLOOP_PHASE };
+typedef enum nt_zloop_mode { NT_ZLOOP_CONTACT, NT_ZLOOP_TAPPING, NT_ZLOOP_PHASE } nt_zloop_mode;
 
 /* What keeps the tip at the surface: z_b' = K_I (set point - amplitude), or K_I (deflection - set point). Phase
  * feedback taps, too. It reads the lag as the amplitude that a contact without loss would have, A0 sin(phi), beyond 90
  * degrees as A0 (2 - sin(phi)): far from the surface it reads A0, so that rules and gain are those of the amplitude. */
 typedef struct nt_zloop {
-    double mode;          /* NT_ZLOOP_*: "contact|tapping|phase" */
+    nt_zloop_mode mode;   /* "contact|tapping|phase" */
     double set_force;     /* of contact mode [N] */
     double set_amplitude; /* of tapping mode, over the free amplitude [-] */
     double set_phase;     /* of phase feedback [rad] */

@@ -13,9 +13,8 @@
 extern "C" {
 #endif
 
-/* Fields that are choices hold the number of the choice (field.h). */
 typedef struct nt_tip {
-    double shape;             /* nt_shape_kind: "paraboloid|sphere|cone|punch|blunted|truncated" */
+    nt_shape_kind shape;      /* "paraboloid|sphere|cone|punch|blunted|truncated" */
     double sides;             /* of CONE, BLUNTED, TRUNCATED: 0 round, 3 or 4 a pyramid [-] */
     double radius;            /* R of the apex, or of the flat end [m] */
     double half_angle;        /* psi of the cone above it [rad] */
@@ -23,7 +22,7 @@ typedef struct nt_tip {
     double youngs_modulus;    /* E_t [Pa] */
     double poisson_ratio;     /* nu_t [-] */
     double yield_strength;    /* Y_t [Pa]; 0: not known */
-    double conducting;        /* "no|yes" */
+    int conducting;           /* "no|yes" */
     double work_function;     /* phi_t/e [V]; 0: not known */
     double surface_potential; /* psi_t in the liquid, where no pH is given [V] */
     double isoelectric_point; /* pH without charge, where a pH is given [-] */
@@ -35,8 +34,8 @@ typedef struct nt_specimen {
     double yield_strength;    /* Y_s [Pa]; 0: not known */
     double thickness;         /* t of the layer that is pressed; 0: a half-space [m] */
     double roughness;         /* b, peak to peak, below what the surface map shows [m] */
-    double conducting;        /* "no|yes" */
-    double grounded;          /* "no|yes": connected to the tip's circuit */
+    int conducting;           /* "no|yes" */
+    int grounded;             /* "no|yes": connected to the tip's circuit */
     double work_function;     /* phi_s/e [V]; 0: not known */
     double charge;            /* q, trapped on the surface under the tip [C] */
     double surface_potential; /* psi_s in the liquid, where no pH is given [V] */
@@ -47,7 +46,7 @@ typedef enum nt_medium_kind { NT_MEDIUM_AIR, NT_MEDIUM_VACUUM, NT_MEDIUM_LIQUID 
 
 #define NT_TERM_FIELD_MEMBER(name, unit, least, most, usual, doc) double name;
 typedef struct nt_medium {
-    double kind;                  /* nt_medium_kind: "air|vacuum|liquid" */
+    nt_medium_kind kind;          /* "air|vacuum|liquid" */
     double temperature;           /* T [K] */
     double relative_humidity;     /* of air [-]; 0: no meniscus */
     double surface_tension;       /* gamma_L of the condensed liquid [N/m]; 0: no meniscus */
@@ -74,7 +73,7 @@ typedef enum nt_adhesion_given {
 } nt_adhesion_given;
 
 typedef struct nt_adhesion {
-    double given;                 /* nt_adhesion_given: "work_of_adhesion|surface_energies|pull_off_force" */
+    nt_adhesion_given given;      /* "work_of_adhesion|surface_energies|pull_off_force" */
     double work_of_adhesion;      /* w of the dry solids [J/m^2] */
     double tip_surface_energy;    /* gamma_t [J/m^2] */
     double sample_surface_energy; /* gamma_s [J/m^2] */

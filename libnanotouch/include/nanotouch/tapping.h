@@ -15,8 +15,9 @@ extern "C" {
 #endif
 
 /* How the lever is driven. */
+typedef enum nt_drive_at { NT_DRIVE_TIP, NT_DRIVE_BASE } nt_drive_at;
 typedef struct nt_drive {
-    double at;             /* "tip|base" */
+    nt_drive_at at;        /* "tip|base" */
     double frequency;      /* f, 0: at the free resonance [Hz] */
     double free_amplitude; /* A0, of the deflection far from the surface [m] */
 } nt_drive;

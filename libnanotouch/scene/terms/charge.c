@@ -4,7 +4,7 @@
 
 static int is_felt(const nt_scene *scene)
 {
-    return scene->tip.conducting != 0.0 && scene->medium.kind != NT_MEDIUM_LIQUID;
+    return scene->tip.conducting && scene->medium.kind != NT_MEDIUM_LIQUID;
 }
 
 static void prepare(void *law, const nt_scene *scene, double capture_gap)

@@ -118,7 +118,7 @@ static void offer_local(const nt_plan *plan, nt_plan_options *options, double mo
         return;
     }
     if (plan->bank) {
-        const double error = nt_plan_bank_error(plan, (nt_quantity)(int)plan->demand.quantity);
+        const double error = nt_plan_bank_error(plan, plan->demand.quantity);
         offer(plan, options, NT_FORM_LOCAL, more * error + rounding(plan, more));
     }
     offer(plan, options, NT_FORM_LOCAL_EXACT, rounding(plan, more));
@@ -143,7 +143,7 @@ static double table_error(const nt_plan *plan, nt_quantity quantity)
 /* Contact of tips that adhesion makes Maugis-Dugdale's. */
 static void offer_maugis(nt_plan *plan, nt_plan_options *options, double more)
 {
-    const nt_quantity quantity = (nt_quantity)(int)plan->demand.quantity;
+    const nt_quantity quantity = plan->demand.quantity;
     const double table = table_error(plan, quantity);
     const int hertz_shape = plan->shape.kind == NT_SHAPE_PARABOLOID;
     if (hertz_shape && quantity == NT_QUANTITY_FORCE && plan->demand.force_floor > 0.0)

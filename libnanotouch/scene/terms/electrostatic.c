@@ -46,7 +46,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     const nt_tip *tip = &scene->tip;
     const nt_specimen *sample = &scene->sample;
     const int liquid = scene->medium.kind == NT_MEDIUM_LIQUID;
-    const int connected = !liquid && tip->conducting != 0.0 && sample->conducting != 0.0 && sample->grounded != 0.0;
+    const int connected = !liquid && tip->conducting && sample->conducting && sample->grounded;
     const int both_known = tip->work_function > 0.0 && sample->work_function > 0.0;
     out[0] = (nt_term_fact){connected, "contact potential, which does not act between these bodies", "V",
                             scene->adhesion.contact_potential};

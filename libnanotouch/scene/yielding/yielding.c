@@ -59,7 +59,7 @@ static double without_pressure(const nt_plan *plan, double nearest)
     double rest = 0.0;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (!nt_term_rows[term]->pressure)
-            rest += nt_plan_law_limit(plan, term, nearest, (nt_quantity)(int)plan->demand.quantity);
+            rest += nt_plan_law_limit(plan, term, nearest, plan->demand.quantity);
     return rest;
 }
 
