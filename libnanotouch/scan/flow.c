@@ -123,13 +123,6 @@ static nt_flow_average average_at(const nt_tapping *lever, const nt_tapping_over
     return sum;
 }
 
-static nt_flow_average average_of(const nt_tapping *lever, const nt_flow_state *state, const nt_tapping_over *over,
-                                  double amplitude)
-{
-    const double low = middle_of(lever, state, over) - lever->cosine * amplitude;
-    return average_at(lever, over, state->attached, amplitude, low);
-}
-
 static double broad(const nt_tapping *lever)
 {
     return lever->free_amplitude / CELLS;
@@ -236,12 +229,6 @@ static nt_flow_value value_of(const nt_tapping *lever, const nt_flow_state *stat
                            .lowest_gap = sum->low,
                            .virial = 0.5 * lever->spring_constant * amplitude * sum->cosine,
                            .tip_loss = sum->loss};
-}
-
-nt_flow_value nt_flow_now(const nt_tapping *tapping, const nt_flow_state *state, const nt_tapping_over *over)
-{
-    const nt_flow_average sum = average_of(tapping, state, over, hypotenuse(state->real, state->imaginary));
-    return value_of(tapping, state, &sum);
 }
 
 /* Z - Z_free turns and decays by exp(i (1 - r^2 + i r/Q) t/(2 r)). */

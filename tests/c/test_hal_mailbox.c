@@ -130,10 +130,10 @@ static void wrong_devices(void **state)
     nt_mailbox_close(NULL);
 }
 
-static nt_status open_hal(nt_hal *hal, nt_half half, nt_mailbox_half *mailbox)
+static nt_status open_hal(nt_hal *on, nt_half half, nt_mailbox_half *through)
 {
-    const nt_hal_choice choice = {nt_mailbox_backend(half), mailbox};
-    return nt_hal_open(hal, half, &choice, &host, NULL);
+    const nt_hal_choice choice = {nt_mailbox_backend(half), through};
+    return nt_hal_open(on, half, &choice, &host, NULL);
 }
 
 static void one_program_and_one_session(void **state)
@@ -158,14 +158,19 @@ static void one_program_and_one_session(void **state)
 
 /* --- silence, to the nanosecond --- */
 
-static void start_by_hand(nt_half half, nt_hal *hal, nt_mailbox_half *mailbox)
+/* The session's end, which the tests below hold. */
+static nt_hal hal;
+static nt_mailbox_half mailbox;
+static nt_shared view;
+
+static void start_by_hand(nt_half half)
 {
     assert_int_equal(mailbox_start(&program, half, mailbox_name(name, "hand")), NT_OK);
-    *mailbox = half_of(name);
-    assert_int_equal(open_hal(hal, half, mailbox), NT_OK);
+    mailbox = half_of(name);
+    assert_int_equal(open_hal(&hal, half, &mailbox), NT_OK);
     const nt_configuration configuration = {sizeof configuration, 0, 1e-3, 1e-6, ""};
-    assert_int_equal(nt_hal_configure(hal, &configuration, NULL), NT_OK);
-    assert_int_equal(nt_hal_arm(hal), NT_OK);
+    assert_int_equal(nt_hal_configure(&hal, &configuration, NULL), NT_OK);
+    assert_int_equal(nt_hal_arm(&hal), NT_OK);
     mailbox_set(&program, &program.is_dead, 1); /* from now on the test alone turns it */
 }
 
@@ -179,19 +184,25 @@ static void turn(int64_t later)
     (void)pthread_mutex_unlock(&program.lock);
 }
 
-static void end_by_hand(nt_hal *hal)
+static nt_mailbox_block *attach(void)
 {
+    assert_int_equal(nt_shared_attach(&view, "mailbox", name, sizeof(nt_mailbox_block), 1), NT_OK);
+    return view.memory;
+}
+
+static void end_by_hand(void)
+{
+    if (view.memory)
+        nt_shared_close(&view);
     mailbox_set(&program, &program.is_dead, 0);
-    nt_hal_close(hal);
+    nt_hal_close(&hal);
     mailbox_end(&program);
 }
 
 static void a_program_that_is_silent_is_lost_after_its_timeout(void **state)
 {
     (void)state;
-    nt_hal hal;
-    nt_mailbox_half mailbox;
-    start_by_hand(NT_HALF_MASTER, &hal, &mailbox);
+    start_by_hand(NT_HALF_MASTER);
     turn(1000000);
     assert_int_equal(nt_hal_read(&hal), NT_OK);
     const nt_reading last = hal.reading;
@@ -210,15 +221,13 @@ static void a_program_that_is_silent_is_lost_after_its_timeout(void **state)
     assert_int_equal(hal.backend->read(hal.context, &fresh), NT_OK);
     assert_int_equal(fresh.sequence, last.sequence + 1);
     assert_int_equal(fresh.time, mailbox_time());
-    end_by_hand(&hal);
+    end_by_hand();
 }
 
 static void a_device_that_is_silent_is_not_a_program_that_is(void **state)
 {
     (void)state;
-    nt_hal hal;
-    nt_mailbox_half mailbox;
-    start_by_hand(NT_HALF_MASTER, &hal, &mailbox);
+    start_by_hand(NT_HALF_MASTER);
     turn(1000000);
     assert_int_equal(nt_hal_read(&hal), NT_OK);
     const nt_reading last = hal.reading;
@@ -229,16 +238,14 @@ static void a_device_that_is_silent_is_not_a_program_that_is(void **state)
         assert_false(hal.reading.flags & NT_SAMPLE_DEVICE_LOST);
         assert_int_equal(hal.reading.time, last.time); /* it grows old: the supervisor holds */
     }
-    end_by_hand(&hal);
+    end_by_hand();
 }
 
 static void a_session_that_is_silent_leaves_the_device_safe(void **state)
 {
     (void)state;
     for (int half = NT_HALF_MASTER; half <= NT_HALF_SLAVE; ++half) {
-        nt_hal hal;
-        nt_mailbox_half mailbox;
-        start_by_hand((nt_half)half, &hal, &mailbox);
+        start_by_hand((nt_half)half);
         const double asked = half == NT_HALF_MASTER ? 1.5 : 2e-6;
         const nt_action action = {.size = sizeof action, .target = {[NT_Z] = asked}};
         assert_int_equal(nt_hal_write(&hal, &action), NT_OK);
@@ -248,22 +255,20 @@ static void a_session_that_is_silent_leaves_the_device_safe(void **state)
         assert_true(fabs(left_at(NULL) - (half == NT_HALF_MASTER ? 0.0 : asked - 1e-6)) < 1e-15);
         turn(1000000); /* lifted once */
         assert_true(fabs(left_at(NULL) - (half == NT_HALF_MASTER ? 0.0 : asked - 1e-6)) < 1e-15);
-        end_by_hand(&hal);
+        end_by_hand();
     }
 }
 
 static void targets_stay_within_their_channel(void **state)
 {
     (void)state;
-    nt_hal hal;
-    nt_mailbox_half mailbox;
-    start_by_hand(NT_HALF_MASTER, &hal, &mailbox);
+    start_by_hand(NT_HALF_MASTER);
     const nt_action action = {.size = sizeof action, .target = {[NT_Z] = -7.0}};
     assert_int_equal(nt_hal_write(&hal, &action), NT_OK);
     turn(1000);
     assert_true(left_at(NULL) == -3.0);
     assert_int_equal(mailbox.counts.clipped, 1);
-    end_by_hand(&hal);
+    end_by_hand();
 }
 
 /* --- what a program may write, and what one that has gone mad writes --- */
@@ -271,12 +276,8 @@ static void targets_stay_within_their_channel(void **state)
 static void unsound_readings_are_refused_on_both_sides(void **state)
 {
     (void)state;
-    nt_hal hal;
-    nt_mailbox_half mailbox;
-    start_by_hand(NT_HALF_MASTER, &hal, &mailbox);
-    nt_shared view;
-    assert_int_equal(nt_shared_attach(&view, "mailbox", name, sizeof(nt_mailbox_block), 1), NT_OK);
-    nt_mailbox_block *block = view.memory;
+    start_by_hand(NT_HALF_MASTER);
+    nt_mailbox_block *block = attach();
     const int64_t now = mailbox_time();
     const nt_reading unsound[] = {
         {.position = {[NT_Z] = (double)NAN}, .time = now, .valid = 1u << NT_Z},
@@ -305,20 +306,15 @@ static void unsound_readings_are_refused_on_both_sides(void **state)
     atomic_store(&block->beat, (uint64_t)mailbox_time() + 1u); /* a beat that has not been yet is none */
     assert_int_equal(nt_hal_read(&hal), NT_OK);
     assert_true(hal.reading.flags & NT_SAMPLE_DEVICE_LOST);
-    nt_shared_close(&view);
-    end_by_hand(&hal);
+    end_by_hand();
 }
 
 /* The writer stands in the middle: its slot has no stamp, or already that of another lap. */
 static void half_written_readings_are_never_taken(void **state)
 {
     (void)state;
-    nt_hal hal;
-    nt_mailbox_half mailbox;
-    start_by_hand(NT_HALF_MASTER, &hal, &mailbox);
-    nt_shared view;
-    assert_int_equal(nt_shared_attach(&view, "mailbox", name, sizeof(nt_mailbox_block), 1), NT_OK);
-    nt_mailbox_block *block = view.memory;
+    start_by_hand(NT_HALF_MASTER);
+    nt_mailbox_block *block = attach();
     turn(1000000);
     assert_int_equal(nt_hal_read(&hal), NT_OK);
     const nt_reading last = hal.reading;
@@ -334,8 +330,7 @@ static void half_written_readings_are_never_taken(void **state)
     assert_int_equal(nt_hal_read(&hal), NT_OK);
     assert_memory_equal(&hal.reading, &last, sizeof last);
     assert_int_equal(mailbox.counts.torn, 1);
-    nt_shared_close(&view);
-    end_by_hand(&hal);
+    end_by_hand();
 }
 
 int main(void)

@@ -95,13 +95,19 @@ def test_work_over_terraces_is_that_of_all_three_axes() -> None:
     assert energies[3] > 0.0
 
 
-def test_the_view_shows_where_the_work_goes() -> None:
+def pressed_for_a_second() -> tuple[Host, Seen]:
+    """A view that has drawn every tick of a press."""
     host, seen = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True), Seen()
     seen.hear(host.world())
     host.answer({"do": "press", "on": True})
     for _ in range(10):
         host.advance(0.1)
         seen.look(host.observer)
+    return host, seen
+
+
+def test_the_view_shows_where_the_work_goes() -> None:
+    host, seen = pressed_for_a_second()
     assert seen.balance is not None
     hand, stored, tip, heat = seen.balance.energies
     host.close()
@@ -143,12 +149,7 @@ def test_after_a_stop_the_hand_takes_hold_where_the_tip_is() -> None:
 
 
 def test_a_balance_with_missed_ticks_is_only_about_right() -> None:
-    host, seen = Host(of_preset("silicon_in_air"), lambda message: None, stepped=True), Seen()
-    seen.hear(host.world())
-    host.answer({"do": "press", "on": True})
-    for _ in range(10):
-        host.advance(0.1)
-        seen.look(host.observer)
+    host, seen = pressed_for_a_second()
     assert seen.balance is not None
     assert seen.balance.whole
     host.advance(0.1)

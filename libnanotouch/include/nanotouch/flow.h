@@ -55,9 +55,6 @@ typedef struct nt_flow_cell {
 typedef struct nt_flow_table {
     nt_flow_cell cell[NT_FLOW_CELLS];
 } nt_flow_table;
-/* Now, over a place. */
-NT_API NT_REALTIME nt_flow_value nt_flow_now(const nt_tapping *tapping, const nt_flow_state *state,
-                                             const nt_tapping_over *over);
 
 /* Goes on by `time` [s]: the lever alone exactly, the force in between (Strang; second order); in halves where the
  * force turns the lag by more than 0.05 rad. Good for steps of up to 0.25 sqrt(Q) periods. Returns what the period in

@@ -35,7 +35,8 @@ class TipLike(Protocol):
     """A tip: ``radius`` [m], and where it is not taken as rigid ``youngs_modulus`` [Pa] and ``poisson_ratio``."""
 
     @property
-    def radius(self) -> float: ...
+    def radius(self) -> float:
+        """Of the apex [m]."""
 
 
 def fit_curve(

@@ -26,7 +26,8 @@ class Sliced(Protocol):
     """Numbers that are had by slicing: a numpy array or memmap, an h5py or zarr data set, a Dask array."""
 
     @property
-    def shape(self) -> tuple[int, ...]: ...
+    def shape(self) -> tuple[int, ...]:
+        """Length along each axis."""
 
     def __getitem__(self, key: Any) -> Any: ...
 
@@ -87,6 +88,7 @@ class ArrayVolume:
 
     @property
     def shape(self) -> tuple[int, int]:
+        """Rows and columns of curves."""
         return int(self.values.shape[0]), int(self.values.shape[1])
 
     def block(self, start: int, stop: int) -> Block:

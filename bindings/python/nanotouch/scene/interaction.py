@@ -67,6 +67,7 @@ class Interaction:
 
     @state.setter
     def state(self, state: State) -> None:
+        """Go on from a history."""
         self._core.state = (state.attached, state.dissipated, state.port)
 
     def eval(self, pose: ArrayLike) -> Value:
