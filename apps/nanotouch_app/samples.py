@@ -87,7 +87,7 @@ def _cut(path: Path) -> None:
 
 
 def _curve(seed: int) -> nt.curves.ForceCurve:
-    contact = nt.Contact(RADIUS, MODULUS, WORK, range=0.2e-9)
+    contact = nt.Contact(RADIUS, MODULUS, WORK, cohesive_range=0.2e-9)
     return nt.curves.synthesise(contact, spring_constant=SPRING, noise=50e-12, depth=DEPTH, seed=seed)
 
 
@@ -99,7 +99,7 @@ def _map() -> list[nt.curves.ForceCurve]:
     return [
         replace(
             nt.curves.synthesise(
-                nt.Contact(RADIUS, float(stiff[x]), WORK, range=0.2e-9), spring_constant=SPRING, noise=50e-12,
+                nt.Contact(RADIUS, float(stiff[x]), WORK, cohesive_range=0.2e-9), spring_constant=SPRING, noise=50e-12,
                 depth=DEPTH, clearance=240e-9, points=600, seed=1 + ROWS * y + x,
             ),
             meta={"spring constant": SPRING, "enum": ROWS * y + x, "grid index x": x, "grid index y": y, **grid},

@@ -202,7 +202,7 @@ PAGE_API(page_term_text) const char *page_term_text(int number, int part)
 PAGE_API(page_term_value) double page_term_value(int number, int part)
 {
     const nt_plan_term *term = &world.plan.terms[number];
-    return part == 0 ? term->force : term->error;
+    return part == 0 ? term->force : term->bound;
 }
 
 PAGE_API(page_warning_count) int page_warning_count(void)

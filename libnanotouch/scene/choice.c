@@ -52,7 +52,7 @@ static void take(nt_plan *plan, const nt_plan_options *options, const combinatio
             nt_term_rows[term]->name_of ? plan->terms[term].name : nt_term_rows[term]->words.title;
         plan->terms[term].words = nt_term_form_of(plan, term, form)->words;
         plan->terms[term].form = form;
-        plan->terms[term].error = options->option[term][best->index[term]].error;
+        plan->terms[term].bound = options->option[term][best->index[term]].error;
         plan->terms[term].cost = options->option[term][best->index[term]].cost;
         plan->terms[term].latency = options->option[term][best->index[term]].latency;
         plan->latency += plan->terms[term].latency;

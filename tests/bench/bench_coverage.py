@@ -53,7 +53,7 @@ def synthetic(model: str, seed: int, stiffness: float = STIFFNESS, kind: str = "
     """A curve, and what the fit is told about its tip."""
     rng = np.random.default_rng([seed, 77])
     error = np.exp(rng.standard_normal(3) * [CALIBRATION.sensitivity, CALIBRATION.spring_constant, CALIBRATION.radius])
-    contact = nt.Contact(RADIUS, MODULUS, WORK if model in ADHESIVE else 0.0, range=RANGE)
+    contact = nt.Contact(RADIUS, MODULUS, WORK if model in ADHESIVE else 0.0, cohesive_range=RANGE)
     told: dict[str, Any] = {"radius": RADIUS * error[2]}
     if model in ("cone", "pyramid"):
         told["half_angle"] = HALF_ANGLE

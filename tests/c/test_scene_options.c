@@ -77,8 +77,8 @@ static void the_error_of_contact_knows_every_pull_beside_it(void **state)
             pull = larger(pull, -nt_plan_term_eval(&plan, terms[n], gap).F);
         const double error = 1e-12 * (1.0 + pull / plan.scale);
         assert_true(pull > 0.0 && error > 1.5e-12);
-        assert_true(plan.terms[NT_PLAN_CONTACT].error > (1.0 - 1e-9) * error);
-        assert_true(plan.terms[NT_PLAN_CONTACT].error < 1.06 * error);
+        assert_true(plan.terms[NT_PLAN_CONTACT].bound > (1.0 - 1e-9) * error);
+        assert_true(plan.terms[NT_PLAN_CONTACT].bound < 1.06 * error);
     }
 }
 

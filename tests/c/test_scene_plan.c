@@ -118,7 +118,7 @@ static void bounds_of_what_is_left_out_are_true_maxima(void **state)
                 largest = larger(largest, fabs(F));
             }
             assert_true(largest > 0.0 && fabs(plan.terms[term].force / largest - 1.0) < 1e-9);
-            assert_true(fabs(plan.terms[term].error * plan.scale / largest - 1.0) < 1e-9);
+            assert_true(fabs(plan.terms[term].bound * plan.scale / largest - 1.0) < 1e-9);
         }
     }
 }

@@ -71,7 +71,7 @@ static void a_plan_computes_it_within_the_error_it_states(void **state)
     assert_string_equal(term->name, "gel");
     assert_string_equal(term->title, "gel");
     assert_int_equal(term->form, NT_FORM_TABLE);
-    assert_true(term->error > 0.0 && term->error < 1e-6 && term->cost > 0.0);
+    assert_true(term->bound > 0.0 && term->bound < 1e-6 && term->cost > 0.0);
     assert_true(term->force >= fabs(mixed(&honest, scene.adhesion.equilibrium_distance).F));
     const long before = calls;
     double worst = 0.0, worst_stiffness = 0.0;
@@ -87,7 +87,7 @@ static void a_plan_computes_it_within_the_error_it_states(void **state)
         worst = larger(worst, fabs(values[i].F - truth.F));
         worst_stiffness = larger(worst_stiffness, fabs(values[i].k - truth.k));
     }
-    assert_true(worst <= term->error * plan.scale);
+    assert_true(worst <= term->bound * plan.scale);
     assert_true(worst > 0.0 && worst_stiffness <= plan.laws.custom_2.stiffness_error);
 }
 
@@ -136,7 +136,7 @@ static void what_is_left_out_counts_by_its_bound(void **state)
     const nt_plan_term *term = &plan.terms[NT_PLAN_CUSTOM_2];
     const double stated = bound_of_mixed(&faint, scene.adhesion.equilibrium_distance);
     assert_int_equal(term->form, NT_FORM_OFF);
-    assert_true(fabs(term->error * plan.scale / stated - 1.0) < 1e-9);
+    assert_true(fabs(term->bound * plan.scale / stated - 1.0) < 1e-9);
     assert_true(plan.bound.force_error <= 0.01);
 }
 

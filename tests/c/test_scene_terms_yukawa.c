@@ -91,7 +91,7 @@ static void a_plan_takes_it_where_it_is_felt(void **state)
     assert_true(fabs((all - rest) / slices(20e-9, 1e-2, 5e-9, 3e-9) - 1.0) < 1e-3);
     const double largest = slices(20e-9, 1e-7, 5e-9, scene.adhesion.equilibrium_distance); /* held inside */
     assert_true(fabs(plan.terms[NT_PLAN_YUKAWA].force / largest - 1.0) < 1e-9);
-    assert_true(fabs(plan.terms[NT_PLAN_YUKAWA].error * plan.scale / largest - 1.0) < 1e-9);
+    assert_true(fabs(plan.terms[NT_PLAN_YUKAWA].bound * plan.scale / largest - 1.0) < 1e-9);
 }
 
 /* An energy without a length is no force, and told. */

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from nanotouch.contact import MODELS, Contact, evaluate
 
-CONTACT = Contact(radius=20e-9, effective_modulus=76.9e9, work_of_adhesion=0.144, range=1.2e-9)
+CONTACT = Contact(radius=20e-9, effective_modulus=76.9e9, work_of_adhesion=0.144, cohesive_range=1.2e-9)
 SURFACE = nt.Surface(nt.Topography(1e-9 * np.random.default_rng(1).random((8, 9)), (1e-9, 1e-9)))
 PLAN = nt.Scene().plan()
 

@@ -19,7 +19,7 @@ from nanotouch.errors import Error, InvalidValue
 
 # silicon on silicon under water, as in the paper
 R, E, W, H0 = 20e-9, 76.9e9, 0.144, 1.2e-9
-SILICON = Contact(radius=R, effective_modulus=E, work_of_adhesion=W, range=H0)
+SILICON = Contact(radius=R, effective_modulus=E, work_of_adhesion=W, cohesive_range=H0)
 
 radii = st.floats(1e-9, 1e-6)
 moduli = st.floats(1e5, 1e12)
@@ -103,8 +103,8 @@ def test_maugis_lambda() -> None:
 
 def test_pull_off_runs_from_dmt_to_jkr() -> None:
     """2 pi w R for small lambda, 1.5 pi w R for large (published limits)."""
-    small = Contact(R, E, W, range=1e3 * H0)
-    large = Contact(R, E, W, range=1e-6 * H0)
+    small = Contact(R, E, W, cohesive_range=1e3 * H0)
+    large = Contact(R, E, W, cohesive_range=1e-6 * H0)
     assert contact.pull_off_force("maugis", small) == pytest.approx(2 * math.pi * W * R, rel=1e-3)
     assert contact.pull_off_force("maugis", large) == pytest.approx(1.5 * math.pi * W * R, rel=1e-3)
     assert contact.pull_off_force("jkr", SILICON) == pytest.approx(1.5 * math.pi * W * R, rel=1e-15)
@@ -113,7 +113,7 @@ def test_pull_off_runs_from_dmt_to_jkr() -> None:
 @pytest.mark.parametrize("model", MODELS)
 @given(delta=st.floats(0.02e-9, 5e-9), logarithm=st.floats(-1.5, 2.0))
 def test_force_is_the_derivative_of_energy(model: Model, delta: float, logarithm: float) -> None:
-    made = Contact(R, E, W, range=H0 * 10**-logarithm)
+    made = Contact(R, E, W, cohesive_range=H0 * 10**-logarithm)
     step = 1e-4 * delta
     at = delta + step * np.array([-1.0, 0.0, 1.0])
     law = evaluate(model, at, made)
@@ -139,7 +139,7 @@ def test_indentation_beyond_pull_off_is_nan(model: Model) -> None:
     assert np.isnan(contact.indentation(model, force, SILICON)).all()
 
 
-SOFT = Contact(1e-6, 1e6, 0.05, range=1e-9)  # lambda > 0.94: the branches differ
+SOFT = Contact(1e-6, 1e6, 0.05, cohesive_range=1e-9)  # lambda > 0.94: the branches differ
 
 
 @pytest.mark.parametrize("model", ["jkr", "maugis"])
@@ -194,13 +194,13 @@ def test_cone_and_punch() -> None:
         ({"radius": 20.0}, ["radius = 20 m", ".. 1 m"]),
         ({"effective_modulus": math.inf}, ["effective_modulus = inf Pa"]),
         ({"work_of_adhesion": -0.1}, ["work_of_adhesion = -0.1 J/m^2", "0 .."]),
-        ({"range": 0.0}, ["range = 0 m", "above 0 m"]),
-        ({"range": None, "cohesive_stress": -1.0}, ["cohesive_stress = -1 Pa"]),
-        ({"cohesive_stress": 1e8}, ["cohesive_stress", "range", "not both"]),
+        ({"cohesive_range": 0.0}, ["cohesive_range = 0 m", "above 0 m"]),
+        ({"cohesive_range": None, "cohesive_stress": -1.0}, ["cohesive_stress = -1 Pa"]),
+        ({"cohesive_stress": 1e8}, ["cohesive_stress", "cohesive_range", "not both"]),
     ],
 )
 def test_bad_contacts_are_named(change: dict[str, Any], words: list[str]) -> None:
-    values: dict[str, Any] = {"radius": R, "effective_modulus": E, "work_of_adhesion": W, "range": H0} | change
+    values: dict[str, Any] = {"radius": R, "effective_modulus": E, "work_of_adhesion": W, "cohesive_range": H0} | change
     with pytest.raises(InvalidValue) as caught:
         Contact(**values)
     assert all(word in str(caught.value) for word in words), caught.value

@@ -159,7 +159,7 @@ def test_inverse_and_slope(lam: float, step: float) -> None:
 
 
 def test_same_as_si() -> None:
-    contact = nt.Contact(radius=20e-9, effective_modulus=77e9, work_of_adhesion=0.144, range=0.2e-9)
+    contact = nt.Contact(radius=20e-9, effective_modulus=77e9, work_of_adhesion=0.144, cohesive_range=0.2e-9)
     K, w, R = 4 / 3 * 77e9, 0.144, 20e-9
     d = np.linspace(-1e-9, 5e-9, 50)
     in_si = nt.contact.force("maugis", d, contact)

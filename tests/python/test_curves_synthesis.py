@@ -11,7 +11,7 @@ import pytest
 from nanotouch import curves
 from nanotouch.errors import InvalidValue
 
-SOFT = nt.Contact(20e-9, 5e6, 0.05, range=2e-9)
+SOFT = nt.Contact(20e-9, 5e6, 0.05, cohesive_range=2e-9)
 STIFFNESS, CONTACT = 0.5, 3e-7
 MODELS: list[Any] = ["hertz", "dmt", "jkr", "maugis"]
 

@@ -45,7 +45,7 @@ def curve_of(
 ) -> ForceCurve:
     """A synthetic curve with offset and tilt; the detector shows sensitivity_error times the true deflection."""
     rng = np.random.default_rng(seed)
-    contact = nt.Contact(RADIUS, modulus, 0.0 if model == "hertz" else WORK, range=2e-9)
+    contact = nt.Contact(RADIUS, modulus, 0.0 if model == "hertz" else WORK, cohesive_range=2e-9)
     z = np.linspace(CONTACT - 6e-8, CONTACT + 4.5e-7, points)
 
     def segment(role: Any, heights: Any) -> Segment:

@@ -21,8 +21,8 @@ import bench_coverage
 RADIUS, MODULUS, WORK, RANGE, STIFFNESS = 20e-9, 5e6, 0.05, 2e-9, 0.5
 
 
-def curve_of(model: Any, *, range: float = RANGE, **changes: Any) -> Any:
-    contact = nt.Contact(RADIUS, MODULUS, 0.0 if model == "hertz" else WORK, range=range)
+def curve_of(model: Any, *, cohesive_range: float = RANGE, **changes: Any) -> Any:
+    contact = nt.Contact(RADIUS, MODULUS, 0.0 if model == "hertz" else WORK, cohesive_range=cohesive_range)
     return nt.curves.synthesise(contact, model, **({"spring_constant": STIFFNESS, "noise": 1e-12} | changes))
 
 
@@ -171,7 +171,7 @@ def test_a_free_range_is_no_hidden_bias(seed: int) -> None:
 
 def test_a_range_that_shows_is_determined() -> None:
     """A stiff cantilever follows the unstable branch: 50 nm to a few per cent."""
-    curve = curve_of("maugis", range=50e-9, spring_constant=5.0, noise=2e-12)
+    curve = curve_of("maugis", cohesive_range=50e-9, spring_constant=5.0, noise=2e-12)
     result = nt.fit.fit_curve(curve, "maugis", radius=RADIUS, cohesive_range="free")
     assert result.identifiable["cohesive_range"]
     assert result.sigma["cohesive_range"] < 0.1 * 50e-9

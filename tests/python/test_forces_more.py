@@ -172,7 +172,7 @@ def test_meniscus_is_the_dugdale_zone_of_a_rigid_contact() -> None:
     The elastic surface bulges: (8/3pi) lambda c for a force of (pi/2) lambda c^2, some 1e-4 of the range at 1e15 Pa.
     """
     gamma, r1 = 0.072, 1.06e-9
-    rigid = contact.Contact(radius=30e-9, effective_modulus=9e14, work_of_adhesion=2 * gamma, range=2 * r1)
+    rigid = contact.Contact(radius=30e-9, effective_modulus=9e14, work_of_adhesion=2 * gamma, cohesive_range=2 * r1)
     gaps = np.linspace(0.05, 0.95, 10) * 2 * r1
     expected = forces.capillary(gaps, radius=30e-9, surface_tension=gamma, meniscus_radius=r1).F
     np.testing.assert_allclose(contact.force("maugis", -gaps, rigid), expected, rtol=1e-3)

@@ -190,7 +190,7 @@ def test_a_curve_becomes_the_scene() -> None:
 def test_what_a_curve_does_not_tell_is_assumed_and_said() -> None:
     """A hard sample under a soft lever: the pull-off that is touched is the measured one."""
     pytest.importorskip("nanotouch._fit")
-    contact = nt.Contact(radius=20e-9, effective_modulus=77e9, work_of_adhesion=0.1, range=0.2e-9)
+    contact = nt.Contact(radius=20e-9, effective_modulus=77e9, work_of_adhesion=0.1, cohesive_range=0.2e-9)
     curve = curves.synthesise(contact, spring_constant=0.05, noise=0.2e-9, depth=300e-9, clearance=900e-9)
     subject = files.of_fit(curve, "curve", 20e-9)
     measured = curves.analyse(curve).pull_off_force

@@ -21,7 +21,7 @@ CONTACTS: dict[str, tuple[nt.Contact, float]] = {
     "hertz": (nt.Contact(50e-9, 1e6, 0.0), 0.05),
     "dmt": (nt.Contact(20e-9, 60e9, 0.002), 1.0),
     "jkr": (nt.Contact(20e-9, 2e6, 0.05), 0.5),
-    "maugis": (nt.Contact(20e-9, 1e9, 0.05, range=0.3e-9), 1.0),
+    "maugis": (nt.Contact(20e-9, 1e9, 0.05, cohesive_range=0.3e-9), 1.0),
     "cone": (nt.Contact(20e-9, 2e5, 0.0), 0.05),
     "pyramid": (nt.Contact(20e-9, 2e5, 0.0), 0.05),
 }

@@ -51,6 +51,6 @@ def _work(radius: float, values: dict[str, float], pull: float) -> float:
     work = pull / (2.0 * math.pi * radius)
     for _ in range(ROUNDS if pull else 0):
         made = nt.Contact(radius=radius, effective_modulus=values["effective_modulus"], work_of_adhesion=work,
-                          range=values["cohesive_range"])  # fmt: skip
+                          cohesive_range=values["cohesive_range"])  # fmt: skip
         work *= pull / contact.pull_off_force("maugis", made)
     return work

@@ -208,9 +208,13 @@ def compressive_load(model: Model, law: LawValue, contact: Contact) -> Any:
     if model not in MODELS:
         raise InvalidValue(f"model {model!r}: valid are {', '.join(MODELS)}")
     force, radius = np.broadcast_arrays(as_floats(law.F, "force"), as_floats(law.a, "radius"))
-    stress = contact.work_of_adhesion / contact.range if contact.range is not None else contact.cohesive_stress
+    stress = (
+        contact.work_of_adhesion / contact.cohesive_range
+        if contact.cohesive_range is not None
+        else contact.cohesive_stress
+    )
     if model == "maugis" and stress is None and contact.work_of_adhesion > 0.0:
-        raise InvalidValue("the model 'maugis' needs cohesive_stress [Pa] or range [m] of the adhesion")
+        raise InvalidValue("the model 'maugis' needs cohesive_stress [Pa] or cohesive_range [m] of the adhesion")
     parameters = contact.radius, contact.effective_modulus, contact.work_of_adhesion, stress or 1.0
     return plain(_core.Friction.compressive_load(MODELS.index(model), *parameters, force, radius))
 

@@ -9,7 +9,7 @@ static py::list terms_of(const nt_plan &plan)
     for (const nt_plan_term &term : plan.terms) {
         if (term.name[0] == '\0') // a place for a law of one's own that has none
             continue;
-        terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.error, term.cost, term.title,
+        terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.bound, term.cost, term.title,
                                     term.words, term.latency));
     }
     return terms;

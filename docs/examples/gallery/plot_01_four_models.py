@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import nanotouch as nt
 import numpy as np
 
-contact = nt.Contact(radius=20e-9, effective_modulus=3e9, work_of_adhesion=0.048, range=0.2e-9)
+contact = nt.Contact(radius=20e-9, effective_modulus=3e9, work_of_adhesion=0.048, cohesive_range=0.2e-9)
 gap = np.linspace(2e-9, -1.5e-9, 800)
 figure, axes = plt.subplots()
 for model in ("hertz", "dmt", "jkr", "maugis"):

@@ -44,7 +44,7 @@ typedef struct nt_plan_term {
     const char *words; /* how it is computed: "Maugis-Dugdale table", "in Derjaguin's form"; "left out" */
     nt_form form;
     double force;   /* the largest force it has in the scene's range; 0: the scene has no such term [N] */
-    double error;   /* bound of what this form errs by, in the norm of the demand [-] */
+    double bound;   /* of what this form errs by, in the norm of the demand [-] */
     double cost;    /* of one evaluation [Hertz evaluations] */
     double latency; /* where each waits for the last [Hertz evaluations] */
 } nt_plan_term;

@@ -189,7 +189,7 @@ static void describe(nt_plan *plan, double error)
         t->name = row->words.name;
         t->title = row->words.title;
         t->words = form->words;
-        t->error = term == NT_PLAN_CONTACT ? error : 0.0;
+        t->bound = term == NT_PLAN_CONTACT ? error : 0.0;
         t->cost = term == NT_PLAN_CONTACT ? plan->cost : 0.0;
         t->latency = term == NT_PLAN_CONTACT ? plan->latency : 0.0;
     }

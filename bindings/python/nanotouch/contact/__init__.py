@@ -39,7 +39,7 @@ class Contact:
         w [J/m^2]; 0 makes every model Hertz.
     cohesive_stress : float, optional
         sigma0 of the Dugdale zone [Pa]; needed by ``"maugis"`` where w > 0.
-    range : float, optional
+    cohesive_range : float, optional
         h0 = w/sigma0 [m], instead of the cohesive stress.
     """
 
@@ -47,13 +47,15 @@ class Contact:
     effective_modulus: float
     work_of_adhesion: float = 0.0
     cohesive_stress: float | None = None
-    range: float | None = None
+    cohesive_range: float | None = None
 
     def __post_init__(self) -> None:
-        if self.cohesive_stress is not None and self.range is not None:
-            raise InvalidValue("give cohesive_stress [Pa] or range [m], not both: range is w over cohesive stress")
-        if self.range is not None:
-            check_between("range", self.range, "m", above=0.0)
+        if self.cohesive_stress is not None and self.cohesive_range is not None:
+            raise InvalidValue(
+                "give cohesive_stress [Pa] or cohesive_range [m], not both: the range is w over cohesive stress"
+            )
+        if self.cohesive_range is not None:
+            check_between("cohesive_range", self.cohesive_range, "m", above=0.0)
         self.law("jkr")  # the C library checks the values
 
     def law(self, model: Model) -> _core.ContactLaw:
@@ -65,12 +67,12 @@ class Contact:
         )
 
     def _stress(self, model: Model) -> float:
-        if self.range is not None:
-            return self.work_of_adhesion / self.range
+        if self.cohesive_range is not None:
+            return self.work_of_adhesion / self.cohesive_range
         if self.cohesive_stress is not None:
             return self.cohesive_stress
         if model == "maugis" and self.work_of_adhesion > 0.0:
-            raise InvalidValue("the model 'maugis' needs cohesive_stress [Pa] or range [m] of the adhesion")
+            raise InvalidValue("the model 'maugis' needs cohesive_stress [Pa] or cohesive_range [m] of the adhesion")
         return 1.0  # read by no other model
 
     @property

@@ -263,10 +263,10 @@ def tabor_mu(contact: Contact, equilibrium_distance: float) -> float:
     return _core.tabor_mu(contact.radius, contact.effective_modulus, contact.work_of_adhesion, equilibrium_distance)
 
 
-def cohesive_stress_of_range(work_of_adhesion: float, range: float) -> float:
+def cohesive_stress_of_range(work_of_adhesion: float, cohesive_range: float) -> float:
     """sigma0 = w/h0 [Pa] of an attraction that reaches a gap h0 [m]."""
-    check_between("range", range, "m", above=0.0)
-    return _core.cohesive_stress_of_range(work_of_adhesion, range)
+    check_between("cohesive_range", cohesive_range, "m", above=0.0)
+    return _core.cohesive_stress_of_range(work_of_adhesion, cohesive_range)
 
 
 def cohesive_stress_laplace(surface_tension: float, meniscus_radius: float) -> float:

@@ -53,7 +53,7 @@ def synthesise(
     depth, clearance = of_curve.pop("depth", _DEPTH), of_curve.pop("clearance", _CLEARANCE)
     made = []
     for modulus, work, lift in kinds:
-        contact = laws.Contact(radius, modulus, work, range=cohesive_range if work > 0.0 else None)
+        contact = laws.Contact(radius, modulus, work, cohesive_range=cohesive_range if work > 0.0 else None)
         curve = curves.synthesise(
             contact, model if work > 0.0 else "hertz", spring_constant=spring_constant, depth=depth + lift,
             clearance=clearance - lift, contact_point=_CONTACT_POINT + lift, **of_curve
