@@ -56,6 +56,11 @@ set(nanotouch_sources_contact
     contact/tabor.c
     contact/validity.c)
 set(nanotouch_sources_friction friction/corrugation.c friction/friction.c friction/load.c)
+set(nanotouch_sources_manipulation
+    manipulation/advance.c
+    manipulation/balance.c
+    manipulation/bristle.c
+    manipulation/particle.c)
 set(nanotouch_sources_surface
     surface/dilation.c
     surface/dots.c

@@ -21,6 +21,7 @@ USES = {
     "contact/maugis": "core contact",
     "contact/shapes": "core contact",
     "friction": "core contact contact/maugis",
+    "manipulation": "core contact contact/maugis friction",
     "surface": "core",
     "control": "core",
     "curves": "core",
@@ -46,6 +47,7 @@ HEADERS = {
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     **dict.fromkeys(["plan", "interaction", "terms"], "scene"),
     **dict.fromkeys(["flow", "tapping"], "scan"),
+    "particle": "manipulation",
     "terrain": "session",
     "sim": "hal/sim",
     "faults": "hal/sim",
@@ -69,6 +71,7 @@ PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
     "what all need": "extras _core errors formats units _arrays _io",
     "laws": "contact forces friction",
+    "objects": "manipulation",
     "measured": "images curves",
     "what there is": "scene reference scan",
     "a touch": "touch",

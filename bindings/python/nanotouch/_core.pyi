@@ -6,6 +6,7 @@ from numpy import dtype, float64, void
 from numpy.typing import NDArray
 
 from nanotouch._friction import *  # noqa: F403
+from nanotouch._particle import *  # noqa: F403
 
 Floats = NDArray[float64]
 LawColumns = tuple[Floats, Floats, Floats, Floats]

@@ -17,6 +17,7 @@ PYBIND11_MODULE(_core, module)
     bind_surface(module);
     bind_descriptions(module);
     bind_margins(module);
+    bind_particle(module);
     bind_plan(module);
     bind_terrain(module);
     bind_interaction(module);

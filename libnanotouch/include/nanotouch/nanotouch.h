@@ -22,6 +22,7 @@
 #include "nanotouch/maugis_bank.h"
 #include "nanotouch/maugis_table.h"
 #include "nanotouch/observer.h"
+#include "nanotouch/particle.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scan.h"
