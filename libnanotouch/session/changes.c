@@ -13,7 +13,7 @@ static nt_status compose_mode(const nt_session *session, nt_call *call, nt_probl
     const nt_scaling scaling = {gains->alpha_p, gains->alpha_f};
     const double mode = call->event.value[0];
     if (!(mode >= 0.0 && mode <= NT_MODE_CURVE && mode == floor(mode))) {
-        (void)nt_problem_set(problem, "mode", "touch|topography|approach|curve", mode, 0.0, NT_MODE_CURVE);
+        (void)nt_problem_set(problem, "mode", NT_MODE_WORDS, mode, 0.0, NT_MODE_CURVE);
         return NT_E_ARGUMENT;
     }
     return nt_compose_standing(&call->next, session->now, (nt_mode)mode, &scaling, problem);

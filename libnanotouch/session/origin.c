@@ -8,12 +8,12 @@
 #define FIELD(path, unit, doc) NT_FIELD(nt_origin, path, unit, -INFINITY, INFINITY, doc)
 
 static const nt_field origin_fields[] = {
-    FIELD(mode, "touch|topography|approach|curve", "at opening"),
+    FIELD(mode, NT_MODE_WORDS, "at opening"),
     FIELD(x, "m", "where it starts"),
     FIELD(y, "m", "where it starts"),
     FIELD(clearance, "m", "at opening"),
     FIELD(rise, "m", "that the master may draw back for"),
-    FIELD(probe_model, "auto|quasi-static|dynamic", "of the cantilever"),
+    FIELD(probe_model, NT_PROBE_WORDS, "of the cantilever"),
     FIELD(substep, "rad", "of the cantilever"),
     FIELD(preflight, "no|yes", "before the first tick"),
     FIELD(path, "", "check sum of its points"),
@@ -49,12 +49,12 @@ nt_origin nt_origin_of(const nt_session_setup *setup)
 {
     return (nt_origin){.seed = setup->seed,
                        .demand = setup->demand,
-                       .mode = (double)setup->mode,
+                       .mode = setup->mode,
                        .x = setup->x,
                        .y = setup->y,
                        .clearance = setup->clearance,
                        .rise = setup->rise,
-                       .probe_model = (double)setup->probe_model,
+                       .probe_model = setup->probe_model,
                        .substep = setup->substep,
                        .preflight = setup->preflight != 0,
                        .path = check_sum(2166136261.0, setup->path, setup->path ? 2 * setup->path_count : 0),
@@ -111,7 +111,7 @@ nt_status nt_origin_check_setup(const nt_session_setup *kept, const nt_session_s
         status = compare(fields, count, &kept->rig, &own->rig, problem);
     const nt_control_choice a = kept->settings.control.choice, b = own->settings.control.choice;
     if (status == NT_OK && a != b)
-        status = differ(problem, "control.choice", "default|paper|impedance|own", (double)a, (double)b);
+        status = differ(problem, "control.choice", NT_CONTROL_WORDS, (double)a, (double)b);
     if (status == NT_OK &&
         (kept->surface != own->surface || kept->map.heights != own->map.heights || kept->properties != own->properties))
         status = differ(problem, "another surface", "", 1.0, 0.0);

@@ -9,8 +9,11 @@
 typedef struct nt_origin {
     uint64_t seed;
     nt_demand demand;
-    double mode, x, y, clearance, rise, probe_model, substep, preflight;
-    double path, faults; /* check sums */
+    nt_mode mode;
+    nt_probe_model probe_model;
+    int preflight;
+    double x, y, clearance, rise, substep; /* [m], [m], [m], [m], [rad] */
+    double path, faults;                   /* check sums */
 } nt_origin;
 
 nt_origin nt_origin_of(const nt_session_setup *setup);

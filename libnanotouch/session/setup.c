@@ -53,12 +53,12 @@ static nt_status check_choices(const nt_session_setup *setup, nt_problem *proble
         const char *field, *names;
         long value, minimum, maximum;
     } choices[] = {
-        {"mode", "touch|topography|approach|curve", (long)setup->mode, 0, NT_MODE_CURVE},
-        {"probe_model", "auto|quasi-static|dynamic", (long)setup->probe_model, 0, NT_PROBE_DYNAMIC},
+        {"mode", NT_MODE_WORDS, (long)setup->mode, 0, NT_MODE_CURVE},
+        {"probe_model", NT_PROBE_WORDS, (long)setup->probe_model, 0, NT_PROBE_DYNAMIC},
         {"preflight", "no|yes", setup->preflight, 0, 1},
         {"dilated", "no|yes", setup->dilated, 0, 1},
-        {"control.choice", "default|paper|impedance|own", (long)control->choice, 0, own},
-        {"control.choice beside a law or a context of one's own", "default|paper|impedance|own", (long)control->choice,
+        {"control.choice", NT_CONTROL_WORDS, (long)control->choice, 0, own},
+        {"control.choice beside a law or a context of one's own", NT_CONTROL_WORDS, (long)control->choice,
          laws || control->context ? own : 0, own},
         {"control.law of the choice own", "no|yes", laws, control->choice == NT_CONTROL_OWN, 1},
         {"path.count", "", setup->path_count, setup->path != NULL, setup->path ? LONGEST_PATH : 0},
@@ -112,7 +112,7 @@ static nt_status check_heeded(const nt_session_setup *setup, nt_problem *problem
         return nt_problem_set(problem, "substep where no cantilever is simulated as dynamic", "rad", setup->substep,
                               0.0, 0.0);
     if (setup->probe_model != NT_PROBE_AUTO && has_own_slave)
-        return nt_problem_set(problem, "probe_model with a slave of one's own", "auto|quasi-static|dynamic",
+        return nt_problem_set(problem, "probe_model with a slave of one's own", NT_PROBE_WORDS,
                               (double)setup->probe_model, NT_PROBE_AUTO, NT_PROBE_AUTO);
     return NT_OK;
 }

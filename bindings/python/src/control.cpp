@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // control.h: a law written in Python, the supervisor on plain numbers, and the touch step run again on a recording
 #include "control.h"
-
-static constexpr const char *modes[] = {"touch", "topography", "approach", "curve"};
-static constexpr const char *controls[] = {"default", "paper", "impedance"};
+#include "words.h"
 
 static nt_effort effort_of(const py::object &answer)
 {
@@ -32,12 +30,10 @@ static nt_effort call_law(void *context, const nt_gains *gains, const nt_signals
 
 void set_control(nt_settings &settings, const std::string &name)
 {
-    for (int choice = 0; choice < 3; ++choice)
-        if (name == controls[choice]) {
-            settings.control = {static_cast<nt_control_choice>(choice), nullptr, nullptr};
-            return;
-        }
-    throw py::value_error(name);
+    const int choice = number_of(NT_CONTROL_WORDS, name);
+    if (choice < 0 || choice == NT_CONTROL_OWN)
+        throw py::value_error(name);
+    settings.control = {static_cast<nt_control_choice>(choice), nullptr, nullptr};
 }
 
 void set_control(nt_settings &settings, OwnLaw &law)
@@ -47,15 +43,15 @@ void set_control(nt_settings &settings, OwnLaw &law)
 
 nt_mode mode_of(const std::string &name)
 {
-    for (int mode = 0; mode < 4; ++mode)
-        if (name == modes[mode])
-            return static_cast<nt_mode>(mode);
-    throw py::value_error(name);
+    const int mode = number_of(NT_MODE_WORDS, name);
+    if (mode < 0)
+        throw py::value_error(name);
+    return static_cast<nt_mode>(mode);
 }
 
-const char *mode_name(nt_mode mode)
+std::string mode_name(nt_mode mode)
 {
-    return modes[mode];
+    return word_of(NT_MODE_WORDS, mode);
 }
 
 struct Supervisor {

@@ -23,4 +23,4 @@ void set_control(nt_settings &settings, const std::string &name);
 // law must outlive whatever is made of the settings.
 void set_control(nt_settings &settings, OwnLaw &law);
 nt_mode mode_of(const std::string &name);
-const char *mode_name(nt_mode mode);
+std::string mode_name(nt_mode mode);

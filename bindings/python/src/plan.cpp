@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // plan.h: the plan as data
 #include "chapters.h"
-#include <sstream>
+#include "words.h"
 
 static py::list terms_of(const nt_plan &plan)
 {
@@ -76,16 +76,12 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["properties"] = properties_of(plan);
 }
 
-// The word of a choice: those of the field stand in its unit, in the order of their numbers.
-static std::string word_of(const nt_field *fields, const char *name, const void *object)
+static std::string quantity_of(const nt_demand &demand)
 {
-    while (std::string(fields->name) != name)
-        ++fields;
-    std::istringstream words(fields->unit);
-    std::string word;
-    for (double left = nt_field_get(fields, object); left >= 0.0; left -= 1.0)
-        std::getline(words, word, '|');
-    return word;
+    const nt_field *field = nt_demand_fields(nullptr);
+    while (std::string(field->name) != "demand.quantity")
+        ++field;
+    return word_of(field->unit, demand.quantity);
 }
 
 static py::dict as_dict(const nt_plan &plan)
@@ -94,7 +90,7 @@ static py::dict as_dict(const nt_plan &plan)
     py::dict out;
     out["terms"] = terms_of(plan);
     out["adhesion_source"] = sources[plan.source];
-    out["quantity"] = word_of(nt_demand_fields(nullptr), "demand.quantity", &plan.demand);
+    out["quantity"] = quantity_of(plan.demand);
     out["shape"] = nt_shape_name(plan.shape.kind);
     add_numbers(plan, out);
     out["rivals"] = py::dict(py::arg("hertz") = plan.rivals.hertz, py::arg("dmt") = plan.rivals.dmt,

@@ -16,6 +16,7 @@ typedef enum nt_mode {
     NT_MODE_APPROACH,   /* down at approach_speed until the set-point is felt, then held there */
     NT_MODE_CURVE       /* down to the set-point, up again by curve_length, at approach_speed */
 } nt_mode;
+#define NT_MODE_WORDS "touch|topography|approach|curve"
 
 typedef enum nt_control_choice {
     NT_CONTROL_DEFAULT,
@@ -23,6 +24,7 @@ typedef enum nt_control_choice {
     NT_CONTROL_IMPEDANCE,
     NT_CONTROL_OWN
 } nt_control_choice;
+#define NT_CONTROL_WORDS "default|paper|impedance|own"
 
 struct nt_signals;
 struct nt_effort;

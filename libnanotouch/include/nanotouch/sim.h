@@ -20,6 +20,7 @@ typedef enum nt_probe_model {
     NT_PROBE_QUASI_STATIC, /* at rest at every tick */
     NT_PROBE_DYNAMIC       /* Eq. 2 */
 } nt_probe_model;
+#define NT_PROBE_WORDS "auto|quasi-static|dynamic"
 
 /* What is simulated. */
 typedef struct nt_sim_setup {
