@@ -16,7 +16,7 @@ static const double correlated = 5.0; /* of white noise this ratio is 1 +- 0.45 
 static nt_curve_free outside(const nt_curve_segment *segment, double far, double start, double *work)
 {
     const long n = segment->count;
-    nt_curve_free free = {work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, 0, 0.0};
+    nt_curve_free free = {work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, 0, 0.0, 0.0};
     for (long i = 0; i < n; i++) {
         if (!(segment->z[i] >= far || segment->z[i] > start))
             continue;
@@ -53,13 +53,13 @@ static double outermost_event(const nt_curve_segment *segment, const nt_curve_ba
     return start;
 }
 
-static nt_curve_baseline straight(const nt_curve_segment *segment, double *work, nt_curve_free *free)
+static nt_curve_baseline straight(const nt_curve_segment *segment, double noise, double *work, nt_curve_free *free)
 {
     const double highest = nt_curve_highest(segment->z, segment->count);
     const double travel = highest - nt_curve_lowest(segment->z, segment->count), far = highest - far_part * travel;
-    const double noise = nt_curve_point_noise(segment->force, segment->count, work);
     *free = outside(segment, far, INFINITY, work);
-    nt_curve_baseline first = nt_curve_robust_line(free);
+    nt_curve_baseline first = nt_curve_rough_line(free);
+    nt_curve_refine_line(free, &first);
     const double start = outermost_event(segment, &first, noise);
     if (!isfinite(start)) {
         nt_curve_judge(free, &first);
@@ -109,6 +109,13 @@ static nt_status between(const nt_curve_segment *segment, const nt_curve_choice 
 nt_status nt_curve_fit_baseline(const nt_curve_segment *segment, const nt_curve_choice *choice, double *work,
                                 nt_curve_baseline *baseline, nt_problem *problem)
 {
+    const double noise = nt_curve_point_noise(segment->force, segment->count, work);
+    return nt_curve_baseline_over(segment, choice, noise, work, baseline, problem);
+}
+
+nt_status nt_curve_baseline_over(const nt_curve_segment *segment, const nt_curve_choice *choice, double noise,
+                                 double *work, nt_curve_baseline *baseline, nt_problem *problem)
+{
     nt_problem ignored;
     nt_curve_free free;
     switch (choice->kind) {
@@ -120,7 +127,7 @@ nt_status nt_curve_fit_baseline(const nt_curve_segment *segment, const nt_curve_
     case NT_CURVE_AUTO:
     case NT_CURVE_LINE:
     case NT_CURVE_WAVE:
-        *baseline = straight(segment, work, &free);
+        *baseline = straight(segment, noise, work, &free);
         if (choice->kind == NT_CURVE_WAVE ||
             (choice->kind == NT_CURVE_AUTO && nt_curve_correlation(&free, baseline->scatter) >= correlated))
             *baseline = nt_curve_with_wave(&free, baseline, choice->kind == NT_CURVE_WAVE);
@@ -134,6 +141,19 @@ double nt_curve_baseline_at(const nt_curve_baseline *baseline, double z)
     const double x = z - baseline->z_mean;
     return baseline->force + baseline->slope * x + nt_curve_wave_at(&baseline->wave, x) +
            nt_curve_bend_at(&baseline->bend, z, x);
+}
+
+void nt_curve_baseline_of(const nt_curve_baseline *baseline, const double z[], long count, double force[])
+{
+    const int straight = baseline->wave.cosine == 0.0 && baseline->wave.sine == 0.0 && baseline->bend.film == 0.0 &&
+                         baseline->bend.bow == 0.0;
+    if (straight) {
+        for (long i = 0; i < count; i++)
+            force[i] = baseline->force + baseline->slope * (z[i] - baseline->z_mean);
+        return;
+    }
+    for (long i = 0; i < count; i++)
+        force[i] = nt_curve_baseline_at(baseline, z[i]);
 }
 
 double nt_curve_baseline_sigma(const nt_curve_baseline *baseline, double z)

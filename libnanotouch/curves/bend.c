@@ -25,8 +25,11 @@ static const double clear_part = 0.7; /* of the way: surely outside */
 typedef struct means {
     double z[BLOCKS], x[BLOCKS], force[BLOCKS];
     int count;
-    double middle, half; /* [m] */
-    double foot;         /* x where contact begins */
+    double middle, half;                                 /* [m] */
+    double foot;                                         /* x where contact begins */
+    double line[2];                                      /* least squares: level [N], slope over x [N] */
+    double rest[BLOCKS];                                 /* of it */
+    double normal[TERMS * TERMS], right[TERMS], squares; /* sums over the blocks, of line and bow, and of the rest */
 } means;
 
 /* A law of the free part: terms it has, and what they came to. */
@@ -37,6 +40,32 @@ typedef struct shape {
     double normal[TERMS * TERMS];
 } shape;
 
+/* Sums that do not depend on the pole, over what a line leaves, so that squares can be subtracted from each other. */
+static void sum_up(means *m)
+{
+    double x = 0.0, force = 0.0, spread = 0.0, product = 0.0;
+    for (int b = 0; b < m->count; b++) {
+        x += m->x[b] / m->count;
+        force += m->force[b] / m->count;
+    }
+    for (int b = 0; b < m->count; b++) {
+        spread += (m->x[b] - x) * (m->x[b] - x);
+        product += (m->x[b] - x) * (m->force[b] - force);
+    }
+    m->line[1] = product / spread;
+    m->line[0] = force - m->line[1] * x;
+    for (int b = 0; b < m->count; b++) {
+        const double row[BOW + 1] = {1.0, m->x[b], m->x[b] * m->x[b] - 1.0 / 3.0};
+        m->rest[b] = m->force[b] - m->line[0] - m->line[1] * m->x[b];
+        m->squares += m->rest[b] * m->rest[b];
+        for (int i = 0; i <= BOW; i++) {
+            m->right[i] += row[i] * m->rest[b];
+            for (int j = 0; j <= i; j++)
+                m->normal[i * TERMS + j] += row[i] * row[j];
+        }
+    }
+}
+
 static means means_of(const nt_curve_branch *branch, long first)
 {
     const long points = branch->count - first;
@@ -45,12 +74,16 @@ static means means_of(const nt_curve_branch *branch, long first)
     m.middle = branch->z[first] + m.half;
     for (int b = 0; b < m.count; b++) {
         const long from = first + b * points / m.count, end = first + (b + 1) * points / m.count;
+        double z = 0.0, force = 0.0;
         for (long i = from; i < end; i++) {
-            m.z[b] += branch->z[i] / (double)(end - from);
-            m.force[b] += branch->force[i] / (double)(end - from);
+            z += branch->z[i];
+            force += branch->force[i];
         }
+        m.z[b] = z / (double)(end - from);
+        m.force[b] = force / (double)(end - from);
         m.x[b] = (m.z[b] - m.middle) / m.half;
     }
+    sum_up(&m);
     return m;
 }
 
@@ -64,37 +97,46 @@ static void row_of(const shape *law, const means *m, double x, double row[TERMS]
     row[FILM] = law->film ? scale / (fmax(x - m->foot, 0.0) + scale) : 0.0;
 }
 
+/* Leaves the normal equations of a law in law->normal and in right; a term that it lacks stays 0. */
+static void equations(shape *law, const means *m, double right[TERMS])
+{
+    const double scale = law->scale / m->half;
+    for (int i = 0; i < TERMS * TERMS; i++)
+        law->normal[i] = m->normal[i];
+    for (int i = 0; i < TERMS; i++)
+        right[i] = m->right[i];
+    double *film = law->normal + FILM * TERMS;
+    for (int b = 0; law->film && b < m->count; b++) {
+        const double x = m->x[b], away = x - m->foot, term = away > 0.0 ? scale / (away + scale) : 1.0;
+        film[0] += term;
+        film[1] += term * x;
+        film[BOW] += term * (x * x - 1.0 / 3.0);
+        film[FILM] += term * term;
+        right[FILM] += term * m->rest[b];
+    }
+    if (!law->bow)
+        law->normal[BOW * TERMS] = law->normal[BOW * TERMS + 1] = film[BOW] = right[BOW] = 0.0;
+    if (!law->bow)
+        law->normal[BOW * TERMS + BOW] = 1.0;
+    if (!law->film)
+        film[FILM] = 1.0;
+}
+
 static void fit(shape *law, const means *m)
 {
-    double right[TERMS] = {0.0}, factor[TERMS * TERMS];
-    for (int i = 0; i < TERMS * TERMS; i++)
-        law->normal[i] = 0.0;
-    for (int b = 0; b < m->count; b++) {
-        double row[TERMS];
-        row_of(law, m, m->x[b], row);
-        for (int i = 0; i < TERMS; i++) {
-            right[i] += row[i] * m->force[b];
-            for (int j = 0; j < TERMS; j++)
-                law->normal[i * TERMS + j] += row[i] * row[j];
-        }
-    }
-    for (int i = LINE; i < TERMS; i++)
-        if (law->normal[i * TERMS + i] == 0.0)
-            law->normal[i * TERMS + i] = 1.0; /* the term is not there */
+    double right[TERMS], value[TERMS], factor[TERMS * TERMS];
+    equations(law, m, right);
     for (int i = 0; i < TERMS * TERMS; i++)
         factor[i] = law->normal[i];
-    law->squares = INFINITY;
-    if (!nt_curve_solve(factor, right, TERMS) || (law->film && !(right[FILM] > 0.0)))
-        return;
-    law->squares = 0.0;
     for (int i = 0; i < TERMS; i++)
-        law->value[i] = right[i];
-    for (int b = 0; b < m->count; b++) {
-        double row[TERMS], rest = m->force[b];
-        row_of(law, m, m->x[b], row);
-        for (int i = 0; i < TERMS; i++)
-            rest -= row[i] * law->value[i];
-        law->squares += rest * rest;
+        value[i] = right[i];
+    law->squares = INFINITY;
+    if (!nt_curve_solve(factor, value, TERMS) || (law->film && !(value[FILM] > 0.0)))
+        return;
+    law->squares = m->squares;
+    for (int i = 0; i < TERMS; i++) {
+        law->squares -= value[i] * right[i];
+        law->value[i] = value[i] + (i < LINE ? m->line[i] : 0.0);
     }
 }
 
@@ -228,7 +270,7 @@ void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room
     nt_curve_baseline bent = approach->baseline;
     add_to(&bent, &chosen, &m);
     const nt_curve_branch straight = *approach;
-    nt_curve_read_events(segment, &bent, room, approach);
+    nt_curve_read_events(segment, &bent, straight.noise, room, approach);
     if (straight.dips && approach->dips) { /* a snap-in: its own forces reach far out, and look like a bow */
         *approach = straight;
         return;

@@ -107,23 +107,26 @@ static nt_curve_measured contact_slope(const nt_curve_branch *branch)
 {
     const double least = in_contact * nt_curve_highest(branch->force, branch->count);
     double count = 0.0, z_mean = 0.0, mean = 0.0, spread = 0.0, product = 0.0, squares = 0.0;
+    long end = 0; /* after the last firm point */
     for (long i = 0; i < branch->count; i++) {
-        const int firm = branch->force[i] > least;
-        count += firm;
-        z_mean += firm ? branch->z[i] : 0.0;
-        mean += firm ? branch->force[i] : 0.0;
+        if (!(branch->force[i] > least))
+            continue;
+        count += 1.0;
+        z_mean += branch->z[i];
+        mean += branch->force[i];
+        end = i + 1;
     }
     if (least / in_contact <= branch->visible || count < 4.0)
         return (nt_curve_measured){NAN, NAN};
     z_mean /= count;
     mean /= count;
-    for (long i = 0; i < branch->count; i++) {
+    for (long i = 0; i < end; i++) {
         const double x = branch->z[i] - z_mean, firm = branch->force[i] > least;
         spread += firm * x * x;
         product += firm * x * (branch->force[i] - mean);
     }
     const double slope = product / spread;
-    for (long i = 0; i < branch->count; i++) {
+    for (long i = 0; i < end; i++) {
         const double rest = branch->force[i] - mean - slope * (branch->z[i] - z_mean);
         squares += branch->force[i] > least ? rest * rest : 0.0;
     }
@@ -134,8 +137,9 @@ static void order_outwards(const nt_curve_segment *segment, const nt_curve_basel
 {
     const long n = segment->count;
     nt_curve_point *points = (nt_curve_point *)(void *)(work + 2 * n);
+    nt_curve_baseline_of(baseline, segment->z, n, work);
     for (long i = 0; i < n; i++)
-        points[i] = (nt_curve_point){segment->z[i], segment->force[i] - nt_curve_baseline_at(baseline, segment->z[i])};
+        points[i] = (nt_curve_point){segment->z[i], segment->force[i] - work[i]};
     nt_curve_sort(points, n, points + n);
     for (long i = 0; i < n; i++) {
         work[i] = points[i].z;
@@ -148,10 +152,9 @@ double nt_curve_branch_sigma(const nt_curve_branch *branch, double z)
     return hypotenuse(branch->noise, nt_curve_baseline_sigma(&branch->baseline, z));
 }
 
-void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work,
-                          nt_curve_branch *branch)
+void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double noise,
+                          double *work, nt_curve_branch *branch)
 {
-    const double noise = nt_curve_point_noise(segment->force, segment->count, work);
     order_outwards(segment, baseline, work);
     *branch = (nt_curve_branch){
         .z = work,
@@ -177,8 +180,9 @@ nt_status nt_curve_read_branch(const nt_curve_segment *segment, const nt_curve_c
                                nt_curve_branch *branch, nt_problem *problem)
 {
     nt_curve_baseline baseline;
-    const nt_status status = nt_curve_fit_baseline(segment, choice, work, &baseline, problem);
+    const double noise = nt_curve_point_noise(segment->force, segment->count, work);
+    const nt_status status = nt_curve_baseline_over(segment, choice, noise, work, &baseline, problem);
     if (status == NT_OK)
-        nt_curve_read_events(segment, &baseline, work, branch);
+        nt_curve_read_events(segment, &baseline, noise, work, branch);
     return status;
 }

@@ -13,12 +13,6 @@ typedef struct nt_curve_film {
     double sigma;    /* of the strength [N m] */
 } nt_curve_film;
 
-/* Points of a branch that are looked at, and the length that makes its term one [m]. */
-typedef struct nt_film_range {
-    long first, end;
-    double scale;
-} nt_film_range;
-
 /* Of a branch whose baseline is taken off, from its free part. */
 nt_curve_film nt_curve_find_film(const nt_curve_branch *approach);
 /* By how much it repels on the approach at z [N]. */

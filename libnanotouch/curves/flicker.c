@@ -15,8 +15,9 @@ enum {
     FINEST = 8, /* points of a mean: what is smeared over fewer counts as white */
     FEWEST = 4, /* differences of an octave */
     OCTAVES = 5,
-    BLOCKS = 20, /* of residuals, whose means show how they hang together */
-    RATIOS = 121 /* of flicker to white noise in the first octave that are tried, least .. most */
+    BLOCKS = 20,  /* of residuals, whose means show how they hang together */
+    RATIOS = 121, /* of flicker to white noise in the first octave that are tried, least .. most: */
+    COARSE = 8    /* every so many of them, and then all about the best */
 };
 static const double least_ratio = 1e-3, most_ratio = 1e3;
 static const double evident = 1.0;     /* gain in ln L: white noise passes for flicker once in 20 to 30 records */
@@ -53,6 +54,7 @@ static int octaves_of(double means[], long count, octave octaves[OCTAVES])
 /* The likeliest white variance at a ratio of flicker to white noise in the first octave, and its ln L. */
 typedef struct likely {
     double white, likelihood, ratio;
+    int place; /* among the ratios */
 } likely;
 
 static likely likely_at(const octave octaves[], int count, double ratio)
@@ -65,7 +67,18 @@ static likely likely_at(const octave octaves[], int count, double ratio)
         logarithms += octaves[i].count * log(shape);
     }
     const double white = sum / counts;
-    return (likely){white, -0.5 * (counts * log(white) + logarithms), ratio};
+    return (likely){white, -0.5 * (counts * log(white) + logarithms), ratio, 0};
+}
+
+/* The likeliest of the ratios from .. to, every so many. */
+static likely likeliest(const octave octaves[], int count, likely best, const int range[3])
+{
+    for (int i = range[0] > 0 ? range[0] : 0; i <= range[1] && i < RATIOS; i += range[2]) {
+        const double ratio = least_ratio * pow(most_ratio / least_ratio, (double)i / (RATIOS - 1));
+        const likely tried = likely_at(octaves, count, ratio);
+        best = tried.likelihood > best.likelihood ? (likely){tried.white, tried.likelihood, ratio, i} : best;
+    }
+    return best;
 }
 
 nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scatter, double *work)
@@ -79,12 +92,8 @@ nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scat
     const likely alone = likely_at(octaves, found, 0.0);
     if (alone.white == 0.0)
         return noise;
-    likely best = alone;
-    for (int i = 0; i < RATIOS; i++) {
-        const double ratio = least_ratio * pow(most_ratio / least_ratio, (double)i / (RATIOS - 1));
-        const likely tried = likely_at(octaves, found, ratio);
-        best = tried.likelihood > best.likelihood ? tried : best;
-    }
+    likely best = likeliest(octaves, found, alone, (int[]){0, RATIOS - 1, COARSE});
+    best = likeliest(octaves, found, best, (int[]){best.place - COARSE + 1, best.place + COARSE - 1, 1});
     if (!(best.likelihood - alone.likelihood > evident))
         best = alone;
     noise.white = fmax(noise.white, best.white);

@@ -64,9 +64,10 @@ static outside outside_contact(const nt_curve_reading *reading, double *room)
 {
     const nt_curve_branch *retract = &reading->retract;
     long start = 0;
+    nt_curve_baseline_of(&retract->baseline, retract->z, retract->count, room);
+    nt_curve_baseline_of(&reading->approach.baseline, retract->z, retract->count, room + retract->count);
     for (long i = 0; i < retract->count; i++) {
-        const double z = retract->z[i], own = nt_curve_baseline_at(&retract->baseline, z);
-        room[i] = retract->force[i] + own - nt_curve_baseline_at(&reading->approach.baseline, z);
+        room[i] += retract->force[i] - room[retract->count + i];
         start = room[i] > room[start] ? i : start;
     }
     while (start < retract->count && room[start] > reading->approach.visible)
@@ -255,7 +256,7 @@ static nt_curve_baseline beside(const nt_curve_baseline *approach, double z_mean
 static nt_curve_baseline tail_line(const outside *out, long from, double *room)
 {
     const long n = out->count - from;
-    nt_curve_free tail = {room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n, n, 0.0};
+    nt_curve_free tail = {room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n, n, 0.0, 0.0};
     for (long i = 0; i < n; i++)
         tail.z_mean += out->z[from + i] / (double)n;
     for (long i = 0; i < n; i++) {
@@ -392,7 +393,7 @@ void nt_curve_join(const nt_curve *curve, double *room, nt_curve_reading *readin
         rupture->force +=
             nt_curve_baseline_at(&baseline, rupture->z) - nt_curve_baseline_at(&reading->approach.baseline, rupture->z);
     }
-    nt_curve_read_events(&curve->retract, &baseline, room - 2 * n, retract);
+    nt_curve_read_events(&curve->retract, &baseline, retract->noise, room - 2 * n, retract);
     refine_dip(&out, reading);
     widen(curve, most, growth(&out, reading), reading);
     take_off_film(&out, free, reading);

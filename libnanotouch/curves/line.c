@@ -7,53 +7,91 @@
 #include "curves/robust.h"
 
 enum {
-    ROUNDS = 10, /* of Tukey's weights at most */
-    BLOCKS = 10  /* whose means show the correlation of the residuals */
+    ROUNDS = 10,  /* of Tukey's weights at most */
+    SAMPLE = 128, /* points that the line is first sought by */
+    BLOCKS = 10   /* whose means show the correlation of the residuals */
 };
-static const double settled = 1e-3; /* of the scatter, by which the line may still move */
+static const double settled = 0.05; /* of its standard deviation, by which the slope may still move */
 static const double smallest_spread = 1e-300;
 
-/* Weighted least squares; the line's force is that at x = 0. */
-static void weighted_line(const nt_curve_free *free, nt_curve_baseline *line)
+/* Weighted least squares over every step-th point, by Tukey's weights of what the line leaves; scatter 0: all weigh the
+ * same. The line's force is that at x = 0. */
+static void move_line(const nt_curve_free *free, long step, double scatter, nt_curve_baseline *line)
 {
-    double total = 0.0, x = 0.0, force = 0.0, spread = 0.0, product = 0.0;
-    for (long i = 0; i < free->count; i++) {
-        total += free->weight[i];
-        x += free->weight[i] * free->x[i];
-        force += free->weight[i] * free->force[i];
+    const double unit = scatter > 0.0 ? 1.0 / (NT_TUKEY * scatter) : 0.0;
+    double total = 0.0, x = 0.0, rest = 0.0, squares = 0.0, product = 0.0;
+    for (long i = 0; i < free->count; i += step) {
+        const double left = free->force[i] - line->force - line->slope * free->x[i];
+        const double u = left * unit, inside = 1.0 - u * u, root = inside > 0.0 ? inside : 0.0;
+        const double weight = root * root, weighted = weight * free->x[i];
+        total += weight;
+        x += weighted;
+        rest += weight * left;
+        squares += weighted * free->x[i];
+        product += weighted * left;
     }
-    x /= total;
-    force /= total;
-    for (long i = 0; i < free->count; i++) {
-        spread += free->weight[i] * (free->x[i] - x) * (free->x[i] - x);
-        product += free->weight[i] * (free->x[i] - x) * (free->force[i] - force);
-    }
-    line->slope = spread > 0.0 ? product / spread : 0.0;
-    line->force = force - line->slope * x;
+    const double spread = squares - x * x / total;
+    const double slope = spread > 0.0 ? (product - x * rest / total) / spread : 0.0;
+    line->slope += slope;
+    line->force += (rest - slope * x) / total;
 }
 
-nt_curve_baseline nt_curve_robust_line(nt_curve_free *free)
+/* Residuals of every step-th point, and their robust standard deviation. */
+static double look(nt_curve_free *free, long step, const nt_curve_baseline *line)
 {
-    const double travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
+    long found = 0;
+    for (long i = 0; i < free->count; i += step) {
+        free->rest[i] = free->force[i] - line->force - line->slope * free->x[i];
+        free->scratch[found++] = fabs(free->rest[i]);
+    }
+    return NT_MAD_SIGMA * nt_curve_median(free->scratch, found);
+}
+
+static long step_of(const nt_curve_free *free)
+{
+    return (free->count + SAMPLE - 1) / SAMPLE;
+}
+
+/* Whether the slope moved by less than matters. */
+static int has_settled(const nt_curve_free *free, long step, double before, const nt_curve_baseline *line)
+{
+    const double count = (double)free->count / (double)step;
+    return fabs(line->slope - before) * free->travel < settled * sqrt(12.0 / count) * line->scatter;
+}
+
+nt_curve_baseline nt_curve_rough_line(nt_curve_free *free)
+{
+    const long step = step_of(free);
     nt_curve_baseline line = {.z_mean = free->z_mean};
-    for (long i = 0; i < free->count; i++)
-        free->weight[i] = 1.0;
-    for (int round = 0; round < ROUNDS; round++) {
+    free->travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
+    move_line(free, step, 0.0, &line);
+    line.scatter = look(free, step, &line);
+    for (int round = 0; round < ROUNDS && line.scatter > 0.0; round++) {
         const double before = line.slope;
-        weighted_line(free, &line);
-        for (long i = 0; i < free->count; i++)
-            free->rest[i] = free->force[i] - line.force - line.slope * free->x[i];
-        line.scatter = NT_MAD_SIGMA * nt_curve_median_size(free->rest, free->count, free->scratch);
-        if (line.scatter == 0.0 || fabs(line.slope - before) * travel < settled * line.scatter)
+        move_line(free, step, line.scatter, &line);
+        line.scatter = look(free, step, &line);
+        if (has_settled(free, step, before, &line))
             break;
-        nt_curve_weigh(free->rest, free->count, line.scatter, free->weight);
     }
     return line;
 }
 
+void nt_curve_refine_line(nt_curve_free *free, nt_curve_baseline *line)
+{
+    line->scatter = look(free, 1, line); /* a sample's would do for white noise, not for residuals that hang together */
+    for (int round = 0; round < ROUNDS && step_of(free) > 1 && line->scatter > 0.0; round++) {
+        const double before = line->slope;
+        move_line(free, 1, line->scatter, line);
+        if (has_settled(free, 1, before, line))
+            break;
+    }
+    line->scatter = look(free, 1, line);
+}
+
 nt_curve_baseline nt_curve_line(nt_curve_free *free)
 {
-    nt_curve_baseline line = nt_curve_robust_line(free);
+    nt_curve_baseline line = nt_curve_rough_line(free);
+    nt_curve_refine_line(free, &line);
     nt_curve_judge(free, &line);
     return line;
 }

@@ -14,11 +14,14 @@ typedef struct nt_curve_free {
     double *room; /* 4 count + NT_WAVE_GRID */
     long count;
     double z_mean; /* [m] */
+    double travel; /* that they cover [m]; of nt_curve_rough_line */
 } nt_curve_free;
 
-/* A robust line through them: iterated least squares with Tukey's weights. Leaves residuals and weights behind. */
-nt_curve_baseline nt_curve_robust_line(nt_curve_free *free);
-/* The same, judged. */
+/* A robust line through a sample of them: iterated least squares with Tukey's weights. */
+nt_curve_baseline nt_curve_rough_line(nt_curve_free *free);
+/* From there to the line through all of them. Leaves their residuals behind. */
+void nt_curve_refine_line(nt_curve_free *free, nt_curve_baseline *line);
+/* Both, judged. */
 nt_curve_baseline nt_curve_line(nt_curve_free *free);
 /* What the residuals say of the noise, and so of level and slope. */
 void nt_curve_judge(nt_curve_free *free, nt_curve_baseline *baseline);

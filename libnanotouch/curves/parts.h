@@ -8,10 +8,15 @@
 #define NT_CURVE_EVENT 5.0     /* standard deviations of the noise: one in 2e6 points */
 #define NT_CURVE_SCATTERED 3.0 /* standard deviations of the scatter about the line, where interference makes waves */
 
-/* Reads a branch whose baseline is known; z and force of *branch are the first 2 count doubles of work, 4 count more
- * are scratch. */
-void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work,
-                          nt_curve_branch *branch);
+/* nt_curve_fit_baseline where the point noise [N] is known. */
+nt_status nt_curve_baseline_over(const nt_curve_segment *segment, const nt_curve_choice *choice, double noise,
+                                 double *work, nt_curve_baseline *baseline, nt_problem *problem);
+/* nt_curve_baseline_at of many. */
+void nt_curve_baseline_of(const nt_curve_baseline *baseline, const double z[], long count, double force[]);
+/* Reads a branch whose baseline and point noise [N] are known; z and force of *branch are the first 2 count doubles of
+ * work, 4 count more are scratch. */
+void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double noise,
+                          double *work, nt_curve_branch *branch);
 /* Fills the contact point of a reading from its first branch. scratch: 2 count doubles. */
 void nt_curve_find_contact(const nt_curve_branch *first, double spring_constant, double *scratch,
                            nt_curve_reading *reading);

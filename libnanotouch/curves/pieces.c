@@ -54,21 +54,23 @@ static void sum_up(const double x[], const double y[], int blocks, sums *s)
 /* from[j]: where the last piece of the best cut of the first j blocks begins. */
 static void cut(const sums *s, int blocks, double variance, int from[NT_PIECE_BLOCKS + 1])
 {
-    double cost[NT_PIECE_BLOCKS + 1] = {0.0}, least[NT_PIECE_BLOCKS + 1] = {0.0}; /* least: cost of the piece from i on,
-                                                                                     which only grows with its length */
-    cost[1] = INFINITY;
+    double cost[NT_PIECE_BLOCKS + 1] = {0.0}, least[NT_PIECE_BLOCKS + 1] = {price}; /* least: cost with a last piece
+                                                                      from i on, which only grows with its length */
+    cost[1] = least[1] = INFINITY;
     from[1] = 0;
     for (int j = 2; j <= blocks; j++) {
-        cost[j] = INFINITY;
+        double best = INFINITY;
         for (int i = 0; i + 2 <= j; i++) {
-            if (!(cost[i] + price + least[i] < cost[j]))
+            if (!(least[i] < best))
                 continue;
-            least[i] = line_of(s, i, j).squares / variance;
-            if (cost[i] + price + least[i] < cost[j]) {
-                cost[j] = cost[i] + price + least[i];
+            least[i] = cost[i] + price + line_of(s, i, j).squares / variance;
+            if (least[i] < best) {
+                best = least[i];
                 from[j] = i;
             }
         }
+        cost[j] = best;
+        least[j] = best + price;
     }
 }
 
@@ -81,11 +83,13 @@ int nt_curve_cut(const double z[], const double force[], long count, nt_curve_pi
     const double travel = z[count - 1] - z[0];
     for (int b = 0; b < blocks; b++) {
         const long first = b * count / blocks, end = (b + 1) * count / blocks;
-        x[b] = y[b] = 0.0;
+        double height = 0.0, sum = 0.0;
         for (long i = first; i < end; i++) {
-            x[b] += (z[i] - z[0]) / travel / (double)(end - first);
-            y[b] += force[i] / (double)(end - first);
+            height += z[i] - z[0];
+            sum += force[i];
         }
+        x[b] = height / (travel * (double)(end - first));
+        y[b] = sum / (double)(end - first);
     }
     sums s;
     int from[NT_PIECE_BLOCKS + 1], found = 0;

@@ -48,7 +48,7 @@ constexpr double held_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0, 12.0, 40.0};
 constexpr double as_good = 9.0; // difference in chi^2, three standard deviations
 
 // A fit of some of the points costs little and leaves a step or two for all of them.
-constexpr long some = 200;
+constexpr long some = 50;
 
 nt_status run_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Found *found)
 {
@@ -143,26 +143,42 @@ nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, F
     return NT_OK;
 }
 
+void write_result(const nt_fit_options &options, const Found &found, nt_fit_result *result)
+{
+    *result = found.result;
+    result->chi_square = options.force_noise > 0.0 ? found.cost : std::nan("");
+    write_message(options, result);
+}
+
 nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
 {
-    const nt_fit_start &range = options.parameter[NT_FIT_COHESIVE_RANGE];
     Found found;
-    nt_status status;
-    if (options.model == NT_FIT_MAUGIS && std::isnan(range.initial)) {
-        status = run_from_all(options, data, &found);
-    } else {
-        status = run_from(options, data, std::nan(""), &found);
-    }
-    if (status == NT_OK) {
-        nt_fit_result &made = found.result;
-        made.chi_square = options.force_noise > 0.0 ? found.cost : std::nan("");
-        write_message(options, &made);
-        *result = made;
-    }
+    const nt_status status = has_several_minima(options) ? run_from_all(options, data, &found)
+                                                         : run_from(options, data, std::nan(""), &found);
+    if (status == NT_OK)
+        write_result(options, found, result);
     return status;
 }
 
 } // namespace
+
+bool has_several_minima(const nt_fit_options &options)
+{
+    return options.model == NT_FIT_MAUGIS && std::isnan(options.parameter[NT_FIT_COHESIVE_RANGE].initial);
+}
+
+nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
+{
+    Parameters start;
+    for (int p = 0; p < NT_FIT_PARAMETERS; p++)
+        start[static_cast<std::size_t>(p)] =
+            std::isnan(result->value[p]) ? options.parameter[p].initial : result->value[p];
+    Found found;
+    const nt_status status = Fit(options, data, start).run(&found);
+    if (status == NT_OK)
+        write_result(options, found, result);
+    return status;
+}
 
 } // namespace nanotouch
 

@@ -16,6 +16,10 @@ namespace nanotouch
 namespace
 {
 
+// Changes of the sum of squares, relative, at which a fit ends.
+constexpr double exactly = 1e-10; // a thousandth of a standard uncertainty
+constexpr double roughly = 1e-4;
+
 std::unique_ptr<ceres::LossFunction> loss_of(const nt_fit_options &options, double unit)
 {
     const double scale = options.loss_scale / unit;
@@ -60,7 +64,7 @@ void Fit::build(ceres::Problem *problem, bool bounded)
     }
 }
 
-bool Fit::solve(bool bounded, ceres::Solver::Summary *summary)
+bool Fit::solve(bool bounded, double tolerance, ceres::Solver::Summary *summary)
 {
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -75,7 +79,7 @@ bool Fit::solve(bool bounded, ceres::Solver::Summary *summary)
     solver.logging_type = ceres::SILENT;
     solver.num_threads = 1; // deterministic; the caller may run fits in parallel
     solver.max_num_iterations = options_.max_iterations;
-    solver.function_tolerance = 1e-10; // a thousandth of a standard uncertainty
+    solver.function_tolerance = tolerance;
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-12;
     residuals_.make_bounds_walls(!bounded);
@@ -88,13 +92,13 @@ bool Fit::solve(bool bounded, ceres::Solver::Summary *summary)
 
 // Within bounds Ceres searches each step for a shorter one, at the cost of half of all evaluations: only where a step
 // without them leads out.
-nt_status Fit::descend(ceres::Solver::Summary *summary)
+nt_status Fit::descend(double tolerance, ceres::Solver::Summary *summary)
 {
     residuals_.PrepareForEvaluation(true, true);
     if (!residuals_.valid())
         return NT_E_NO_CONVERGENCE;
     const Reserve reserve;
-    return solve(false, summary) || solve(true, summary) ? NT_OK : NT_E_NO_CONVERGENCE;
+    return solve(false, tolerance, summary) || solve(true, tolerance, summary) ? NT_OK : NT_E_NO_CONVERGENCE;
 }
 
 void Fit::fill_values(nt_fit_result *result) const
@@ -136,7 +140,7 @@ nt_status Fit::finish(Found *found)
 nt_status Fit::approach(Parameters *value)
 {
     ceres::Solver::Summary summary;
-    const nt_status status = descend(&summary);
+    const nt_status status = descend(roughly, &summary);
     if (status == NT_OK)
         *value = residuals_.values();
     return status;
@@ -145,7 +149,7 @@ nt_status Fit::approach(Parameters *value)
 nt_status Fit::run(Found *found)
 {
     ceres::Solver::Summary summary;
-    const nt_status status = descend(&summary);
+    const nt_status status = descend(exactly, &summary);
     if (status != NT_OK)
         return status;
     fill(found);

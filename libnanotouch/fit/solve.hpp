@@ -23,8 +23,8 @@ class Fit
 
   private:
     void build(ceres::Problem *problem, bool bounded);
-    nt_status descend(ceres::Solver::Summary *summary);
-    bool solve(bool bounded, ceres::Solver::Summary *summary);
+    nt_status descend(double tolerance, ceres::Solver::Summary *summary);
+    bool solve(bool bounded, double tolerance, ceres::Solver::Summary *summary);
     void fill(Found *found) const;
     void fill_values(nt_fit_result *result) const;
 
@@ -35,5 +35,10 @@ class Fit
     std::unique_ptr<ceres::LossFunction> loss_;
     std::deque<Residual> costs_;
 };
+
+// Whether fits from several starts have to be compared.
+bool has_several_minima(const nt_fit_options &options);
+// A fit like the one whose result is there, with other weights, from its values on.
+nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result);
 
 } // namespace nanotouch

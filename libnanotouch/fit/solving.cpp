@@ -12,6 +12,7 @@
 
 #include "halves.hpp"
 #include "model.hpp"
+#include "solve.hpp"
 
 namespace nanotouch
 {
@@ -81,11 +82,15 @@ void Solving::let_vary()
 
 nt_status Solving::fit()
 {
-    nt_status status = nt_fit_run(&solution_.options, &data_, &solution_.fit, problem_);
-    if (status != NT_OK)
-        return status;
+    const nt_status status = nt_fit_run(&solution_.options, &data_, &solution_.fit, problem_);
+    return status == NT_OK ? look() : status;
+}
+
+// What the fit leaves over.
+nt_status Solving::look()
+{
     points_.resize(static_cast<std::size_t>(data_.count));
-    status = nt_fit_model_n(&solution_.options, solution_.fit.value, &data_, points_.data());
+    const nt_status status = nt_fit_model_n(&solution_.options, solution_.fit.value, &data_, points_.data());
     if (status == NT_OK)
         scatter_ = std::max(scatter(), correlated_noise());
     return status;
@@ -141,7 +146,13 @@ nt_status Solving::fit_with_scatter()
     if (status != NT_OK || is_exact() || *used == 0.0 || as_known)
         return status;
     *used = scatter_;
-    return fit();
+    if (has_several_minima(solution_.options))
+        return fit();
+    nt_fit_result found = solution_.fit;
+    if (run_near(solution_.options, data_, &found) != NT_OK)
+        return fit();
+    solution_.fit = found;
+    return look();
 }
 
 nt_status Solving::fit_without_false_tear()

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The C library reads curves as the NumPy code did that it replaced: its numbers, recorded before it went.
 
-``curve_numbers.json`` holds them in SI; the comments of :func:`read` and :func:`baseline` say in which order.
+``curve_numbers.json`` holds them in SI. The NumPy code iterated its robust lines over all points, weights anew in each
+round. The C library begins with a sample of 128, and then keeps the scatter that scales the weights. Both estimate the
+same, so they are compared in their own standard uncertainties: within a tenth, which adds 0.5 % to a variance.
 """
 
 from __future__ import annotations
@@ -53,11 +55,16 @@ def branch(name: str, count: int = 700) -> tuple[np.ndarray, np.ndarray]:
     return z, force
 
 
-def agree(found: list[float | None], key: str) -> None:
-    expected = [np.nan if value is None else value for value in NUMBERS[key]]
-    np.testing.assert_allclose(
-        [np.nan if value is None else value for value in found], expected, rtol=2e-12, err_msg=key
-    )
+NEAR, EXACT = 0.1, 2e-12  # standard uncertainties; relative
+NEAR_MEASURED = 0.2  # slow noise: which points count as free depends on the first line
+
+
+def agree(found: list[float | None], key: str, within: Any = 0.0) -> None:
+    """Within so much [SI], each or all, and rounding."""
+    values, expected = (np.array([np.nan if v is None else v for v in row]) for row in (found, NUMBERS[key]))
+    assert np.array_equal(np.isnan(values), np.isnan(expected)), key
+    off = np.abs(values - expected) - EXACT * np.abs(expected)
+    assert np.all((off <= within) | np.isnan(expected)), (key, values, expected, off, within)
 
 
 @pytest.mark.parametrize("name", MADE)
@@ -65,9 +72,11 @@ def agree(found: list[float | None], key: str) -> None:
 def test_baselines(name: str, kind: Any) -> None:
     found = fit_baseline(*branch(name), kind)
     wave = [] if found.wave is None else [found.wave.period, found.wave.cosine, found.wave.sine]
-    agree(
-        [found.force, found.slope, found.z_mean, found.scatter, *found.variance, *found.noise, *wave], f"{name} {kind}"
-    )
+    values = [found.force, found.slope, found.z_mean, found.scatter, *found.variance, *found.noise, *wave]
+    level, tilt = NEAR * np.sqrt(found.variance)
+    spread = 0.02 * np.abs([found.scatter, *found.variance, *found.noise])  # a scatter of 350 points is known to 4 %
+    near = [level, tilt, 0.0, spread[0], *spread[1:], 1e-9, 1.5 * level, 1.5 * level]  # of a wave sigma is sqrt(2) more
+    agree(values, f"{name} {kind}", 0.0 if kind == "constant" else np.array(near[: len(values)]))
 
 
 @pytest.mark.parametrize("name", MADE)
@@ -79,14 +88,16 @@ def test_events_and_contact_points(name: str) -> None:
     read = report.branches[role]
     points = [report.contact_points.get(k) for k in ("crossing", "deviation", "hertz", "two_lines", "gradient")]
     depth = (report.snap_in_force, report.snap_in_z) if name == "soft" else (report.pull_off_force, report.pull_off_z)
-    agree(
-        [
-            *depth, report.contact_point, report.sigma["contact_point"], report.contact_slope,
-            report.sigma["contact_slope"], report.adhesion_work, report.sigma["adhesion_work"], report.noise,
-            read.lowest, -1 if read.tear is None else read.tear, *points,
-        ],
-        f"{name} line read",
-    )  # fmt: skip
+    values = [
+        *depth, report.contact_point, report.sigma["contact_point"], report.contact_slope,
+        report.sigma["contact_slope"], report.adhesion_work, report.sigma["adhesion_work"], report.noise,
+        read.lowest, -1 if read.tear is None else read.tear, *points,
+    ]  # fmt: skip
+    place = NEAR * report.sigma["contact_point"]
+    of = ("snap_in_force" if name == "soft" else "pull_off_force", "contact_slope", "adhesion_work")
+    force, slope, work = (np.nan_to_num(NEAR * report.sigma[key]) for key in of)
+    near = [force, 0.0, place, 0.5 * place, slope, 0.5 * slope, work, 0.5 * work, 0.0, 0.0, 0.0, *[place] * 5]
+    agree(values, f"{name} line read", np.array(near))
 
 
 @pytest.mark.parametrize("name", REAL)
@@ -100,10 +111,11 @@ def test_measured_curves(name: str) -> None:
         if f"{name} 0 {kind}" not in NUMBERS:
             continue
         r = curves.analyse(curve, baseline=kind)  # type: ignore[arg-type]
-        agree(
-            [
-                r.pull_off_force, r.snap_in_force, r.contact_point, r.contact_slope, r.adhesion_work, r.noise,
-                r.baseline_tilt, r.sigma["pull_off_force"], r.sigma["contact_point"],
-            ],
-            f"{name} 0 {kind}",
-        )  # fmt: skip
+        values = [
+            r.pull_off_force, r.snap_in_force, r.contact_point, r.contact_slope, r.adhesion_work, r.noise,
+            r.baseline_tilt, r.sigma["pull_off_force"], r.sigma["contact_point"],
+        ]  # fmt: skip
+        baseline = r.baselines["approach" if "approach" in r.baselines else "retract"]
+        sigma = [r.sigma[key] for key in ("pull_off_force", "snap_in_force", "contact_point", "contact_slope")]
+        sigma += [r.sigma["adhesion_work"], 0.0, baseline.variance[1] ** 0.5, sigma[0], sigma[2]]
+        agree(values, f"{name} 0 {kind}", 0.0 if kind == "constant" else NEAR_MEASURED * np.nan_to_num(sigma))
