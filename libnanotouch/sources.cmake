@@ -86,6 +86,7 @@ set(nanotouch_sources_scene
     scene/plastic.c
     scene/pull_off.c
     scene/scene.c
+    scene/sliding.c
     scene/terms/capillary.c
     scene/terms/charge.c
     scene/terms/contact.c

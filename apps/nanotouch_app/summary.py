@@ -34,6 +34,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "hand_pull_off_force_N": None if pull_off is None else alpha_f * pull_off,
         "planned_pull_off_force_N": session.plan.pull_off_force,
         "largest_force_N": float(np.max(recording.tip_force)),
+        "largest_sideways_force_N": _sideways(recording),
         "touched": bool(np.any(recording.contact_radius > 0.0)),
         "position_tracking_rms_m": None if session.mode in SERVOED else _rms(_position_error(session, recording)),
         "force_tracking_rms_N": _rms(_force_error(session, recording)),
@@ -66,6 +67,7 @@ def before(session: nt.Session) -> str:
         f"loop:    {session.control} control at {session.rate / 1e3:g} kHz, {session.probe_model} probe; "
         f"stability margin {found.verdict}{verdict}",
         *([f"felt:    {session.calm()}"] if session.mode in ("point", "scan") else []),
+        *_unfelt(session),
         *(f"limits:  {line}" for line in str(session.guarantee()).splitlines()),
         *(f"steps:   {line}" for line in str(budget).splitlines()),
     ]
@@ -84,6 +86,7 @@ def words(summary: dict[str, Any]) -> str:
         f"  snap-in           {force(summary, 'snap_in')}",
         f"  pull-off          {force(summary, 'pull_off')}",
         f"  largest force     {summary['largest_force_N'] * 1e9:.1f} nN",
+        *_rubbed(summary["largest_sideways_force_N"]),
         f"  position tracking {_position(summary['position_tracking_rms_m'])}",
         f"  force tracking    {_tracking(summary)}",
         f"  stability margin  {_margin(summary['stability_margin'])}",
@@ -93,6 +96,26 @@ def words(summary: dict[str, Any]) -> str:
     if stopped:
         lines.append(f"  stopped           {', '.join(stopped)}: {', '.join(summary['reasons'])}")
     return "\n".join(lines)
+
+
+def _sideways(recording: Recording) -> float | None:
+    """Friction and slopes together; None where the recording does not have it."""
+    columns = recording.columns
+    if "tip_force_x" not in columns:
+        return None
+    return _number(float(np.nanmax(np.hypot(columns["tip_force_x"], columns["tip_force_y"]), initial=0.0)))
+
+
+def _rubbed(largest: float | None) -> list[str]:
+    return [] if largest is None else [f"  sideways force    {largest * 1e9:.1f} nN at most, not felt"]
+
+
+def _unfelt(session: nt.Session) -> list[str]:
+    """No hand feels friction: what it would have to."""
+    friction = session.plan.friction
+    if not friction.included:
+        return []
+    return [f"unfelt:  friction, up to {friction.force * 1e9:.3g} nN at the tip: no motor acts sideways"]
 
 
 def force(summary: dict[str, Any], name: str) -> str:

@@ -64,8 +64,18 @@ def _felt(session: nt.Session, facts: dict[str, Any]) -> list[str]:
         f"snap-in        {summary.force(facts, 'snap_in')}",
         f"pull-off       {summary.force(facts, 'pull_off')}{expected}",
         f"largest force  {facts['largest_force_N'] * 1e9:.1f} nN",
+        *_rubbed(session, facts),
         f"model error    at most {session.plan.bound * 100.0:.2g} % of the force",
     ]
+
+
+def _rubbed(session: nt.Session, facts: dict[str, Any]) -> list[str]:
+    """Friction is in the simulation and not in the hand."""
+    friction, largest = session.plan.friction, facts["largest_sideways_force_N"]
+    if not friction.included:
+        return []
+    seen = "" if largest is None else f"{largest * 1e9:.1f} nN at most, "
+    return [f"sideways       {seen}friction up to {friction.force * 1e9:.3g} nN; not felt: no motor acts sideways"]
 
 
 def _safe(session: nt.Session, facts: dict[str, Any]) -> list[str]:

@@ -24,6 +24,7 @@ static const nt_field rig_fields[] = {
     FIELD(probe.spring_constant_sigma, "", 0.0, 0.2, "standard deviation of the calibration of k_c, over k_c"),
     FIELD(probe.sensitivity_sigma, "", 0.0, 0.2, "standard deviation of the calibration of S, over S"),
     FIELD(probe.drift, "m/s", 0.0, 1e-3, "drift of the deflection's zero, at most"),
+    FIELD(probe.lateral_stiffness, "N/m", 0.0, 1e6, "lateral stiffness k_l of the lever at the apex; 0: rigid"),
     FIELD(stage.resonance, "Hz", 1.0, 1e6, "resonance f_n of the stage"),
     FIELD(stage.quality, "", 0.05, 1e6, "quality factor Q of the stage"),
     FIELD(stage.stiffness, "N/m", 1.0, 1e12, "stiffness k_stage of the stage against the tip force"),

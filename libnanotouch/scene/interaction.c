@@ -225,6 +225,65 @@ void nt_interaction_run_n(const nt_plan *plan, nt_interaction_state *state, cons
     }
 }
 
+/* --- friction --- */
+
+static nt_contact contact_here(const nt_plan *plan, const nt_place *place)
+{
+    const int is_local = nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
+    return is_local ? nt_plan_contact_of_place(plan, place) : plan->contact;
+}
+
+nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan, const nt_interaction_state *state,
+                                                    const nt_place *place, double gap)
+{
+    if (!has_contact(plan, state, place, gap))
+        return (nt_friction_contact){0.0, 0.0};
+    const nt_contact contact = contact_here(plan, place);
+    const nt_law_value law =
+        plan->yield.count > 0 ? yielding_at(plan, state, place, gap) : nt_plan_contact_at(plan, place, gap).law;
+    return nt_plan_friction_contact(plan, &contact, law);
+}
+
+void nt_interaction_slide_gap(const nt_plan *plan, const nt_interaction_state *state, nt_slide *slide,
+                              const nt_place *place, const nt_pose *pose)
+{
+    if (plan->friction.term.form == NT_FORM_OFF || isnan(pose->x) || isnan(pose->y) || isnan(pose->z))
+        return;
+    nt_friction law = plan->friction.law;
+    if (plan->properties && place && place->youngs_modulus.value > 0.0)
+        law.effective_shear_modulus =
+            1.0 / (plan->friction.tip_compliance + plan->friction.sample_factor / place->youngs_modulus.value);
+    const double way[2] = {slide->placed ? pose->x - slide->x : 0.0, slide->placed ? pose->y - slide->y : 0.0};
+    const nt_friction_contact contact = nt_interaction_friction_contact(plan, state, place, pose->z);
+    if (nt_friction_advance(&law, &slide->friction, &contact, way) != NT_OK)
+        return;
+    slide->x = pose->x;
+    slide->y = pose->y;
+    slide->placed = 1;
+}
+
+void nt_interaction_slide(const nt_plan *plan, const nt_interaction_state *state, nt_slide *slide, const nt_pose *pose)
+{
+    if (plan->friction.term.form == NT_FORM_OFF)
+        return;
+    const nt_place place = nt_interaction_place(plan, pose->x, pose->y);
+    nt_interaction_slide_gap(plan, state, slide, &place, &(nt_pose){pose->x, pose->y, pose->z - place.surface.z});
+}
+
+void nt_interaction_slide_n(const nt_plan *plan, nt_interaction_state *state, nt_slide *slide,
+                            const nt_interaction_arrays *arrays)
+{
+    for (long i = 0; i < arrays->count; ++i) {
+        const nt_pose *pose = &arrays->poses[i * arrays->pose_stride];
+        nt_interaction_value *value = &arrays->values[i * arrays->value_stride];
+        nt_interaction_advance(plan, state, pose);
+        nt_interaction_slide(plan, state, slide, pose);
+        *value = nt_interaction_eval(plan, state, pose);
+        value->Fx += slide->friction.force[0];
+        value->Fy += slide->friction.force[1];
+    }
+}
+
 void nt_interaction_step_n(const nt_plan *plan, nt_interaction_state *states, const nt_interaction_arrays *arrays)
 {
     for (long i = 0; i < arrays->count; ++i) {

@@ -170,6 +170,13 @@ nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
 
+/* sliding.c: whether friction is computed, its law, bound and cost. Of a plan that has chosen; NT_E_RANGE: a budget, or
+ * a shape whose load inside is not known. */
+nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);
+void nt_plan_warn_friction(nt_plan *plan);
+/* The contact of friction in a form of contact, from its law. */
+nt_friction_contact nt_plan_friction_contact(const nt_plan *plan, const nt_contact *contact, nt_law_value law);
+
 /* plastic.c: refuses a load at which the contact is plastic; warns where it begins to be. */
 nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene);

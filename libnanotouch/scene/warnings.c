@@ -121,6 +121,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_surface(plan);
     check_yielding(plan);
     check_layer(plan, scene);
+    nt_plan_warn_friction(plan);
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         check_facts(plan, scene, term);
     check_facts(plan, scene, NT_PLAN_CONTACT);

@@ -48,6 +48,7 @@ def test_example_file(example: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert (scene.tip.radius, scene.tip.poisson_ratio, scene.tip.conducting) == (30e-9, 0.28, "yes")
     assert (scene.sample.youngs_modulus, scene.sample.poisson_ratio) == (79e9, 0.44)  # own modulus, gold's ratio
     assert (scene.adhesion.given, scene.adhesion.hamaker_constant) == ("pull_off_force", 2e-19)
+    assert (scene.friction.shear_strength, scene.friction.coefficient) == (20e6, 0.1)
     assert (rig.probe.spring_constant, demand.demand.force_floor) == (40.0, 20e-12)
     assert {line.strip("[]") for line in example.read_text().splitlines() if line.startswith("[")} == {
         *scene.sections(), "probe", "demand",

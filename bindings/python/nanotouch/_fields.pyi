@@ -178,6 +178,19 @@ class SceneAdhesionValues(TypedDict, total=False):
     hamaker_constant: float
     contact_potential: float
 
+class SceneFriction(Section):
+    shear_strength: float
+    """shear strength tau0, friction per contact area without load [Pa], 0 .. 1e+12"""
+    coefficient: float
+    """coefficient alpha, friction per load inside the contact [-], 0 .. 100"""
+    lateral_compliance: float
+    """lateral compliance of the tip at its apex; 0: rigid [m/N], 0 .. 1e+06"""
+
+class SceneFrictionValues(TypedDict, total=False):
+    shear_strength: float
+    coefficient: float
+    lateral_compliance: float
+
 class SceneRange(Section):
     minimum_gap: float
     """smallest gap that will be visited; below 0: contact [m], -0.001 .. 0.01"""
@@ -202,6 +215,7 @@ class SceneSections(TypedDict, total=False):
     sample: SceneSampleValues
     medium: SceneMediumValues
     adhesion: SceneAdhesionValues
+    friction: SceneFrictionValues
     range: SceneRangeValues
 
 class SceneFields(Description, core_type=_core.Scene):
@@ -214,6 +228,8 @@ class SceneFields(Description, core_type=_core.Scene):
     def medium(self) -> SceneMedium: ...
     @property
     def adhesion(self) -> SceneAdhesion: ...
+    @property
+    def friction(self) -> SceneFriction: ...
     @property
     def range(self) -> SceneRange: ...
 
@@ -268,6 +284,8 @@ class RigProbe(Section):
     """standard deviation of the calibration of S, over S [-], 0 .. 0.2"""
     drift: float
     """drift of the deflection's zero, at most [m/s], 0 .. 0.001"""
+    lateral_stiffness: float
+    """lateral stiffness k_l of the lever at the apex; 0: rigid [N/m], 0 .. 1e+06"""
 
 class RigProbeValues(TypedDict, total=False):
     spring_constant: float
@@ -283,6 +301,7 @@ class RigProbeValues(TypedDict, total=False):
     spring_constant_sigma: float
     sensitivity_sigma: float
     drift: float
+    lateral_stiffness: float
 
 class RigStage(Section):
     resonance: float
@@ -720,3 +739,7 @@ class Columns:
     """simulated truth: force on the tip, to the right [N]"""
     tip_force_y: NDArray[float64]
     """simulated truth: force on the tip, up the image [N]"""
+    deflection_x: NDArray[float64]
+    """of a lever that gives way sideways, at the tip, to the right [m]"""
+    deflection_y: NDArray[float64]
+    """of a lever that gives way sideways, at the tip, up the image [m]"""

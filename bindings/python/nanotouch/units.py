@@ -40,6 +40,7 @@ UNITS: dict[str, dict[str, float]] = {
     "kg": {"kg": 1.0, "g": 1e-3},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
     "N/m": _scaled("N", "mkun", "/m"),
+    "m/N": _scaled("m", "mun", "/N"),
     "J/m^2": _scaled("J", "mu", "/m2"),
     "m/V": _scaled("m", "un", "/V"),
     "m/s": _scaled("m", "mun", "/s"),

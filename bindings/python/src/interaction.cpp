@@ -9,11 +9,14 @@ namespace
 struct Interaction {
     const nt_plan *plan;
     nt_interaction_state state;
+    nt_slide slide;
 };
 
 } // namespace
 
 static_assert(sizeof(nt_pose) == 3 * sizeof(double), "poses are rows of three numbers");
+static_assert(sizeof(nt_friction_state) == 6 * sizeof(double),
+              "a slide is six numbers, its place and whether it has one");
 static_assert(sizeof(nt_interaction_value) == 7 * sizeof(double), "values are rows of seven numbers");
 
 static nt_interaction_arrays arrays_of(const Array &poses, py::array_t<double> &values)
@@ -38,7 +41,7 @@ static py::array_t<double> run(Interaction &self, const Array &poses)
     py::array_t<double> values({poses.shape(0), py::ssize_t{7}});
     const nt_interaction_arrays arrays = arrays_of(poses, values);
     py::gil_scoped_release release;
-    nt_interaction_run_n(self.plan, &self.state, &arrays);
+    nt_interaction_slide_n(self.plan, &self.state, &self.slide, &arrays);
     return values;
 }
 
@@ -78,7 +81,7 @@ static py::tuple step(const nt_plan &plan, const Array &states, const Array &pos
 void bind_interaction(py::module_ &module)
 {
     py::class_<Interaction>(module, "Interaction")
-        .def(py::init([](const nt_plan &plan) { return Interaction{&plan, {0, 0.0, 0.0}}; }), py::arg("plan"),
+        .def(py::init([](const nt_plan &plan) { return Interaction{&plan, {0, 0.0, 0.0}, {}}; }), py::arg("plan"),
              py::keep_alive<1, 2>())
         .def("eval", &eval)
         .def("run", &run)
@@ -87,8 +90,20 @@ void bind_interaction(py::module_ &module)
              [](const Interaction &self, Interaction &changed, double x, double y, double z) {
                  const nt_pose pose = {x, y, z};
                  changed.state = self.state;
+                 changed.slide = self.slide;
                  nt_interaction_change(self.plan, changed.plan, &changed.state, &pose);
              })
+        .def_property(
+            "slide",
+            [](const Interaction &self) {
+                const nt_friction_state &f = self.slide.friction;
+                return py::make_tuple(self.slide.placed != 0, self.slide.x, self.slide.y, f.force[0], f.force[1],
+                                      f.stiffness, f.stored, f.dissipated, f.work);
+            },
+            [](Interaction &self, const std::tuple<bool, std::array<double, 8>> &slide) {
+                const std::array<double, 8> &v = std::get<1>(slide);
+                self.slide = {{{v[2], v[3]}, v[4], v[5], v[6], v[7]}, v[0], v[1], std::get<0>(slide) ? 1 : 0};
+            })
         .def_property(
             "state",
             [](const Interaction &self) {

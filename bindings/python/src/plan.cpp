@@ -3,14 +3,19 @@
 #include "chapters.h"
 #include "words.h"
 
+static py::tuple term_of(const nt_plan_term &term)
+{
+    return py::make_tuple(term.name, nt_form_name(term.form), term.force, term.bound, term.cost, term.title, term.words,
+                          term.latency);
+}
+
 static py::list terms_of(const nt_plan &plan)
 {
     py::list terms;
     for (const nt_plan_term &term : plan.terms) {
         if (term.name[0] == '\0') // a place for a law of one's own that has none
             continue;
-        terms.append(py::make_tuple(term.name, nt_form_name(term.form), term.force, term.bound, term.cost, term.title,
-                                    term.words, term.latency));
+        terms.append(term_of(term));
     }
     return terms;
 }
@@ -89,6 +94,7 @@ static py::dict as_dict(const nt_plan &plan)
     static const char *const sources[] = {"none", "solid", "meniscus"};
     py::dict out;
     out["terms"] = terms_of(plan);
+    out["friction"] = term_of(plan.friction.term);
     out["adhesion_source"] = sources[plan.source];
     out["quantity"] = quantity_of(plan.demand);
     out["shape"] = nt_shape_name(plan.shape.kind);

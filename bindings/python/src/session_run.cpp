@@ -36,7 +36,16 @@ static constexpr Column sideways[] = {
     ALONG("master_x", master_position, NT_X),        ALONG("master_y", master_position, NT_Y),
     ALONG("operator_force_x", operator_force, NT_X), ALONG("operator_force_y", operator_force, NT_Y),
     ALONG("motor_force_x", motor_force, NT_X),       ALONG("motor_force_y", motor_force, NT_Y),
-    ALONG("tip_force_x", tip_force, NT_X),           ALONG("tip_force_y", tip_force, NT_Y),
+};
+// And there, or where the lever gives way sideways.
+static constexpr Column lateral[] = {
+    ALONG("tip_force_x", tip_force, NT_X),
+    ALONG("tip_force_y", tip_force, NT_Y),
+};
+// Where it does.
+static constexpr Column deflections[] = {
+    ALONG("deflection_x", deflection, NT_X),
+    ALONG("deflection_y", deflection, NT_Y),
 };
 
 using Records = std::vector<nt_record>;
@@ -69,9 +78,15 @@ static py::dict read_records(Session &self, long count)
     py::dict out;
     for (const Column &column : columns)
         out[column.name] = column_of(records, got, column);
-    if (nt_session_touch(self.handle)->leads_sideways)
-        for (const Column &column : sideways)
-            out[column.name] = column_of(records, got, column);
+    const nt_touch *touch = nt_session_touch(self.handle);
+    const bool gives_way = touch->rig.probe.lateral_stiffness > 0.0;
+    const auto add = [&](const Column &column) { out[column.name] = column_of(records, got, column); };
+    if (touch->leads_sideways)
+        std::for_each(std::begin(sideways), std::end(sideways), add);
+    if (touch->leads_sideways || gives_way)
+        std::for_each(std::begin(lateral), std::end(lateral), add);
+    if (gives_way)
+        std::for_each(std::begin(deflections), std::end(deflections), add);
     out["state"] = bits_of<uint8_t>(records, got, &nt_record::state);
     out["reasons"] = bits_of<uint32_t>(records, got, &nt_record::reasons);
     out["flags"] = bits_of<uint32_t>(records, got, &nt_record::flags);

@@ -7,6 +7,8 @@
 
 static const char *const position_names[] = {"position x", "position y", "position z"};
 
+static const char *const deflection_names[] = {"deflection x", "deflection y"};
+
 static void add(nt_sim_link *link, const nt_channel_row *row)
 {
     link->channels[link->channel_count++] = *row;
@@ -80,6 +82,15 @@ void nt_sim_list_slave(nt_sim_slave *slave)
     if (first == NT_X)
         add_sideways(link, HUGE_VAL);
     add_sensor(link, position_names[NT_Z], "m", &slave->stage_sensor);
+    for (int i = NT_X; i < NT_Z && link->rig.probe.lateral_stiffness > 0.0; i++) {
+        add(link, &(nt_channel_row){.name = deflection_names[i],
+                                    .unit = "m",
+                                    .axis = i,
+                                    .minimum = -HUGE_VAL,
+                                    .maximum = HUGE_VAL,
+                                    .safe = NAN});
+        link->valid |= 1u << (NT_READS_FELT + i);
+    }
     add_sensor(link, "deflection", "m", &slave->deflection_sensor);
     for (int i = first; i < NT_AXES; i++) {
         const double range = i == NT_Z ? 0.5 * link->rig.stage.travel : HUGE_VAL;

@@ -20,6 +20,7 @@ typedef struct probe_context {
     double gap; /* of the last answer [m] */
     nt_law_value law;
     double peak, deepest; /* |F| and h on the way [N], [m] */
+    int parted;           /* 1: there was no contact on the way */
 } probe_context;
 
 static nt_law_value force_at(void *context, double gap)
@@ -47,6 +48,8 @@ static void passed(void *context, double gap)
         probe->peak = force;
     if (gap < probe->deepest)
         probe->deepest = gap;
+    if (!(probe->law.a > 0.0))
+        probe->parted = 1;
     moved_to(context, gap);
 }
 
@@ -60,6 +63,19 @@ static nt_law_value law_there(probe_context *probe, double gap)
     law.U -= law.F * step;
     law.F -= law.k * step;
     return law;
+}
+
+/* Friction at the end of a period; what it held is lost where the contact was, even for a moment. The support of the
+ * tip is where the stage is: tip and lever are its spring. */
+static void slide(nt_sim_slave *slave, int parted, double gap)
+{
+    static const nt_friction_contact none = {0.0, 0.0};
+    if (slave->plan->friction.term.form == NT_FORM_OFF)
+        return;
+    if (parted)
+        (void)nt_friction_advance(&slave->plan->friction.law, &slave->slide.friction, &none, (double[2]){0.0, 0.0});
+    const nt_pose here = {slave->x, slave->y, gap};
+    nt_interaction_slide_gap(slave->plan, &slave->interaction, &slave->slide, &slave->place, &here);
 }
 
 double nt_sim_surface_height(const nt_sim_slave *slave)
@@ -110,14 +126,18 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     double sides[2] = {0.0, 0.0}; /* of a flat */
     if (slave->plan->surface)
         nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, law.F, sides);
+    slide(slave, context.parted, gap);
+    const nt_friction_state *friction = &slave->slide.friction;
     slave->truth = (nt_truth){.gap = gap,
-                              .tip_force = {sides[0], sides[1], law.F},
+                              .tip_force = {sides[0] + friction->force[0], sides[1] + friction->force[1], law.F},
                               .peak_force = fmax(context.peak, fabs(law.F)),
                               .deepest_gap = fmin(context.deepest, gap),
                               .contact_radius = law.a,
                               .surface_height = surface,
                               .tip_height = gap + surface,
-                              .energy = law.U};
+                              .energy = law.U,
+                              .friction_stored = friction->stored,
+                              .friction_heat = friction->dissipated};
     return status;
 }
 

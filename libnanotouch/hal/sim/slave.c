@@ -87,6 +87,14 @@ nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup)
     return status;
 }
 
+/* What a lever that gives way sideways shows of the force on its tip; as it is, without noise. */
+static void read_sideways(const nt_sim_slave *slave, nt_reading *reading)
+{
+    const double stiffness = slave->link.rig.probe.lateral_stiffness;
+    for (int i = NT_X; i < NT_Z && stiffness > 0.0; i++)
+        reading->felt[i] = slave->truth.tip_force[i] / stiffness;
+}
+
 nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
 {
     nt_sim_link *link = &slave->link;
@@ -104,6 +112,7 @@ nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
         reading->position[NT_X] = slave->x;
         reading->position[NT_Y] = slave->y;
     }
+    read_sideways(slave, reading);
     nt_sim_give(link, &(nt_sim_sensors){NT_HALF_SLAVE, &slave->stage_sensor, &slave->deflection_sensor}, reading);
     return NT_OK;
 }

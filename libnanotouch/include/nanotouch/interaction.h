@@ -44,6 +44,28 @@ NT_API NT_REALTIME void nt_interaction_advance(const nt_plan *plan, nt_interacti
 NT_API NT_REALTIME void nt_interaction_advance_gap(const nt_plan *plan, nt_interaction_state *state,
                                                    const nt_place *place, double gap);
 
+/* The history of friction. Copyable; zero is "never touched". Beside that of the contact, always: work of the hand
+ * in the plane = what the potential gains + friction.stored + friction.dissipated. */
+typedef struct nt_slide {
+    nt_friction_state friction;
+    double x, y; /* where the tip's support was last [m] */
+    int placed;  /* 1: it was somewhere */
+} nt_slide;
+
+/* The contact that friction knows at a place (NULL: a flat) and a gap [m]: radius and load inside; 0 without contact.
+ * Of a sample that yields without adhesion the load is Hertz' of that radius. */
+NT_API NT_REALTIME nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan,
+                                                                       const nt_interaction_state *state,
+                                                                       const nt_place *place, double gap);
+/* Commits the way from where the tip was last to a pose, once per accepted step and after nt_interaction_advance. The
+ * friction force on the tip is then slide->friction.force, beside Fx and Fy of nt_interaction_eval. Along the way the
+ * contact is that of its end. Of a plan without friction, or at a pose that is not a number, nothing changes. */
+NT_API NT_REALTIME void nt_interaction_slide(const nt_plan *plan, const nt_interaction_state *state, nt_slide *slide,
+                                             const nt_pose *pose);
+/* The same at a place of the surface (NULL: a flat), for callers that have it. pose->z is then the gap [m]. */
+NT_API NT_REALTIME void nt_interaction_slide_gap(const nt_plan *plan, const nt_interaction_state *state,
+                                                 nt_slide *slide, const nt_place *place, const nt_pose *pose);
+
 /* Slow changes of the scene itself (wear, charging, contact ageing): from `plan` to `changed` at a pose. The history is
  * carried over, what changes in U at this pose is booked in state->port; at a pose that is not a number, nothing. */
 NT_API void nt_interaction_change(const nt_plan *plan, const nt_plan *changed, nt_interaction_state *state,
@@ -61,6 +83,9 @@ NT_API void nt_interaction_eval_n(const nt_plan *plan, const nt_interaction_stat
                                   const nt_interaction_arrays *arrays);
 /* One contact along a path of poses: advance, then evaluate, at each. */
 NT_API void nt_interaction_run_n(const nt_plan *plan, nt_interaction_state *state, const nt_interaction_arrays *arrays);
+/* The same with friction: advance, slide, then evaluate, with the friction force in Fx and Fy. */
+NT_API void nt_interaction_slide_n(const nt_plan *plan, nt_interaction_state *state, nt_slide *slide,
+                                   const nt_interaction_arrays *arrays);
 /* Many contacts of one plan, each with its own state (contiguous): advance, then evaluate, each at its pose. */
 NT_API void nt_interaction_step_n(const nt_plan *plan, nt_interaction_state *states,
                                   const nt_interaction_arrays *arrays);

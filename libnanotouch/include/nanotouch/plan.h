@@ -5,6 +5,7 @@
 #ifndef NANOTOUCH_PLAN_H
 #define NANOTOUCH_PLAN_H
 
+#include "nanotouch/friction.h"
 #include "nanotouch/maugis_bank.h"
 #include "nanotouch/maugis_table.h"
 #include "nanotouch/rig.h"
@@ -55,7 +56,7 @@ typedef struct nt_plan_warning {
     const char *unit;    /* of the two numbers */
     double value, limit; /* limit: NaN where it is not a matter of size [unit] */
 } nt_plan_warning;
-enum { NT_PLAN_WARNINGS_MAX = 26 };
+enum { NT_PLAN_WARNINGS_MAX = 27 };
 
 /* Models that the plan did not take: largest |dF|/max(|F|, S) at equal indentation, from 0.9 of that
  * of the pull-off (Hertz and DMT: from first touch) to the largest load. */
@@ -91,6 +92,16 @@ typedef struct nt_yield_table {
     nt_yield_node node[NT_YIELD_TABLE];
 } nt_yield_table;
 
+/* Friction: no potential of the gap but a history in the plane (nt_interaction_slide), so that the vertical force has
+ * the same bits with it and without. */
+typedef struct nt_plan_friction {
+    nt_plan_term term;     /* form: NT_FORM_ON or NT_FORM_OFF. force: its largest limit. bound: of the friction force,
+                              over max(|F|, S) of forces; NaN where not known */
+    nt_friction law;       /* of the plan's own sample; with the compliance of tip and lever */
+    double tip_compliance; /* (2 - nu_t)/G_t [1/Pa] */
+    double sample_factor;  /* 2 (1 + nu_s) (2 - nu_s): 1/G* = tip_compliance + sample_factor/E_s [-] */
+} nt_plan_friction;
+
 /* Immutable after nt_plan_make. It refers to itself: share it by pointer; copy it with nt_plan_copy only. */
 typedef struct nt_plan {
     nt_plan_term terms[NT_PLAN_TERMS];
@@ -108,6 +119,8 @@ typedef struct nt_plan {
     nt_plan_rivals rivals;
     nt_plan_warning warnings[NT_PLAN_WARNINGS_MAX];
     int warning_count;
+
+    nt_plan_friction friction;
 
     nt_adhesion_source source;
     nt_contact contact; /* w: what the tail leaves of it (E5b). Of a surface with properties the softest modulus and
@@ -155,8 +168,8 @@ typedef struct nt_plan {
 /* What a plan is made from. */
 typedef struct nt_plan_inputs {
     const nt_scene *scene;
-    const nt_demand *demand;    /* NULL: nt_demand_defaults */
-    const nt_probe *probe;      /* only adds probe_noise, which the plan tells; NULL: none */
+    const nt_demand *demand; /* NULL: nt_demand_defaults */
+    const nt_probe *probe;   /* adds probe_noise, which the plan tells, and gives way to friction; NULL: none, rigid */
     const nt_surface *surface;  /* dilated by the tip, borrowed for the life of the plan; NULL: a flat at z = 0 */
     const nt_radius_map *radii; /* of that surface, borrowed; NULL: its curvature is not asked for */
     const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */

@@ -25,6 +25,7 @@ typedef struct nt_probe {
     double spring_constant_sigma; /* standard deviation of k_c's calibration over k_c [-] */
     double sensitivity_sigma;     /* the same of S [-] */
     double drift;                 /* of the deflection's zero, at most [m/s] */
+    double lateral_stiffness;     /* k_l of the lever (torsion, bending in the plane) at the apex; 0: rigid [N/m] */
 } nt_probe;
 
 /* Piezoelectric z stage (paper, Eq. 13 with f_s/k_stage: erratum E15). */

@@ -83,6 +83,13 @@ typedef struct nt_adhesion {
     double contact_potential;     /* U, bias included; that of the work functions adds to it [V] */
 } nt_adhesion;
 
+/* Of the contact when the tip slides (friction.h); what is stiff sideways follows from the materials. */
+typedef struct nt_scene_friction {
+    double shear_strength;     /* tau0, friction per contact area [Pa]; 0 with the next one: no friction */
+    double coefficient;        /* alpha, friction per load inside the contact [-] */
+    double lateral_compliance; /* of the tip, at its apex; 0: rigid [m/N] */
+} nt_scene_friction;
+
 /* What will be visited; a plan's bound holds inside. */
 typedef struct nt_range {
     double minimum_gap;  /* h; below 0: contact, as deep as the load allows [m] */
@@ -97,6 +104,7 @@ typedef struct nt_scene {
     nt_specimen sample;
     nt_medium medium;
     nt_adhesion adhesion;
+    nt_scene_friction friction;
     nt_range range;
     nt_custom_term custom[NT_CUSTOM_TERMS]; /* laws of one's own (terms.h), checked when a plan is made */
 } nt_scene;

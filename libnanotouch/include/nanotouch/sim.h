@@ -38,18 +38,20 @@ typedef struct nt_sim_setup {
     const nt_faults *faults; /* copied; NULL: none */
 } nt_sim_setup;
 
-enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000, NT_SIM_CHANNELS = 7 };
+enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000, NT_SIM_CHANNELS = 9 };
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {
     double gap;                /* h between tip and (dilated) surface [m] */
-    double tip_force[NT_AXES]; /* F in the world frame [N] */
+    double tip_force[NT_AXES]; /* F in the world frame, with friction [N] */
     double peak_force;         /* the largest |F| of the period; of a quasi-static probe |F| at its end [N] */
     double deepest_gap;        /* the smallest h of the period, likewise [m] */
     double contact_radius;     /* a [m] */
     double surface_height;     /* z_s under the tip [m] */
     double tip_height;         /* z_t [m] */
     double energy;             /* U of the interaction [J] */
+    double friction_stored;    /* by friction, in contact, tip and lever [J] */
+    double friction_heat;      /* that friction has made so far [J] */
 } nt_truth;
 
 /* What is random, a stream each (random.h): no half draws from the other's. The four sensors come first, in the order
@@ -120,6 +122,7 @@ typedef struct nt_sim_slave {
     int was_off;                    /* without power, and not yet back where it is told to be */
     nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
+    nt_slide slide;                        /* friction */
     double x, y;                           /* [m] */
     double pending[NT_SIM_SLOTS][NT_AXES]; /* stage commands [m] */
     double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */

@@ -24,6 +24,7 @@ def text_of(facts: dict[str, Any]) -> str:
     contact, *others = _terms(facts)
     lines = [_contact(contact, facts)]
     lines += [_term(term, facts) for term in others if term.force > 0.0]
+    lines += _friction(Term(*facts["friction"]))
     lines += _yielding(facts)
     if facts["curvature_error"] > 0.0:
         lines.append(_surface(contact, facts))
@@ -60,6 +61,17 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
         text += "; " if facts["quantity"] == "force" else "; in force "
         text += ", ".join(f"{name} would err by {_percent(error)}" for name, error in rivals.items())
     return text
+
+
+def _friction(term: Term) -> list[str]:
+    """Of the contact sideways; nothing where the scene has none."""
+    if term.force == 0.0:
+        return []
+    largest = f"up to {in_words(term.force, 'N')} sideways"
+    if not term.included:
+        return [f"friction: left out, {largest}, {_percent(term.bound)} of the larger of the force and its scale"]
+    bound = "bound not known" if math.isnan(term.bound) else f"within {_percent(term.bound)}"
+    return [f"friction: {term.words}, {largest}, {bound}"]
 
 
 def _yielding(facts: dict[str, Any]) -> list[str]:

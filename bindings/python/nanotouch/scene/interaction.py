@@ -32,6 +32,29 @@ class State(NamedTuple):
     """energy put in by slow changes of the scene so far [J]"""
 
 
+class Slide(NamedTuple):
+    """What friction remembers; the work of the hand against it is ``stored + dissipated``."""
+
+    placed: bool = False
+    """whether the tip was anywhere yet"""
+    x: float = 0.0
+    """of the tip's support, last [m]"""
+    y: float = 0.0
+    """[m]"""
+    force_x: float = 0.0
+    """friction on the tip [N]"""
+    force_y: float = 0.0
+    """[N]"""
+    stiffness: float = 0.0
+    """of the contact that sticks, with tip and lever [N/m]"""
+    stored: float = 0.0
+    """elastic energy [J]"""
+    dissipated: float = 0.0
+    """heat so far [J]"""
+    work: float = 0.0
+    """done by the hand so far [J]"""
+
+
 class Value(NamedTuple):
     """Force on the tip at poses; each a float for one pose, an array (n,) for n."""
 
@@ -52,7 +75,8 @@ class Value(NamedTuple):
 class Interaction:
     """One contact on a plan.
 
-    ``eval`` is pure and may be asked at trial poses; ``advance`` commits history, once per accepted step.
+    ``eval`` is pure and may be asked at trial poses; ``advance`` commits history, once per accepted step, and is the
+    one that knows friction: its force is in Fx and Fy, and in :attr:`slide`.
     """
 
     def __init__(self, plan: Plan, history: History = "approach") -> None:
@@ -70,13 +94,24 @@ class Interaction:
         """Go on from a history."""
         self._core.state = (state.attached, state.dissipated, state.port)
 
+    @property
+    def slide(self) -> Slide:
+        """The history of friction; that of a scene without it stays as it began."""
+        return Slide(*self._core.slide)
+
+    @slide.setter
+    def slide(self, slide: Slide) -> None:
+        """Go on from a history."""
+        self._core.slide = (slide.placed, slide[1:])
+
     def eval(self, pose: ArrayLike) -> Value:
-        """Energy and force at a pose (x, y, z) or poses (n, 3) [m], on the present history."""
+        """Energy and force at a pose (x, y, z) or poses (n, 3) [m], on the present history, without friction."""
         rows, single = _rows(pose)
         return _value(self._core.eval(rows), single)
 
     def advance(self, pose: ArrayLike) -> Value:
-        """Move to a pose, or through poses in order, and keep the history; returns what :meth:`eval` gives there."""
+        """Move to a pose, or through poses in order, and keep the history; returns what :meth:`eval` gives
+        there, and friction in Fx and Fy."""
         rows, single = _rows(pose)
         return _value(self._core.run(rows), single)
 
@@ -100,7 +135,7 @@ class Interaction:
 
     def copy(self) -> Self:
         """An independent contact with the same history."""
-        return _restore(type(self), self.plan, self.state)
+        return _restore(type(self), self.plan, self.state, self.slide)
 
     def __copy__(self) -> Self:
         return self.copy()
@@ -109,7 +144,7 @@ class Interaction:
         return self.copy()
 
     def __reduce__(self) -> Any:
-        return _restore, (type(self), self.plan, self.state)
+        return _restore, (type(self), self.plan, self.state, self.slide)
 
 
 def step(plan: Plan, states: ArrayLike, poses: ArrayLike) -> tuple[Floats, Value]:
@@ -134,9 +169,9 @@ def step(plan: Plan, states: ArrayLike, poses: ArrayLike) -> tuple[Floats, Value
     return after, _value(values, False)
 
 
-def _restore(kind: type[_Kind], plan: Plan, state: State) -> _Kind:
+def _restore(kind: type[_Kind], plan: Plan, state: State, slide: Slide) -> _Kind:
     made = kind(plan)
-    made.state = state
+    made.state, made.slide = state, slide
     return made
 
 

@@ -61,6 +61,12 @@ class Plan:
         """The laws that the scene has and the plan leaves out, with a bound each."""
         return [term for term in self._all_terms() if not term.included and term.force > 0.0]
 
+    @property
+    def friction(self) -> Term:
+        """Friction of the contact: computed or not, its largest force, and its bound, which counts by itself: of the
+        force sideways over max(\\|F\\|, scale)."""
+        return Term(*self._facts["friction"])
+
     def _all_terms(self) -> list[Term]:
         return [Term(*term) for term in self._facts["terms"]]
 
@@ -171,6 +177,7 @@ class Plan:
         """The plan as a new dict of numbers, names and lists, SI; ``nanotouch plan --json`` writes it."""
         facts = copy.deepcopy(self._facts)
         facts["terms"] = [term._asdict() for term in self._all_terms()]
+        facts["friction"] = self.friction._asdict()
         facts["warnings"] = [warning._asdict() for warning in self.warnings]
         return facts
 

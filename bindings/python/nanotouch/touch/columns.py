@@ -55,6 +55,8 @@ COLUMNS: dict[str, Column] = {
     "motor_force_y": Column("<f8", "N", "tau_m sideways"),
     "tip_force_x": Column("<f8", "N", "simulated truth: force on the tip, to the right"),
     "tip_force_y": Column("<f8", "N", "simulated truth: force on the tip, up the image"),
+    "deflection_x": Column("<f8", "m", "of a lever that gives way sideways, at the tip, to the right"),
+    "deflection_y": Column("<f8", "m", "of a lever that gives way sideways, at the tip, up the image"),
 }
 
 
@@ -85,4 +87,4 @@ def _converted(name: str, values: ArrayLike) -> NDArray[Any]:
 
 
 SIDEWAYS = tuple(name for name in COLUMNS if name.endswith(("_x", "_y")))
-"""columns of a rig whose master has more than one axis, and of no other"""
+"""columns of a rig whose master has more than one axis or whose lever gives way sideways, and of no other"""
