@@ -9,6 +9,8 @@
 #include "manipulation/vector.h"
 
 #define STEPS_MAX 1e7
+#define REACH_SHARE 0.1
+#define FINEST 1e-3 /* of particle.step */
 
 /* (a/a0)^1.5, of roots: the same bits everywhere. */
 static double rolling_share(const nt_particle_laws *laws, double radius)
@@ -137,22 +139,39 @@ static nt_status advance_by_a_step(const nt_pushing *pushing, nt_particle_state 
     return NT_OK;
 }
 
+/* Equal parts of what is left, each at most particle.step; from a contact that pulls, the tip recedes by a part of its
+ * reach at most, or a step would tear off what can follow. */
+static double next_step(const nt_pushing *pushing, const nt_particle_state *state, const double way[3], double left)
+{
+    const nt_particle_laws *laws = &pushing->laws[NT_AT_TIP];
+    const double length = norm(way), most = pushing->particle.step;
+    double step = most;
+    if (state->attached[NT_AT_TIP] && laws->pull_off > 0.0 && dot(way, state->normal) < 0.0) {
+        const double reach = laws->rest_indentation - nt_contact_law_grip_indentation(&laws->normal);
+        step = fmin(most, fmax(REACH_SHARE * reach * length / -dot(way, state->normal), FINEST * most));
+    }
+    return left / fmax(ceil(left / step), 1.0);
+}
+
 nt_status nt_particle_advance(const nt_pushing *pushing, nt_particle_state *state, const double tip[3])
 {
     if (!isfinite(tip[0]) || !isfinite(tip[1]) || !isfinite(tip[2]))
         return NT_E_NOT_FINITE;
     const double way[3] = {tip[0] - state->tip[0], tip[1] - state->tip[1], tip[2] - state->tip[2]};
-    const double steps = fmax(ceil(norm(way) / pushing->particle.step), 1.0);
-    if (tip[2] < 0.0 || !(steps <= STEPS_MAX))
+    const double length = norm(way);
+    if (tip[2] < 0.0 || !(length <= STEPS_MAX * pushing->particle.step))
         return NT_E_RANGE;
     nt_particle_state moving = *state;
     moving.modes = 0;
-    for (long i = 1; i <= (long)steps; ++i) {
-        const double left = 1.0 - (double)i / steps; /* 0 at the end, which is hit exactly */
-        const double to[3] = {tip[0] - left * way[0], tip[1] - left * way[1], tip[2] - left * way[2]};
+    for (double left = length;;) {
+        left -= next_step(pushing, &moving, way, left);
+        const double share = left > 0.0 ? left / length : 0.0; /* the end is hit exactly */
+        const double to[3] = {tip[0] - share * way[0], tip[1] - share * way[1], tip[2] - share * way[2]};
         const nt_status status = advance_by_a_step(pushing, &moving, to);
         if (status != NT_OK)
             return status;
+        if (!(left > 0.0))
+            break;
     }
     if (!moving.attached[NT_AT_TIP])
         moving.modes |= NT_PARTICLE_APART;

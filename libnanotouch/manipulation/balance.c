@@ -10,7 +10,7 @@
 #include "manipulation/bristle.h"
 #include "manipulation/vector.h"
 
-#define ITERATIONS 500
+#define ITERATIONS 5000
 #define FAINT 1e-13 /* [N]: bristles of a contact that is about to open have no scale of their own */
 #define HALVINGS 4
 #define DAMPING 1e-10 /* of all stiffnesses: least, and most */

@@ -125,7 +125,7 @@ static void begin(walk *w, uint64_t seed)
 
 static void step_on(walk *w, double bias)
 {
-    const double length = length_of(w) * between(&w->random, 1e-3, 0.1);
+    const double length = length_of(w) * between(&w->random, 1e-3, 0.05);
     double way[3], to[3];
     random_direction(&w->random, way);
     for (int k = 0; k < 3; ++k) {

@@ -117,11 +117,11 @@ typedef struct nt_particle_state {
 NT_API nt_status nt_particle_place(const nt_pushing *pushing, double x, double y, const double tip[3],
                                    nt_particle_state *state);
 
-/* Moves the apex of the tip to `tip` [m] along a straight line, in steps of at most particle.step; after each all
- * forces and torques balance. A step lets the sphere find the nearest minimum of its energy, and what its bristles take
- * for giving way; what a jump sets free becomes heat. The error falls with the step (docs/manipulation.md). NT_OK;
- * NT_E_NOT_FINITE; NT_E_RANGE below the substrate or farther than 1e7 steps; NT_E_NO_CONVERGENCE. Left alone unless
- * NT_OK. */
+/* Moves the apex of the tip to `tip` [m] along a straight line. A step is particle.step at most, and a tenth of the
+ * contact's reach where the tip recedes and pulls; after each all forces and torques balance. It lets the sphere find
+ * the nearest minimum of its energy, and what its bristles take for giving way; what a jump sets free becomes heat. The
+ * error falls with the step (docs/manipulation.md). NT_OK; NT_E_NOT_FINITE; NT_E_RANGE below the substrate or farther
+ * than 1e7 steps; NT_E_NO_CONVERGENCE. Left alone unless NT_OK. */
 NT_API nt_status nt_particle_advance(const nt_pushing *pushing, nt_particle_state *state, const double tip[3]);
 /* Along a path of `count` points; the state after each to states[i]. Stops at the first that is refused. */
 NT_API nt_status nt_particle_run_n(const nt_pushing *pushing, nt_particle_state *state, const double (*tips)[3],

@@ -1,8 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Objects that a tip moves and marks (docs/manipulation.md)."""
+"""Objects that a tip moves (docs/manipulation.md)."""
 
 from __future__ import annotations
 
 from .particle import Particle, ParticleContact, ParticlePath, ParticleState
+from .pushing import Bench, Lost, Pushed, arrange, push
 
-__all__ = ["Particle", "ParticleContact", "ParticlePath", "ParticleState"]
+__all__ = [
+    "Bench",
+    "Lost",
+    "Particle",
+    "ParticleContact",
+    "ParticlePath",
+    "ParticleState",
+    "Pushed",
+    "arrange",
+    "push",
+]

@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A scripted operator: find a particle by two scan lines, push it from behind, look again (docs/manipulation.md).
+
+The bench drifts and is noisy. The operator knows only what its lines show: where the particle is, and how far a mark
+has drifted that nobody moves. In between, its map follows the tip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import permutations
+from typing import NamedTuple
+
+import numpy as np
+
+from nanotouch._arrays import Floats, check_between
+from nanotouch.errors import Error, InvalidValue
+
+from .particle import Particle, ParticleState
+
+
+class Lost(Error):
+    """A look did not find the particle, or it hangs on the tip."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """What disturbs the operator, and how fast it works.
+
+    Parameters
+    ----------
+    drift : float
+        Speed of the sample under the tip [m/s]; its direction wanders.
+    height_noise : float
+        Standard deviation of each height of a line [m].
+    position_noise : float
+        Standard deviation of where the tip is, one value for each move and line [m].
+    speed : float
+        Of the tip [m/s].
+    line_time : float
+        Of one scan line of ``points`` points [s].
+    points : int
+        Of a line.
+    """
+
+    drift: float = 1e-9
+    height_noise: float = 1e-9
+    position_noise: float = 2e-9
+    speed: float = 2e-6
+    line_time: float = 1.0
+    points: int = 128
+
+    def __post_init__(self) -> None:
+        check_between("speed", self.speed, "m/s", above=0.0)
+        check_between("line_time", self.line_time, "s", above=0.0)
+        check_between("points", self.points, "", above=15)
+        for name in ("drift", "height_noise", "position_noise"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InvalidValue(f"{name} = {getattr(self, name):g}: valid is 0 and above")
+
+
+class Pushed(NamedTuple):
+    """How a task ended. Positions are of the sample, without its drift [m]."""
+
+    position: Floats
+    """where the particle is, x and y [m]"""
+    error: float
+    """its distance from the target [m]"""
+    believed: float
+    """distance that the operator's last look showed [m]"""
+    pushes: int
+    """moves of the tip against it"""
+    lines: int
+    """scan lines, those of the mark too"""
+    duration: float
+    """[s]"""
+    looks: Floats
+    """where each look found it, x and y [m]"""
+    spun: float
+    """how far it has turned about the vertical [rad]"""
+
+
+@dataclass
+class _World:
+    """What is true: particle, drift, time. The operator's coordinates are those of the stage."""
+
+    particle: Particle
+    bench: Bench
+    random: np.random.Generator
+    state: ParticleState
+    time: float = 0.0
+    lines: int = 0
+    drifted: Floats = field(default_factory=lambda: np.zeros(2))
+    heading: float = 0.0
+
+    def wait(self, duration: float) -> None:
+        """The direction of the drift wanders by 3 degrees in a second (root of time)."""
+        self.heading += 0.05 * np.sqrt(duration) * self.random.standard_normal()
+        self.drifted = self.drifted + duration * self.bench.drift * np.array(
+            [np.cos(self.heading), np.sin(self.heading)]
+        )
+        self.time += duration
+
+    def move(self, points: Floats) -> None:
+        """Along points x, y, z of the stage; the sample drifts under each part of the way."""
+        off = self.bench.position_noise * self.random.standard_normal(2)
+        last = np.array(self.state.tip) + np.array([*self.drifted, 0.0])
+        for point in points:  # five at least
+            self.wait(float(np.linalg.norm(point - last)) / self.bench.speed)
+            x, y = point[:2] - self.drifted + off
+            path = self.particle.run(x, y, point[2], state=self.state)
+            self.state, last = path.state, point
+        if path.happened("lifted")[-1]:
+            raise Lost("the particle hangs on the tip, which holds it more than the substrate does")
+
+    def line(self, centre: Floats, axis: int, at: Floats) -> float:
+        """Where a line along an axis, through `centre` of the stage, shows the middle of a sphere that is at `at`."""
+        reach = self.particle.radius + self.particle.tip_radius
+        along = np.linspace(-1.3, 1.3, self.bench.points) * reach
+        begin = self.drifted
+        self.wait(self.bench.line_time)
+        self.lines += 1
+        share = np.linspace(0.0, 1.0, self.bench.points)[:, None]
+        places = np.tile(centre, (self.bench.points, 1))
+        places[:, axis] += along
+        away = places - begin - share * (self.drifted - begin) - at
+        away = away + self.bench.position_noise * self.random.standard_normal(2)
+        height = np.sqrt(np.maximum(reach**2 - np.sum(away**2, axis=1), 0.0))  # over the middle of the sphere
+        height += self.bench.height_noise * self.random.standard_normal(self.bench.points)
+        seen = height > 0.5 * reach
+        if np.count_nonzero(seen) < 8:
+            raise Lost(f"no particle within {0.8 * reach:.3g} m of where it should be: a scan of the whole is due")
+        unknowns = np.stack([2.0 * along[seen], np.ones(np.count_nonzero(seen))], axis=1)
+        middle = np.linalg.lstsq(unknowns, height[seen] ** 2 + along[seen] ** 2, rcond=None)[0][0]
+        return float(centre[axis] + middle)
+
+    def look(self, guess: Floats, at: Floats) -> Floats:
+        """Two lines: through the guess, then through the middle that the first one showed. Of the stage."""
+        found = guess.copy()
+        for axis in (1, 0):
+            found[axis] = self.line(found, axis, at)
+        return found
+
+
+def push(
+    particle: Particle,
+    target: tuple[float, float],
+    *,
+    start: tuple[float, float] = (0.0, 0.0),
+    bench: Bench | None = None,
+    tolerance: float = 30e-9,
+    longest: float | None = None,
+    most: int = 200,
+    seed: int = 0,
+) -> Pushed:
+    """Push a particle to a target, until a look shows it there.
+
+    Parameters
+    ----------
+    particle : Particle
+    target, start : tuple of float
+        x and y on the sample [m].
+    bench : Bench, optional
+        What disturbs; the defaults if left out.
+    tolerance : float
+        Distance that the operator is content with [m].
+    longest : float, optional
+        Of one push [m]; half the radius of the particle if left out.
+    most : int
+        Pushes before it gives up; `believed` is then above the tolerance.
+    seed : int
+        Of noise and drift.
+
+    Raises
+    ------
+    nanotouch.manipulation.Lost
+        A look did not find the particle, or it hangs on the tip.
+    """
+    check_between("tolerance", tolerance, "m", above=0.0)
+    check_between("most", most, "", above=0)
+    longest = longest if longest is not None else 0.5 * particle.radius
+    check_between("longest", longest, "m", above=0.0)
+    world = _world(particle, bench or Bench(), start, seed)
+    mark = np.array([start[0], start[1] - 10.0 * particle.radius])
+    return _Operator(world, mark, np.array(target), longest).work(tolerance, most)
+
+
+def _world(particle: Particle, bench: Bench, start: tuple[float, float], seed: int) -> _World:
+    random = np.random.default_rng(seed)
+    state = particle.place(*start, (start[0], start[1], 4.0 * particle.radius))
+    return _World(particle, bench, random, state, heading=2.0 * np.pi * random.uniform())
+
+
+@dataclass
+class _Operator:
+    """What it believes: the drift that the mark shows, and by how much the particle springs back."""
+
+    world: _World
+    mark: Floats
+    target: Floats
+    longest: float
+    ahead: Floats = field(default_factory=lambda: np.zeros(2))
+
+    def work(self, tolerance: float, most: int) -> Pushed:
+        world = self.world
+        drift = world.look(self.mark, self.mark) - self.mark
+        found = self._find(np.array(world.state.position[:2]) + drift)
+        looks, pushes = [found - drift], 0
+        while (left := float(np.linalg.norm(self.target - looks[-1]))) > tolerance and pushes < most:
+            self._push(found, drift)
+            guess = found + self._wanted(found - drift) - self.ahead
+            pushes += 1
+            drift = world.look(self.mark + drift, self.mark) - self.mark
+            found = self._find(guess)
+            self._learn(looks[-1], found - drift)
+            looks.append(found - drift)
+        position = np.array(world.state.position[:2])
+        error = float(np.linalg.norm(position - self.target))
+        spun = float(world.particle.run(*world.state.tip, state=world.state).turned[-1, 2])
+        return Pushed(position, error, left, pushes, world.lines, world.time, np.array(looks), spun)
+
+    def _find(self, guess: Floats) -> Floats:
+        return self.world.look(guess, np.array(self.world.state.position[:2]))
+
+    def _wanted(self, found: Floats) -> Floats:
+        """The way of the next push; what it springs back by is added."""
+        left = self.target - found
+        length = float(np.linalg.norm(left))
+        return left * min(1.0, self.longest / length) + self.ahead * left / length
+
+    def _learn(self, before: Floats, after: Floats) -> None:
+        """How much shorter than wanted the particle went, along the push."""
+        wanted = self._wanted(before)
+        unit = wanted / np.linalg.norm(wanted)
+        short = float(np.dot(wanted - (after - before), unit))
+        self.ahead = np.clip(0.5 * (self.ahead + short), 0.0, 0.2 * self.world.particle.radius)
+
+    def _push(self, found: Floats, drift: Floats) -> None:
+        """Down behind the particle, against it, back, and up. Of the stage."""
+        particle, way = self.world.particle, self._wanted(found - drift)
+        unit = way / np.linalg.norm(way)
+        reach, low, high = self._reach(), self._height(), 4.0 * particle.radius
+        points = [(-reach - 0.3 * particle.radius, high), (-reach - 0.3 * particle.radius, low)]
+        points += [(-reach + float(np.linalg.norm(way)), low), (-reach - 0.3 * particle.radius, low)]
+        points += [(-reach - 0.3 * particle.radius, high)]
+        self.world.move(np.array([[*(found + along * unit), z] for along, z in points]))
+
+    def _height(self) -> float:
+        return 0.3 * self.world.particle.radius
+
+    def _reach(self) -> float:
+        """From the middle of the particle to the tip's apex when its flank touches, at the height of the push."""
+        particle = self.world.particle
+        psi, both = particle.tip_half_angle, particle.radius + particle.tip_radius
+        up = particle.radius - particle.tip_radius - self._height()
+        return float((both + up * np.sin(psi)) / np.cos(psi))
+
+
+def arrange(
+    particle: Particle,
+    starts: Sequence[tuple[float, float]],
+    targets: Sequence[tuple[float, float]],
+    *,
+    bench: Bench | None = None,
+    tolerance: float = 30e-9,
+    seed: int = 0,
+) -> list[Pushed]:
+    """Push up to six particles into a pattern, each to the target that keeps all ways short and clear of the others.
+
+    The order is found by trying. On each way the others stay two diameters away, or the pattern is refused.
+    """
+    if not 1 <= len(starts) <= 6 or len(starts) != len(targets):
+        raise InvalidValue(f"{len(starts)} starts, {len(targets)} targets: valid are as many, 1 .. 6")
+    plan = _clear_plan(np.array(starts, float), np.array(targets, float), 4.0 * particle.radius)
+    done: list[Pushed | None] = [None] * len(starts)
+    for one, goal in plan:
+        done[one] = push(
+            particle, targets[goal], start=starts[one], bench=bench, tolerance=tolerance, seed=seed * 6 + one
+        )
+    return [one for one in done if one is not None]
+
+
+def _clear_plan(starts: Floats, targets: Floats, room: float) -> list[tuple[int, int]]:
+    """Pairs of start and target in the order of work."""
+    count = len(starts)
+    far = np.linalg.norm(starts[:, None] - targets[None], axis=2)
+    for goals in sorted(permutations(range(count)), key=lambda goals: float(far[range(count), goals].sum())):
+        order = _order(starts, targets[list(goals)], room)
+        if order is not None:
+            return [(one, goals[one]) for one in order]
+    raise InvalidValue(f"pattern: no order of pushes keeps {room:.3g} m between the particles")
+
+
+def _order(starts: Floats, goals: Floats, room: float) -> list[int] | None:
+    """An order in which no way comes nearer than `room` to where another one is then; a greedy one is enough, for who
+    has arrived stays, and who is free to go now is so until another has arrived."""
+    left, at = set(range(len(starts))), starts.copy()
+    order = []
+    while left:
+        free = [one for one in sorted(left) if _clear(at, one, goals[one], room)]
+        if not free:
+            return None
+        order.append(free[0])
+        at[free[0]] = goals[free[0]]
+        left.remove(free[0])
+    return order
+
+
+def _clear(at: Floats, one: int, goal: Floats, room: float) -> bool:
+    way, others = goal - at[one], np.delete(at, one, axis=0) - at[one]
+    share = np.clip(others @ way / max(float(way @ way), 1e-30), 0.0, 1.0)
+    return bool(np.all(np.linalg.norm(others - share[:, None] * way, axis=1) >= room))
