@@ -180,6 +180,28 @@ static void lets_the_tip_pass(void **unused)
     assert_true(state.turned[2] != 0.0 && state.position[0] < 14e-6);
 }
 
+/* A tip that pulls drags it back: rolling takes M/R both ways. 4 nm are more than the contact's reach: a step of them,
+ * all at once, would tear it off. */
+static void follows_a_tip_that_pulls(void **unused)
+{
+    (void)unused;
+    nt_particle particle = smooth_tip();
+    particle.radius = 1e-6;
+    particle.tip_half_angle = 0.0;
+    particle.step = 4e-9;
+    particle.contacts[NT_AT_TIP].work_of_adhesion = 0.1;
+    particle.contacts[NT_AT_SUBSTRATE].rolling_distance = 2e-9;
+    const nt_pushing pushing = made(&particle);
+    nt_particle_state state = beside(&pushing, 0.0, 5e-9);
+    push(&pushing, &state, 20e-9, 0.0, 0.0);
+    push(&pushing, &state, -300e-9, 0.0, 0.0);
+    const nt_particle_contact *substrate = &particle.contacts[NT_AT_SUBSTRATE];
+    const double R = particle.radius, ratio = jkr_radius(substrate, R, state.force[2]) / jkr_radius(substrate, R, 0.0);
+    const double torque = 4.0 * 1.5 * NT_PI * 0.06 * R * pow(ratio, 1.5) * 2e-9;
+    assert_within(state.force[0], torque / particle.radius, 1e-6 * torque / particle.radius); /* of the solver */
+    assert_true(state.position[0] < -250e-9 && state.modes & NT_PARTICLE_ROLLED);
+}
+
 /* Half the step, half the distance to a fine one. */
 static void converges_with_its_step(void **unused)
 {
@@ -232,6 +254,7 @@ int main(void)
         cmocka_unit_test(opens_the_weaker_contact),
         cmocka_unit_test(gives_back_what_is_elastic),
         cmocka_unit_test(lets_the_tip_pass),
+        cmocka_unit_test(follows_a_tip_that_pulls),
         cmocka_unit_test(converges_with_its_step),
         cmocka_unit_test(refuses_what_is_no_particle),
     };
