@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -312,3 +313,20 @@ def test_a_map_holds_the_interval_of_the_pull_off() -> None:
     assert data["ruptures"].values[1, 2] == len(report.ruptures)
     one = nt.fit.fit_curve(curve_of(source, 1, 2), "maugis", **SETTINGS)
     assert data["rating"].values[1, 2] == pytest.approx(one.rating, abs=0.05)
+
+
+def test_the_radius_that_a_file_states_is_used() -> None:
+    """As for one curve; several that differ are refused, and one that is given goes before."""
+    curve = nt.curves.synthesise(nt.Contact(3e-6, 5e4), "hertz", spring_constant=0.1, noise=10e-12, depth=3e-7, seed=1)
+    stated = replace(curve, meta=dict(curve.meta) | {"tip radius": 3e-6})
+    data = nt.maps.fit([stated, stated], "hertz")
+    assert float(data.effective_modulus[0, 0]) == nt.fit.fit_curve(stated, "hertz").values["effective_modulus"]
+    assert "tip radius 3 µm (as the file states)" in data.attrs["assumptions"]
+    given = nt.maps.fit([stated, stated], "hertz", radius=1e-6)
+    assert float(given.effective_modulus[0, 0]) == pytest.approx(
+        float(data.effective_modulus[0, 0]) * 3**0.5,
+        rel=1e-3,  # E* goes as 1/sqrt(R)
+    )
+    other = replace(curve, meta=dict(curve.meta) | {"tip radius": 1e-6})
+    with pytest.raises(nt.errors.InvalidValue, match="tip radii from 1e-06 to 3e-06 m"):
+        nt.maps.fit([stated, other], "hertz")

@@ -61,7 +61,7 @@ def fit(
     model, tip, radius, **settings
         As for :func:`nanotouch.fit.fit_curve`: ``poisson_ratio``, ``branch``, ``window``, ``half_angle``,
         ``cohesive_range``, ``uncertainties``, ``fixed``, ``bounds``, ``fit_offset``, ``loss``, ``loss_scale``;
-        ``baseline``.
+        ``baseline``. Without `tip` and `radius` the file's radius, or 20 nm, and ``assumptions`` says so.
     z : array of shape (n,) or (ny, nx, n)
         Height of the base, away from the sample [m]; with an array only.
     spring_constant : float
@@ -96,6 +96,7 @@ def fit(
         calibration = CalibrationTable.from_csv(calibration)
     reading = {"spring_constant": spring_constant, "sensitivity": sensitivity, "calibration": calibration}
     volume = volume_of(source, z, deflection, reading | {"untrusted": untrusted})
+    chosen = chosen.beside(volume.tip_radii)
     made_of = {
         "settings": chosen.as_json(),
         "input": {"name": volume.name, "shape": list(volume.shape), "sha256": volume.digest()},

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ from ..fit import TipLike, Uncertainties
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
 from ..fit.models import extension, find
 from ..fit.points import Branch
+from ..fit.show import with_sigma
 from ..fit.solving import Setup
 
 SHARP = ("cone", "pyramid")
@@ -46,6 +47,7 @@ class Settings:
     fit_offset: bool = False
     loss: Loss = "squares"
     loss_scale: float | None = None
+    stated_radius: bool = False  # the radius is the file's
 
     def __post_init__(self) -> None:
         if find(self.model).force is not None:
@@ -65,7 +67,7 @@ class Settings:
     @classmethod
     def of(cls, model: str, tip: TipLike | None, radius: float | None, given: Mapping[str, Any]) -> Settings:
         """From the arguments of a fit."""
-        valid = cls.__dataclass_fields__.keys() - {"tip_modulus", "tip_poisson_ratio"}
+        valid = cls.__dataclass_fields__.keys() - {"tip_modulus", "tip_poisson_ratio", "stated_radius"}
         unknown = sorted(given.keys() - valid)
         if unknown:
             raise InvalidValue(f"unknown argument {unknown[0]!r}: valid are {', '.join(sorted(valid))}")
@@ -79,6 +81,14 @@ class Settings:
         elif radius is not None:
             known["radius"] = float(radius)
         return cls(model=model, **known)
+
+    def beside(self, radii: Collection[float]) -> Settings:
+        """With the tip radius [m] that the file states, where none was given; one that states several is refused."""
+        if self.radius is not None or self.model in SHARP or not radii:
+            return self
+        if len(radii) > 1:
+            raise InvalidValue(f"the file states tip radii from {min(radii):g} to {max(radii):g} m: give the radius")
+        return replace(self, radius=min(radii), stated_radius=True)
 
     def as_json(self) -> dict[str, Any]:
         """What is stored."""
@@ -152,6 +162,8 @@ class Settings:
             said.append(f"half angle {np.degrees(ASSUMED_HALF_ANGLE):.3g} degrees (not given; E* goes as 1/tan of it)")
         if self.model not in SHARP and self.radius is None:
             said.append(f"tip radius {ASSUMED_RADIUS * 1e9:g} nm (not given; E* goes as 1/sqrt(R), w as 1/R)")
+        if self.stated_radius and self.radius is not None:
+            said.append(f"tip radius {with_sigma(self.radius, 0.0, 'm')} (as the file states)")
         if self.model == "maugis" and self.cohesive_range is None:
             said.append(f"range of adhesion h0 = {ASSUMED_RANGE * 1e9:g} nm (atomic; not given)")
         said += self.uncertainties.assumptions(sharp=self.model in SHARP)

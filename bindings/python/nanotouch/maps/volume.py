@@ -76,6 +76,7 @@ class ArrayVolume:
     deflection: bool = False
     name: str = "array"
     coordinates: dict[str, Floats] = field(default_factory=dict)
+    tip_radii: frozenset[float] = frozenset()
 
     def __post_init__(self) -> None:
         if len(self.values.shape) != 3:
@@ -163,6 +164,8 @@ class CurveVolume:
         Where they come from.
     numbers : mapping
         For each place the number of its curve in the file.
+    tip_radii : frozenset of float
+        All that the curves state [m].
     """
 
     places: Mapping[int, ForceCurve]
@@ -171,6 +174,7 @@ class CurveVolume:
     file: Path | None = None
     coordinates: dict[str, Floats] = field(default_factory=dict)
     numbers: Mapping[int, int] = field(default_factory=dict)
+    tip_radii: frozenset[float] = frozenset()
 
     @classmethod
     def of(cls, curves: Sequence[ForceCurve] | Stream, name: str, file: Path | None = None) -> CurveVolume:
@@ -186,7 +190,8 @@ class CurveVolume:
             shape = int(meta["grid shape y"]), int(meta["grid shape x"])
             order = _order(metas, shape, name)
         places = _Lazy(curves, order) if streamed else {place: curves[k] for place, k in order.items()}
-        return cls(places, shape, name, file, _coordinates(meta, *shape) if gridded else {}, order)
+        radii = frozenset(float(m["tip radius"]) for m in metas if m.get("tip radius") is not None)
+        return cls(places, shape, name, file, _coordinates(meta, *shape) if gridded else {}, order, radii)
 
     def block(self, start: int, stop: int) -> Block:
         """The curves start .. stop - 1, counted along the rows."""
