@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy windows kernel bench lint format clean
+.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy windows macos kernel bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -31,6 +31,7 @@ test:  ## all tests: C, checks, cross compilers, consumers, Python, the demo
 	@failed=0; ctest --preset dev -j $(JOBS) || failed=1; $(VENV)/python -m pytest -n $(JOBS) || failed=1; exit $$failed
 
 wheels:  ## a wheel for each Python of 3.11 to 3.14 that is here, with a Ceres free of the GPL, tested; PYTHONS=3.11 limits it; build/wheels
+	@tools/setup.sh wheels
 	@tools/wheels.sh build/wheels $(PYTHONS)
 
 page:  ## the touch in one HTML file, build/page/nanotouch-touch.html; needs node and npm
@@ -71,7 +72,15 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/guarantee.py
 
 windows:  ## the C tests of the portable core on 64-bit Windows, by MinGW and Wine; some minutes
+	@tools/setup.sh windows
 	@tests/windows/run.sh
+
+macos:  ## the C library and the programs in apps/c for macOS (arm64), compiled and linked by zig; nothing is run
+	@tools/setup.sh page
+	@PYTHON_WITH_ZIG=$(CURDIR)/$(VENV)/python cmake -S . -B build/macos -G Ninja -DCMAKE_BUILD_TYPE=Release --log-level WARNING \
+	  -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/toolchains/arm64-apple-darwin.cmake -DBUILD_SHARED_LIBS=ON -DNANOTOUCH_WERROR=ON \
+	  -DNANOTOUCH_TESTS=OFF -DNANOTOUCH_FIT=OFF
+	@cmake --build build/macos -j $(JOBS)
 
 kernel:  ## the SPI and GPIO drivers on a Linux kernel that runs as a program; builds that kernel once, some minutes; then seconds
 	@tools/setup.sh kernel

@@ -8,7 +8,7 @@ target_compile_options(
   INTERFACE $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off
             -fno-math-errno
             -fno-trapping-math
-            -fno-semantic-interposition
+            $<$<NOT:$<PLATFORM_ID:Darwin>>:-fno-semantic-interposition> # ELF's
             -Wall
             -Wextra
             -Wpedantic

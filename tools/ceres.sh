@@ -6,7 +6,8 @@
 # Usage: tools/ceres.sh
 set -eu
 cd "$(dirname "$0")/.."
-key=$(sed '1,/^# --- recipe/d' tools/ceres.sh | sha256sum | cut -c 1-12)-$(${CXX:-c++} -dumpmachine)
+sha256() { if command -v sha256sum >/dev/null; then sha256sum "$@"; else shasum -a 256 "$@"; fi; } # macOS has the latter
+key=$(sed '1,/^# --- recipe/d' tools/ceres.sh | sha256 | cut -c 1-12)-$(${CXX:-c++} -dumpmachine)
 name=ceres-$key
 prefix=$PWD/build/deps/$name
 finish() {
@@ -29,7 +30,7 @@ mkdir -p "$part/ceres" "$part/eigen"
 # fetch URL HASH FOLDER
 fetch() {
   curl -fsSL --retry 5 -o "$part/archive" "$1"
-  echo "$2  $part/archive" | sha256sum -c --quiet >&2
+  echo "$2  $part/archive" | sha256 -c >&2
   tar -xf "$part/archive" -C "$3" --strip-components 1
 }
 fetch "$pool/c/ceres-solver/$ceres" $ceres_hash "$part/ceres"

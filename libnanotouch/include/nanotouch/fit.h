@@ -194,20 +194,20 @@ typedef struct nt_fit_known {
     double baseline_position;         /* X where level and tilt of the baseline are not correlated [m] */
     double level_sigma, tilt_sigma;   /* their standard uncertainties [N], [N/m]; 0: exact */
     double tear_position, tear_sigma; /* X at which the tip was torn off [m], as in options; sigma 0: nowhere */
-    double sensitivity_sigma;         /* of the deflection, relative; 0: exact */
+    double sensitivity_sigma;         /* of the deflection, relative [-]; 0: exact */
     int fit_offset;                   /* 1: the force offset is free; 0: known as well as the baseline is */
     int held[NT_FIT_PARAMETERS];      /* 1: of sensitivity, offset, tilt, stays at its value in options */
 } nt_fit_known;
 
 /* What the user of a fit has to know, one bit each. */
 typedef enum nt_fit_flag {
-    NT_FIT_NOT_CONVERGED = 1,   /* stopped at max_iterations */
-    NT_FIT_STIFF = 2,           /* contact much stiffer than the cantilever: E* hardly shows */
-    NT_FIT_MISFIT = 4,          /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
-    NT_FIT_WIDE = 8,            /* contact radius above R/2: no paraboloid on a half-space */
-    NT_FIT_CALIBRATION = 16,    /* the curve contradicts its calibration, or the model is wrong: E* not determined */
-    NT_FIT_WRONG_MODEL = 32,    /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
-    NT_FIT_WAVES = 64,          /* a wave of interference was taken off with the baseline */
+    NT_FIT_NOT_CONVERGED = 1,    /* stopped at max_iterations */
+    NT_FIT_STIFF = 2,            /* contact much stiffer than the cantilever: E* hardly shows */
+    NT_FIT_MISFIT = 4,           /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
+    NT_FIT_WIDE = 8,             /* contact radius above R/2: no paraboloid on a half-space */
+    NT_FIT_CALIBRATION = 16,     /* the curve contradicts its calibration, or the model is wrong: E* not determined */
+    NT_FIT_WRONG_MODEL = 32,     /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
+    NT_FIT_WAVES = 64,           /* a wave of interference was taken off with the baseline */
     NT_FIT_TORN_ELSEWHERE = 128, /* than where this contact and cantilever let go: the tear is not used */
     NT_FIT_UNEVEN = 1 << 20 /* shallow and deep half of the contact ask for different E* and contact points: their sigma
                                covers half of that */

@@ -102,7 +102,7 @@ NT_API double nt_maugis_bank_grip_indentation(const nt_maugis_bank *bank, const 
  * threads. */
 typedef struct nt_bank_pairs {
     const nt_contact *contacts;
-    const double *indentation;
+    const double *indentation;     /* [m] */
     double *U, *F, *k, *a, *dU_dR; /* [J], [N], [N/m], [m], [J/m] */
     long count;
     long contact_stride; /* 0: one contact for all */

@@ -53,9 +53,9 @@ typedef struct nt_custom_term {
  * those of the law at both. Below the first gap F stays; beyond the last there is no force. */
 typedef struct nt_custom_table {
     char name[NT_CUSTOM_NAME];
-    int count;     /* of cells; 0: no such law */
-    double radius; /* R of the tip [m] */
-    double gap[NT_CUSTOM_CELLS + 1];
+    int count;                                     /* of cells; 0: no such law */
+    double radius;                                 /* R of the tip [m] */
+    double gap[NT_CUSTOM_CELLS + 1];               /* h where cells begin [m] */
     double U[NT_CUSTOM_CELLS][6];                  /* coefficients over (h - h[i])/(h[i + 1] - h[i]) [J] */
     double largest_force[NT_CUSTOM_CELLS + 1];     /* from h[i] on, as stated [N] */
     double largest_stiffness[NT_CUSTOM_CELLS + 1]; /* the same, of samples [N/m] */

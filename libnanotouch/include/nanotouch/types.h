@@ -25,8 +25,8 @@ typedef struct nt_law_value {
 
 /* Arrays of a law: out[i * out_stride] from in[i * in_stride]; in and out may be the same array. */
 typedef struct nt_strided {
-    const double *in;
-    double *U, *F, *k, *a; /* any may be NULL */
+    const double *in;      /* of indentations or gaps [m] */
+    double *U, *F, *k, *a; /* [J], [N], [N/m], [m]; any may be NULL */
     long count;
     long in_stride, out_stride; /* [elements] */
 } nt_strided;
