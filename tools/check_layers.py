@@ -70,7 +70,7 @@ PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
     "what all need": "extras _core errors formats units _arrays _io",
-    "laws": "contact forces friction",
+    "laws": "contact forces friction lateral",
     "objects": "manipulation",
     "measured": "images curves",
     "what there is": "scene reference scan",

@@ -9,7 +9,6 @@ from nanotouch import fit as fit
 from nanotouch import forces as forces
 from nanotouch import friction as friction
 from nanotouch import images as images
-from nanotouch import manipulation as manipulation
 from nanotouch import maps as maps
 from nanotouch import plots as plots
 from nanotouch import reference as reference
@@ -25,8 +24,6 @@ from nanotouch.fit import FitResult as FitResult
 from nanotouch.friction import Corrugation as Corrugation
 from nanotouch.friction import Friction as Friction
 from nanotouch.images import Topography as Topography
-from nanotouch.manipulation import Particle as Particle
-from nanotouch.manipulation import ParticleContact as ParticleContact
 from nanotouch.scan import flow as flow
 from nanotouch.scan import scanner as scanner
 from nanotouch.scan import tapping as tapping
@@ -79,8 +76,6 @@ __all__ = [
     "Friction",
     "Input",
     "Interaction",
-    "Particle",
-    "ParticleContact",
     "Plan",
     "Recording",
     "Rig",
@@ -112,7 +107,6 @@ __all__ = [
     "images",
     "interaction",
     "mailbox",
-    "manipulation",
     "maps",
     "margins",
     "materials",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from nanotouch._frames import *  # noqa: F403
 from nanotouch._friction import *  # noqa: F403
 from nanotouch._particle import *  # noqa: F403
+from nanotouch._scan import *  # noqa: F403
 
 Floats = NDArray[float64]
 LawColumns = tuple[Floats, Floats, Floats, Floats]
@@ -193,9 +194,6 @@ class Interaction:
     def change(self, changed: Interaction, x: float, y: float, z: float, /) -> None: ...
 
 interaction_state_size: int
-Tapping: Any
-Flow: Any
-Scanner: Any
 
 def interaction_step(plan: Plan, states: Floats, poses: Floats, /) -> tuple[Floats, Floats]: ...
 def view_curve(plan: Plan, part: int, nearest: float, farthest: float, count: int, /) -> Floats: ...
