@@ -9,6 +9,8 @@ from nanotouch import fit as fit
 from nanotouch import forces as forces
 from nanotouch import friction as friction
 from nanotouch import images as images
+from nanotouch import lateral as lateral
+from nanotouch import manipulation as manipulation
 from nanotouch import maps as maps
 from nanotouch import plots as plots
 from nanotouch import reference as reference
@@ -24,6 +26,8 @@ from nanotouch.fit import FitResult as FitResult
 from nanotouch.friction import Corrugation as Corrugation
 from nanotouch.friction import Friction as Friction
 from nanotouch.images import Topography as Topography
+from nanotouch.manipulation import Particle as Particle
+from nanotouch.manipulation import ParticleContact as ParticleContact
 from nanotouch.scan import flow as flow
 from nanotouch.scan import scanner as scanner
 from nanotouch.scan import tapping as tapping
@@ -76,6 +80,8 @@ __all__ = [
     "Friction",
     "Input",
     "Interaction",
+    "Particle",
+    "ParticleContact",
     "Plan",
     "Recording",
     "Rig",
@@ -106,7 +112,9 @@ __all__ = [
     "hal",
     "images",
     "interaction",
+    "lateral",
     "mailbox",
+    "manipulation",
     "maps",
     "margins",
     "materials",
