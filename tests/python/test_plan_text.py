@@ -12,7 +12,7 @@ import pytest
 import random_scenes
 from nanotouch import Plan, Scene, presets
 from nanotouch.errors import InvalidValue
-from nanotouch.scene import Quantity
+from nanotouch.scene import Quantity, _plan_text
 
 PRESETS = random_scenes.PRESETS
 
@@ -115,3 +115,10 @@ def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
         scene.plan()
     scene.adhesion.hamaker_constant = float(re.findall(r"\.\. (\S+) J", str(refusal.value))[0])
     scene.plan(relative_accuracy=0.3)
+
+
+def test_a_shift_beyond_the_folds_own_gaps_is_told_as_not_known() -> None:
+    facts = Scene().plan(0.01).explain()
+    gap = max(facts["release_gap"], facts["capture_gap"])
+    assert "not known" not in _plan_text._folds(facts | {"fold_shift": 0.9 * gap})
+    assert "where the folds are is not known" in _plan_text._folds(facts | {"fold_shift": 1.1 * gap})

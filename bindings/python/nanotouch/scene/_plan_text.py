@@ -161,6 +161,8 @@ def _folds(facts: dict[str, Any]) -> str:
         return "where the folds are is not known"
     if facts["quantity"] == "folds":
         return text
+    if shift > max(facts["release_gap"], facts["capture_gap"]) > 0.0:  # says less than that they are near contact
+        text = f"where the folds are is not known, only that it is within {in_words(shift, 'm', 2)}"
     return f"{text}, bound from {in_words(facts['fold_distance'], 'm', 2)} beside them on"
 
 
