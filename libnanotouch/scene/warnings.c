@@ -109,6 +109,18 @@ static void check_yielding(nt_plan *plan)
                                                     "", rigid, demanded});
 }
 
+/* Nearer than fold_distance to a fold the bound does not hold. Where strong laws move the folds of a soft sample by
+ * more than their own gap, that is the whole of what is felt. */
+static void check_folds(nt_plan *plan)
+{
+    const double gap = fmax(fabs(plan->release_gap), fabs(plan->capture_gap));
+    if (plan->source != NT_ADHESION_NONE && plan->bound.fold_shift > gap && isfinite(plan->bound.fold_shift))
+        nt_plan_add_warning(plan,
+                            (nt_plan_warning){"where the folds are is not known, and no bound holds nearer to them "
+                                              "than",
+                                              "m", plan->fold_distance, gap});
+}
+
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
 {
     plan->warning_count = 0;
@@ -120,6 +132,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     check_drag(plan, scene);
     check_surface(plan);
     check_yielding(plan);
+    check_folds(plan);
     check_layer(plan, scene);
     nt_plan_warn_friction(plan);
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)

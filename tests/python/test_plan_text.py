@@ -98,6 +98,16 @@ def test_facts_without_effect_are_told() -> None:
     assert "warning: measured pull-off force, not used: the adhesion is given otherwise: 12 nN" in said
 
 
+def test_folds_that_are_not_known_are_no_number() -> None:
+    """Strong laws on a gel move its folds by more than their own gap: a warning, not metres in the sentence."""
+    scene = Scene(sample={"youngs_modulus": 3e3}, adhesion={"work_of_adhesion": 0.01, "contact_potential": 0.3})
+    said = str(scene.plan(relative_accuracy=0.1))
+    assert "where the folds are is not known;" in said
+    assert "warning: where the folds are is not known, and no bound holds nearer to them than: " in said
+    scene.sample.youngs_modulus = 1e9
+    assert "not known" not in str(scene.plan(relative_accuracy=0.1))
+
+
 @pytest.mark.parametrize("quantity", get_args(Quantity))
 def test_what_is_said_to_be_valid(quantity: Quantity) -> None:
     """Least accuracy, least budget, largest Hamaker constant: taken as printed, they do."""

@@ -157,12 +157,10 @@ def _folds(facts: dict[str, Any]) -> str:
     if without or not _terms(facts)[0].included:
         return "no folds"
     text = "folds in place" if shift < _IN_PLACE else f"folds within {in_words(shift, 'm', 2)}"
-    if math.isinf(shift):
+    if math.isinf(shift) or shift > max(abs(facts["release_gap"]), abs(facts["capture_gap"])) > 0.0:
         return "where the folds are is not known"
     if facts["quantity"] == "folds":
         return text
-    if shift > max(facts["release_gap"], facts["capture_gap"]) > 0.0:  # says less than that they are near contact
-        text = f"where the folds are is not known, only that it is within {in_words(shift, 'm', 2)}"
     return f"{text}, bound from {in_words(facts['fold_distance'], 'm', 2)} beside them on"
 
 
