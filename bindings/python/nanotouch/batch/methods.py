@@ -13,12 +13,8 @@ import numpy as np
 import nanotouch
 
 from .._io.words import counted
+from ..fit.models import title_of
 from ..fit.show import between, with_sigma
-
-_LAWS = {
-    "hertz": "Hertz", "dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale", "cone": "Sneddon's cone",
-    "pyramid": "the four-sided pyramid", "sokolov": "Sokolov's brush model",
-}  # fmt: skip
 
 
 def methods(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any], reading: Mapping[str, Any]) -> str:
@@ -59,7 +55,7 @@ def _laws(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> str
     used = Counter((row["model"], row["branch"]) for row in rows)
     if not used:
         return ""
-    said = [f"{_LAWS.get(model, model)} on the {'approach' if branch == 'approach' else 'retraction'} ({count})"
+    said = [f"{title_of(model)} on the {'approach' if branch == 'approach' else 'retraction'} ({count})"
             for (model, branch), count in used.most_common()]  # fmt: skip
     how = "chosen by what each curve shows" if settings.get("model") == "auto" else "chosen beforehand"
     tip = _tip(rows, settings)

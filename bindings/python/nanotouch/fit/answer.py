@@ -10,6 +10,7 @@ import numpy as np
 
 from nanotouch.curves.adhesion import Kind, adhesion_of
 
+from .models import SHARP
 from .show import between, newton, with_sigma
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ _GAUSSIAN = 1.959963984540054
 _DMT, _JKR = 2.0 * np.pi, 1.5 * np.pi  # F/(w R) of the two limits
 _SMALL = 0.3  # a/R at the tear up to which they are within 5 % of a sphere's
 _WATER = 0.072  # J/m^2
-_SHARP = ("cone", "pyramid")
 
 
 class Answer(NamedTuple):
@@ -82,7 +82,7 @@ def answer_of(result: FitResult) -> Answer:
     lines = [("pull-off", _pull_off(result, found.kind, found.words, force, sigma, low, high))]
     nothing = (np.nan, np.nan)
     work = product = nothing
-    if found.kind == "tear" and result.model not in _SHARP:
+    if found.kind == "tear" and result.model not in SHARP:
         product, work, said = _works(result, low, high)
         lines += said
     separation = (np.nan, np.nan)
@@ -183,7 +183,7 @@ def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[
         text += f", 95 % {between(low, high, 'Pa')}"
     lines = [("modulus", f"{title} {text}")]
     if result.assumed_tip:
-        sharp = result.model in _SHARP
+        sharp = result.model in SHARP
         size = f"{np.degrees(result.half_angle):.3g} degrees" if sharp else f"R = {result.radius * 1e9:g} nm"
         factor = np.tan(result.half_angle) if sharp else np.sqrt(result.radius)
         name, unit = ("tan(half angle)", "Pa") if sharp else ("sqrt(R)", "Pa m^0.5")

@@ -75,6 +75,8 @@ class Model:
     valid: str = ""
     title: str = ""
     adhesive: bool = False
+    sides: int | None = None
+    """of a sharp tip of the library, which has an angle and no radius: 0 of a cone, 4 of a pyramid; None: round"""
     remark: Callable[[float, dict[str, float], float], str] | None = None
     """of radius [m], values and largest force [N]: a note to each result"""
 
@@ -105,9 +107,12 @@ BUILT_IN = (
     Model("jkr", title="JKR", valid=f"paraboloid, soft with a short range of adhesion (lambda above 5), {_SMALL}",
           adhesive=True),
     Model("maugis", title="Maugis-Dugdale", valid=f"paraboloid, every lambda, {_SMALL}", adhesive=True),
-    Model("cone", title="Sneddon's cone", valid="sharp cone, no adhesion, elastic half-space"),
-    Model("pyramid", title="pyramid", valid="sharp pyramid of four sides, no adhesion, elastic half-space"),
+    Model("cone", title="Sneddon's cone", valid="sharp cone, no adhesion, elastic half-space", sides=0),
+    Model("pyramid", title="four-sided pyramid", valid="sharp pyramid of four sides, no adhesion, elastic half-space",
+          sides=4),
 )  # fmt: skip
+SHARP = {model.name: model.sides for model in BUILT_IN if model.sides is not None}
+"""sides of the tips that have an angle and no radius"""
 
 _known: dict[str, Model] = {model.name: model for model in BUILT_IN}
 _named = set(_known)  # those of the library
@@ -153,6 +158,11 @@ def check(model: Model) -> None:
             raise InvalidValue(f"model {model.name!r}, {p.name}: bounds {p.minimum} .. {p.maximum} are no interval")
     if not model.valid:
         raise InvalidValue(f"model {model.name!r}: say where it is valid")
+
+
+def title_of(name: str) -> str:
+    """What a model is called in sentences; a user's own may have its name alone."""
+    return (_known[name].title if name in _known else "") or name
 
 
 def find(model: str | Model) -> Model:

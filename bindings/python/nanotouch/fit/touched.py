@@ -11,9 +11,10 @@ import numpy as np
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Scene
 
+from .models import SHARP
+
 #: lambda that stands for a law without a range, and for one with a long range
 _JKR, _DMT = 20.0, 0.001
-_SHARP = {"cone": 0, "pyramid": 4}  # sides
 #: w/sigma0 of the atomic law over its equilibrium distance z0
 _RANGE_OVER_Z0 = 9.0 * math.sqrt(3.0) / 16.0
 
@@ -39,8 +40,8 @@ def scene_of(law: FittedLaw, poisson_ratio: float) -> Scene:
     scene.sample.poisson_ratio = poisson_ratio
     scene.sample.youngs_modulus = youngs_modulus(scene, law.effective_modulus)
     scene.adhesion.work_of_adhesion = law.work_of_adhesion
-    if law.model in _SHARP:
-        scene.tip.shape, scene.tip.sides, scene.tip.half_angle = "cone", _SHARP[law.model], law.half_angle
+    if law.model in SHARP:
+        scene.tip.shape, scene.tip.sides, scene.tip.half_angle = "cone", SHARP[law.model], law.half_angle
     else:
         scene.tip.radius = law.radius
     if law.work_of_adhesion > 0.0:

@@ -13,12 +13,11 @@ from ..curves.baseline import Kind, choice_of
 from ..errors import InvalidValue
 from ..fit import TipLike, Uncertainties
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
-from ..fit.models import extension, find
+from ..fit.models import SHARP, extension, find
 from ..fit.points import Branch
 from ..fit.show import with_sigma
 from ..fit.solving import Setup
 
-SHARP = ("cone", "pyramid")
 _STEP = 0.1  # standard uncertainties, for the derivatives of the result by what is calibrated
 _ANY = 1.0  # N/m, where each curve brings its own spring constant
 _TYPICAL = 1e-9  # N, where each curve brings its own noise

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from .._arrays import Floats
 from ..errors import InvalidValue
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
+from ..fit.models import SHARP
 from ..fit.touched import FittedLaw, scene_of, youngs_modulus
 from ..images import Topography, fill
 from ..images.values import LEAST_SHARE, Fill
 from ..scene import Scene
 from ..scene.surface import Surface
 from .dataset import determined
-from .settings import SHARP, Settings
+from .settings import Settings
 
 
 def to_scene(data: Any, *, poisson_ratio: float = 0.3) -> Scene:
