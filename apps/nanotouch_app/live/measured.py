@@ -32,7 +32,8 @@ def scene_of(result: FitResult) -> tuple[nt.Scene, str]:
         assumed.append(f"E* {told} (assumed: stiff)" if values["effective_modulus"] == HARD else f"E* about {told}")
     else:
         assumed.append(f"E* {in_words(modulus, 'Pa', 3)}")
-    if result.determined("work_of_adhesion") is False:
+    taken = values["effective_modulus"] != modulus  # then the fitted w goes with another modulus
+    if result.determined("work_of_adhesion") is False or (taken and pull > 0.0):
         values["work_of_adhesion"] = _work(result.radius, values, pull)
         assumed.append(
             f"w {in_words(values['work_of_adhesion'], 'J/m^2', 3)} (from the pull-off)" if pull else "no adhesion"
