@@ -207,7 +207,6 @@ set(nanotouch_sources_session
     session/well.c)
 set(nanotouch_sources_fit
     fit/batch.cpp
-    fit/branch.c
     fit/contact_model.cpp
     fit/curve.cpp
     fit/custom_model.cpp

@@ -69,7 +69,7 @@ void fit_all(const nt_fit_recipe &recipe, const nt_fit_curves &curves, nt_fit_ou
 nt_fit_recipe nt_fit_recipe_defaults(nt_fit_model model)
 {
     const double all = std::numeric_limits<double>::infinity();
-    const bool adhesive = model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
+    const bool adhesive = nt_fit_describe(model).pull_off > 0.0;
     nt_fit_recipe recipe{nt_fit_defaults(model), !adhesive, {NT_CURVE_AUTO, 0.0, 0.0}, 0, {}, -all, all, 0.03};
     recipe.options.loss_scale = 0.0;
     return recipe;

@@ -27,8 +27,6 @@
 #include <cmath>
 #include <limits>
 
-#include "nanotouch/geometry.h"
-
 namespace nanotouch
 {
 
@@ -39,34 +37,6 @@ constexpr int max_iterations = 100;
 constexpr double linear = 1e-9; // of s: over a step that small the branch is straight to the last bit
 constexpr double tight = 1e-14; // of the part of the branch between its folds
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-bool is_cone(nt_fit_model model)
-{
-    return model == NT_FIT_CONE || model == NT_FIT_PYRAMID;
-}
-
-bool is_adhesive(nt_fit_model model)
-{
-    return model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
-}
-
-nt_status indentation_at(const nt_contact_law &law, double force, double *indentation)
-{
-    const nt_contact *contact = &law.maugis.contact;
-    switch (law.model) {
-    case NT_HERTZ:
-        *indentation = nt_hertz_indentation(contact, force);
-        break;
-    case NT_DMT:
-        *indentation = nt_dmt_indentation(contact, force);
-        break;
-    case NT_JKR:
-        return nt_jkr_indentation(contact, force, NT_BRANCH_STABLE, indentation);
-    case NT_MAUGIS:
-        return nt_maugis_indentation(&law.maugis, force, NT_BRANCH_STABLE, indentation, nullptr);
-    }
-    return std::isfinite(*indentation) ? NT_OK : NT_E_NO_SOLUTION;
-}
 
 } // namespace
 
@@ -88,7 +58,7 @@ void Track::add(double position, double s, double slope)
 // F1 + steepest dX/ds: negative where the curve over X is steeper than that.
 double ContactModel::steepness_at(double s, double steepest) const
 {
-    const nt_fit_state state = nt_fit_branch_at(&branch_, s);
+    const nt_fit_state state = row_.at(&branch_, s);
     return state.F1 + steepest * (state.indentation1 + compliance_ * state.F1);
 }
 
@@ -115,14 +85,13 @@ double ContactModel::where_steep(double steepest) const
 
 void ContactModel::differentiate(const nt_fit_state &state, double stiffness, Point *point) const
 {
-    const double elastic = (stiffness * state.indentation - state.range) / branch_.exponent;
     const double softening = 1.0 / ((1.0 + compliance_ * stiffness) * value_[NT_FIT_SENSITIVITY]);
     point->force = state.F / value_[NT_FIT_SENSITIVITY];
     point->indentation = state.indentation;
     point->gradient.fill(0.0);
-    point->gradient[NT_FIT_EFFECTIVE_MODULUS] = softening * elastic;
-    point->gradient[NT_FIT_WORK_OF_ADHESION] = is_adhesive(branch_.model) ? softening * (state.F - elastic) : 0.0;
-    point->gradient[NT_FIT_COHESIVE_RANGE] = softening * -state.range;
+    row_.derive(&state, stiffness, point->gradient.data());
+    for (int i = 0; i < NT_FIT_OWN; i++)
+        point->gradient[static_cast<std::size_t>(i)] *= softening;
     point->gradient[NT_FIT_CONTACT_POINT] = softening * -stiffness;
     point->gradient[NT_FIT_SENSITIVITY] = -point->force;
     point->held = true;
@@ -144,28 +113,14 @@ nt_status ContactModel::prepare(const Parameters &value)
         return NT_OK;
     }
     prepared_ = false;
-    const double E = value[NT_FIT_EFFECTIVE_MODULUS];
-    if (is_cone(options_.model)) {
-        const int sides = options_.model == NT_FIT_PYRAMID ? 4 : 0;
-        if (!std::isfinite(E) || E <= 0.0)
-            return std::isfinite(E) ? NT_E_RANGE : NT_E_NOT_FINITE;
-        branch_ = nt_fit_branch_of_cone(options_.model, E, nt_pyramid_equivalent_angle(sides, options_.half_angle));
-    } else {
-        nt_contact contact{options_.radius, E, 0.0, 0.0};
-        if (is_adhesive(options_.model))
-            contact.work_of_adhesion = value[NT_FIT_WORK_OF_ADHESION];
-        if (options_.model == NT_FIT_MAUGIS)
-            contact.cohesive_stress = value[NT_FIT_WORK_OF_ADHESION] / value[NT_FIT_COHESIVE_RANGE];
-        const nt_status status = nt_contact_law_init(&law_, static_cast<nt_model>(options_.model), &contact);
-        if (status != NT_OK)
-            return status;
-        branch_ = nt_fit_branch_of(&law_);
-    }
+    const nt_status status = row_.prepare(&options_, value.data(), &branch_);
+    if (status != NT_OK)
+        return status;
     value_ = value;
     compliance_ = options_.spring_constant > 0.0 ? 1.0 / options_.spring_constant : 0.0;
     const bool goes_on = compliance_ > 0.0 && branch_.grip_fold < branch_.load_fold;
     end_ = goes_on ? where_steep(NT_FIT_STEEPEST / compliance_) : branch_.load_fold;
-    const nt_fit_state end = nt_fit_branch_at(&branch_, end_);
+    const nt_fit_state end = row_.at(&branch_, end_);
     const double stiffness = goes_on ? end.F1 / end.indentation1 : 0.0;
     end_base_ = end.indentation + compliance_ * end.F;
     end_slope_ = stiffness / (1.0 + compliance_ * stiffness);
@@ -180,7 +135,7 @@ nt_status ContactModel::search(double base, double start, double *s, nt_fit_stat
     double lo = end_, hi = std::numeric_limits<double>::infinity();
     *s = std::max(start, lo);
     for (int i = 0; i < max_iterations; i++) {
-        *state = nt_fit_branch_at(&branch_, *s);
+        *state = row_.at(&branch_, *s);
         const double excess = state->indentation + compliance_ * state->F - base;
         const double step = -excess / (state->indentation1 + compliance_ * state->F1);
         const double next = *s + step;
@@ -241,28 +196,24 @@ nt_status ContactModel::points_at(const nt_fit_data &data, std::vector<Point> *p
 
 nt_status ContactModel::tear(Tear *tear) const
 {
-    if (!is_adhesive(branch_.model) || compliance_ == 0.0)
+    if (!(row_.words.pull_off > 0.0) || compliance_ == 0.0)
         return NT_E_UNSUPPORTED;
     const bool goes_on = branch_.grip_fold < branch_.load_fold;
     const double s = goes_on ? where_steep(1e12 / compliance_) : branch_.load_fold;
-    const nt_fit_state state = nt_fit_branch_at(&branch_, s);
-    const double stiffness = goes_on ? -1.0 / compliance_ : 0.0;
-    const double elastic = (stiffness * state.indentation - state.range) / branch_.exponent;
+    const nt_fit_state state = row_.at(&branch_, s);
     tear->position = value_[NT_FIT_CONTACT_POINT] + state.indentation + compliance_ * state.F;
     tear->gradient.fill(0.0);
-    tear->gradient[NT_FIT_EFFECTIVE_MODULUS] = compliance_ * elastic;
-    tear->gradient[NT_FIT_WORK_OF_ADHESION] = compliance_ * (state.F - elastic);
-    tear->gradient[NT_FIT_COHESIVE_RANGE] = -compliance_ * state.range;
+    row_.derive(&state, goes_on ? -1.0 / compliance_ : 0.0, tear->gradient.data());
+    for (int i = 0; i < NT_FIT_OWN; i++)
+        tear->gradient[static_cast<std::size_t>(i)] *= compliance_;
     tear->gradient[NT_FIT_CONTACT_POINT] = 1.0;
     return NT_OK;
 }
 
 nt_status ContactModel::travel(double force, double *travel) const
 {
-    double indentation = force >= 0.0 ? std::sqrt(force / branch_.prefactor) : not_a_number; /* cone */
-    nt_status status = std::isnan(indentation) ? NT_E_NO_SOLUTION : NT_OK;
-    if (!is_cone(branch_.model))
-        status = indentation_at(law_, force, &indentation);
+    double indentation = not_a_number;
+    const nt_status status = row_.indentation(&branch_, force, &indentation);
     if (status == NT_OK)
         *travel = indentation + compliance_ * force;
     return status;
@@ -271,19 +222,13 @@ nt_status ContactModel::travel(double force, double *travel) const
 void ContactModel::describe(double deepest, nt_fit_result *result) const
 {
     result->pull_off_force = branch_.pull_off;
-    result->transition_parameter = branch_.model == NT_FIT_MAUGIS ? branch_.lambda : not_a_number;
+    result->transition_parameter = branch_.lambda;
     result->contact_radius = result->contact_stiffness = not_a_number;
     Point point;
     Track track;
     if (at(deepest, &track, &point) != NT_OK)
         return;
-    nt_law_value there{0.0, 0.0, 0.0, 0.0};
-    if (is_cone(branch_.model))
-        there = nt_cone_eval(value_[NT_FIT_EFFECTIVE_MODULUS],
-                             nt_pyramid_equivalent_angle(branch_.model == NT_FIT_PYRAMID ? 4 : 0, options_.half_angle),
-                             point.indentation);
-    else
-        (void)nt_contact_law_eval(&law_, point.indentation, NT_BRANCH_STABLE, &there);
+    const nt_law_value there = row_.contact(&branch_, point.indentation);
     result->contact_radius = there.a;
     result->contact_stiffness = there.k;
 }

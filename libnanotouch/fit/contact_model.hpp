@@ -2,7 +2,7 @@
 // The built-in contact laws with their analytic derivatives; private to fit/.
 #pragma once
 
-#include "fit/branch.h"
+#include "fit/models/row.h"
 #include "model.hpp"
 
 namespace nanotouch
@@ -23,7 +23,7 @@ class Track
 class ContactModel : public Model
 {
   public:
-    explicit ContactModel(const nt_fit_options &options) : options_(options)
+    explicit ContactModel(const nt_fit_options &options) : options_(options), row_(*nt_fit_row_of(options.model))
     {
     }
     nt_status prepare(const Parameters &value) override;
@@ -41,7 +41,7 @@ class ContactModel : public Model
     void add_background(double position, Point *point) const;
 
     const nt_fit_options &options_;
-    nt_contact_law law_{};
+    const nt_fit_row &row_;
     nt_fit_branch branch_{};
     Parameters value_{};
     double compliance_ = 0.0; // 1/k_c [m/N]; 0 without a spring constant

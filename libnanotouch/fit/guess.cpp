@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "nanotouch/material.h"
+#include "solve.hpp"
 
 namespace nanotouch
 {
@@ -45,7 +46,7 @@ double guess_work_of_adhesion(const nt_fit_options &options, const std::vector<S
 {
     const double span = sample.back().force - sample.front().force;
     const double pull_off = std::max(-sample.front().force, 1e-3 * span);
-    const double per_radius = options.model == NT_FIT_JKR ? 1.5 : options.model == NT_FIT_DMT ? 2.0 : 1.75; // pi w R
+    const double per_radius = nt_fit_describe(options.model).pull_off; // pi w R
     const nt_fit_start &bounds = options.parameter[NT_FIT_WORK_OF_ADHESION];
     return std::clamp(pull_off / (per_radius * NT_PI * options.radius), bounds.minimum, bounds.maximum);
 }
@@ -173,7 +174,7 @@ nt_status guess(const nt_fit_options &options, const nt_fit_data &data, double l
         if (searched >= 0)
             candidate[static_cast<std::size_t>(searched)] =
                 steps ? lowest * std::pow(highest / lowest, double(i) / steps) : lowest;
-        if (options.model == NT_FIT_MAUGIS && std::isnan(start[NT_FIT_COHESIVE_RANGE]))
+        if (has_several_minima(options))
             candidate[NT_FIT_COHESIVE_RANGE] = range_at(options, candidate, lambda);
         consider_places(options, sample, candidate, &best);
     }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "nanotouch/geometry.h"
+#include "fit/models/row.h"
 
 namespace nanotouch
 {
@@ -20,22 +20,12 @@ constexpr double smallest_column = 1e-12; // of the largest: below, something fr
 
 bool is_linear(const nt_fit_options &options)
 {
-    const bool model = options.model == NT_FIT_HERTZ || options.model == NT_FIT_CONE || options.model == NT_FIT_PYRAMID;
+    const bool model = options.model != NT_FIT_CUSTOM && nt_fit_row_of(options.model)->shape;
     bool data = options.tear_sigma > 0.0;
     for (const nt_fit_start &start : options.parameter)
         data = data || (start.sigma > 0.0 && !start.fixed);
     return model && !data && options.spring_constant == 0.0 && options.loss == NT_LOSS_SQUARES &&
            options.parameter[NT_FIT_CONTACT_POINT].fixed && !options.parameter[NT_FIT_EFFECTIVE_MODULUS].fixed;
-}
-
-// g(delta): the force at E* = 1 Pa.
-double shape_at(const nt_fit_options &options, double angle, double indentation)
-{
-    if (indentation <= 0.0)
-        return 0.0;
-    if (options.model == NT_FIT_HERTZ)
-        return 4.0 / 3.0 * indentation * std::sqrt(options.radius * indentation);
-    return nt_cone_eval(1.0, angle, indentation).F;
 }
 
 std::vector<int> free_ones(const nt_fit_options &options)
@@ -53,12 +43,15 @@ Eigen::MatrixXd design_of(const nt_fit_options &options, const nt_fit_data &data
     const auto held = [&](int p) { return is_free(options, p) ? 0.0 : options.parameter[p].initial; };
     const double offset = held(NT_FIT_FORCE_OFFSET), tilt = held(NT_FIT_FORCE_TILT);
     const double zero = options.parameter[NT_FIT_CONTACT_POINT].initial;
-    const double angle = nt_pyramid_equivalent_angle(options.model == NT_FIT_PYRAMID ? 4 : 0, options.half_angle);
+    const nt_fit_row *row = nt_fit_row_of(options.model);
+    const double one[NT_FIT_PARAMETERS] = {1.0}; // Pa
+    nt_fit_branch branch;
+    (void)row->prepare(&options, one, &branch);
     const auto columns = static_cast<Eigen::Index>(free.size());
     Eigen::MatrixXd design(data.count, columns + 1);
     for (long i = 0; i < data.count; i++) {
         const double X = data.position[i * data.position_stride], from = X - options.tilt_position;
-        design(i, 0) = shape_at(options, angle, X - zero);
+        design(i, 0) = X > zero ? row->shape(&branch, X - zero) : 0.0;
         for (Eigen::Index j = 1; j < columns; j++)
             design(i, j) = free[static_cast<std::size_t>(j)] == NT_FIT_FORCE_OFFSET ? 1.0 : from;
         design(i, columns) = data.force[i * data.force_stride] - offset - tilt * from;

@@ -6,14 +6,13 @@
 #include <initializer_list>
 #include <limits>
 
+#include "fit/models/row.h"
 #include "nanotouch/field.h"
-#include "nanotouch/fit.h"
 
 namespace
 {
 
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
-constexpr const char *model_names[] = {"hertz", "dmt", "jkr", "maugis", "cone", "pyramid", "custom"};
 
 // An enumerator from C may be any number; C++ must not look at it as an enumerator before it is checked.
 template <class Enumeration> int number_of(const Enumeration &enumerator)
@@ -24,11 +23,14 @@ template <class Enumeration> int number_of(const Enumeration &enumerator)
     return number;
 }
 
-const nt_fit_quantity quantities[NT_FIT_PARAMETERS] = {
-    {"effective_modulus", "Pa", not_given, 1.0, 1e14},
-    {"work_of_adhesion", "J/m^2", not_given, 1e-9, 1e3},
-    {"cohesive_range", "m", 0.2e-9, 1e-12, 1e-5},
-    {nullptr, "", not_given, 0.0, 0.0},
+bool is_built_in(const nt_fit_model &model)
+{
+    const int index = number_of(model);
+    return index >= 0 && index < NT_FIT_CUSTOM;
+}
+
+const nt_fit_quantity none{nullptr, "", not_given, 0.0, 0.0};
+const nt_fit_quantity common[NT_FIT_PARAMETERS - NT_FIT_OWN] = {
     {"contact_point", "m", not_given, -1.0, 1.0},
     {"force_offset", "N", 0.0, -1.0, 1.0},
     {"force_tilt", "N/m", 0.0, -1e3, 1e3},
@@ -53,16 +55,6 @@ nt_status complain(nt_problem *problem, const nt_problem &what)
 bool within(double value, double minimum, double maximum)
 {
     return value >= minimum && value <= maximum;
-}
-
-bool is_adhesive(nt_fit_model model)
-{
-    return model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
-}
-
-void hold(nt_fit_start *start)
-{
-    start->fixed = 1;
 }
 
 nt_status check_start(const nt_fit_quantity &quantity, const nt_fit_start &start, nt_problem *problem)
@@ -101,8 +93,8 @@ nt_status check_law(const nt_fit_law *law, nt_problem *problem)
 nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
 {
     const int model = number_of(options->model), loss = number_of(options->loss);
-    if (model < NT_FIT_HERTZ || model > NT_FIT_CUSTOM)
-        return complain(problem, {"model", "", double(model), NT_FIT_HERTZ, NT_FIT_CUSTOM});
+    if (model < 0 || model > NT_FIT_CUSTOM)
+        return complain(problem, {"model", "", double(model), 0.0, NT_FIT_CUSTOM});
     if (loss < NT_LOSS_SQUARES || loss > NT_LOSS_CAUCHY)
         return complain(problem, {"loss", "", double(loss), NT_LOSS_SQUARES, NT_LOSS_CAUCHY});
     if (options->max_iterations < 1 || options->max_iterations > 100000)
@@ -110,7 +102,7 @@ nt_status check_choices(const nt_fit_options *options, nt_problem *problem)
     const nt_fit_start &sensitivity = options->parameter[NT_FIT_SENSITIVITY];
     if ((!sensitivity.fixed || options->tear_sigma > 0.0) && options->spring_constant == 0.0)
         return complain(problem, {"spring_constant", "N/m", 0.0, 1e-6, 1e6});
-    if (options->tear_sigma > 0.0 && !is_adhesive(options->model))
+    if (options->tear_sigma > 0.0 && !(nt_fit_describe(options->model).pull_off > 0.0))
         return complain(problem, {"tear_sigma", "m", options->tear_sigma, 0.0, 0.0});
     return options->model == NT_FIT_CUSTOM ? check_law(options->law, problem) : NT_OK;
 }
@@ -137,32 +129,26 @@ nt_fit_options defaults(nt_fit_model model, const nt_fit_law *law)
         const nt_fit_quantity quantity = nt_fit_quantity_of(&options, static_cast<nt_fit_parameter>(i));
         options.parameter[i] = {quantity.initial, quantity.minimum, quantity.maximum, 0.0, 0};
     }
-    if (model == NT_FIT_MAUGIS)
-        hold(&options.parameter[NT_FIT_COHESIVE_RANGE]);
-    for (const int common : {NT_FIT_FORCE_OFFSET, NT_FIT_FORCE_TILT, NT_FIT_SENSITIVITY})
-        hold(&options.parameter[common]);
+    for (int i = 0; i < NT_FIT_OWN && is_built_in(model); i++)
+        options.parameter[i].fixed = nt_fit_row_of(model)->held >> i & 1U;
+    for (const int background : {NT_FIT_FORCE_OFFSET, NT_FIT_FORCE_TILT, NT_FIT_SENSITIVITY})
+        options.parameter[background].fixed = 1;
     return options;
 }
 
 } // namespace
 
-const char *nt_fit_model_name(nt_fit_model model)
-{
-    const int index = number_of(model);
-    return index >= NT_FIT_HERTZ && index <= NT_FIT_CUSTOM ? model_names[index] : nullptr;
-}
-
 nt_fit_quantity nt_fit_quantity_of(const nt_fit_options *options, nt_fit_parameter parameter)
 {
     const int index = number_of(parameter);
-    const nt_fit_quantity none = quantities[NT_FIT_FOURTH];
     if (!options || index < 0 || index >= NT_FIT_PARAMETERS)
         return none;
-    if (options->model == NT_FIT_CUSTOM && index < NT_FIT_OWN)
+    if (index >= NT_FIT_OWN)
+        return common[index - NT_FIT_OWN];
+    if (!is_built_in(options->model))
         return options->law && index < options->law->count ? options->law->parameter[index] : none;
-    const bool absent = (index == NT_FIT_WORK_OF_ADHESION && !is_adhesive(options->model)) ||
-                        (index == NT_FIT_COHESIVE_RANGE && options->model != NT_FIT_MAUGIS);
-    return absent ? none : quantities[index];
+    const nt_fit_quantity &own = nt_fit_row_of(options->model)->parameter[index];
+    return own.name ? own : none;
 }
 
 nt_fit_options nt_fit_defaults(nt_fit_model model)

@@ -11,11 +11,6 @@ namespace nanotouch
 namespace
 {
 
-bool is_adhesive(nt_fit_model model)
-{
-    return model == NT_FIT_DMT || model == NT_FIT_JKR || model == NT_FIT_MAUGIS;
-}
-
 nt_status check_count(const Fitted &fitted, nt_problem *problem)
 {
     if (fitted.position.size() >= NT_CURVE_FEWEST)
@@ -28,7 +23,7 @@ nt_status check_count(const Fitted &fitted, nt_problem *problem)
 
 nt_status take_points(const nt_fit_recipe &recipe, const nt_curve_branch &branch, Fitted *fitted, nt_problem *problem)
 {
-    const bool adhesive = is_adhesive(recipe.options.model);
+    const bool adhesive = nt_fit_describe(recipe.options.model).pull_off > 0.0;
     const bool torn = adhesive && !recipe.approach && branch.torn >= 0;
     const long last = torn ? branch.torn : branch.lowest;
     const long end = adhesive && branch.dips ? last + 1 : branch.repulsive;

@@ -164,7 +164,8 @@ nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_res
 
 bool has_several_minima(const nt_fit_options &options)
 {
-    return options.model == NT_FIT_MAUGIS && std::isnan(options.parameter[NT_FIT_COHESIVE_RANGE].initial);
+    return options.model != NT_FIT_CUSTOM && nt_fit_quantity_of(&options, NT_FIT_COHESIVE_RANGE).name &&
+           std::isnan(options.parameter[NT_FIT_COHESIVE_RANGE].initial);
 }
 
 nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)

@@ -10,6 +10,7 @@
 #include <limits>
 #include <new>
 
+#include "fit/models/row.h"
 #include "halves.hpp"
 #include "model.hpp"
 #include "solve.hpp"
@@ -21,7 +22,6 @@ namespace
 {
 
 constexpr double stiff = 5.0;          // contact stiffness over spring constant
-constexpr double wide = 0.5;           // a/R up to which a paraboloid on a half-space is believed
 constexpr double misfitting = 3.0;     // residual over noise
 constexpr double wrong = 0.05;         // residual over the span of the force
 constexpr double as_given = 0.05;      // relative difference of scatter and noise that changes nothing
@@ -257,15 +257,14 @@ void Solving::judge()
     const double misfit = fit.residual_rms / known_.noise; // infinite without noise
     const bool in_doubt =
         asks(options, NT_FIT_EFFECTIVE_MODULUS, "effective_modulus") && !fit.identifiable[NT_FIT_EFFECTIVE_MODULUS];
-    const bool round = options.model != NT_FIT_CONE && options.model != NT_FIT_PYRAMID;
     const bool tear_unused = known_.tear_sigma > 0.0 && asks(options, NT_FIT_WORK_OF_ADHESION, "work_of_adhesion") &&
                              options.tear_sigma == 0.0;
     solution_.rating = rating();
     unsigned flags = fit.converged ? 0U : unsigned(NT_FIT_NOT_CONVERGED);
     if (in_doubt && fit.contact_stiffness > stiff * options.spring_constant)
         flags |= NT_FIT_STIFF;
-    if (round && fit.contact_radius > wide * options.radius)
-        flags |= NT_FIT_WIDE;
+    if (options.model != NT_FIT_CUSTOM)
+        flags |= nt_fit_row_of(options.model)->doubts(&options, &fit);
     if (tear_unused && !is_exact())
         flags |= NT_FIT_TORN_ELSEWHERE;
     if (misfit > misfitting && std::isfinite(misfit)) {

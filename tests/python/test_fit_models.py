@@ -3,6 +3,11 @@
 
 from __future__ import annotations
 
+import re
+import runpy
+import shutil
+import subprocess
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
@@ -113,3 +118,59 @@ def test_incomplete_models_are_refused(changes: dict[str, Any], part: str) -> No
         nt.fit.register(
             Model(**({"name": "mine", "force": hertz, "parameters": (MODULUS_OF_MINE,), "valid": "?"} | changes))
         )
+
+
+def punched(stiffness: float, seed: int) -> Any:
+    """A punch of E* = MODULUS under a lever, in closed form: two springs in series from CONTACT on."""
+    rng = np.random.default_rng(seed)
+    contact = 2.0 * MODULUS * RADIUS
+    above = np.linspace(2e-7, -1e-7, 1500)
+    segments = []
+    for role, z in (("approach", above), ("retract", above[::-1])):
+        force = np.where(z < 0.0, -z * contact * stiffness / (contact + stiffness), 0.0)
+        force = force + 3e-10 + 1e-4 * z + NOISE * rng.standard_normal(z.size)
+        segments.append(nt.curves.Segment(role, np.full(z.size, np.nan), CONTACT + z, "height", force))  # type: ignore[arg-type]
+    return nt.curves.ForceCurve(tuple(segments), {"spring constant": stiffness}, "punch")
+
+
+@pytest.mark.parametrize("stiffness", [0.05, 0.2, 1.0])
+def test_flat_punch(stiffness: float) -> None:
+    for seed in range(5):
+        result = nt.fit.fit_curve(punched(stiffness, seed), "punch", radius=RADIUS)
+        for name, truth in (("effective_modulus", MODULUS), ("contact_point", CONTACT)):
+            # 4 sigma: one of 16 000 errors of a right sigma is larger
+            assert abs(result.values[name] - truth) < 4 * result.sigma[name], (name, seed)
+        assert result.contact_radius == RADIUS
+        assert result.contact_stiffness == pytest.approx(2.0 * result.values["effective_modulus"] * RADIUS, rel=1e-12)
+    assert "flat punch" in str(result)
+    assumed = nt.fit.fit_curve(punched(stiffness, 0), "punch")
+    assert any("E* goes as 1/R)" in text for text in assumed.assumptions)
+    assert result.to_scene(poisson_ratio=0.5).tip.shape == "punch"
+
+
+ROOT = Path(__file__).resolve().parents[2]
+MODELS = ROOT / "libnanotouch/fit/models"
+
+
+@pytest.mark.skipif(not MODELS.is_dir() or shutil.which("cc") is None, reason="needs the sources and a C compiler")
+def test_a_row_that_lacks_a_field_does_not_compile(tmp_path: Path) -> None:
+    head, _, row = (MODELS / "punch.c").read_text(encoding="utf-8").partition("NT_FIT_ROW(punch,")
+    fields = re.findall(r"\.[\w.]+ = (?:\"[^\"]*\"|[\w.-]+)", row)
+    assert len(fields) == 19
+
+    def compiles(with_fields: list[str]) -> bool:
+        source = tmp_path / "punch.c"
+        source.write_text(f"{head}NT_FIT_ROW(punch, {', '.join(with_fields)});\n", encoding="utf-8")
+        library = ROOT / "libnanotouch"
+        command = ["cc", "-std=c11", "-fsyntax-only", f"-I{library}", f"-I{library}/include", str(source)]
+        return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+    assert compiles(fields)
+    for field in fields:
+        assert not compiles([other for other in fields if other != field]), field
+
+
+def test_the_page_is_made_from_the_rows() -> None:
+    written = runpy.run_path(str(ROOT / "tools" / "models.py"))["page"]()
+    page = (ROOT / "docs" / "fit_models.md").read_text(encoding="utf-8")
+    assert page == written, "run .venv/bin/python tools/models.py > docs/fit_models.md"

@@ -22,9 +22,9 @@ static nt_fit_data data_of(const Array &position, const Array &force)
 
 static Options options_of_model(const std::string &name)
 {
-    for (int i = NT_FIT_HERTZ; i < NT_FIT_CUSTOM; ++i)
-        if (name == nt_fit_model_name(static_cast<nt_fit_model>(i)))
-            return {nt_fit_defaults(static_cast<nt_fit_model>(i)), nullptr};
+    for (int i = 0; i < NT_FIT_CUSTOM; ++i)
+        if (const auto model = static_cast<nt_fit_model>(i); name == nt_fit_describe(model).name)
+            return {nt_fit_defaults(model), nullptr};
     throw py::key_error(name);
 }
 
@@ -57,6 +57,34 @@ static py::tuple parameters_of(const Options &options)
             found.append(py::make_tuple(quantity.name, quantity.unit, quantity.minimum, quantity.maximum));
         else
             found.append(py::none());
+    }
+    return found;
+}
+
+// The rows of the built-in models, by name.
+static py::dict models()
+{
+    py::dict found;
+    for (int i = 0; i < NT_FIT_CUSTOM; ++i) {
+        const auto model = static_cast<nt_fit_model>(i);
+        const nt_fit_description words = nt_fit_describe(model);
+        py::dict row;
+        row["title"] = words.title;
+        row["law"] = words.law;
+        row["valid"] = words.valid;
+        row["scaling"] = words.scaling;
+        row["tip"] = words.tip;
+        row["sides"] = words.sides < 0 ? py::object(py::none()) : py::int_(words.sides);
+        row["exponent"] = words.exponent;
+        row["adhesive"] = words.pull_off > 0.0;
+        row["transition"] = words.lambda;
+        const Options options{nt_fit_defaults(model), nullptr};
+        py::list own; // name, unit, minimum, maximum
+        for (int p = 0; p < NT_FIT_OWN; ++p)
+            if (const nt_fit_quantity quantity = quantity_at(options, p); quantity.name)
+                own.append(py::make_tuple(quantity.name, quantity.unit, quantity.minimum, quantity.maximum));
+        row["parameters"] = own;
+        found[words.name] = row;
     }
     return found;
 }
@@ -203,13 +231,10 @@ static void bind_options(py::module_ &module)
 
 PYBIND11_MODULE(_fit, module)
 {
-    py::list models;
-    for (int i = NT_FIT_HERTZ; i < NT_FIT_CUSTOM; ++i)
-        models.append(nt_fit_model_name(static_cast<nt_fit_model>(i)));
-    module.attr("models") = py::tuple(models);
     bind_options(module);
     bind_batch(module);
     bind_solving(module);
+    module.def("models", &models);
     module.def("run", &run, py::arg("options"), py::arg("position"), py::arg("force"));
     module.def("evaluate", &evaluate, py::arg("options"), py::arg("value"), py::arg("position"));
     module.def("gradient", &gradient, py::arg("options"), py::arg("value"), py::arg("position"));

@@ -25,22 +25,13 @@
 
 #include "nanotouch/contact.h"
 #include "nanotouch/curves.h"
+#include "nanotouch/fit_models.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 #define NT_FIT_STEEPEST 2.0
-
-typedef enum nt_fit_model {
-    NT_FIT_HERTZ = NT_HERTZ,
-    NT_FIT_DMT = NT_DMT,
-    NT_FIT_JKR = NT_JKR,
-    NT_FIT_MAUGIS = NT_MAUGIS,
-    NT_FIT_CONE,    /* Sneddon 1965: 2/pi E* tan(half_angle) delta^2 */
-    NT_FIT_PYRAMID, /* four sides, half_angle between axis and face (nt_pyramid_equivalent_angle) */
-    NT_FIT_CUSTOM   /* nt_fit_options.law */
-} nt_fit_model;
 
 /* The first four belong to the law (NT_FIT_CUSTOM: in the order of its own), the others to every curve. */
 typedef enum nt_fit_parameter {
@@ -112,8 +103,6 @@ NT_API nt_fit_options nt_fit_defaults_for(const nt_fit_law *law);
 NT_API nt_status nt_fit_check(const nt_fit_options *options, nt_problem *problem);
 /* A parameter of the model that options name; its name is NULL if the model has none in that place. */
 NT_API nt_fit_quantity nt_fit_quantity_of(const nt_fit_options *options, nt_fit_parameter parameter);
-/* "hertz", "dmt", "jkr", "maugis", "cone", "pyramid", "custom"; NULL for no model. */
-NT_API const char *nt_fit_model_name(nt_fit_model model);
 
 /* Points of the curve in any order; point i is at position[i * position_stride]. */
 typedef struct nt_fit_data {

@@ -10,7 +10,7 @@ import numpy as np
 
 from nanotouch.curves.adhesion import Kind, adhesion_of
 
-from .models import SHARP
+from .models import is_sharp
 from .show import between, newton, with_sigma
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def answer_of(result: FitResult) -> Answer:
     lines = [("pull-off", _pull_off(result, found.kind, found.words, force, sigma, low, high))]
     nothing = (np.nan, np.nan)
     work = product = nothing
-    if found.kind == "tear" and result.model not in SHARP:
+    if found.kind == "tear" and not is_sharp(result.model):
         product, work, said = _works(result, low, high)
         lines += said
     separation = (np.nan, np.nan)
@@ -183,7 +183,7 @@ def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[
         text += f", 95 % {between(low, high, 'Pa')}"
     lines = [("modulus", f"{title} {text}")]
     if result.assumed_tip:
-        sharp = result.model in SHARP
+        sharp = is_sharp(result.model)
         size = f"{np.degrees(result.half_angle):.3g} degrees" if sharp else f"R = {result.radius * 1e9:g} nm"
         factor = np.tan(result.half_angle) if sharp else np.sqrt(result.radius)
         name, unit = ("tan(half angle)", "Pa") if sharp else ("sqrt(R)", "Pa m^0.5")

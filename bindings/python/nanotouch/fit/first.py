@@ -10,6 +10,8 @@ import numpy as np
 from nanotouch.curves import CurveReport
 from nanotouch.curves.adhesion import adhesion_of
 
+from .models import title_of
+
 AUTO = "auto"
 _JKR, _DMT = 5.0, 0.05  # lambda from where, and up to where, they are Maugis-Dugdale (their `valid`)
 _BETWEEN = 1.75  # pi w R: between the pull-off forces of DMT and JKR
@@ -48,20 +50,20 @@ def first_choice(
     """
     found = adhesion_of(report)
     pushed = branch or ("approach" if "approach" in report.branches else "retract")
-    name, title = ("cone", "Sneddon's cone") if sharp else ("hertz", "Hertz")
+    name = "cone" if sharp else "hertz"
     if found.kind == "tear" and not sharp and branch != "approach":
         transition = _transition(report, spring_constant, radius, cohesive_range)
-        soft, model, law = (  # Maugis-Dugdale holds for all: it is left to the fit where the slope does not tell
-            ("soft", "jkr", "JKR") if transition >= _JKR
-            else ("stiff", "dmt", "DMT") if 0.0 < transition <= _DMT
-            else ("neither soft nor stiff", "maugis", "Maugis-Dugdale")
+        soft, model = (  # Maugis-Dugdale holds for all: it is left to the fit where the slope does not tell
+            ("soft", "jkr") if transition >= _JKR
+            else ("stiff", "dmt") if 0.0 < transition <= _DMT
+            else ("neither soft nor stiff", "maugis")
         )  # fmt: skip
         about = (
             f"{soft} (lambda about {transition:.2g})"
             if transition > 0.0
             else "of a stiffness that this slope does not tell"
         )
-        return FirstChoice(model, "retract", f"{found.words} and is {about}: {law} on the retraction")
+        return FirstChoice(model, "retract", f"{found.words} and is {about}: {title_of(model)} on the retraction")
     where = "approach" if pushed == "approach" else "retraction, where it repels"
     reason = {
         "tear": "a law with adhesion needs the retraction and a round tip",
@@ -69,7 +71,7 @@ def first_choice(
         "none": "a law without adhesion",
         "unknown": "a law without adhesion",
     }[found.kind]
-    return FirstChoice(name, pushed, f"{found.words}, {reason}: {title} on the {where}")
+    return FirstChoice(name, pushed, f"{found.words}, {reason}: {title_of(name)} on the {where}")
 
 
 def _transition(report: CurveReport, spring_constant: float, radius: float, cohesive_range: float) -> float:

@@ -13,7 +13,7 @@ from nanotouch.curves.baseline import Kind
 from nanotouch.errors import InvalidValue
 
 from .first import AUTO, first_choice
-from .models import SHARP, Model, extension, find
+from .models import Model, extension, find, is_sharp
 from .points import Branch, Window, points_of
 from .reporting import Sample, Tip, make_result
 from .result import FitResult
@@ -132,7 +132,7 @@ def fit_curve(
     held = {name: _position(name, value) for name, value in (fixed or {}).items()}
     if contact_point is not None:
         held["contact_point"] = -contact_point
-    if chosen.name == "maugis" and cohesive_range != "free":
+    if chosen.has_range and cohesive_range != "free":
         held.setdefault("cohesive_range", _range(cohesive_range, assumptions))
     setup = Setup(
         model=chosen,
@@ -147,13 +147,13 @@ def fit_curve(
         loss_scale=loss_scale or max(_LOSS_SCALE * report.noise, 1e-18),
     )
     _check_names(setup, chosen.options(compiled, setup.radius).parameters)
-    assumptions += uncertainties.assumptions(sharp=chosen.name in SHARP)
+    assumptions += uncertainties.assumptions(sharp=is_sharp(chosen.name))
     solution = solve(compiled, setup, points, uncertainties)
     if window is not None and window_of == "indentation":
         inside = (solution.indentation >= window[0]) & (solution.indentation <= window[1])
         points = solution.points.kept(inside, curve.name).without_tear()
         solution = solve(compiled, setup, points, uncertainties)
-    sharp, given = chosen.name in SHARP, tip is not None or radius is not None
+    sharp, given = is_sharp(chosen.name), tip is not None or radius is not None
     told = Tip(choice, given, half_angle is None if sharp else not given)
     return make_result(
         compiled, curve, setup, solution, uncertainties, report, branch, Sample(poisson_ratio, tip),
@@ -188,8 +188,8 @@ def _radius(model: Model, tip: TipLike | None, radius: float | None, assumptions
         return float(tip.radius)
     if radius is not None:
         return float(radius)
-    if model.name not in SHARP:
-        assumptions.append(f"tip radius {ASSUMED_RADIUS * 1e9:g} nm (not given; E* goes as 1/sqrt(R), w as 1/R)")
+    if not is_sharp(model.name):
+        assumptions.append(f"tip radius {ASSUMED_RADIUS * 1e9:g} nm (not given; {model.scaling})")
     return ASSUMED_RADIUS
 
 
@@ -199,9 +199,9 @@ def _size(tip: TipLike | None, radius: float | None) -> float:
 
 
 def _half_angle(model: Model, half_angle: float | None, assumptions: list[str]) -> float:
-    if half_angle is None and model.name in SHARP:
+    if half_angle is None and is_sharp(model.name):
         degrees = np.degrees(ASSUMED_HALF_ANGLE)
-        assumptions.append(f"half angle {degrees:.3g} degrees (not given; E* goes as 1/tan of it)")
+        assumptions.append(f"half angle {degrees:.3g} degrees (not given; {model.scaling})")
     return ASSUMED_HALF_ANGLE if half_angle is None else float(half_angle)
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from types import ModuleType
 from typing import Any
 
@@ -75,10 +76,25 @@ class Model:
     valid: str = ""
     title: str = ""
     adhesive: bool = False
+    tip: str = "paraboloid"
+    """shape of the tip, as a scene calls it; of a law of one's own it says nothing"""
     sides: int | None = None
     """of a sharp tip of the library, which has an angle and no radius: 0 of a cone, 4 of a pyramid; None: round"""
+    scaling: str = "E* goes as 1/sqrt(R), w as 1/R"
+    """what an error of the tip's size or angle does to the result"""
+    law: str = ""
+    """of the library: force over indentation, in words"""
+    exponent: float = 0.0
+    """of the library: n of F ~ E* delta^n without adhesion"""
+    transition: float = 0.0
+    """of the library: Maugis' lambda that stands for its range of adhesion; 0: it has one, or no adhesion"""
     remark: Callable[[float, dict[str, float], float], str] | None = None
     """of radius [m], values and largest force [N]: a note to each result"""
+
+    @property
+    def has_range(self) -> bool:
+        """Whether it is a law of the library with a range of adhesion h0."""
+        return self.force is None and any(parameter.name == "cohesive_range" for parameter in self.parameters)
 
     def options(self, extension: ModuleType, radius: float) -> Any:
         """Options of the C library for this model."""
@@ -99,35 +115,42 @@ class Model:
         return made
 
 
-_SMALL = "contact radius much smaller than R, elastic half-space"
-BUILT_IN = (
-    Model("hertz", title="Hertz", valid=f"paraboloid, no adhesion, {_SMALL}"),
-    Model("dmt", title="DMT", valid=f"paraboloid, stiff with a long range of adhesion (lambda below 0.05), {_SMALL}",
-          adhesive=True),
-    Model("jkr", title="JKR", valid=f"paraboloid, soft with a short range of adhesion (lambda above 5), {_SMALL}",
-          adhesive=True),
-    Model("maugis", title="Maugis-Dugdale", valid=f"paraboloid, every lambda, {_SMALL}", adhesive=True),
-    Model("cone", title="Sneddon's cone", valid="sharp cone, no adhesion, elastic half-space", sides=0),
-    Model("pyramid", title="four-sided pyramid", valid="sharp pyramid of four sides, no adhesion, elastic half-space",
-          sides=4),
-)  # fmt: skip
-SHARP = {model.name: model.sides for model in BUILT_IN if model.sides is not None}
-"""sides of the tips that have an angle and no radius"""
+@cache
+def built_in() -> dict[str, Model]:
+    """The laws of the C library by name, from their rows; empty in a build without :mod:`nanotouch._fit`."""
+    try:
+        rows = extension().models()
+    except MissingExtra:
+        return {}
+    return {
+        name: Model(name, parameters=tuple(Parameter(*own) for own in row.pop("parameters")), **row)
+        for name, row in rows.items()
+    }
 
-_known: dict[str, Model] = {model.name: model for model in BUILT_IN}
-_named = set(_known)  # those of the library
+
+def is_sharp(name: str) -> bool:
+    """Whether the tip of a model of the library has an angle and no radius."""
+    return name in built_in() and built_in()[name].sides is not None
+
+
+_own: dict[str, Model] = {}  # written in Python: the library's, and those that were registered
+_named: set[str] = set()  # the library's among them
+
+
+def _known() -> dict[str, Model]:
+    return built_in() | _own
 
 
 def add_named(model: Model) -> None:
     """One of the library that is written in Python; it cannot be replaced either."""
     check(model)
-    _known[model.name] = model
+    _own[model.name] = model
     _named.add(model.name)
 
 
 def models() -> tuple[str, ...]:
     """Names of all models that :func:`nanotouch.fit.fit_curve` knows."""
-    return tuple(_known)
+    return tuple(_known())
 
 
 def register(model: Model) -> None:
@@ -138,10 +161,10 @@ def register(model: Model) -> None:
     InvalidValue
         If its description is not complete.
     """
-    if model.name in _named:
+    if model.name in _named or model.name in built_in():
         raise InvalidValue(f"model {model.name!r} is one of the library; give yours another name")
     check(model)
-    _known[model.name] = model
+    _own[model.name] = model
 
 
 def check(model: Model) -> None:
@@ -162,18 +185,20 @@ def check(model: Model) -> None:
 
 def title_of(name: str) -> str:
     """What a model is called in sentences; a user's own may have its name alone."""
-    return (_known[name].title if name in _known else "") or name
+    return (_known()[name].title if name in _known() else "") or name
 
 
 def find(model: str | Model) -> Model:
     """The model of a name; a Model is returned as it is."""
     if isinstance(model, Model):
-        if model.force is not None or model.name not in {built_in.name for built_in in BUILT_IN}:
+        if model.force is not None or model.name not in built_in():
             check(model)
         return model
-    if model not in _known:
-        raise InvalidValue(f"model {model!r}: valid are {', '.join(_known)}; nanotouch.fit.register adds your own")
-    return _known[model]
+    known = _known()
+    if model not in known:
+        extension()  # without it there are none of the library
+        raise InvalidValue(f"model {model!r}: valid are {', '.join(known)}; nanotouch.fit.register adds your own")
+    return known[model]
 
 
 def extension() -> ModuleType:

@@ -15,7 +15,7 @@ from nanotouch.errors import InvalidValue
 from nanotouch.scene import Scene
 
 from .answer import Answer, answer_of
-from .models import BUILT_IN, Floats
+from .models import Floats, built_in
 from .points import Branch
 from .show import Page, Row, as_html, as_text, between, newton
 from .show import with_sigma as with_sigma
@@ -170,7 +170,7 @@ class FitResult:
         unknown = [key for key in needed if self.determined(key) is False]
         if unknown:
             raise InvalidValue(f"{self.name}: the curve does not determine {' and '.join(unknown)}: no scene")
-        if self.model not in {model.name for model in BUILT_IN}:
+        if self.model not in built_in():
             raise InvalidValue(f"model {self.model!r} is none of contact alone: a scene cannot have it as its contact")
         law = FittedLaw(
             model=self.model,

@@ -11,10 +11,8 @@ import numpy as np
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Scene
 
-from .models import SHARP
+from .models import built_in
 
-#: lambda that stands for a law without a range, and for one with a long range
-_JKR, _DMT = 20.0, 0.001
 #: w/sigma0 of the atomic law over its equilibrium distance z0
 _RANGE_OVER_Z0 = 9.0 * math.sqrt(3.0) / 16.0
 
@@ -40,8 +38,10 @@ def scene_of(law: FittedLaw, poisson_ratio: float) -> Scene:
     scene.sample.poisson_ratio = poisson_ratio
     scene.sample.youngs_modulus = youngs_modulus(scene, law.effective_modulus)
     scene.adhesion.work_of_adhesion = law.work_of_adhesion
-    if law.model in SHARP:
-        scene.tip.shape, scene.tip.sides, scene.tip.half_angle = "cone", SHARP[law.model], law.half_angle
+    model = built_in()[law.model]
+    scene.tip.shape = model.tip
+    if model.sides is not None:
+        scene.tip.sides, scene.tip.half_angle = model.sides, law.half_angle
     else:
         scene.tip.radius = law.radius
     if law.work_of_adhesion > 0.0:
@@ -66,7 +66,7 @@ def _range_of(law: FittedLaw) -> float:
         return law.cohesive_range
     stiffness = 4.0 / 3.0 * law.effective_modulus
     length = 2.0 * law.work_of_adhesion * np.cbrt(law.radius / (math.pi * law.work_of_adhesion * stiffness**2))
-    reach = length / (_JKR if law.model == "jkr" else _DMT)
+    reach = length / built_in()[law.model].transition
     field = Scene().fields["adhesion.equilibrium_distance"]
     return float(np.clip(reach, field.minimum * _RANGE_OVER_Z0 * 1.000001, field.maximum * _RANGE_OVER_Z0))
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..fit.models import extension
+from ..fit.models import extension, find
 from .settings import Settings
 from .store import Columns
 from .volume import Block, Floats
@@ -32,7 +32,6 @@ PLAIN = {
     "contact_radius": ("m", "radius of the fitted contact at the deepest point"),
     "contact_stiffness": ("N/m", "stiffness of the fitted contact at the deepest point"),
 }
-PARABOLOIDS = ("hertz", "dmt", "jkr", "maugis")
 _GAUSSIAN = 1.959963984540054
 EXCLUDED = "EXCLUDED"  # status of a curve that a person left out
 LOST = "LOST"  # status of a curve whose block killed the workers it was given to
@@ -71,7 +70,7 @@ def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Colu
             columns["flags"] |= np.where(unknown, undetermined_flag(place), 0).astype(np.uint32)
     if settings.poisson_ratio is not None:
         columns |= _sample_modulus(settings, columns)
-    if settings.model in PARABOLOIDS:
+    if find(settings.model).exponent == 1.5:
         columns["effective_modulus_least"] = _least_modulus(settings, columns, found, block)
     for name in MEASURED:
         columns[name], columns[f"{name}_sigma"] = found[name], found[f"{name}_sigma"]

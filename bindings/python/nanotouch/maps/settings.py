@@ -13,7 +13,7 @@ from ..curves.baseline import Kind, choice_of
 from ..errors import InvalidValue
 from ..fit import TipLike, Uncertainties
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
-from ..fit.models import SHARP, extension, find
+from ..fit.models import extension, find, is_sharp
 from ..fit.points import Branch
 from ..fit.show import with_sigma
 from ..fit.solving import Setup
@@ -83,7 +83,7 @@ class Settings:
 
     def beside(self, radii: Collection[float]) -> Settings:
         """With the tip radius [m] that the file states, where none was given; one that states several is refused."""
-        if self.radius is not None or self.model in SHARP or not radii:
+        if self.radius is not None or is_sharp(self.model) or not radii:
             return self
         if len(radii) > 1:
             raise InvalidValue(f"the file states tip radii from {min(radii):g} to {max(radii):g} m: give the radius")
@@ -101,7 +101,7 @@ class Settings:
     def recipe(self) -> Any:
         """What the C library takes."""
         held = {name: _position(name, value) for name, value in self.fixed.items()}
-        if self.model == "maugis" and self.cohesive_range != "free":
+        if find(self.model).has_range and self.cohesive_range != "free":
             held.setdefault("cohesive_range", ASSUMED_RANGE if self.cohesive_range is None else self.cohesive_range)
         setup = Setup(
             model=find(self.model),
@@ -147,25 +147,27 @@ class Settings:
         spread = self.uncertainties
         if spread.spring_constant > 0.0:
             yield self.recipe(), _STEP, 1.0 + _STEP * spread.spring_constant
-        if spread.radius > 0.0 and self.model not in SHARP:
+        if spread.radius > 0.0 and not is_sharp(self.model):
             radius = ASSUMED_RADIUS if self.radius is None else self.radius
             yield replace(self, radius=radius * (1.0 + _STEP * spread.radius)).recipe(), _STEP, 1.0
-        if spread.half_angle > 0.0 and self.model in SHARP:
+        if spread.half_angle > 0.0 and is_sharp(self.model):
             angle = ASSUMED_HALF_ANGLE if self.half_angle is None else self.half_angle
             yield replace(self, half_angle=angle + _STEP * spread.half_angle).recipe(), _STEP, 1.0
 
     def assumptions(self) -> list[str]:
         """What was not given and had to be assumed."""
         said = []
-        if self.model in SHARP and self.half_angle is None:
-            said.append(f"half angle {np.degrees(ASSUMED_HALF_ANGLE):.3g} degrees (not given; E* goes as 1/tan of it)")
-        if self.model not in SHARP and self.radius is None:
-            said.append(f"tip radius {ASSUMED_RADIUS * 1e9:g} nm (not given; E* goes as 1/sqrt(R), w as 1/R)")
+        if is_sharp(self.model) and self.half_angle is None:
+            said.append(
+                f"half angle {np.degrees(ASSUMED_HALF_ANGLE):.3g} degrees (not given; {find(self.model).scaling})"
+            )
+        if not is_sharp(self.model) and self.radius is None:
+            said.append(f"tip radius {ASSUMED_RADIUS * 1e9:g} nm (not given; {find(self.model).scaling})")
         if self.stated_radius and self.radius is not None:
             said.append(f"tip radius {with_sigma(self.radius, 0.0, 'm')} (as the file states)")
-        if self.model == "maugis" and self.cohesive_range is None:
+        if find(self.model).has_range and self.cohesive_range is None:
             said.append(f"range of adhesion h0 = {ASSUMED_RANGE * 1e9:g} nm (atomic; not given)")
-        said += self.uncertainties.assumptions(sharp=self.model in SHARP)
+        said += self.uncertainties.assumptions(sharp=is_sharp(self.model))
         if self.poisson_ratio is not None and self.tip_modulus is None:
             said.append("the tip is rigid (its modulus is not given)")
         return said

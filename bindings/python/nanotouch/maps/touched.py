@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .._arrays import Floats
 from ..errors import InvalidValue
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS
-from ..fit.models import SHARP
+from ..fit.models import is_sharp
 from ..fit.touched import FittedLaw, scene_of, youngs_modulus
 from ..images import Topography, fill
 from ..images.values import LEAST_SHARE, Fill
@@ -48,7 +48,7 @@ def to_scene(data: Any, *, poisson_ratio: float = 0.3) -> Scene:
             work_of_adhesion=median.get("work_of_adhesion", 0.0),
             cohesive_range=float(np.nanmedian(data["cohesive_range"].values)) if "cohesive_range" in data else np.nan,
             largest_load=_largest_load(
-                data, known["effective_modulus"], None if settings.model in SHARP else radius, angle
+                data, known["effective_modulus"], None if is_sharp(settings.model) else radius, angle
             ),
         ),
         poisson_ratio,
