@@ -17,6 +17,7 @@ static const double price = 9.0;                     /* three standard deviation
 static const double nearest = 0.01, farthest = 0.35; /* of the free travel: distances of the pole */
 static const double doubt = 2.0;                     /* of chi^2 for a term, where only doubts are weighed (Akaike) */
 static const double likely = 0.02;                   /* least weight of a model that counts */
+static const double plausible = 0.05;                /* likelihood of a film that counts */
 static const double deep = 8.0; /* times the visible force: there the indentation is 4 times that at the visible one, */
 static const double foot_part = 0.33; /* so that contact begins about a third of the way between them further out; */
 static const double clear_part = 0.7; /* of the way: surely outside */
@@ -87,27 +88,32 @@ static means means_of(const nt_curve_branch *branch, long first)
     return m;
 }
 
+/* Of a film, 1 at the foot. */
+static double film_at(const shape *law, const means *m, double x)
+{
+    const double scale = law->scale / m->half, away = x - m->foot;
+    return away > 0.0 ? scale / (away + scale) : 1.0;
+}
+
 /* The terms of a law at x; where it has none of a kind, 0. */
 static void row_of(const shape *law, const means *m, double x, double row[TERMS])
 {
-    const double scale = law->scale / m->half;
     row[0] = 1.0;
     row[1] = x;
     row[BOW] = law->bow ? x * x - 1.0 / 3.0 : 0.0;
-    row[FILM] = law->film ? scale / (fmax(x - m->foot, 0.0) + scale) : 0.0;
+    row[FILM] = law->film ? film_at(law, m, x) : 0.0;
 }
 
 /* Leaves the normal equations of a law in law->normal and in right; a term that it lacks stays 0. */
 static void equations(shape *law, const means *m, double right[TERMS])
 {
-    const double scale = law->scale / m->half;
     for (int i = 0; i < TERMS * TERMS; i++)
         law->normal[i] = m->normal[i];
     for (int i = 0; i < TERMS; i++)
         right[i] = m->right[i];
     double *film = law->normal + FILM * TERMS;
     for (int b = 0; law->film && b < m->count; b++) {
-        const double x = m->x[b], away = x - m->foot, term = away > 0.0 ? scale / (away + scale) : 1.0;
+        const double x = m->x[b], term = film_at(law, m, x);
         film[0] += term;
         film[1] += term * x;
         film[BOW] += term * (x * x - 1.0 / 3.0);
@@ -187,9 +193,15 @@ static double worth_of(const shape *law, const means *m)
     return nt_curve_residual_correlation(rest, m->count);
 }
 
-/* The likeliest law of the free part; *variance of its force at the foot [N^2], with what other likely laws
- * differ by. */
-static shape judge(const means *m, double *variance)
+/* What is not known at the foot. */
+typedef struct doubts {
+    double variance; /* of the force, with what other likely laws differ by [N^2] */
+    double film;     /* how likely there is a film, 0 to 1 */
+    double squared;  /* its force, squared, times that [N^2] */
+} doubts;
+
+/* The likeliest law of the free part. */
+static shape judge(const means *m, doubts *left_open)
 {
     shape laws[] = {best_law(m, 0, 0), best_law(m, 1, 0), best_law(m, 0, 1), best_law(m, 1, 1)};
     const int terms[] = {2, 3, 4, 5}, many = 4; /* the place of the pole is one */
@@ -207,16 +219,22 @@ static shape judge(const means *m, double *variance)
         }
     }
     const double there = at(&laws[chosen], m, m->foot);
-    *variance = 0.0;
+    *left_open = (doubts){0.0, 0.0, 0.0};
     for (int i = 0; i < many; i++) {
         const double weight = exp(0.5 * (closest - laws[i].squares / (least * worth) - doubt * terms[i]));
         if (i != chosen && !(weight > likely))
             continue;
         const double off = at(&laws[i], m, m->foot) - there;
-        *variance += weight * (off * off + variance_at(&laws[i], m, m->foot) * least * worth);
+        left_open->variance += weight * (off * off + variance_at(&laws[i], m, m->foot) * least * worth);
         total += weight;
+        if (laws[i].film) {
+            left_open->film += weight;
+            left_open->squared += weight * laws[i].value[FILM] * laws[i].value[FILM];
+        }
     }
-    *variance /= total;
+    left_open->variance /= total;
+    left_open->film /= total;
+    left_open->squared /= total;
     return laws[chosen];
 }
 
@@ -248,6 +266,37 @@ static long last_above(const nt_curve_branch *branch, double level)
     return last;
 }
 
+/* What a film does in contact is not measured: its force there may be off by all of it. The free points beside the
+ * contact would say that it is known, so a law without attraction is not fitted to them. */
+static void doubt_level(const doubts *left_open, nt_curve_branch *approach)
+{
+    const long touching = last_above(approach, approach->visible) + 1;
+    if (left_open->film < plausible)
+        return;
+    approach->baseline.force_variance += left_open->squared;
+    if (touching >= NT_CURVE_FEWEST && touching < approach->repulsive)
+        approach->repulsive = touching;
+}
+
+/* Leaves a bent baseline unless there is a snap-in, whose own forces reach far out and look like a bow. */
+static void take_off(const nt_curve_segment *segment, const shape *law, const means *m, double *work[2],
+                     nt_curve_branch *approach)
+{
+    double *kept = work[0], *room = work[1];
+    const long count = approach->count;
+    nt_curve_baseline bent = approach->baseline;
+    add_to(&bent, law, m);
+    const nt_curve_branch straight = *approach;
+    nt_curve_read_events(segment, &bent, straight.noise, room, approach);
+    if (straight.dips && approach->dips) {
+        *approach = straight;
+        return;
+    }
+    memcpy(kept, room, 2 * (size_t)count * sizeof *room);
+    approach->z = kept;
+    approach->force = kept + count;
+}
+
 void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room, nt_curve_branch *approach)
 {
     const long count = approach->count, seen = last_above(approach, approach->visible);
@@ -262,20 +311,12 @@ void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room
         return;
     means m = means_of(approach, first);
     m.foot = (foot - m.middle) / m.half;
-    double variance;
-    const shape chosen = judge(&m, &variance);
-    approach->baseline.force_variance = fmax(approach->baseline.force_variance, variance);
-    if (!chosen.bow && !chosen.film)
-        return;
-    nt_curve_baseline bent = approach->baseline;
-    add_to(&bent, &chosen, &m);
-    const nt_curve_branch straight = *approach;
-    nt_curve_read_events(segment, &bent, straight.noise, room, approach);
-    if (straight.dips && approach->dips) { /* a snap-in: its own forces reach far out, and look like a bow */
-        *approach = straight;
-        return;
-    }
-    memcpy(kept, room, 2 * (size_t)count * sizeof *room);
-    approach->z = kept;
-    approach->force = kept + count;
+    doubts left_open;
+    const shape chosen = judge(&m, &left_open);
+    approach->baseline.force_variance = fmax(approach->baseline.force_variance, left_open.variance);
+    const int snaps_in = approach->dips;
+    if (chosen.bow || chosen.film)
+        take_off(segment, &chosen, &m, (double *[2]){kept, room}, approach);
+    if (!snaps_in)
+        doubt_level(&left_open, approach);
 }

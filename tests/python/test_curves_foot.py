@@ -21,6 +21,13 @@ def test_a_bow_moves_no_contact_point() -> None:
     assert bench_foot.held(*found.T[2:]) >= 0.75
 
 
+def test_a_film_leaves_the_contact_point_in_doubt() -> None:
+    """40 curves of each: 93 % are held (of 120); below 32 of 40 lies one run in 500. Before, 42 % were: 17."""
+    for kind in ("film", "film and bow"):
+        found = np.array([bench_foot.one(kind, 11_000_000 + i) for i in range(40)])
+        assert bench_foot.held(*found.T[2:]) >= 0.8
+
+
 def test_what_was_taken_off_is_told() -> None:
     """Bows of up to 150 pN and films of 20 to 90 pN beside a noise of 5 to 25 pN: not all of them are seen."""
     for kind, word, least in (("bow", "bow of the baseline", 20), ("film", "squeeze film", 15)):

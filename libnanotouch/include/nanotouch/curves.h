@@ -138,7 +138,7 @@ typedef struct nt_curve_branch {
     long torn;      /* index of the last point before the tip is torn off, found by the jump; -1: the force comes back
                        gradually, or not at all */
     long repulsive; /* how many points a law without attraction can describe: up to where the force is 0, and where
-                       nothing dips half as far again */
+                       nothing dips half as far again; only those in contact where a squeeze film is likely */
     nt_curve_measured dip;           /* depth below the baseline, positive [N]; 0 where nothing dips */
     double dip_z;                    /* z there [m]; NaN where nothing dips */
     nt_curve_measured adhesion_work; /* area below the baseline up to the last visible dip [J]; 0 where nothing dips */

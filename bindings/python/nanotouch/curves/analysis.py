@@ -203,7 +203,8 @@ def _bend_note(approach: Branch) -> str:
     if bend.bow:
         middle = 0.25 * float(approach.z[-1] - baseline.z_mean) ** 2
         parts.append(f"a bow of the baseline of {1e12 * abs(bend.bow) * middle:.2g} pN over half of its travel")
-    return f"{' and '.join(parts)} {'are' if len(parts) > 1 else 'is'} taken off the approach"
+    told = f"{' and '.join(parts)} {'are' if len(parts) > 1 else 'is'} taken off the approach"
+    return told + "; in contact the film is not measured: its force there counts as unknown" * bool(bend.film)
 
 
 def _baseline_notes(retract: Branch, segment: Segment | None) -> list[str]:

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +76,7 @@ class Model:
     valid: str = ""
     title: str = ""
     adhesive: bool = False
-    tip: str = "paraboloid"
+    tip: Literal["paraboloid", "cone", "punch"] = "paraboloid"
     """shape of the tip, as a scene calls it; of a law of one's own it says nothing"""
     sides: int | None = None
     """of a sharp tip of the library, which has an angle and no radius: 0 of a cone, 4 of a pyramid; None: round"""
