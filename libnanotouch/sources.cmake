@@ -105,6 +105,7 @@ set(nanotouch_sources_scene
     scene/yielding/follow.c
     scene/yielding/layer.c
     scene/yielding/mesh.c
+    scene/yielding/peak.c
     scene/yielding/solve.c
     scene/yielding/table.c
     scene/yielding/terms.c

@@ -266,30 +266,50 @@ static double error_of_neck(const nt_plan *plan)
     return NT_SAMPLED * worst;
 }
 
+/* One of 2 DEPTHS + 1 indentations, from where the bound begins beside the fold to the largest load: they crowd at the
+ * fold and beside first touch, since stiffness and radius go as roots there. */
+enum { DEPTHS = 48 };
+static double depth_at(const nt_plan *plan, double beside, int i)
+{
+    const double fold = beside - plan->release_gap;
+    const double touch = fmax(plan->maugis.folds.touch_indentation * plan->maugis.indentation_scale + beside, fold);
+    const double t = fabs((double)i / DEPTHS - 1.0), deepest = fmax(plan->largest_indentation, touch), s = 1.0 - t;
+    const double before = fmax(touch - 2.0 * beside, fold);
+    return i < DEPTHS ? fold + s * s * s * (before - fold) : touch + t * t * t * (deepest - touch);
+}
+
 /* What the pressure around an adhesive contact and a w that is not quite right do to its radius, from where the bound
  * begins: beside fold and first touch. */
 static double error_of_radius(const nt_plan *plan, int tails)
 {
-    enum { SAMPLES = 48 };
     const double u = under_all(plan, 0), more = tails ? more_of_w(plan) : 0.0;
     const double moved = shift_of(plan, tails), beside = 2.0 * moved + nt_plan_away_from_folds(plan);
     if (u == 0.0 && more == 0.0)
         return 0.0;
     if (nt_plan_contact_form(plan) != NT_FORM_EXACT || isinf(moved))
         return INFINITY;
-    const double fold = beside - plan->release_gap;
-    const double touch = plan->maugis.folds.touch_indentation * plan->maugis.indentation_scale;
     double worst = 0.0;
-    for (int i = 0; i <= SAMPLES; ++i) {
-        const double t = (double)i / SAMPLES;
-        double d = fold + t * t * t * (plan->largest_indentation - fold);
-        if (fabs(d - touch) < beside)
-            d = touch + beside;
-        const double a = radius_with(plan, 0.0, d);
+    for (int i = 0; i <= 2 * DEPTHS; ++i) {
+        const double d = depth_at(plan, beside, i), a = radius_with(plan, 0.0, d);
         const double wider = radius_with(plan, more, d + u) - a, narrower = a - radius_with(plan, -more, d - u);
         worst = fmax(worst, fmax(fabs(wider), fabs(narrower)) / fmax(a, plan->scale));
     }
     return NT_SAMPLED * worst * nt_plan_largest_unit(plan, NT_QUANTITY_RADIUS);
+}
+
+/* Of its stiffness: what an indentation more or less by the displacement under it does, beside its folds. */
+static double error_of_stiffness(const nt_plan *plan)
+{
+    const double u = under_all(plan, 0), beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan);
+    double worst = 0.0;
+    if (u == 0.0 || isinf(beside) || nt_plan_contact_form(plan) != NT_FORM_EXACT)
+        return 0.0;
+    for (int i = 0; i <= 2 * DEPTHS; ++i) {
+        const double d = depth_at(plan, beside, i), k = contact_with(plan, 0.0, d).k;
+        const double more = contact_with(plan, 0.0, d + u).k - k, less = k - contact_with(plan, 0.0, d - u).k;
+        worst = fmax(worst, fmax(fabs(more), fabs(less)) / fmax(fabs(k), plan->scale));
+    }
+    return NT_SAMPLED * worst * bluntest(plan);
 }
 
 double nt_plan_around_error(const nt_plan *plan, int tails)
@@ -301,7 +321,9 @@ double nt_plan_around_error(const nt_plan *plan, int tails)
         return error_of_radius(plan, tails);
     const double pressed = fmin(plan->maximum_stiffness * under_all(plan, 0), HALF * others_at_hold(plan).all_F);
     const double lost = fmax(pressed, error_of_neck(plan)) * bluntest(plan);
-    return quantity == NT_QUANTITY_STIFFNESS ? SLOPE * lost / plan->length / plan->scale : lost / plan->scale;
+    if (quantity == NT_QUANTITY_STIFFNESS)
+        return fmax(SLOPE * lost / plan->length / plan->scale, error_of_stiffness(plan));
+    return lost / plan->scale;
 }
 
 /* Beside contact there is no radius and, but for a jump, no fold. */

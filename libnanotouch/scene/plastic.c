@@ -6,9 +6,12 @@
 #include <string.h>
 
 #include "scene/parts.h"
+#include "scene/yielding/yield.h"
 
 #define ONSET 1.6
 #define PLASTIC 3.0
+#define OF_MEAN 1.5 /* Hertz' peak over his mean */
+#define KEEPS 0.98  /* of a load that is named: another table is made for it */
 
 /* Y of the weaker body; 0 where neither is known [Pa]. */
 static double weaker(const nt_scene *scene, int *is_tip)
@@ -29,18 +32,36 @@ static double mean_pressure(const nt_law_value *law)
     return law->F / (NT_PI * law->a * law->a);
 }
 
-/* Hertz's 2 E* a/(pi R), of which adhesion takes away; of tips that are not round 1.5 times the mean. */
-static double peak_pressure(const nt_plan *plan, const nt_law_value *law)
+/* Without adhesion a table knows what presses on a sample that yields, before contact, too. */
+static int is_tabulated(const nt_plan *plan)
 {
+    return plan->yield.count > 0 && plan->source == NT_ADHESION_NONE;
+}
+
+/* Hertz's 2 E* a/(pi R), of which adhesion takes away; of tips that are not round 1.5 times the mean. */
+static double peak_pressure(const nt_plan *plan, const nt_scene *scene)
+{
+    if (is_tabulated(plan))
+        return nt_yield_table_peak(&plan->yield, scene->range.maximum_load);
+    const nt_law_value law = at(plan, plan->largest_indentation);
     const nt_shape_kind kind = plan->shape.kind;
-    const double hertz = 2.0 * plan->contact.effective_modulus * law->a / (NT_PI * plan->contact.radius);
+    const double hertz = 2.0 * plan->contact.effective_modulus * law.a / (NT_PI * plan->contact.radius);
     const double round = kind == NT_SHAPE_PARABOLOID || kind == NT_SHAPE_SPHERE ? hertz : 0.0;
-    return fmax(1.5 * mean_pressure(law), round);
+    return fmax(OF_MEAN * mean_pressure(&law), round);
+}
+
+/* At the largest load [Pa]. */
+static double largest_mean(const nt_plan *plan, const nt_scene *scene)
+{
+    const nt_law_value law = at(plan, plan->largest_indentation);
+    return is_tabulated(plan) ? peak_pressure(plan, scene) / OF_MEAN : mean_pressure(&law);
 }
 
 /* The largest load up to that mean pressure, which nowhere falls with the depth [N]. */
 static double load_at(const nt_plan *plan, double pressure)
 {
+    if (is_tabulated(plan))
+        return KEEPS * nt_yield_table_load(&plan->yield, OF_MEAN * pressure);
     double low = 0.0, high = plan->largest_indentation;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
@@ -60,8 +81,7 @@ nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_p
         "range.maximum_load (mean pressure above 3 times the yield strength of the tip, where no elastic law holds)"};
     int is_tip = 0, count = 0;
     const double limit = PLASTIC * weaker(scene, &is_tip);
-    const nt_law_value law = at(plan, plan->largest_indentation);
-    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) || !(mean_pressure(&law) > limit))
+    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) || !(largest_mean(plan, scene) > limit))
         return NT_OK;
     const nt_field *field = nt_scene_fields(&count);
     while (strcmp(field->name, "range.maximum_load") != 0)
@@ -78,8 +98,7 @@ void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene)
                                         "peak pressure at the largest load, where the tip begins to yield"};
     int is_tip = 0;
     const double limit = ONSET * weaker(scene, &is_tip);
-    const nt_law_value law = at(plan, plan->largest_indentation);
-    const double peak = peak_pressure(plan, &law);
+    const double peak = peak_pressure(plan, scene);
     if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF && limit > 0.0 && peak > limit)
         nt_plan_add_warning(plan, (nt_plan_warning){texts[is_tip], "Pa", peak, limit});
 }

@@ -19,6 +19,7 @@ from nanotouch import Scene, Session, presets, reference
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene._custom import _known
 from nanotouch.scene.plan import ROWS
+from nanotouch.touch import record
 
 K_B, E_CHARGE, EPSILON_0 = 1.380649e-23, 1.602176634e-19, 8.8541878128e-12
 
@@ -217,8 +218,13 @@ def test_what_it_states_wrongly_is_refused_by_name() -> None:
     def raising(gap: float, **values: float) -> float:
         raise ZeroDivisionError(f"at {gap}")
 
+    def returning(gap: float, **values: float) -> float:
+        """A thousandth of the force at 1 nm comes back where the bound says that it has faded."""
+        return force(gap, **values) + (5e-12 if 0.5e-6 < gap < 1e-6 else 0.0)
+
     for wrong, match in (
         ({"bound": half}, r"terms\.gel\.bound = .* N"),
+        ({"force": returning}, r"terms\.gel\.bound = .* N: valid is 5e-12"),
         ({"force": flipped}, r"terms\.gel\.law"),
         ({"stiffness": flipped}, r"terms\.gel\.law"),
     ):
@@ -325,3 +331,34 @@ def test_a_unit_that_no_file_could_spell_is_refused() -> None:
     law = {name: lambda gap, length: 0.0 for name in ("energy", "force", "stiffness", "bound")}
     with pytest.raises(InvalidValue, match="unit 'furlong' of 'length'; known are m, Pa"):
         nt.scene.register("far", parameters={"length": 1.0}, units={"length": "furlong"}, **law)
+
+
+def test_parameters_are_set_by_add_term_alone() -> None:
+    """What stands in `terms` follows the scene; to assign there would change nothing."""
+    scene = gelled()
+    with pytest.raises(TypeError):
+        scene.terms["gel"]["strength"] = 0.1  # type: ignore[index]
+    with pytest.raises(TypeError):
+        scene.terms["other"] = {}  # type: ignore[index]
+    scene.add_term("gel", strength=0.1)
+    assert scene.terms["gel"]["strength"] == 0.1
+
+
+def test_a_recording_with_a_law_is_replayed_and_its_scene_needs_the_law(tmp_path: Path) -> None:
+    """A replay is of what was measured, so it needs no law; the scene of it does, in its version."""
+    session = Session(gelled(), relative_accuracy=1e-4)
+    columns, path = session.advance(0.05), tmp_path / "touch.mcap"
+    record.write(path, record.Recording(columns, session.metadata()))
+    read = record.read(path)
+    for version, refusal in ((1, ""), (2, "version 1 is needed, version 2 is registered"), (0, "no such law")):
+        _known.clear()
+        if version:
+            nt.scene.register("gel", **(GEL | {"version": version}))  # type: ignore[arg-type]
+        again = read.replay()
+        for name in ("motor_force", "stage_command", "state"):
+            np.testing.assert_array_equal(again.columns[name], columns[name], err_msg=name)
+        if not refusal:
+            assert Scene(**read.metadata["scene"]).plan(1e-4).law("gel", 1e-9) == session.plan.law("gel", 1e-9)
+            continue
+        with pytest.raises(InvalidValue, match=rf"terms\.gel: {refusal}"):
+            Scene(**read.metadata["scene"])

@@ -75,6 +75,7 @@ typedef struct nt_yield_node {
     double k;     /* [N/m] */
     double U;     /* [J] */
     double a;     /* radius of contact [m] */
+    double peak;  /* the largest pressure on the sample, under the apex [Pa] */
 } nt_yield_node;
 typedef struct nt_yield_table {
     int count;         /* of nodes; 0: the sample does not yield */

@@ -25,7 +25,7 @@ typedef struct nt_electrostatic_term {
 
 /* Matter that interacts by exp(-r/length)/r, in sphere and flat. */
 typedef struct nt_yukawa_term {
-    double energy;      /* W of two flats at gap 0 [J/m^2] */
+    double energy;      /* W at gap 0 of flats that by Derjaguin's relation make the force of the sphere [J/m^2] */
     double length;      /* decay length [m] */
     double force;       /* of the sphere at gap 0 [N] */
     double minimum_gap; /* [m] */

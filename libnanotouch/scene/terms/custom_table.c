@@ -17,6 +17,7 @@
 #define DISAGREE 1e-2    /* F is not -dU/dh beyond this share, or k not -dF/dh beyond ten times it */
 #define TABLED 2.0       /* the error oscillates within a cell: what was sampled may be half of it */
 #define BOUND_HOLDS 1e-9 /* a bound may be this share too small, by rounding */
+#define BEYOND 1.1       /* ratio of gaps at which it is held to its bound beyond the table */
 enum { INSIDE = 3 };     /* samples inside a cell */
 
 /* The law at both ends of a cell and inside, and how far the polynomial is off. */
@@ -193,7 +194,28 @@ static nt_status check_derivatives(const builder *b)
     return NT_E_RANGE;
 }
 
-/* No sample at a gap or beyond it exceeds the bound. Refusals name the bound: the field is taken away. */
+/* Refusals name the bound: the field is taken away. */
+static nt_status check_stated(const builder *b, double stated, double force)
+{
+    if (stated >= force * (1.0 - BOUND_HOLDS) && isfinite(stated))
+        return NT_OK;
+    *b->problem = (nt_problem){NULL, "N", stated, force, INFINITY};
+    return NT_E_RANGE;
+}
+
+/* Beyond the last gap the table is 0, on the word of the bound. A law that is no number so far out is not judged. */
+static nt_status check_beyond(const builder *b)
+{
+    nt_status status = NT_OK;
+    for (double gap = b->table->gap[b->table->count] * BEYOND; gap < FARTHEST && status == NT_OK; gap *= BEYOND) {
+        const double force = fabs(b->custom->law(b->custom->context, gap).F);
+        if (isfinite(force))
+            status = check_stated(b, b->custom->bound(b->custom->context, gap), force);
+    }
+    return status;
+}
+
+/* No sample at a gap or beyond it exceeds the bound. */
 static nt_status check_bound(const builder *b)
 {
     nt_custom_table *table = b->table;
@@ -205,14 +227,13 @@ static nt_status check_bound(const builder *b)
         } else
             force = fabs(b->ends[i].F);
         const double stated = b->custom->bound(b->custom->context, table->gap[i]);
-        if (!(stated >= force * (1.0 - BOUND_HOLDS) && isfinite(stated))) {
-            *b->problem = (nt_problem){NULL, "N", stated, force, INFINITY};
-            return NT_E_RANGE;
-        }
+        const nt_status status = check_stated(b, stated, force);
+        if (status != NT_OK)
+            return status;
         table->largest_force[i] = stated;
         table->largest_stiffness[i] = stiffness;
     }
-    return NT_OK;
+    return check_beyond(b);
 }
 
 /* Beyond the last gap U stays 0, so that it has no step: of all cells what it has there is taken off. */

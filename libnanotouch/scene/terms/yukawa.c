@@ -29,9 +29,8 @@ static void prepare(void *law, const nt_scene *scene, double capture_gap)
 {
     (void)capture_gap;
     const double R = scene->tip.radius, l = scene->medium.yukawa_length;
-    const double W = l > 0.0 ? scene->medium.yukawa_energy : 0.0;
-    *(nt_yukawa_term *)law =
-        (nt_yukawa_term){W, l, 2.0 * NT_PI * R * W * of_sphere(R / l), scene->adhesion.equilibrium_distance};
+    const double W = l > 0.0 ? scene->medium.yukawa_energy * of_sphere(R / l) : 0.0;
+    *(nt_yukawa_term *)law = (nt_yukawa_term){W, l, 2.0 * NT_PI * R * W, scene->adhesion.equilibrium_distance};
 }
 
 static nt_form full_form(const void *law)
@@ -53,6 +52,7 @@ static double hold(const void *law)
     return ((const nt_yukawa_term *)law)->minimum_gap;
 }
 
+/* Of flats that by Derjaguin's relation make the force of the sphere: a sample that hardly yields feels that. */
 static nt_pressure pressure(const void *law, double gap)
 {
     const nt_yukawa_term *yukawa = law;

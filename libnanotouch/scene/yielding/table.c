@@ -73,10 +73,11 @@ typedef struct maker {
     nt_yield_point last;
 } maker;
 
-static nt_yield_node node_of(const nt_yield_table *table, int part, const nt_yield_point *point)
+static nt_yield_node node_of(const maker *m, int part, const nt_yield_point *point)
 {
-    const double v = v_of(table, part, point->h);
-    return (nt_yield_node){v, point->F, point->k * metric(part, v), point->k, 0.0, point->a};
+    const double v = v_of(m->table, part, point->h);
+    const double peak = nt_yield_peak_of(m->solver.sample, point);
+    return (nt_yield_node){v, point->F, point->k * metric(part, v), point->k, 0.0, point->a, peak};
 }
 
 static double held(const maker *m, const nt_yield_point *point)
@@ -131,7 +132,7 @@ static int leaps(const maker *m, const nt_yield_point *next)
 static nt_status march(maker *m, int part, double step)
 {
     const double direction = m->hold == NT_YIELD_CONTACT ? 1.0 : -1.0, least = SMALLEST * step;
-    nt_status status = add(m, node_of(m->table, part, &m->last));
+    nt_status status = add(m, node_of(m, part, &m->last));
     while (status == NT_OK && !is_done(m)) {
         const double from = held(m, &m->last), left = direction * (m->end - from);
         if (left < least)
@@ -158,7 +159,7 @@ static nt_status march(maker *m, int part, double step)
             --m->table->count;
             return march(m, part, step);
         }
-        const nt_yield_node ends[2] = {m->table->node[m->table->count - 1], node_of(m->table, part, &next)};
+        const nt_yield_node ends[2] = {m->table->node[m->table->count - 1], node_of(m, part, &next)};
         const double error = distance(m, ends, part, &between) / m->range->tolerance;
         const double factor = fmin(fmax(0.9 * pow(fmax(error, 1e-9), -0.25), 0.25), 2.5);
         step = fabs(to - from) * factor;

@@ -12,7 +12,7 @@
 static int is_of_tip(const nt_plan *plan, int term, double gap)
 {
     const nt_form form = nt_plan_full_form(plan, term);
-    return (form == NT_FORM_SPHERE || form == NT_FORM_TIP) && gap > nt_plan_hold_gap(plan, term);
+    return (form == NT_FORM_SPHERE || form == NT_FORM_TIP) && gap * (1.0 - STEP) > nt_plan_hold_gap(plan, term);
 }
 
 /* That of the whole tip, as rigid bodies have it: p = k/(2 pi R). */
@@ -38,7 +38,7 @@ static nt_pressure terms_at(const void *context, double gap)
     nt_pressure all = {0.0, 0.0, 0.0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (acts(in, term)) {
-            const nt_pressure p = in->plan->source != NT_ADHESION_NONE && is_of_tip(in->plan, term, gap + in->hold)
+            const nt_pressure p = is_of_tip(in->plan, term, gap + in->hold)
                                       ? pressure_of_tip(in->plan, term, gap + in->hold)
                                       : nt_term_rows[term]->pressure(nt_term_law(in->plan, term), gap + in->hold);
             all.energy += p.energy;

@@ -162,6 +162,12 @@ nt_status nt_yield_table_hold(nt_yield_table *table, const nt_yield_sample *samp
 nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h);
 nt_law_value nt_yield_table_held(const nt_yield_table *table, double h);
 
+/* yield_peak.c: the largest pressure on the sample [Pa], of an equilibrium; without adhesion at a load, and the load at
+ * which it is that [N]: infinite beyond the table. From node to node it is a power of the load. */
+double nt_yield_peak_of(const nt_yield_sample *sample, const nt_yield_point *point);
+double nt_yield_table_peak(const nt_yield_table *table, double load);
+double nt_yield_table_load(const nt_yield_table *table, double peak);
+
 /* yield_terms.c: the pressures of all terms, at a gap that is counted from `hold` [m]. */
 typedef struct nt_yield_terms {
     const nt_plan *plan;

@@ -126,8 +126,8 @@ nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap)
     return value;
 }
 
-/* Where the largest load is reached, which lies between nodes [N/m]. */
-static double stiffness_at_load(const nt_plan *plan, double load)
+/* Where a load is reached, which lies between nodes [m]; the table's end where that is less. */
+static double gap_at_load(const nt_plan *plan, double load)
 {
     const nt_yield_table *table = &plan->yield;
     double nearer = table->last, farther = table->first + table->hold;
@@ -135,7 +135,7 @@ static double stiffness_at_load(const nt_plan *plan, double load)
         const double middle = 0.5 * (nearer + farther);
         *(nt_plan_yield_at(plan, middle).F > load ? &nearer : &farther) = middle;
     }
-    return nt_plan_yield_at(plan, nearer).k;
+    return nearer;
 }
 
 /* Numbers of the force as it is now. */
@@ -143,7 +143,7 @@ static void facts_of(nt_plan *plan, double load)
 {
     const nt_yield_table *table = &plan->yield;
     double pull = 0.0, growth = 0.0;
-    plan->maximum_stiffness = fmax(stiffness_at_load(plan, DEEPER * load), 0.0);
+    plan->maximum_stiffness = fmax(nt_plan_yield_at(plan, gap_at_load(plan, DEEPER * load)).k, 0.0);
     for (int i = 0; i < table->count; ++i)
         if (table->node[i].F <= DEEPER * load)
             plan->maximum_stiffness = fmax(plan->maximum_stiffness, table->node[i].k);
@@ -160,7 +160,7 @@ static void facts_of(nt_plan *plan, double load)
     }
     plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
     plan->minimum_spring = growth;
-    plan->largest_indentation = -table->last;
+    plan->largest_indentation = -gap_at_load(plan, load);
 }
 
 /* Laws that have a pressure act in full. */

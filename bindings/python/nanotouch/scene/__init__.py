@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack
 
 from nanotouch import _core
@@ -52,9 +53,9 @@ class Scene(SceneFields, core_type=_core.Scene):
             self.add_term(name, **values)
 
     @property
-    def terms(self) -> dict[str, dict[str, float]]:
-        """The laws of one's own with their parameters, SI."""
-        return {name: self._term_values(name) for name in self._terms}
+    def terms(self) -> Mapping[str, Mapping[str, float]]:
+        """The laws of one's own with their parameters, SI. To be read: :meth:`add_term` sets them."""
+        return MappingProxyType({name: MappingProxyType(self._term_values(name)) for name in self._terms})
 
     def add_term(self, name: str, version: int | None = None, **parameters: Any) -> None:
         """Add a registered law, or give one that is there other parameters; a text is a field that one follows."""
@@ -147,7 +148,8 @@ class Scene(SceneFields, core_type=_core.Scene):
         shown = super().__repr__()
         if not self._terms:
             return shown
-        return f"{shown.removesuffix(')')}{'' if shown.endswith('()') else ', '}terms={self.terms!r})"
+        terms = {name: self._term_values(name) for name in self._terms}
+        return f"{shown.removesuffix(')')}{'' if shown.endswith('()') else ', '}terms={terms!r})"
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> Self:
