@@ -22,15 +22,14 @@ target_compile_options(
             # isnan() and its like in mingw-w64's math.h are macros that cast to float.
             $<$<PLATFORM_ID:Windows>:-Wno-float-conversion>>)
 
-# Bare metal loads a program where it was linked, and a plain linker script does not copy a table of addresses (.got).
-if(CMAKE_SYSTEM_NAME STREQUAL Generic)
-  set(nanotouch_pic OFF)
-else()
-  set(nanotouch_pic ON)
-endif()
-
 # What every target of ours shares: flags, hidden symbols, code that a shared library or a Python extension can contain.
 function(nanotouch_target target)
+  # Bare metal loads a program where it was linked, and a plain linker script does not copy a table of addresses (.got).
+  if(CMAKE_SYSTEM_NAME STREQUAL Generic)
+    set(pic OFF)
+  else()
+    set(pic ON)
+  endif()
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:nanotouch_flags>)
   set_target_properties(
     ${target}
@@ -43,7 +42,7 @@ function(nanotouch_target target)
                C_VISIBILITY_PRESET hidden
                CXX_VISIBILITY_PRESET hidden
                VISIBILITY_INLINES_HIDDEN ON
-               POSITION_INDEPENDENT_CODE ${nanotouch_pic})
+               POSITION_INDEPENDENT_CODE ${pic})
 endfunction()
 
 # A library that is installed: versioned, and exporting nt_* only, also where it contains a static library of others.

@@ -176,11 +176,13 @@ set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal
 set(nanotouch_sources_hosted
     hal/linux/realtime.c
     hal/linux/spidev.c
+    hal/clock.c
     hal/load.c
     hal/loop.c
     hal/mailbox.c
     hal/mailbox_half.c
     hal/shared_memory.c
+    hal/shared_memory_windows.c
     hal/timed_loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpio_lines_of_half.c hal/linux/gpiod.c)
 set(nanotouch_sources_session

@@ -64,7 +64,8 @@ SYSTEM_HEADERS = {
     "complex", "float", "inttypes", "limits", "math", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "string",
 }  # fmt: skip
 # Of hal, what is outside the portable core.
-HOSTED_FILES = {f"hal/{name}.c" for name in ("load", "loop", "mailbox", "mailbox_half", "shared_memory", "timed_loop")}
+HOSTED = "clock load loop mailbox mailbox_half shared_memory shared_memory_windows timed_loop"
+HOSTED_FILES = {f"hal/{name}.c" for name in HOSTED.split()}
 PRINTING_FILES = {"core/status.c"}  # may use snprintf, into the caller's buffer
 
 # Added as a file, without a line in sources.cmake.

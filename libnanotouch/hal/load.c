@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A half in a shared object (POSIX): loaded, asked for its table, and checked before anything else of it is called. */
+ * A half in a shared object: loaded, asked for its table, and checked before anything else of it is called. */
 #if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
 #endif
 
+#include "hal/clock.h"
 #include "nanotouch/hal.h"
 
 #include <stdio.h>
@@ -15,10 +16,58 @@ static nt_status refuse(nt_module *module, nt_status status, const char *path, c
     return status;
 }
 
-#if defined(__linux__)
+#if NT_HAS_SYSTEM
+
+#include <string.h>
+
+#if defined(_WIN32)
+
+#include <windows.h>
+
+static void *open_object(const char *path)
+{
+    WCHAR wide[1024];
+    const int is_path = MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, sizeof wide / sizeof *wide);
+    return is_path ? (void *)LoadLibraryW(wide) : NULL;
+}
+static void close_object(void *handle)
+{
+    FreeLibrary((HMODULE)handle);
+}
+static nt_status refuse_object(nt_module *module, const char *path)
+{
+    const DWORD error = GetLastError();
+    char why[64];
+    if (error == ERROR_MOD_NOT_FOUND)
+        return refuse(module, NT_E_DEVICE, path, "No such file, or one that it needs is missing");
+    (void)snprintf(why, sizeof why, "Windows cannot load it: error %lu", (unsigned long)error);
+    return refuse(module, NT_E_DEVICE, path, why);
+}
+
+#else
 
 #include <dlfcn.h>
-#include <string.h>
+
+static void *open_object(const char *path)
+{
+    return dlopen(path, RTLD_NOW | RTLD_LOCAL);
+}
+static void close_object(void *handle)
+{
+    (void)dlclose(handle);
+}
+static nt_status refuse_object(nt_module *module, const char *path)
+{
+    const char *text = dlerror();
+    const size_t length = strlen(path);
+    if (!text)
+        text = "cannot be loaded";
+    else if (strncmp(text, path, length) == 0 && strncmp(text + length, ": ", 2) == 0)
+        text += length + 2; /* the path is told already */
+    return refuse(module, NT_E_DEVICE, path, text);
+}
+
+#endif
 
 typedef const nt_backend *(*entry_point)(void);
 
@@ -49,28 +98,28 @@ static nt_status check_table(nt_module *module, const char *path, nt_half half)
     return NT_OK;
 }
 
-/* Without the path, with which the linker's words may begin. */
-static const char *last_error(const char *path)
+static entry_point find_entry(void *handle)
 {
-    const char *text = dlerror();
-    const size_t length = strlen(path);
-    if (!text)
-        return "cannot be loaded";
-    return strncmp(text, path, length) == 0 && strncmp(text + length, ": ", 2) == 0 ? text + length + 2 : text;
+#if defined(_WIN32)
+    return (entry_point)(void (*)(void))GetProcAddress((HMODULE)handle, NT_BACKEND_ENTRY);
+#else
+    void *symbol = dlsym(handle, NT_BACKEND_ENTRY);
+    entry_point entry;
+    memcpy(&entry, &symbol, sizeof entry); /* what POSIX promises of dlsym, and C has no cast for */
+    return entry;
+#endif
 }
 
 nt_status nt_hal_load(nt_module *module, const char *path, nt_half half)
 {
     if (!module || !path || (unsigned)half > NT_HALF_SLAVE)
         return NT_E_ARGUMENT;
-    *module = (nt_module){.handle = dlopen(path, RTLD_NOW | RTLD_LOCAL)};
+    *module = (nt_module){.handle = open_object(path)};
     if (!module->handle)
-        return refuse(module, NT_E_DEVICE, path, last_error(path));
-    void *symbol = dlsym(module->handle, NT_BACKEND_ENTRY);
-    if (!symbol)
+        return refuse_object(module, path);
+    const entry_point entry = find_entry(module->handle);
+    if (!entry)
         return refuse(module, NT_E_ARGUMENT, path, "has no function " NT_BACKEND_ENTRY);
-    entry_point entry;
-    memcpy(&entry, &symbol, sizeof entry); /* what POSIX promises of dlsym, and C has no cast for */
     module->backend = entry();
     return check_table(module, path, half);
 }
@@ -79,7 +128,7 @@ void nt_hal_unload(nt_module *module)
 {
     if (!module || !module->handle)
         return;
-    (void)dlclose(module->handle);
+    close_object(module->handle);
     module->handle = NULL;
     module->backend = NULL;
 }

@@ -7,6 +7,7 @@
 
 #include "core/problem.h"
 #include "hal/capabilities.h"
+#include "hal/clock.h"
 #include "hal/mailbox_memory.h"
 
 #define DEFAULT_PERIOD 1e-3 /* [s] */
@@ -75,11 +76,6 @@ static void describe(nt_mailbox_description *to, const nt_mailbox_device *device
     }
 }
 
-static int64_t machine_now(void)
-{
-    return (int64_t)nt_shared_clock();
-}
-
 /* No session yet: nobody drives, and nothing is asked. */
 static void forget(nt_mailbox *mailbox)
 {
@@ -107,7 +103,7 @@ nt_status nt_mailbox_open(nt_mailbox **mailbox, const char *name, const nt_mailb
         return status;
     }
     made->block = made->memory.memory;
-    made->clock = device->clock ? device->clock : machine_now;
+    made->clock = device->clock ? device->clock : nt_clock_now;
     describe(&made->block->description, device);
     forget(made);
     nt_mailbox_beat(made);

@@ -5,8 +5,10 @@
 
 #include "core/axes.h"
 #include "core/problem.h"
+#include "hal/clock.h"
 #include "hal/mailbox_memory.h"
 
+#define NAP 200000               /* between two looks [ns] */
 #define FIRST_READING 1000000000 /* arm waits so long for it [ns] */
 
 /* What an open half has. The claim is held by one session alone; the system takes it away when that ends. */
@@ -23,7 +25,7 @@ typedef struct nt_mailbox_link {
 
 static int64_t machine_now(const nt_mailbox_half *half)
 {
-    return half->clock ? half->clock() : (int64_t)nt_shared_clock();
+    return half->clock ? half->clock() : nt_clock_now();
 }
 
 static nt_status say(const nt_host *host, nt_status status, const char *text)
@@ -236,6 +238,11 @@ static void ask_nothing(nt_mailbox_half *half, int is_armed)
     ask(half, &request);
 }
 
+static void nap(void)
+{
+    (void)nt_clock_sleep_until(nt_clock_now() + NAP);
+}
+
 static nt_status arm(void *context)
 {
     nt_mailbox_half *half = context;
@@ -243,7 +250,7 @@ static nt_status arm(void *context)
     const uint64_t before = nt_word_of(&link->block->published);
     ask_nothing(half, 1);
     link->is_armed = 1;
-    for (uint64_t start = nt_shared_clock(); nt_shared_clock() - start < FIRST_READING; nt_shared_nap()) {
+    for (const int64_t start = nt_clock_now(); nt_clock_now() - start < FIRST_READING; nap()) {
         take(half);
         if (link->reading.sequence > before && link->reading.valid >> NT_Z & 1u)
             return NT_OK;
@@ -260,11 +267,11 @@ static void disarm(void *context)
         return;
     link->is_armed = 0;
     ask_nothing(half, 0);
-    const uint64_t number = nt_word_of(&link->block->asked), start = nt_shared_clock();
-    const uint64_t patience = (uint64_t)(1e9 * link->description.timeout);
+    const uint64_t number = nt_word_of(&link->block->asked);
+    const int64_t start = nt_clock_now(), patience = (int64_t)(1e9 * link->description.timeout);
     while (atomic_load_explicit(&link->block->answered, memory_order_acquire) < number && is_alive(half) &&
-           nt_shared_clock() - start < patience)
-        nt_shared_nap();
+           nt_clock_now() - start < patience)
+        nap();
 }
 
 static void close_half(void *context)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * POSIX shared memory, with the owner's lock by flock, which Linux offers on it and others do not. */
+ * POSIX shared memory, with the owner's lock by flock, which Linux offers on it and others do not. Windows:
+ * shared_memory_windows.c. */
 #if defined(__linux__)
 #define _DEFAULT_SOURCE
 #endif
@@ -7,28 +8,33 @@
 #include "hal/shared_memory.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <string.h>
 
-#if defined(__linux__) && ATOMIC_LLONG_LOCK_FREE == 2
+#if defined(_WIN32)
+#define NAME_OF_SYSTEM "Local\\" /* of this login */
+#else
+#define NAME_OF_SYSTEM "/"
+#endif
 
-#include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
-#include <sys/file.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
-
-static nt_status make_name(char *full, const char *kind, const char *name)
+nt_status nt_shared_make_name(char *full, const char *kind, const char *name)
 {
     static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
     const size_t length = strlen(name);
     if (length == 0 || length >= NT_GIVEN_NAME_SIZE || strspn(name, allowed) != length)
         return NT_E_RANGE;
-    snprintf(full, NT_SHARED_NAME_SIZE, "/nanotouch.%s.%s", kind, name);
+    snprintf(full, NT_SHARED_NAME_SIZE, NAME_OF_SYSTEM "nanotouch.%s.%s", kind, name);
     return NT_OK;
 }
+
+#if defined(__linux__) && ATOMIC_LLONG_LOCK_FREE == 2
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static nt_status status_of(int error)
 {
@@ -111,7 +117,7 @@ nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name
     *shared = (nt_shared){.size = size, .file = -1, .owner = (long)getpid()};
     if (!name)
         return map(shared, PROT_READ | PROT_WRITE);
-    nt_status status = make_name(shared->name, kind, name);
+    nt_status status = nt_shared_make_name(shared->name, kind, name);
     if (status == NT_OK)
         status = open_new(shared->name, &shared->file);
     if (status != NT_OK)
@@ -127,7 +133,7 @@ nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name
 {
     *shared = (nt_shared){.size = size, .file = -1};
     struct stat found;
-    nt_status status = make_name(shared->name, kind, name);
+    nt_status status = nt_shared_make_name(shared->name, kind, name);
     if (status != NT_OK)
         return status;
     shared->file = shm_open(shared->name, writable ? O_RDWR : O_RDONLY, 0);
@@ -152,21 +158,7 @@ void nt_shared_close(nt_shared *shared)
     remove_object(shared);
 }
 
-uint64_t nt_shared_clock(void)
-{
-    struct timespec now;
-    if (clock_gettime(CLOCK_MONOTONIC, &now) != 0)
-        return 0;
-    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
-
-void nt_shared_nap(void)
-{
-    const struct timespec nap = {.tv_nsec = 200000};
-    (void)nanosleep(&nap, NULL);
-}
-
-#else
+#elif !defined(_WIN32) /* whose own file has it */
 
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size)
 {
@@ -189,15 +181,6 @@ int nt_shared_is_own(const nt_shared *shared)
 {
     (void)shared;
     return 1;
-}
-
-uint64_t nt_shared_clock(void)
-{
-    return 0;
-}
-
-void nt_shared_nap(void)
-{
 }
 
 #endif

@@ -33,9 +33,7 @@ nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name
 /* Gives the memory back; the owner's block is removed, by the owner alone. May be repeated. */
 void nt_shared_close(nt_shared *shared);
 
-/* The monotonic clock, the same for all processes [ns]; 0 if it fails. */
-uint64_t nt_shared_clock(void);
-/* Waits for 0.2 ms. */
-void nt_shared_nap(void);
+/* For these functions alone: the system's name of a block; NT_E_RANGE for a bad one. */
+nt_status nt_shared_make_name(char *full, const char *kind, const char *name);
 
 #endif

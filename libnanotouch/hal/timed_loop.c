@@ -1,18 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The loop with its phases timed. A clock read costs some 20 ns, four of them a period. */
-#if defined(__linux__)
-#define _POSIX_C_SOURCE 200809L
-#endif
-
 #include <math.h>
 #include <stddef.h>
 
+#include "hal/clock.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/timing.h"
-
-#if defined(__linux__)
-
-#include <time.h>
 
 typedef struct timed {
     const nt_loop_phases *phases;
@@ -20,23 +13,16 @@ typedef struct timed {
     int64_t length; /* of a period [ns] */
 } timed;
 
-static int64_t read_clock(void)
-{
-    struct timespec now = {0, 0};
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
 static int run_phases(const timed *t, uint64_t tick, double lateness, int64_t at[NT_LOOP_PHASES])
 {
     const nt_loop_phases *do_it = t->phases;
-    at[0] = read_clock();
+    at[0] = nt_clock_now();
     int stop = do_it->read ? do_it->read(do_it->context, tick, lateness) : 0;
-    at[1] = read_clock();
+    at[1] = nt_clock_now();
     stop |= do_it->compute && !stop ? do_it->compute(do_it->context) : 0;
-    at[2] = read_clock();
+    at[2] = nt_clock_now();
     stop |= do_it->write && !stop ? do_it->write(do_it->context) : 0;
-    at[3] = read_clock();
+    at[3] = nt_clock_now();
     return stop;
 }
 
@@ -69,13 +55,3 @@ nt_status nt_loop_run_timed(double period, uint64_t ticks, const nt_loop_phases 
     timing->missed += statistics.missed;
     return status;
 }
-
-#else
-
-nt_status nt_loop_run_timed(double period, uint64_t ticks, const nt_loop_phases *phases, nt_timing *timing)
-{
-    (void)period, (void)ticks, (void)phases, (void)timing;
-    return NT_E_UNSUPPORTED;
-}
-
-#endif

@@ -1,38 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The machine's monotonic clock, the clock of the half that leads, what a session at wall pace owes, and one thread at
  * a time where requests are prepared. */
-#if defined(__linux__)
-#define _POSIX_C_SOURCE 200809L
-#endif
-
 #include <math.h>
 
 #include "session/state.h"
 
+#if NT_HAS_SYSTEM
+#include <pthread.h>
+#endif
+
 #define LONGEST_LAG 0.05  /* further behind than this a session slows down instead of catching up, at the most [s] */
 #define SLOWDOWN_TIME 1.0 /* over which the slowdown is told [s] */
-
-#if defined(__linux__)
-
-#include <errno.h>
-#include <pthread.h>
-#include <time.h>
-
-#define NAP 100000 /* between two looks at a lock [ns] */
-
-int64_t nt_session_machine_time(void)
-{
-    struct timespec now = {0, 0};
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
-void nt_session_sleep_until(int64_t deadline)
-{
-    const struct timespec time = {.tv_sec = (time_t)(deadline / 1000000000), .tv_nsec = (long)(deadline % 1000000000)};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, NULL) == EINTR)
-        continue;
-}
+#define NAP 100000        /* between two looks at a lock [ns] */
 
 /* A period after the last one. */
 static int64_t next_deadline(const nt_session *session)
@@ -42,9 +21,9 @@ static int64_t next_deadline(const nt_session *session)
 
 static void wait_for_deadline(nt_session *session)
 {
-    const int64_t now = nt_session_machine_time(), next = next_deadline(session);
+    const int64_t now = nt_clock_now(), next = next_deadline(session);
     session->deadline = next > now ? next : now;
-    nt_session_sleep_until(session->deadline);
+    (void)nt_clock_sleep_until(session->deadline);
 }
 
 void nt_session_keep_time(nt_session *session)
@@ -64,7 +43,7 @@ nt_status nt_session_follow_leader(nt_session *session)
     if (leader->reading.sequence == before || leader->reading.flags & NT_SAMPLE_DEVICE_LOST)
         wait_for_deadline(session);
     else
-        session->deadline = nt_session_machine_time();
+        session->deadline = nt_clock_now();
     const double late = session->deadline > due ? 1e-9 * (double)(session->deadline - due) : 0.0;
     session->lateness = late > leader->reading.lateness ? late : leader->reading.lateness;
     return status;
@@ -72,13 +51,17 @@ nt_status nt_session_follow_leader(nt_session *session)
 
 uintptr_t nt_session_thread(void)
 {
+#if NT_HAS_SYSTEM
     return (uintptr_t)pthread_self();
+#else
+    return 1; /* there is no other */
+#endif
 }
 
 void nt_session_lock(nt_session *session)
 {
     while (atomic_flag_test_and_set_explicit(&session->asking, memory_order_acquire))
-        nt_session_sleep_until(nt_session_machine_time() + NAP);
+        (void)nt_clock_sleep_until(nt_clock_now() + NAP);
     atomic_store_explicit(&session->asker, nt_session_thread(), memory_order_relaxed);
 }
 
@@ -87,39 +70,6 @@ void nt_session_unlock(nt_session *session)
     atomic_store_explicit(&session->asker, 0, memory_order_relaxed);
     atomic_flag_clear_explicit(&session->asking, memory_order_release);
 }
-
-#else
-
-int64_t nt_session_machine_time(void)
-{
-    return 0;
-}
-void nt_session_sleep_until(int64_t deadline)
-{
-    (void)deadline;
-}
-void nt_session_keep_time(nt_session *session)
-{
-    (void)session;
-}
-nt_status nt_session_follow_leader(nt_session *session)
-{
-    return nt_hal_read(session->leader);
-}
-uintptr_t nt_session_thread(void)
-{
-    return 1;
-}
-void nt_session_lock(nt_session *session)
-{
-    atomic_store_explicit(&session->asker, 1, memory_order_relaxed);
-}
-void nt_session_unlock(nt_session *session)
-{
-    atomic_store_explicit(&session->asker, 0, memory_order_relaxed);
-}
-
-#endif
 
 /* What is owed is run at once, and meanwhile no device says anything new. A quarter of a device's own period is the
  * most: twice that may come between two readings, half a period more than they are apart, and two make it stale. */
@@ -131,7 +81,7 @@ double nt_wall_longest_lag(const nt_session *session)
 
 double nt_wall_look(nt_wall_clock *clock, double speed)
 {
-    const int64_t now = nt_session_machine_time();
+    const int64_t now = nt_clock_now();
     const double passed = 1e-9 * (double)(now - clock->last);
     clock->last = now;
     clock->due += speed * passed;

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 
+#include "hal/clock.h"
 #include "nanotouch/observer.h"
 #include "session/frames_memory.h"
 
@@ -137,7 +138,7 @@ nt_status nt_client_lease(nt_client *client)
 {
     if (nt_word_of(&client->block->beat) == 0)
         return NT_E_DEVICE; /* closed */
-    const uint64_t term = (uint64_t)(1e3 * NT_LEASE_TERM), now = nt_shared_clock() / 1000000u;
+    const uint64_t term = (uint64_t)(1e3 * NT_LEASE_TERM), now = (uint64_t)nt_clock_now() / 1000000u;
     uint64_t lease = nt_word_of(&client->commands->lease);
     uint64_t epoch = lease / one_epoch;
     const uint64_t until = lease % one_epoch;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "hal/clock.h"
 #include "session/frames_memory.h"
 
 _Static_assert(sizeof(nt_frame) == 184 && sizeof(nt_frame_slot) == 192, "three cache lines");
@@ -47,7 +48,7 @@ nt_status nt_frames_create(nt_frames **frames, const char *name)
     }
     made->block = made->frames_memory.memory;
     made->commands = made->commands_memory.memory;
-    const uint64_t token = nt_shared_clock() ^ (uint64_t)(uintptr_t)made << 16;
+    const uint64_t token = (uint64_t)nt_clock_now() ^ (uint64_t)(uintptr_t)made << 16;
     atomic_store(&made->block->token, token);
     atomic_store(&made->commands->token, token);
     atomic_store(&made->block->layout, NT_FRAMES_LAYOUT);
@@ -83,7 +84,7 @@ void nt_frames_publish(nt_frames *frames, const nt_frame *frame)
 
 void nt_frames_beat(nt_frames *frames)
 {
-    atomic_store_explicit(&frames->block->beat, nt_shared_clock(), memory_order_relaxed);
+    atomic_store_explicit(&frames->block->beat, (uint64_t)nt_clock_now(), memory_order_relaxed);
 }
 
 nt_status nt_frames_describe(nt_frames *frames, const char *text)

@@ -176,7 +176,7 @@ nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
     if (status == NT_OK)
         status = check_substep(session, problem);
     if (status == NT_OK && (session->master.capabilities.can | session->slave.capabilities.can) & NT_IS_REAL)
-        session->clock = nt_session_machine_time;
+        session->clock = nt_clock_now;
     if (status == NT_OK)
         status = configure(session, problem);
     session->master_start = session->sim.master.arm[NT_Z].position;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where the system has no threads of ours (pace.c is Linux'): a session is advanced by its caller. */
+ * Where the system has no threads of ours (pace.c needs a system): a session is advanced by its caller. */
 #include "session/state.h"
 
-#if !defined(__linux__)
+#if !NT_HAS_SYSTEM
 
 nt_status nt_session_start(nt_session *session, nt_pace pace, uint64_t ticks)
 {

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "hal/clock.h"
 #include "session/frames_memory.h"
 
 enum { TRIES = 8 }; /* each one fails only if the writer went round the whole ring within it */
@@ -37,7 +38,7 @@ nt_status nt_frames_attach(nt_shared *shared, const nt_frames_block **block, con
 
 double nt_frames_silence(const nt_frames_block *block)
 {
-    const uint64_t beat = nt_word_of(&block->beat), now = nt_shared_clock();
+    const uint64_t beat = nt_word_of(&block->beat), now = (uint64_t)nt_clock_now();
     if (beat == 0)
         return (double)INFINITY;
     return now > beat ? 1e-9 * (double)(now - beat) : 0.0;

@@ -10,7 +10,7 @@
 #include "session/frames_memory.h"
 #include "session/state.h"
 
-#if defined(__linux__)
+#if NT_HAS_SYSTEM
 
 #include <math.h>
 #include <pthread.h>
@@ -74,7 +74,7 @@ static void rest(nt_session *session, int64_t deadline)
 {
     if (session->frames)
         nt_frames_beat(session->frames);
-    nt_session_sleep_until(deadline);
+    (void)nt_clock_sleep_until(deadline);
 }
 
 /* Some of the steps that are granted; what has been done is taken off, unless a new pause has taken all. */
@@ -106,7 +106,7 @@ static long pass_pause(nt_session *session)
         atomic_store(&session->runner->stands, 1);
     }
     if (done < BATCH)
-        rest(session, nt_session_machine_time() + WAKE);
+        rest(session, nt_clock_now() + WAKE);
     return done;
 }
 
@@ -118,7 +118,7 @@ static void run_free(nt_session *session)
         const long done = paused ? pass_pause(session) : run_ticks(session, BATCH);
         if (done < 0)
             return;
-        const int64_t now = nt_session_machine_time();
+        const int64_t now = nt_clock_now();
         if (!paused && done < BATCH) { /* no room: a reader has to come, who may be asking for something */
             take_requests(session);
             rest(session, now + WAKE / 4);
@@ -143,13 +143,13 @@ static void run_wall(nt_session *session)
 {
     nt_runner *runner = session->runner;
     const double period = session->now->touch.period;
-    nt_wall_clock clock = {.last = nt_session_machine_time(), .lag = nt_wall_longest_lag(session)};
+    nt_wall_clock clock = {.last = nt_clock_now(), .lag = nt_wall_longest_lag(session)};
     const int64_t wake = llround(fmin(WAKE, 0.5e9 * clock.lag));
     while (!is_over(session)) {
         if (atomic_load(&runner->paused)) {
             if (pass_pause(session) < 0)
                 return;
-            clock.last = nt_session_machine_time();
+            clock.last = nt_clock_now();
             continue;
         }
         atomic_store(&runner->slowdown, nt_wall_look(&clock, atomic_load(&runner->speed)));
@@ -182,7 +182,7 @@ static void run_hard(nt_session *session)
 {
     int64_t (*const before)(void) = session->clock;
     session->may_drop = 1;
-    session->clock = nt_session_machine_time;
+    session->clock = nt_clock_now;
     nt_status status = NT_OK;
     if (!session->leader)
         status = nt_loop_run(session->now->touch.period, UINT64_MAX, hard_tick, session, NULL);
@@ -202,7 +202,7 @@ static void *serve(void *context)
     nt_session *session = context;
     while (!atomic_load_explicit(&session->runner->has_ended, memory_order_acquire)) {
         nt_session_serve_clients(session);
-        nt_session_sleep_until(nt_session_machine_time() + 2 * WAKE);
+        (void)nt_clock_sleep_until(nt_clock_now() + 2 * WAKE);
     }
     return NULL;
 }
@@ -354,7 +354,7 @@ nt_status nt_session_await(nt_session *session)
     while (atomic_load_explicit(&session->call_status, memory_order_acquire) == NT_CALL_WAITING) {
         if (!nt_session_is_running(session))
             return NT_E_STATE;
-        nt_session_sleep_until(nt_session_machine_time() + WAKE / 10);
+        (void)nt_clock_sleep_until(nt_clock_now() + WAKE / 10);
     }
     return NT_OK;
 }

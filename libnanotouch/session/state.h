@@ -6,6 +6,7 @@
 #include <stdatomic.h>
 
 #include "core/ring.h"
+#include "hal/clock.h"
 #include "nanotouch/session.h"
 #include "session/origin.h"
 
@@ -166,8 +167,6 @@ nt_frame nt_session_frame(const nt_session *session, const nt_record *record);
 
 /* --- clock.c --- */
 
-int64_t nt_session_machine_time(void); /* [ns] */
-void nt_session_sleep_until(int64_t deadline);
 /* With a half that measures by a clock of its own, before it runs: waits for the next period. */
 void nt_session_keep_time(nt_session *session);
 /* Wall pace: time that a session owes its person, and how much slower than it should it goes. */

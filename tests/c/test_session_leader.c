@@ -43,9 +43,10 @@ static int64_t clock_now(void)
 
 static void sleep_until(int64_t time)
 {
-    const struct timespec at = {.tv_sec = time / 1000000000, .tv_nsec = time % 1000000000};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) != 0)
-        continue;
+    for (int64_t left = time - clock_now(); left > 0; left = time - clock_now()) {
+        const struct timespec nap = {.tv_sec = left / 1000000000, .tv_nsec = left % 1000000000};
+        (void)nanosleep(&nap, NULL);
+    }
 }
 
 static nt_status open_it(void *context, const nt_host *host, nt_problem *problem)

@@ -23,6 +23,6 @@ fi
 export WINEPREFIX="$work/wine" WINEDEBUG=-all
 cmake -S tests/windows -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMOCKA_SOURCE="$cmocka" \
   -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/toolchains/x86_64-w64-mingw32.cmake" -DCMAKE_CROSSCOMPILING_EMULATOR="$wine" \
-  -DCMAKE_EXE_LINKER_FLAGS=-static --log-level WARNING
+  --log-level WARNING
 cmake --build "$work/build" -j "${JOBS:-1}" -- -k 0 || true # a test that does not compile is reported below
 ctest --test-dir "$work/build" --output-on-failure -j "${JOBS:-1}"

@@ -96,7 +96,7 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     const Array path = options["path"].cast<Array>();
     if (path.shape(0) == 1 || rig.value.master.axes == 1.0) { // else the hand leads the tip anywhere
         setup.path = path.data();
-        setup.path_count = path.shape(0);
+        setup.path_count = static_cast<long>(path.shape(0));
     }
     setup.x = path.at(0, 0);
     setup.y = path.at(0, 1);

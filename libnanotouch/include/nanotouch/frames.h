@@ -3,8 +3,8 @@
  * of observers (observer.h), in any process, read them; the writer never waits and never learns of them.
  *
  * Each slot of the ring has a sequence word, which is 0 while the slot is written, and relaxed atomic words (H. Boehm,
- * "Can seqlocks get along with programming language memory models?", MSPC 2012). Linux; elsewhere nt_frames_create
- * gives NT_E_UNSUPPORTED. */
+ * "Can seqlocks get along with programming language memory models?", MSPC 2012). Linux and Windows; elsewhere
+ * nt_frames_create gives NT_E_UNSUPPORTED. */
 #ifndef NANOTOUCH_FRAMES_H
 #define NANOTOUCH_FRAMES_H
 

@@ -57,7 +57,7 @@ NT_API NT_REALTIME nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64
 NT_API NT_REALTIME nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command,
                                             nt_action *action);
 
-/* --- a half in a shared object, by its path (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
+/* --- a half in a shared object, by its path (Linux, macOS, Windows; NT_E_UNSUPPORTED elsewhere) --- */
 
 typedef struct nt_module {
     void *handle;
@@ -96,7 +96,7 @@ typedef struct nt_rehearsed {
  * (docs/hal.md lists them). */
 NT_API nt_status nt_hal_rehearse(const nt_rehearsal *rehearsal, nt_rehearsed *seen, nt_problem *problem);
 
-/* --- the loop: calls a step at a fixed rate on the monotonic clock (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
+/* --- the loop: calls a step at a fixed rate on the monotonic clock (NT_E_UNSUPPORTED where there is none) --- */
 
 typedef struct nt_loop_statistics {
     uint64_t ticks;     /* wake-ups */

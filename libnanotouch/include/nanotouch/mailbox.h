@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A half in another process: a device's own program and a session meet in a mailbox, a block of shared memory. For
  * closed libraries, code under the GPL, and what may crash: if the program dies, the session lives and holds. Neither
- * side waits for the other. Linux; elsewhere nt_mailbox_open gives NT_E_UNSUPPORTED. The guide is docs/devices.md. */
+ * side waits for the other. Linux and Windows; elsewhere nt_mailbox_open gives NT_E_UNSUPPORTED. The guide:
+ * docs/devices.md. */
 #ifndef NANOTOUCH_MAILBOX_H
 #define NANOTOUCH_MAILBOX_H
 

@@ -165,7 +165,7 @@ NT_API NT_REALTIME nt_status nt_session_advance(nt_session *session, long ticks)
 /* Aims (input may be NULL) and runs one period; the frame of that tick. */
 NT_API NT_REALTIME nt_status nt_session_step(nt_session *session, const nt_input *input, nt_frame *frame);
 
-/* --- run, in a thread of its own (POSIX; NT_E_UNSUPPORTED elsewhere) --- */
+/* --- run, in a thread of its own (Linux, macOS, Windows; NT_E_UNSUPPORTED elsewhere) --- */
 
 typedef enum nt_pace {
     NT_PACE_FREE, /* as fast as it goes; where the ring is full it waits for a reader */
