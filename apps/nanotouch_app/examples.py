@@ -40,6 +40,12 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
     "map": (("nanotouch map map.h5 --radius 20nm", "the same for every curve of a force volume"),),
     "review": (("nanotouch review curves --radius 20nm --sidecar kept.toml", "keep or reject curves one by one"),),
     "report": (("nanotouch report curves --radius 20nm --model maugis", "one page about a folder of force curves"),),
+    "recalibrate": (
+        (
+            "nanotouch recalibrate curves --lever 1.9N/m --lever-known-to 4 --thermal-known-to 3 --out calibration.csv",
+            "sensitivities by a lever of known stiffness",
+        ),
+    ),
     "export": (("nanotouch export result/recording.mcap --out touch.csv", "a recording as a table, with units"),),
     "recover": (("nanotouch recover cut.mcap --out whole.mcap", "what a killed touch has left"),),
     "reproduce": (("nanotouch reproduce --figure 5", "a figure of the paper, and which statements hold"),),

@@ -76,7 +76,8 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     parser.add_argument("--half-angle", metavar="ANGLE", help="of cone (flank) and pyramid (face), as 20deg")
     parser.add_argument(
         "--known-to", action="append", default=[], metavar="WHAT=PERCENT", type=_uncertainty,
-        help="standard uncertainty of sensitivity (3 without this), spring_constant or radius, as spring_constant=10",
+        help="standard uncertainty of sensitivity (3 without this), spring_constant or radius, as spring_constant=10; "
+        "or correlation of the first two",
     )  # fmt: skip
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
     parser.add_argument(
@@ -141,8 +142,8 @@ def _rivals(model: str) -> tuple[str, ...]:
 
 def _uncertainty(text: str) -> tuple[str, float]:
     name, _, percent = text.partition("=")
-    if name not in ("sensitivity", "spring_constant", "radius"):
-        raise argparse.ArgumentTypeError(f"{name!r}: valid are sensitivity, spring_constant, radius")
+    if name not in ("sensitivity", "spring_constant", "radius", "correlation"):
+        raise argparse.ArgumentTypeError(f"{name!r}: valid are sensitivity, spring_constant, radius, correlation")
     try:
         return name, float(percent) / 100.0
     except ValueError:

@@ -26,7 +26,7 @@ from nanotouch_app.output import as_json
 
 COMMANDS = (
     "touch", "live", "scan", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review",
-    "export", "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
+    "recalibrate", "export", "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
 )  # fmt: skip
 STUDIES = ("reproduce", "tradeoff")
 EPILOG = """exit status:

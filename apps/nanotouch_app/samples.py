@@ -22,6 +22,7 @@ from nanotouch_app import output
 
 FILES = ("scan.gwy", "curve.h5", "map.h5", "scene.toml", "rig.toml", "cut.mcap", *(f"curves/{n}.h5" for n in (1, 2, 3)))
 RADIUS, SPRING, MODULUS, WORK = 20e-9, 2.0, 3e9, 0.05  # [m], [N/m], [Pa], [J/m^2]
+SENSITIVITY = 40e-9  # [m/V]
 ROWS, PIXEL, DEPTH = 6, 50e-9, 20e-9
 SCENE = """# a silicon tip on gold, in a rig with a lever of 8 N/m; what is not named keeps its default
 [tip]
@@ -88,7 +89,8 @@ def _cut(path: Path) -> None:
 
 def _curve(seed: int) -> nt.curves.ForceCurve:
     contact = nt.Contact(RADIUS, MODULUS, WORK, cohesive_range=0.2e-9)
-    return nt.curves.synthesise(contact, spring_constant=SPRING, noise=50e-12, depth=DEPTH, seed=seed)
+    made = nt.curves.synthesise(contact, spring_constant=SPRING, noise=50e-12, depth=DEPTH, seed=seed)
+    return replace(made, meta={**made.meta, "sensitivity": SENSITIVITY})
 
 
 def _map() -> list[nt.curves.ForceCurve]:

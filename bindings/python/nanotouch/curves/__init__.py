@@ -16,6 +16,7 @@ from .events import Rupture
 from .reading import Stream, read, stream
 from .report import CurveReport
 from .sader import hydrodynamic_function, sader
+from .snap import Lever, Recalibrated, recalibrate, write_table
 from .synthesis import synthesise
 from .thermal import ThermalTune, thermal_tune
 from .thermal_file import ThermalSpectrum, thermal_spectrum
@@ -30,6 +31,8 @@ __all__ = [
     "Chain",
     "CurveReport",
     "ForceCurve",
+    "Lever",
+    "Recalibrated",
     "Rupture",
     "Segment",
     "Stream",
@@ -42,6 +45,7 @@ __all__ = [
     "force_gap",
     "hydrodynamic_function",
     "read",
+    "recalibrate",
     "sader",
     "sensitivity",
     "stream",
@@ -49,4 +53,5 @@ __all__ = [
     "thermal_spectrum",
     "thermal_tune",
     "write",
+    "write_table",
 ]

@@ -102,7 +102,7 @@ def _force(result: FitResult) -> tuple[float, float, float, float]:
     """Pull-off force, its sigma and ends (95 %), with the calibration's uncertainty [N]."""
     report, known = result.report, result.uncertainties
     force, statistical = report.pull_off_force, report.sigma["pull_off_force"]
-    of_calibration = abs(force) * float(np.hypot(known.sensitivity, known.spring_constant))
+    of_calibration = abs(force) * known.force
     low, high = report.pull_off_interval
     low = force - np.hypot(force - low, _GAUSSIAN * of_calibration)
     high = force + np.hypot(high - force, _GAUSSIAN * of_calibration)
@@ -165,7 +165,7 @@ def _separation(result: FitResult) -> tuple[float, float]:
     """Work below the baseline and its sigma, with the calibration's [J]: force and way go as the sensitivity."""
     report, known = result.report, result.uncertainties
     work, sigma = report.adhesion_work, report.sigma["adhesion_work"]
-    return work, float(np.hypot(sigma, abs(work) * np.hypot(known.sensitivity, known.spring_constant)))
+    return work, float(np.hypot(sigma, abs(work) * known.force))
 
 
 def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[str, str]]]:

@@ -133,14 +133,14 @@ def make_result(
     free = [i for i in names if options.is_free(names[i])]
     identifiable, notes, reason = doubts(extension, setup, solution, uncertainties)
     shifts = _shifts(extension, solution, uncertainties)
-    covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), np.zeros((1, 1)))
-    table = _table(found, options, names, shifts)
+    together = _together(found, max(names), shifts, uncertainties)
+    covariance = found["covariance"] + sum((np.outer(s, s) for s in shifts.values()), together)
+    table = _table(found, options, names, shifts, np.diag(together))
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
         _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
     bounds = {} if reason else _bounds(identifiable, solution, uncertainties)
     if setup.model.remark is not None:
         notes.append(setup.model.remark(setup.radius, table.values, float(points.force.max())))
-    sign = np.where([names[i] == "contact_point" for i in free], -1.0, 1.0)
     return FitResult(
         model=setup.model.name,
         title=setup.model.title or setup.model.name,
@@ -151,7 +151,7 @@ def make_result(
         sigma_statistical=table.statistical,
         sigma_calibration=table.calibration,
         interval=table.interval(),
-        covariance=covariance[np.ix_(free, free)] * np.outer(sign, sign),
+        covariance=_of_free(covariance, names, free),
         free=tuple(names[i] for i in free),
         identifiable=identifiable,
         z=points.z,
@@ -180,17 +180,38 @@ def make_result(
     )
 
 
-def _table(found: dict[str, Any], options: Any, names: dict[int, str], shifts: dict[str, Floats]) -> Table:
+def _of_free(covariance: Floats, names: dict[int, str], free: list[int]) -> Floats:
+    """Of the free parameters, the contact point as z of the base."""
+    sign = np.where([names[i] == "contact_point" for i in free], -1.0, 1.0)
+    return np.asarray(covariance[np.ix_(free, free)] * np.outer(sign, sign))
+
+
+def _by_sensitivity(found: dict[str, Any], place: int) -> Floats:
+    """Shift of all parameters with one standard uncertainty of the sensitivity, shape (parameters,)."""
+    covariance = found["covariance"]
+    if not (np.isfinite(covariance[place, place]) and covariance[place, place] > 0.0):
+        return np.zeros(covariance.shape[0])
+    return np.asarray(np.nan_to_num(covariance[:, place]) / np.sqrt(covariance[place, place]))
+
+
+def _together(found: dict[str, Any], place: int, shifts: dict[str, Floats], known: Uncertainties) -> Floats:
+    """What correlated errors of sensitivity and spring constant add to the covariance."""
+    one, other = _by_sensitivity(found, place), shifts.get("spring_constant", np.zeros(found["covariance"].shape[0]))
+    return np.asarray(known.correlation * (np.outer(one, other) + np.outer(other, one)))
+
+
+def _table(
+    found: dict[str, Any], options: Any, names: dict[int, str], shifts: dict[str, Floats], together: Floats
+) -> Table:
     """Statistical: with the sensitivity known exactly, C_ii - C_is^2/C_ss. Calibration: all the rest."""
     table = Table({}, {}, {}, {}, {})
     covariance, last = found["covariance"], max(names)
-    by_sensitivity = np.zeros(covariance.shape[0])
-    if np.isfinite(covariance[last, last]) and covariance[last, last] > 0.0:
-        by_sensitivity = np.nan_to_num(covariance[:, last]) / np.sqrt(covariance[last, last])
+    by_sensitivity = _by_sensitivity(found, last)
     for i, name in names.items():
         variance = float(covariance[i, i])
         part = min(float(by_sensitivity[i]) ** 2, variance)
         calibration = part + sum(float(shift[i]) ** 2 for shift in shifts.values())
+        calibration = max(calibration + float(together[i]), 0.0)
         table.values[name] = float(found["value"][i])
         table.statistical[name] = float(np.sqrt(variance - part)) if np.isfinite(variance) else np.inf
         table.calibration[name] = float(np.sqrt(calibration))

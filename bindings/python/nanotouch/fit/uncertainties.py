@@ -25,8 +25,10 @@ class Uncertainties:
         Of the deflection sensitivity, relative. 0.03 is what repeated calibrations on a hard sample commonly scatter
         by. It is a datum: a curve that knows better overrules it.
     spring_constant : float
-        Of k_c, relative; taken as independent of the sensitivity. A thermal tune gives its own
-        (:class:`nanotouch.curves.ThermalTune`).
+        Of k_c, relative. A thermal tune gives its own (:class:`nanotouch.curves.ThermalTune`).
+    correlation : float
+        Of the errors of both, -1 .. 1; 0 where they are independent. A thermal tune with the same sensitivity, and
+        :class:`nanotouch.curves.Lever`, make it negative.
     radius : float
         Of the tip's radius, relative.
     half_angle : float
@@ -40,11 +42,22 @@ class Uncertainties:
     radius: float = 0.0
     half_angle: float = 0.0
     poisson_ratio: float = 0.0
+    correlation: float = 0.0
 
     def __post_init__(self) -> None:
+        if not -1.0 <= self.correlation <= 1.0:
+            raise InvalidValue(f"correlation of sensitivity and spring constant {self.correlation}: valid is -1 to 1")
         for name, value in asdict(self).items():
+            if name == "correlation":
+                continue
             if not 0.0 <= value < 1.0:
                 raise InvalidValue(f"uncertainty of {name} = {value}: valid is 0 to below 1")
+
+    @property
+    def force(self) -> float:
+        """Of a force, k_c s u of the detector's volts u, relative."""
+        s, k = self.sensitivity, self.spring_constant
+        return sqrt(max(s**2 + k**2 + 2.0 * self.correlation * s * k, 0.0))  # below 0 by rounding only
 
     def assumptions(self, sharp: bool) -> list[str]:
         """What was taken for granted, in words; sharp: the tip has an angle in place of a radius."""
@@ -52,6 +65,8 @@ class Uncertainties:
         if not sharp:
             named["tip radius"] = self.radius
         known = [f"{name} to {100 * value:.3g} %" for name, value in named.items() if value > 0.0]
+        if self.correlation != 0.0:
+            known.append(f"errors of the first two correlated by {self.correlation:.2g}")
         exact = [name for name, value in named.items() if value == 0.0]
         if sharp and self.half_angle > 0.0:
             known.append(f"half angle to {np.degrees(self.half_angle):.3g} degrees")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..fit.models import extension, find
+from ..fit.uncertainties import Uncertainties
 from .settings import Settings
 from .store import Columns
 from .volume import Block, Floats
@@ -64,7 +65,7 @@ def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Colu
     for name, (place, _) in settings.parameters().items():
         sign = -1.0 if name == "contact_point" else 1.0  # the C library counts towards the sample
         columns[name] = sign * found["value"][:, place]
-        columns |= _uncertainties(name, place, found, shifts)
+        columns |= _uncertainties(name, place, found, shifts, settings.uncertainties)
         if settings.asks(name):
             unknown = (found["status"] == 0) & (found["sigma"][:, place] != 0.0) & ~found["identifiable"][:, place]
             columns["flags"] |= np.where(unknown, undetermined_flag(place), 0).astype(np.uint32)
@@ -112,7 +113,9 @@ def _batch(recipe: Any, block: Block, threads: int, factor: float = 1.0) -> dict
     return found
 
 
-def _uncertainties(name: str, place: int, found: dict[str, Any], shifts: list[Floats]) -> dict[str, Floats]:
+def _uncertainties(
+    name: str, place: int, found: dict[str, Any], shifts: list[Floats], known: Uncertainties
+) -> dict[str, Floats]:
     """Statistical: with the sensitivity known exactly, C_ii - C_is^2/C_ss. Calibration: all the rest."""
     variance, with_sensitivity = found["sigma"][:, place] ** 2, found["with_sensitivity"]
     own = with_sensitivity[:, -1]
@@ -120,6 +123,9 @@ def _uncertainties(name: str, place: int, found: dict[str, Any], shifts: list[Fl
         part = np.where(np.isfinite(own) & (own > 0.0), with_sensitivity[:, place] ** 2 / own, 0.0)
         part = np.where(np.isnan(variance), np.nan, np.minimum(np.nan_to_num(part), variance))
         calibration = part + sum((shift[:, place] ** 2 for shift in shifts), np.zeros_like(part))
+        if known.correlation and known.spring_constant > 0.0:  # whose shift is the first
+            crossed = np.copysign(np.sqrt(part), with_sensitivity[:, place]) * shifts[0][:, place]
+            calibration = np.maximum(calibration + 2.0 * known.correlation * np.nan_to_num(crossed), 0.0)
         statistical = np.where(np.isinf(variance), np.inf, variance - part)
         return {
             f"{name}_sigma": np.sqrt(statistical + calibration),
