@@ -8,6 +8,7 @@
 #include "data.hpp"
 #include "guess.hpp"
 #include "linear.hpp"
+#include "nanotouch/material.h"
 #include "solve.hpp"
 
 namespace nanotouch
@@ -143,6 +144,39 @@ nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, F
     return NT_OK;
 }
 
+// Where the offset is free, the lowest force does not tell how deep a contact adheres, and a fit may slide to the bound
+// of w.
+constexpr double depths[] = {0.03, 0.1, 0.3, 1.0}; // pull-off to start from, over the span of the forces
+constexpr double lowest_at = -0.8;                 // of the pull-off: where the lowest force may lie
+
+bool slid_off(const nt_fit_options &options, const nt_fit_result &found)
+{
+    const nt_fit_start &offset = options.parameter[NT_FIT_FORCE_OFFSET],
+                       &work = options.parameter[NT_FIT_WORK_OF_ADHESION];
+    return options.model != NT_FIT_CUSTOM && is_free(options, NT_FIT_WORK_OF_ADHESION) && std::isnan(work.initial) &&
+           !offset.fixed && offset.sigma == 0.0 && (!found.converged || !found.identifiable[NT_FIT_WORK_OF_ADHESION]);
+}
+
+void try_depths(const nt_fit_options &options, const nt_fit_data &data, Found *best)
+{
+    double lowest = data.force[0], highest = data.force[0];
+    for (long i = 0; i < data.count; i++) {
+        lowest = std::min(lowest, data.force[i * data.force_stride]);
+        highest = std::max(highest, data.force[i * data.force_stride]);
+    }
+    nt_fit_options tried = options;
+    nt_fit_start &offset = tried.parameter[NT_FIT_FORCE_OFFSET], &work = tried.parameter[NT_FIT_WORK_OF_ADHESION];
+    const double per_work = nt_fit_describe(options.model).pull_off * NT_PI * options.radius;
+    for (const double depth : depths) {
+        const double pull_off = depth * (highest - lowest);
+        work.initial = std::clamp(pull_off / per_work, work.minimum, work.maximum);
+        offset.initial = std::clamp(lowest - lowest_at * pull_off, offset.minimum, offset.maximum);
+        Found found;
+        if (run_from(tried, data, std::nan(""), &found) == NT_OK && found.cost < best->cost)
+            *best = found;
+    }
+}
+
 void write_result(const nt_fit_options &options, const Found &found, nt_fit_result *result)
 {
     *result = found.result;
@@ -155,6 +189,8 @@ nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_res
     Found found;
     const nt_status status = has_several_minima(options) ? run_from_all(options, data, &found)
                                                          : run_from(options, data, std::nan(""), &found);
+    if (status == NT_OK && !has_several_minima(options) && slid_off(options, found.result))
+        try_depths(options, data, &found);
     if (status == NT_OK)
         write_result(options, found, result);
     return status;
