@@ -17,6 +17,15 @@ namespace nanotouch
 namespace
 {
 
+// Whether a fit that stopped tells nothing of its own law: it slid along a valley of chi^2.
+bool is_lost(const nt_fit_options &options, const nt_fit_result &result)
+{
+    for (int p = 0; p < NT_FIT_OWN; p++)
+        if (is_free(options, p) && result.identifiable[p])
+            return false;
+    return !result.converged;
+}
+
 void write_message(const nt_fit_options &options, nt_fit_result *result)
 {
     char *text = result->message;
@@ -24,6 +33,9 @@ void write_message(const nt_fit_options &options, nt_fit_result *result)
                              result->converged ? "converged after %d iterations"
                                                : "stopped after %d iterations without convergence",
                              result->iterations);
+    if (is_lost(options, *result))
+        used += std::snprintf(text + used, static_cast<std::size_t>(NT_FIT_MESSAGE - used),
+                              ": other values fit as well (a stiff contact shows the cantilever)");
     if (!result->residuals_are_noise)
         used +=
             std::snprintf(text + used, static_cast<std::size_t>(NT_FIT_MESSAGE - used),

@@ -212,3 +212,21 @@ def test_adhesion_of_points_that_end_in_contact() -> None:
         errors.append(np.log(found.values["work_of_adhesion"] / work)
                       / (found.sigma["work_of_adhesion"] / found.values["work_of_adhesion"]))  # fmt: skip
     assert np.std(errors) == pytest.approx(1.0, abs=0.25)
+
+
+def test_a_fit_that_slides_along_a_valley_says_so() -> None:
+    """1 to 1000 GPa under 0.03 N/m: the points show the lever, and E* and w together fit as well at any size."""
+    lost = []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        contact = nt.contact.Contact(20e-9, 10.0 ** (9 + seed % 4), 0.05)
+        force = np.linspace(-0.9, 15.0, 400) * 4.7e-9
+        seen = force + 4.7e-11 * rng.standard_normal(force.size)
+        base = nt.contact.indentation("jkr", force, contact) + force / 0.03
+        found = nt.fit.fit_points(base, seen, "jkr", radius=20e-9, spring_constant=0.03, fit_offset=False)
+        if not any(found.identifiable[name] for name in ("effective_modulus", "work_of_adhesion")):
+            assert "not determined by these data: effective_modulus, work_of_adhesion" in found.message
+            lost.append(found)
+    stopped = [found for found in lost if found.status == "not converged"]
+    assert stopped
+    assert all("other values fit as well" in found.message for found in stopped)

@@ -54,6 +54,8 @@ class PointsFit:
     converged: bool
     torn: bool
     status: Status
+    message: str = ""
+    """how the fit ended, and what these points do not tell, in words"""
 
 
 def fit_points(
@@ -179,4 +181,5 @@ def _result(found: dict[str, Any], options: Any, torn: bool) -> PointsFit:
         converged=found["converged"],
         torn=torn,
         status=status,
+        message=found["message"],
     )

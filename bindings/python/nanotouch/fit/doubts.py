@@ -76,7 +76,8 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
         reason = "the model does not describe the curve"
         notes.append("the model is wrong for this curve: none of its parameters is a property of the sample")
     if "not_converged" in flagged:
-        notes.append("the fit stopped before it converged")
+        lost = "" if any(identifiable.values()) else ": other values fit as well, so that none of these is a result"
+        notes.append(f"the fit stopped before it converged{lost}")
     return Doubts(identifiable, notes, reason)
 
 
