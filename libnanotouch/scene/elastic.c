@@ -13,16 +13,17 @@
 #include "scene/terms/term.h"
 #include "scene/yielding/yield.h"
 
-#define BESIDE 0.409  /* 1.025/sqrt(2 pi) */
-#define SLOPE 3.0     /* the stiffness is off by so much more than the force, at most */
-#define UNDER 0.637   /* u E* sqrt(2 R l)/F, at most: 2/pi, of a pressure that is even over l */
-#define WIDER 0.3     /* u grows by so much e */
-#define HALF 0.55     /* of F, in deep contact */
-#define GAPS 1.1      /* ratio of gaps that are looked at */
-#define NEAREST 1e-13 /* [m] */
-#define FARTHEST 1e-2 /* [m] */
-#define DEEPER 1.05   /* than the largest load */
-#define MOST_OF_W 0.5 /* share of w that may be wrong */
+#define BESIDE 0.409    /* 1.025/sqrt(2 pi) */
+#define SLOPE 3.0       /* the stiffness is off by so much more than the force, at most */
+#define UNDER 0.637     /* u E* sqrt(2 R l)/F, at most: 2/pi, of a pressure that is even over l */
+#define WIDER 0.3       /* u grows by so much e */
+#define HALF 0.55       /* of F, in deep contact */
+#define GAPS 1.1        /* ratio of gaps that are looked at */
+#define NEAREST 1e-13   /* [m] */
+#define FARTHEST 1e-2   /* [m] */
+#define DEEPER 1.05     /* than the largest load */
+#define INSIDE_FOLD 0.2 /* of the range of adhesion: nearer, the loss over that range tells more */
+#define MOST_OF_W 0.5   /* share of w that may be wrong */
 
 nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap)
 {
@@ -71,6 +72,18 @@ double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s)
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
         return SLOPE * share * ratio * s->all_k / fmax(ratio * fabs(s->k), scale);
     return share * ratio * s->all_F / fmax(ratio * fabs(s->F), scale);
+}
+
+double nt_plan_jump_gap(const nt_plan *plan)
+{
+    double gap = FARTHEST;
+    while (gap > NEAREST) {
+        const nt_elastic_sum s = nt_elastic_sum_at(plan, gap / GAPS);
+        if (isinf(share_of(plan, &s)))
+            break;
+        gap /= GAPS;
+    }
+    return gap;
 }
 
 double nt_elastic_hold(const nt_plan *plan)
@@ -266,12 +279,12 @@ static double error_of_neck(const nt_plan *plan)
     return NT_SAMPLED * worst;
 }
 
-/* One of 2 DEPTHS + 1 indentations, from where the bound begins beside the fold to the largest load: they crowd at the
- * fold and beside first touch, since stiffness and radius go as roots there. */
+/* One of 2 DEPTHS + 1 indentations, from so far inside the fold to the largest load: they crowd there and `beside`
+ * first touch, since stiffness and radius go as roots there. */
 enum { DEPTHS = 48 };
-static double depth_at(const nt_plan *plan, double beside, int i)
+static double depth_at(const nt_plan *plan, double inside, double beside, int i)
 {
-    const double fold = beside - plan->release_gap;
+    const double fold = inside - plan->release_gap;
     const double touch = fmax(plan->maugis.folds.touch_indentation * plan->maugis.indentation_scale + beside, fold);
     const double t = fabs((double)i / DEPTHS - 1.0), deepest = fmax(plan->largest_indentation, touch), s = 1.0 - t;
     const double before = fmax(touch - 2.0 * beside, fold);
@@ -290,22 +303,23 @@ static double error_of_radius(const nt_plan *plan, int tails)
         return INFINITY;
     double worst = 0.0;
     for (int i = 0; i <= 2 * DEPTHS; ++i) {
-        const double d = depth_at(plan, beside, i), a = radius_with(plan, 0.0, d);
+        const double d = depth_at(plan, beside, beside, i), a = radius_with(plan, 0.0, d);
         const double wider = radius_with(plan, more, d + u) - a, narrower = a - radius_with(plan, -more, d - u);
         worst = fmax(worst, fmax(fabs(wider), fabs(narrower)) / fmax(a, plan->scale));
     }
     return NT_SAMPLED * worst * nt_plan_largest_unit(plan, NT_QUANTITY_RADIUS);
 }
 
-/* Of its stiffness: what an indentation more or less by the displacement under it does, beside its folds. */
+/* Of its stiffness: what an indentation more or less by the displacement under it does, but near where it lets go. */
 static double error_of_stiffness(const nt_plan *plan)
 {
     const double u = under_all(plan, 0), beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan);
+    const double inside = INSIDE_FOLD * plan->length;
     double worst = 0.0;
     if (u == 0.0 || isinf(beside) || nt_plan_contact_form(plan) != NT_FORM_EXACT)
         return 0.0;
     for (int i = 0; i <= 2 * DEPTHS; ++i) {
-        const double d = depth_at(plan, beside, i), k = contact_with(plan, 0.0, d).k;
+        const double d = depth_at(plan, fmax(inside, beside), beside, i), k = contact_with(plan, 0.0, d).k;
         const double more = contact_with(plan, 0.0, d + u).k - k, less = k - contact_with(plan, 0.0, d - u).k;
         worst = fmax(worst, fmax(fabs(more), fabs(less)) / fmax(fabs(k), plan->scale));
     }

@@ -133,6 +133,8 @@ double nt_plan_share(const nt_plan *plan, double error);
  * exponential. */
 #define NT_ELASTIC_JUMP 0.55
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
+/* The gap below which the surface would jump to a pull [m]. */
+double nt_plan_jump_gap(const nt_plan *plan);
 /* Whether contact is that of the layer, and not of a half-space. */
 static inline int nt_plan_solves_layer(const nt_plan *plan)
 {

@@ -15,7 +15,9 @@
 
 static const char DEMANDED[] = "demand.relative_accuracy";
 
-enum { TRIES = 8, SAID = 3 };
+#define FARTHER 1.25  /* ratio of gaps that are tried, where a sample jumps */
+#define FARTHEST 1e-2 /* [m] */
+enum { TRIES = 8, SAID = 3, FARTHER_TRIES = 24 };
 
 const char *nt_form_name(nt_form form)
 {
@@ -153,12 +155,18 @@ static int strongest(const nt_plan *plan)
     return found;
 }
 
+/* What is said of that law. */
+static nt_term_refused words_of(const nt_plan *plan)
+{
+    static const nt_term_refused nameless = NT_TERM_REFUSED("the forces before contact");
+    const nt_term_refused words = nt_term_rows[strongest(plan)]->refused;
+    return words.yields ? words : nameless;
+}
+
 /* By the name of that law. */
 static nt_problem by_law(const nt_plan *plan, double error)
 {
-    const char *law = nt_term_rows[strongest(plan)]->refused;
-    return (nt_problem){law ? law : NT_TERM_REFUSED("the forces before contact"), NT_UNIT_ERROR, error, 0.0,
-                        plan->demand.relative_accuracy};
+    return (nt_problem){words_of(plan).yields, NT_UNIT_ERROR, error, 0.0, plan->demand.relative_accuracy};
 }
 
 /* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
@@ -313,14 +321,35 @@ static void keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *p
     plan->demand = demand;
 }
 
+/* Without adhesion a sample that jumps to a pull has a plan only farther out: names a gap beyond which there is one. */
+static void stay_away(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+{
+    nt_scene scene = *inputs->scene;
+    nt_plan_inputs asked = *inputs;
+    const nt_term_refused words = words_of(plan);
+    asked.scene = &scene;
+    double gap = nt_plan_jump_gap(plan);
+    for (int i = 0; i < FARTHER_TRIES; ++i) {
+        gap = printed(FARTHER * gap);
+        scene.range.minimum_gap = gap;
+        if (nt_plan_begin(plan, &asked, NULL) != NT_OK || decide(plan, &asked, NULL) != NT_OK)
+            continue;
+        *problem = (nt_problem){words.jumps, "m", inputs->scene->range.minimum_gap, gap, FARTHEST};
+        return;
+    }
+}
+
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     nt_problem reason = {0};
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
     nt_status status = decide(plan, inputs, &reason);
     if (status != NT_OK) {
+        const int jumps = plan->source == NT_ADHESION_NONE && !plan->properties && isinf(plan->rigid_error);
         if (problem && is_accuracy(&reason))
             keep_word(plan, inputs, &reason);
+        if (problem && jumps && isinf(reason.value))
+            stay_away(plan, inputs, &reason);
         if (problem)
             *problem = reason;
         return status;

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -309,5 +310,23 @@ def test_what_a_stricter_demand_is_planned_for_a_looser_one_is() -> None:
 def test_a_refusal_names_the_law_where_no_accuracy_can_be_planned(modulus: float, length: float) -> None:
     """A surface that jumps to a pull has no table at all."""
     scene = watery(modulus, 13e-9, 14e-15, hydration_energy=-0.028, hydration_length=length)
-    with pytest.raises(InvalidValue, match="yields to hydration"):
+    with pytest.raises(InvalidValue, match="hydration"):
         scene.plan(1e-6)
+
+
+@pytest.mark.parametrize("modulus", [500.0, 1e5])
+@pytest.mark.parametrize("accuracy", [0.3, 0.01, 1e-4])
+def test_a_lone_attraction_is_planned_as_its_refusal_says(modulus: float, accuracy: float) -> None:
+    """Without adhesion nothing is known beyond the jump: the refusal names a gap before it, and what to give."""
+    scene = watery(modulus, 2.5e-6, 1e-9)
+    scene.adhesion.hamaker_constant = 1e-21
+    with pytest.raises(InvalidValue, match=r"pulled by van der Waals.*adhesion\.work_of_adhesion") as found:
+        scene.plan(accuracy)
+    (named,) = re.findall(r"range\.minimum_gap .* valid is (\S+) \.\.", str(found.value))
+    away = scene.copy()
+    away.range.minimum_gap = float(named)
+    assert away.plan(accuracy).bound <= accuracy
+    jump = (0.5955 * 1e-21 * 2.5e-6**0.5 * 0.75 / modulus) ** (2 / 7)  # of 1/g^3, by centres z0 apart
+    assert 0.5 < (float(named) + scene.adhesion.equilibrium_distance) / jump < 6
+    scene.adhesion.work_of_adhesion = 1.1 * 1e-21 / (12 * np.pi * scene.adhesion.equilibrium_distance**2)
+    assert scene.plan(max(accuracy, 0.02)).bound <= max(accuracy, 0.05)

@@ -21,9 +21,16 @@ typedef struct nt_term_fact {
 } nt_term_fact;
 enum { NT_TERM_FACTS_MAX = 4 };
 
+/* What a plan says that is refused because the sample yields to a law, or jumps to its pull. */
+typedef struct nt_term_refused {
+    const char *yields, *jumps;
+} nt_term_refused;
+
 #define NT_TERM_REFUSED(law)                                                                                           \
-    "sample.youngs_modulus: the sample is so soft that it yields to " law                                              \
-    ", which cannot be planned here (stiffen it, weaken the law, or demand less)"
+    {"sample.youngs_modulus: the sample is so soft that it yields to " law                                             \
+     ", which cannot be planned here (stiffen it, weaken the law, or demand less)",                                    \
+     "range.minimum_gap (nearer this soft sample jumps to the tip, pulled by " law                                     \
+     ", and without adhesion what follows is not planned; give the attraction as adhesion.work_of_adhesion)"}
 
 typedef struct nt_term_row {
     nt_term_words words;
@@ -47,7 +54,7 @@ typedef struct nt_term_row {
     nt_pressure (*pressure)(const void *law, double gap);
 
     /* What a plan says that is refused because the sample yields to it: NT_TERM_REFUSED, by a law with a pressure. */
-    const char *refused;
+    nt_term_refused refused;
 
     /* --- Each of these may be NULL --- */
 
