@@ -150,6 +150,7 @@ set(nanotouch_sources_control
     control/follow.c
     control/guarantee.c
     control/impedance.c
+    control/laws.c
     control/lift.c
     control/margins.c
     control/modes.c
@@ -157,18 +158,23 @@ set(nanotouch_sources_control
     control/own_law.c
     control/paper_stage.c
     control/passivity.c
+    control/passivity_make.c
     control/preflight.c
     control/requests.c
     control/rescale.c
+    control/rescale_make.c
     control/sampled.c
     control/scaling.c
     control/servo.c
     control/settings.c
     control/stability.c
     control/stage_loop.c
+    control/stage_loop_make.c
     control/stuck.c
     control/supervisor.c
+    control/supervisor_make.c
     control/touch.c
+    control/touch_make.c
     control/verdict.c)
 set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c)
 

@@ -9,7 +9,7 @@
 #define FOLLOW_TICKS 3u   /* in a row: HOLD; while lifting: LATCHED */
 #define FOLLOW_SHARE 0.75 /* of the way it was to go lately: room for hysteresis */
 
-void nt_follow_expect(const nt_supervisor *supervisor, nt_supervisor_state *state, double reference)
+void nt_follow_expect(const nt_supervisor *supervisor, nt_supervisor_state *state, nt_sum reference)
 {
     if (isnan(state->expected))
         state->expected = reference;

@@ -8,12 +8,13 @@
 #include "core/clamp.h"
 
 #define FADE_TIME 0.05  /* uncoupled, the force is gone after this [s] */
+#define FADED 1e-6      /* engaged by no more than this it is gone: rounding shall not decide in which tick */
 #define FOUND_SHARE 0.9 /* of the set-point: the surface is found */
 
 /* Moves the reference towards `wanted`, no faster than the stage may go and inside its travel; 1 if it is there. */
-static int move_reference(const nt_touch *touch, nt_touch_state *state, double wanted)
+static int move_reference(const nt_touch *touch, nt_touch_state *state, nt_sum wanted)
 {
-    const double slewed = clamp(wanted, state->reference - touch->stage_step, state->reference + touch->stage_step);
+    const nt_sum slewed = clamp(wanted, state->reference - touch->stage_step, state->reference + touch->stage_step);
     state->reference = clamp(slewed, -touch->stage_end, touch->stage_end);
     if (state->reference == wanted)
         return 1;
@@ -98,7 +99,7 @@ static double run_curve(const nt_touch *touch, nt_touch_state *state)
         if (!moved || state->signals.slave_force >= gains->set_point)
             state->phase = NT_PHASE_UP;
     } else if (state->phase == NT_PHASE_UP) {
-        const double end = state->turn - gains->curve_length;
+        const nt_sum end = state->turn - gains->curve_length;
         const int moved = move_reference(touch, state, greater(end, state->reference - step));
         if (!moved || state->reference <= end)
             state->phase = NT_PHASE_DONE;
@@ -141,8 +142,8 @@ double nt_mode_release(const nt_touch *touch, nt_touch_state *state)
     const nt_signals *signals = &state->signals;
     state->stretch = 0.0;
     state->offset = state->reference - signals->scaling.alpha_p * signals->master_position;
-    const double engaged = state->engaged - touch->period / FADE_TIME;
-    if (!(engaged > 0.0))
+    const nt_sum engaged = state->engaged - touch->period / FADE_TIME;
+    if (!(engaged > FADED))
         return state->engaged = state->coupled_force = 0.0;
     state->coupled_force *= engaged / state->engaged; /* linear in time */
     state->engaged = engaged;

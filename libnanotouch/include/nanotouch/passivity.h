@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "nanotouch/settings.h"
+#include "nanotouch/types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -30,7 +31,7 @@ typedef struct nt_port {
     double position; /* [m] */
 } nt_port;
 typedef struct nt_passivity_state {
-    double energy;  /* swallowed beyond what was due since the last event, at most NT_PASSIVITY_STORE dead zones [J] */
+    nt_sum energy;  /* swallowed beyond what was due since the last event, at most NT_PASSIVITY_STORE dead zones [J] */
     double gain;    /* factor on K_f, 1 .. 0 [-] */
     double damping; /* share of the master's damping that the motor shall add, 0 .. 1 [-] */
     double speed;   /* of the master, filtered [m/s] */

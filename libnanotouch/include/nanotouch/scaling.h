@@ -4,6 +4,7 @@
 #define NANOTOUCH_SCALING_H
 
 #include "nanotouch/settings.h"
+#include "nanotouch/types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,7 +40,7 @@ typedef struct nt_rescale_state {
     nt_scaling wanted; /* by the operator, in contact */
     nt_region region;
     double work;          /* of the tip on the contact, since it was free [J] */
-    double tank;          /* [J] */
+    nt_sum tank;          /* [J] */
     double last_position; /* x_s [m] */
 } nt_rescale_state;
 /* What scales may change by on this rig, from its damping and rate; both have been checked. */

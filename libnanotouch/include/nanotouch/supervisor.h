@@ -85,7 +85,7 @@ typedef struct nt_supervisor_state {
     nt_lift lift;            /* of a stop */
     int presses;             /* in a stop: force shows, or cannot be read */
     int lifts;               /* the stage is told to go up */
-    double reference;        /* where it was told to be [m] */
+    nt_sum reference;        /* where it was told to be [m] */
     double turn;             /* where it should have been when the lift began [m] */
     double stopped;          /* where it should have been when the stop began [m] */
     double lift_force;       /* largest force until it should have turned [N] */
@@ -100,7 +100,7 @@ typedef struct nt_supervisor_state {
 } nt_supervisor_state;
 /* What the supervisor has to know beside the sample. */
 typedef struct nt_situation {
-    double reference;   /* where the stage was told to be [m] */
+    nt_sum reference;   /* where the stage was told to be [m] */
     int moves_sideways; /* the surface may rise and fall: the indentation is not followed */
     int unstable;       /* the passivity observer has used up what it had */
 } nt_situation;

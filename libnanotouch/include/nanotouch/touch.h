@@ -45,26 +45,27 @@ enum { NT_TOUCH_SENT = 256 };
 typedef struct nt_touch_state {
     nt_mode mode, wanted_mode; /* they differ while the force of the old one fades out */
     nt_phase phase;
-    double turn; /* of a curve: where the stage has turned [m] */
+    nt_sum turn; /* of a curve: where the stage has turned [m] */
     nt_supervisor_state supervisor;
     nt_passivity_state passivity;
     nt_rescale_state rescale;
     nt_stage_loop_state stage_loop;
-    nt_signals signals;                     /* what the law is given */
-    double deflections[2];                  /* of the last two valid samples [m] */
-    double reference;                       /* where the stage shall be [m] */
-    double offset;                          /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
-    double stretch;                         /* of the virtual coupling, at the operator's scale [m] */
-    int clutch_open;                        /* the master moves alone */
-    double engaged;                         /* 0 .. 1, fades the force in and out [-] */
-    double motor_force;                     /* last command [N] */
-    double coupled_force;                   /* what is left of the last command given while coupled [N] */
-    double retracted;                       /* lifted so far [m] */
-    double hand_at[2];                      /* x and y of the master when it was last seen [m] */
-    double sideways[2];                     /* how far it has gone since that the tip has not followed yet [m] */
-    double target_x, target_y, target_time; /* lateral set-point [m], time left to get there [s] */
-    double sent[NT_TOUCH_SENT];             /* motor forces of the last ticks, by their number [N] */
-    nt_command command;                     /* last command */
+    nt_signals signals;         /* what the law is given */
+    double deflections[2];      /* of the last two valid samples [m] */
+    nt_sum reference;           /* where the stage shall be [m] */
+    nt_sum offset;              /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
+    double stretch;             /* of the virtual coupling, at the operator's scale [m] */
+    int clutch_open;            /* the master moves alone */
+    nt_sum engaged;             /* 0 .. 1, fades the force in and out [-] */
+    double motor_force;         /* last command [N] */
+    double coupled_force;       /* what is left of the last command given while coupled [N] */
+    nt_sum retracted;           /* lifted so far [m] */
+    double hand_at[2];          /* x and y of the master when it was last seen [m] */
+    double sideways[2];         /* how far it has gone since that the tip has not followed yet [m] */
+    double target_x, target_y;  /* lateral set-point [m] */
+    nt_sum target_time;         /* left to get there [s] */
+    double sent[NT_TOUCH_SENT]; /* motor forces of the last ticks, by their number [N] */
+    nt_command command;         /* last command */
     uint64_t ticks;
 } nt_touch_state;
 

@@ -15,6 +15,10 @@
 extern "C" {
 #endif
 
+/* What adds up over a session. A double also where the touch step is made in single precision (tools/single.py), in
+ * which a slow approach would stand still. */
+typedef double nt_sum;
+
 /* What every law returns. U is a potential of the indentation: F = dU/d(delta), k = dF/d(delta). */
 typedef struct nt_law_value {
     double U; /* energy [J] */
