@@ -72,7 +72,7 @@ def c_program(folder: Path) -> list[str]:
     if compiler is None:
         pytest.skip("no C compiler")
     library = ROOT / "libnanotouch"
-    sources = ["hal/mailbox.c", "hal/shared_memory.c", "hal/capabilities.c", "core/status.c"]
+    sources = ["hal/mailbox.c", "hal/shared_memory.c", "hal/clock.c", "hal/capabilities.c", "core/status.c"]
     flags = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", "-I", str(library / "include"), "-I", str(library)]
     made = folder / "device"
     files = [str(EXAMPLES / "device.c"), *(str(library / source) for source in sources)]
