@@ -71,8 +71,9 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@build/dev/tests/c/test_session_mailbox 1000
 	@$(VENV)/python tests/heavy/guarantee.py
 
-windows:  ## the C tests of the portable core on 64-bit Windows, by MinGW and Wine; some minutes
+windows:  ## a wheel for 64-bit Windows in build/wheels, tested under Wine, and the C tests there; some ten minutes
 	@tools/setup.sh windows
+	@tools/wheel_windows.sh build/wheels
 	@tests/windows/run.sh
 
 macos:  ## the C library and the programs in apps/c for macOS (arm64), compiled and linked by zig; nothing is run

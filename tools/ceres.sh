@@ -3,6 +3,7 @@
 # A Ceres for the wheels: static, on Eigen alone. No SuiteSparse, LAPACK or glog, so nothing under the GPL.
 # Sources come from Debian's pool and are checked by hash. Prints the folder to give to CMake as CMAKE_PREFIX_PATH, which
 # build/deps/ceres links to. Its name has the hash of the recipe below: what was built once is used again.
+# For another system: CXX and CMAKE_TOOLCHAIN_FILE in the environment.
 # Usage: tools/ceres.sh
 set -eu
 cd "$(dirname "$0")/.."
@@ -11,7 +12,7 @@ key=$(sed '1,/^# --- recipe/d' tools/ceres.sh | sha256 | cut -c 1-12)-$(${CXX:-c
 name=ceres-$key
 prefix=$PWD/build/deps/$name
 finish() {
-  ln -sfn "$name" build/deps/ceres
+  [ -n "${CMAKE_TOOLCHAIN_FILE:-}" ] || ln -sfn "$name" build/deps/ceres
   echo "$prefix"
   exit
 }

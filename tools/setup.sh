@@ -24,7 +24,8 @@ elif [ "$profile" = fuzz ]; then
 elif [ "$profile" = wheels ]; then
   packages="build-essential cmake ninja-build python3-venv python3-dev curl ca-certificates xz-utils bzip2"
 elif [ "$profile" = windows ]; then
-  packages="cmake ninja-build gcc-mingw-w64-x86-64-posix wine64 curl ca-certificates xz-utils"
+  packages="cmake ninja-build gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix wine64 python3-venv curl ca-certificates
+    xz-utils bzip2"
 elif [ "$profile" = kernel ]; then
   packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libcmocka-dev linux-source-6.12 flex bison bc
     xz-utils"
