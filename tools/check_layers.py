@@ -23,6 +23,7 @@ USES = {
     "friction": "core contact contact/maugis",
     "manipulation": "core contact contact/maugis friction",
     "surface": "core",
+    "plasticity": "core surface",
     "control": "core",
     "curves": "core",
     "dynamics": "core",
@@ -76,7 +77,7 @@ PYTHON = ROOT / "bindings/python/nanotouch"
 PYTHON_LAYERS = {
     "what all need": "extras _core errors formats units _arrays _io",
     "laws": "contact forces friction lateral",
-    "objects": "manipulation",
+    "objects": "manipulation plasticity",
     "measured": "images curves",
     "what there is": "scene reference scan",
     "a touch": "touch",

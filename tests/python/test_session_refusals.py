@@ -260,6 +260,7 @@ def test_requests_of_clients_are_numbers() -> None:
     assert session.metadata()["events"] == []
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 def test_a_forked_copy_cannot_write_what_its_parent_shows() -> None:
     name = f"forked-{os.getpid()}"
     code = f"""if True:

@@ -41,7 +41,7 @@ _HOMES = {
 #: the public modules by their rooms; all are names of the package: ``nt.margins`` is ``nanotouch.touch.margins``
 _ROOMS = {
     "": "batch contact curves errors fit forces friction images lateral "
-    "manipulation maps plots reference scan scene touch units",
+    "manipulation maps plasticity plots reference scan scene touch units",
     "contact.": "geometry",
     "scan.": "flow scanner tapping",
     "scene.": "interaction materials plan presets surface surface_file view",

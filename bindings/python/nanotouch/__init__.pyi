@@ -12,6 +12,7 @@ from nanotouch import images as images
 from nanotouch import lateral as lateral
 from nanotouch import manipulation as manipulation
 from nanotouch import maps as maps
+from nanotouch import plasticity as plasticity
 from nanotouch import plots as plots
 from nanotouch import reference as reference
 from nanotouch import scan as scan
@@ -120,6 +121,7 @@ __all__ = [
     "materials",
     "operator",
     "plan",
+    "plasticity",
     "plots",
     "presets",
     "record",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from nanotouch._frames import *  # noqa: F403
 from nanotouch._friction import *  # noqa: F403
 from nanotouch._particle import *  # noqa: F403
+from nanotouch._plasticity import *  # noqa: F403
 from nanotouch._scan import *  # noqa: F403
 
 Floats = NDArray[float64]

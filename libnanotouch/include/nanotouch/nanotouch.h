@@ -24,6 +24,7 @@
 #include "nanotouch/observer.h"
 #include "nanotouch/particle.h"
 #include "nanotouch/plan.h"
+#include "nanotouch/plasticity.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scan.h"
 #include "nanotouch/scene.h"
