@@ -19,3 +19,9 @@ for model in ("hertz", "dmt", "jkr", "maugis"):
     print(f"{model:7} pull-off {nt.contact.pull_off_force(model, contact) * 1e9:.2f} nN")
 axes.set(xlabel="gap (nm)", ylabel="force on the tip (nN)", ylim=(-8, 15))
 axes.legend()
+
+# %%
+# The same in C prints the curves:
+#
+# .. literalinclude:: ../examples/gallery/plot_01_four_models.c
+#    :language: c

@@ -20,3 +20,9 @@ whole = nt.forces.vdw_tip(gap, **tip, half_angle=0.35, height=10e-6)
 axes.loglog(gap * 1e9, -whole.F * 1e9, label="sphere and cone")
 axes.set(xlabel="gap (nm)", ylabel="attraction (nN)")
 axes.legend()
+
+# %%
+# The same in C prints the curves:
+#
+# .. literalinclude:: ../examples/gallery/plot_06_van_der_waals.c
+#    :language: c

@@ -18,3 +18,9 @@ for millimolar in (1, 10, 100):
     axes.semilogy(gap * 1e9, law.F * 1e12, label=f"{millimolar} mM, 1/κ = {length * 1e9:.2g} nm")
 axes.set(xlabel="gap (nm)", ylabel="repulsion (pN)", ylim=(1e-2, 1e3))
 axes.legend()
+
+# %%
+# The same in C prints the curves:
+#
+# .. literalinclude:: ../examples/gallery/plot_10_double_layer.c
+#    :language: c

@@ -21,3 +21,9 @@ figure, axes = plt.subplots()
 axes.loglog(rates, margins)
 axes.axhline(1.0, ls=":", color="k")
 axes.set(xlabel="rate of the loop (Hz)", ylabel="stability margin (R1)")
+
+# %%
+# The same in C prints the curves:
+#
+# .. literalinclude:: ../examples/gallery/plot_26_margins.c
+#    :language: c

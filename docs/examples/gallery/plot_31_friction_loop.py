@@ -21,3 +21,9 @@ for force in (-4e-9, 0.0, 20e-9):
     axes.plot(1e9 * x, -1e9 * path.force_x, label=f"{1e9 * force:g} nN: {1e18 * heat:.0f} aJ")
 figure.legend(title="load: heat of a cycle", loc="outside upper center", ncols=3)
 axes.set(xlabel="way of the support (nm)", ylabel="lateral force (nN)")
+
+# %%
+# The same in C prints the curves:
+#
+# .. literalinclude:: ../examples/gallery/plot_31_friction_loop.c
+#    :language: c

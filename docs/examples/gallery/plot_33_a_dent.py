@@ -23,3 +23,9 @@ for load in (50e-9, 100e-9, 200e-9):
 loops.set(xlabel="indentation (nm)", ylabel="force (nN)")
 loops.legend(title="load: heat")
 section.set(xlabel="place (nm)", ylabel="height that stays (nm)")
+
+# %%
+# The same in C prints the curves:
+#
+# .. literalinclude:: ../examples/gallery/plot_33_a_dent.c
+#    :language: c
