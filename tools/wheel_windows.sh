@@ -52,4 +52,6 @@ command -v "$wine" >/dev/null || { echo "not tested: Wine is missing" && exit 0;
 "$work/venv/bin/pip" download -q --no-deps --only-binary :all: --platform win_amd64 -d "$work/numpy" "numpy<2.2"
 for wheel in "$work"/numpy/*.whl "$work"/made/*.whl; do "$host" -m zipfile -e "$wheel" "$work/site"; done
 export WINEPREFIX="$PWD/build/windows/wine" WINEDEBUG=-all PYTHONPATH="Z:$work/site" PYTHONUTF8=1
-echo | "$wine" "$windows/python.exe" tests/install/wheel.py fit | cat # Wine's Python wants pipes
+# Wine's Python wants pipes on all three streams
+said=$(echo | "$wine" "$windows/python.exe" tests/install/wheel.py fit 2>&1) || { echo "$said" >&2 && exit 1; }
+echo "$said"
