@@ -192,8 +192,10 @@ static void press_dent(const nt_indentation *indentation, nt_indentation_state *
 
 nt_status nt_indentation_advance(const nt_indentation *indentation, nt_indentation_state *state, double depth)
 {
-    if (!isfinite(depth))
+    if (!isfinite(depth) || !isfinite(state->dent_radius) || !isfinite(state->dissipated))
         return NT_E_NOT_FINITE;
+    if (!(state->dent_radius >= 0.0 && state->dent_radius <= NT_INDENTATION_LARGEST_RADIUS * indentation->radius))
+        return NT_E_RANGE;
     const nt_first_loading dent = nt_indentation_first(indentation, state->dent_radius);
     if (depth <= fmax(dent.indentation, 0.0)) {
         state->indentation = depth;

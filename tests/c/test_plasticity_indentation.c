@@ -101,6 +101,10 @@ static void refuses_what_is_no_step(void **unused)
     assert_int_equal(nt_indentation_advance(&gold, &state, NAN), NT_E_NOT_FINITE);
     assert_int_equal(nt_indentation_advance(&gold, &state, 10e-9), NT_E_RANGE);
     assert_true(state.dissipated == heat && state.indentation == 1e-9);
+    nt_indentation_state made_up[] = {
+        {.dent_radius = NAN}, {.dissipated = NAN}, {.dent_radius = -1e-9}, {.dent_radius = 11e-9}};
+    for (int i = 0; i < 4; ++i)
+        assert_int_equal(nt_indentation_advance(&gold, &made_up[i], 1e-9), i < 2 ? NT_E_NOT_FINITE : NT_E_RANGE);
     nt_problem problem;
     assert_int_equal(nt_indentation_check(&(nt_indentation){20e-9, 77e9, -1.0}, &problem), NT_E_RANGE);
     assert_string_equal(problem.field, "yield_strength");

@@ -121,6 +121,12 @@ def test_pull_off_follows_the_dent() -> None:
         (lambda: Scratching(20e-9, 1e9).groove(-1e-9), "load"),
         (lambda: Displacement(0.8, 0.3), "debris"),
         (lambda: Specimen(np.zeros(5), 1e-9), "dimensions"),
+        (lambda: Specimen(FLAT, (1e-9,)), "pixel_size"),  # type: ignore[arg-type]
+        (lambda: Specimen(FLAT, -1e-9), "dx = -1e-09 m"),
+        (lambda: Specimen(FLAT * math.nan, 1e-9), "heights"),
+        (lambda: GOLD.run([0.0], state=nt.plasticity.IndentationState(dent_radius=-1e-9)), "dent_radius = -1e-09 m"),
+        (lambda: dented().scratch((1e-8, 1e-8, 0.0), (2e-8, 2e-8), 1e-8), "start"),  # type: ignore[arg-type]
+        (lambda: dented().indent(math.nan, 1e-8, 1e-7), "place"),
         (lambda: Specimen(FLAT, PITCH).indent(0.0, 0.0, 1e-9), "indentation is missing"),
         (lambda: Specimen(FLAT, PITCH).scratch((0.0, 0.0), (1e-9, 0.0), 1e-9), "scratching is missing"),
         (lambda: Specimen(FLAT, PITCH).undo(), "undone"),
@@ -179,7 +185,8 @@ def test_events_are_replayed_and_undone_bit_by_bit() -> None:
     untouched = specimen.heights.copy()
     for x, load in ((40e-9, 100e-9), (46e-9, 150e-9), (40e-9, 120e-9)):
         assert specimen.indent(x, 35e-9, load) is not None
-    assert specimen.scratch((30e-9, 30e-9), (50e-9, 45e-9), 40e-9) is not None
+    end = np.array([50e-9, 45e-9])  # an event holds plain numbers, whatever it was given
+    assert specimen.scratch((30e-9, 30e-9), end, np.float32(40e-9)) is not None  # type: ignore[arg-type]
     assert specimen.scratch((50e-9, 45e-9), (30e-9, 30e-9), 30e-9) is None
     again = Specimen(untouched, PITCH)
     for event in json.loads(json.dumps([event.as_dict() for event in specimen.events])):

@@ -73,11 +73,15 @@ static py::tuple tuple_of(const nt_edit &edit)
 
 static nt_height_map map_of(const Array &heights, double dy, double dx)
 {
-    const nt_height_map map = {heights.data(), static_cast<long>(heights.shape(1)), static_cast<long>(heights.shape(0)),
-                               dx, dy};
+    return {heights.data(), static_cast<long>(heights.shape(1)), static_cast<long>(heights.shape(0)), dx, dy};
+}
+
+// All of a map; the edits below look at their own pixels only.
+static void check_map(const Array &heights, double dy, double dx)
+{
+    const nt_height_map map = map_of(heights, dy, dx);
     nt_problem problem{};
     raise_on(nt_height_map_check(&map, &problem), problem, "heights");
-    return map;
 }
 
 static py::tuple extent(const nt_displacement &self, const Array &heights, double dy, double dx, const Numbers &imprint)
@@ -137,6 +141,7 @@ void bind_plasticity(py::module_ &module)
         .def(py::init(&displacement_of))
         .def("extent", &extent)
         .def("edit", &edit)
+        .def_static("check_map", &check_map)
         .def_static("volume", [](const Numbers &imprint) {
             const nt_imprint made = imprint_of(imprint);
             return nt_imprint_volume(&made);

@@ -63,8 +63,8 @@ typedef struct nt_indentation_state {
     double dissipated;     /* heat so far, grows only [J] */
 } nt_indentation_state;
 /* Moves the apex to an indentation [m], below 0 above the sample. The path is unique, so its parts give the same as the
- * whole; the work of the hand is stored + dissipated. NT_OK; NT_E_NOT_FINITE, or NT_E_RANGE (a contact radius above
- * R/2), with the state left alone. */
+ * whole; the work of the hand is stored + dissipated. NT_OK; NT_E_NOT_FINITE, or NT_E_RANGE (a contact or a dent with a
+ * radius above R/2), with the state left alone. */
 NT_API NT_REALTIME nt_status nt_indentation_advance(const nt_indentation *indentation, nt_indentation_state *state,
                                                     double depth);
 /* Many steps: the state after each; stops at the first that is refused. */

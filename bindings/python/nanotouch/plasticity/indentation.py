@@ -141,6 +141,11 @@ class Indentation:
             raise InvalidValue("indentation: at least one point, in one dimension")
         _check("indentation", depths, "m", self.largest_indentation, least=-np.inf)
         begun = IndentationState() if state is None else state
+        if not 0.0 <= begun.dent_radius <= _LARGEST * self.radius:
+            span = f"0 .. {_LARGEST * self.radius:g} m"
+            raise InvalidValue(
+                f"state.dent_radius = {begun.dent_radius:g} m: valid is {span}, half of the tip's radius"
+            )
         states = self._core.run(np.array(begun, dtype=float), depths)
         _, force, radius, dent, stored, dissipated = states.T
         return IndentationPath(force, radius, dent, stored, dissipated, IndentationState(*map(float, states[-1])))

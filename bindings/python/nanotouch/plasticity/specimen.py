@@ -143,8 +143,9 @@ class Specimen:
         self._heights = np.array(as_floats(heights, "heights"), order="C")
         if self._heights.ndim != 2:
             raise InvalidValue(f"heights has {self._heights.ndim} dimensions: valid is 2, (ny, nx)")
-        self.pixel_size = pixel_size if isinstance(pixel_size, tuple) else (pixel_size, pixel_size)
+        self.pixel_size = _pair("pixel_size", (pixel_size, pixel_size) if np.ndim(pixel_size) == 0 else pixel_size)
         """(dy, dx) [m]"""
+        _core.Displacement.check_map(self._heights, *self.pixel_size)
         self.indentation = indentation
         self.scratching = scratching
         self.displacement = Displacement() if displacement is None else displacement
@@ -167,6 +168,8 @@ class Specimen:
         """Press at (x, y) [m] with a load [N] and let go. None: it stays elastic, nothing changes."""
         if self.indentation is None:
             raise InvalidValue("indentation is missing: Specimen(..., indentation=Indentation(...))")
+        x, y = _pair("place", (x, y))
+        load = float(load)
         made = self.indentation.at_load(load)
         dent = self._dent_at(x, y)
         if (dent is not None and load <= dent.load) or not made.dissipated > 0.0:
@@ -180,6 +183,7 @@ class Specimen:
         """Plough from start to end, (x, y) [m], under a load [N]. None: a groove is there that carries this load."""
         if self.scratching is None:
             raise InvalidValue("scratching is missing: Specimen(..., scratching=Scratching(...))")
+        start, end, load = _pair("start", start), _pair("end", end), float(load)
         if start == end:
             raise InvalidValue("start and end are one place: to press there is indent")
         groove = self.scratching.groove(load)
@@ -213,9 +217,12 @@ class Specimen:
         displacement: Displacement | None = None,
     ) -> Event:
         how = self.displacement if displacement is None else displacement
-        row, count, column, across = how._core.extent(self._heights, *self.pixel_size, after)[:4]
-        rows, columns = (row, row + count), (column, column + across)
-        kept = self._heights[slice(*rows), slice(*columns)].copy()  # a dent that grows covers what it was
+        boxes = [
+            how._core.extent(self._heights, *self.pixel_size, one)[:4] for one in (before, after) if one is not None
+        ]
+        rows = min(box[0] for box in boxes), max(box[0] + box[1] for box in boxes)
+        columns = min(box[2] for box in boxes), max(box[2] + box[3] for box in boxes)
+        kept = self._heights[slice(*rows), slice(*columns)].copy()
         edit = how._core.edit(self._heights, *self.pixel_size, before, after)
         event = Event(kind, load, before, after, how, lateral_force, *edit[4:], rows, columns)
         self._events.append(event)
@@ -238,3 +245,11 @@ class Specimen:
             if event.after[:4] in ((*start, *end), (*end, *start)):
                 return event
         return None
+
+
+def _pair(name: str, values: Any) -> tuple[float, float]:
+    """Two lengths that are numbers."""
+    pair = as_floats(values, name)
+    if pair.shape != (2,) or not np.isfinite(pair).all():
+        raise InvalidValue(f"{name} = {values!r}: valid are two lengths in m")
+    return float(pair[0]), float(pair[1])
