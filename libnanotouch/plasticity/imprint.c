@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/plasticity.h"
 
@@ -47,7 +48,7 @@ nt_status nt_displacement_check(const nt_displacement *displacement, nt_problem 
 
 double nt_imprint_volume(const nt_imprint *imprint)
 {
-    const double length = hypot(imprint->end[0] - imprint->start[0], imprint->end[1] - imprint->start[1]);
+    const double length = hypotenuse(imprint->end[0] - imprint->start[0], imprint->end[1] - imprint->start[1]);
     return imprint->depth * imprint->radius * (NT_PI * imprint->radius / 2.0 + 4.0 / 3.0 * length);
 }
 
@@ -57,7 +58,7 @@ static double away(const nt_imprint *imprint, double x, double y)
     const double wx = imprint->end[0] - imprint->start[0], wy = imprint->end[1] - imprint->start[1];
     const double px = x - imprint->start[0], py = y - imprint->start[1], length2 = wx * wx + wy * wy;
     const double t = length2 > 0.0 ? fmin(fmax((px * wx + py * wy) / length2, 0.0), 1.0) : 0.0;
-    return hypot(px - t * wx, py - t * wy);
+    return hypotenuse(px - t * wx, py - t * wy);
 }
 
 /* At a distance from the line, in shares of the radius: depth of the dent over its largest, and the ridge unscaled. */

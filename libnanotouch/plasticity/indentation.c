@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/plasticity.h"
 
@@ -101,7 +102,7 @@ static double x_at_force(double f)
 {
     double unused;
     if (!(f > 4.0 / 3.0 * ONSET * ONSET * ONSET))
-        return cbrt(0.75 * f);
+        return cube_root(0.75 * f);
     if (f >= force_at(PLASTIC_FROM, &unused))
         return sqrt(f / (NT_PI * PLASTIC));
     return between(force_at, f);
