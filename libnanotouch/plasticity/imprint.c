@@ -85,7 +85,7 @@ static nt_status check(const nt_imprint *imprint, const nt_displacement *displac
     if (!(imprint->depth >= 0.0 && imprint->depth <= limits))
         return refuse(problem, (nt_problem){"imprint.depth", "m", imprint->depth, 0.0, limits});
     if (!(imprint->radius >= NT_IMPRINT_PIXELS * pitch && imprint->radius <= limits))
-        return refuse(problem, (nt_problem){"imprint.radius (4 pixels at least)", "m", imprint->radius,
+        return refuse(problem, (nt_problem){"imprint.radius (6 pixels at least)", "m", imprint->radius,
                                             NT_IMPRINT_PIXELS * pitch, limits});
     if (displacement->piled_up > 0.0 && displacement->ridge_width * imprint->radius < 2.0 * pitch)
         return refuse(problem, (nt_problem){"ridge_width (2 pixels at least)", "", displacement->ridge_width,
@@ -175,7 +175,7 @@ nt_status nt_imprint_edit(double *heights, const nt_height_map *map, const nt_im
                           nt_problem *problem)
 {
     nt_edit area, old;
-    if (heights == NULL || change == NULL)
+    if (heights == NULL || change == NULL || edit == NULL)
         return NT_E_ARGUMENT;
     const nt_imprint *before = change->before, *after = change->after;
     const nt_displacement *displacement = change->displacement;

@@ -84,6 +84,23 @@ def test_limits() -> None:
     assert GOLD.at_load(0.999 * GOLD.yield_load).dissipated == 0.0 < GOLD.at_load(1.01 * GOLD.yield_load).dissipated
 
 
+def test_beside_finite_elements() -> None:
+    """Fits of others to finite elements of a sphere, w in units of its value at the onset.
+
+    Kogut and Etsion (2002), Table 1: force and contact area; Etsion, Kligerman and Kadin (2005): the residual depth.
+    They yield by von Mises with 2.8 Y at the end, here it is 3 Y: the force differs by up to 9 %, the area by 11 %.
+    """
+    onset = GOLD.at_load(GOLD.yield_load)
+    w = np.geomspace(1.001, 110.0, 200)
+    found = GOLD.at_depth(w * onset.indentation)
+    force = np.where(w < 6.0, 1.03 * w**1.425, 1.40 * w**1.263)
+    area = np.where(w < 6.0, 0.93 * w**1.136, 0.94 * w**1.146)
+    np.testing.assert_allclose(found.force / onset.force, force, rtol=0.09)
+    np.testing.assert_allclose((found.contact_radius / onset.contact_radius) ** 2, area, rtol=0.11)
+    residual = (1.0 - w**-0.28) * (1.0 - w**-0.69)
+    np.testing.assert_allclose(found.residual_depth / found.indentation, residual, atol=0.05)
+
+
 def test_a_loop_and_its_parts() -> None:
     depth = np.concatenate([np.linspace(0, 1e-9, 400), np.linspace(1e-9, 0, 400), np.linspace(0, 1.2e-9, 400)])
     path = GOLD.run(depth)
@@ -131,7 +148,8 @@ def test_pull_off_follows_the_dent() -> None:
         (lambda: Specimen(FLAT, PITCH).scratch((0.0, 0.0), (1e-9, 0.0), 1e-9), "scratching is missing"),
         (lambda: Specimen(FLAT, PITCH).undo(), "undone"),
         (lambda: Specimen(FLAT, PITCH, indentation=GOLD).indent(1e-9, 1e-9, 100e-9), "ridge"),
-        (lambda: Specimen(FLAT, 5e-9, indentation=GOLD).indent(500e-9, 500e-9, 100e-9), "4 pixels"),
+        (lambda: Specimen(FLAT, 5e-9, indentation=GOLD).indent(500e-9, 500e-9, 100e-9), "6 pixels"),
+        (lambda: Event.from_dict({"load": 1e-7, "force": 1e-7}), "after, before, .* force, .* missing or unknown"),
         (lambda: nt.plasticity.worn_volume(1e-4, -1.0, 1.0, 1e9), "load"),
         (lambda: nt.plasticity.worn_flat(0.0, 1e-27), "radius"),
     ],

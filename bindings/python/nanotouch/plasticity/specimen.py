@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, Self
 
@@ -104,7 +104,10 @@ class Event:
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Self:
-        """What :meth:`as_dict` gave, also after JSON."""
+        """What :meth:`as_dict` gave, also after JSON. `InvalidValue` where a key is missing or unknown."""
+        known = {field.name for field in fields(cls)}
+        if wrong := sorted(known ^ values.keys()):
+            raise InvalidValue(f"event: {', '.join(wrong)} missing or unknown; valid are {', '.join(sorted(known))}")
         pairs = {name: tuple(values[name]) for name in ("rows", "columns")}
         before = None if values["before"] is None else Imprint(*values["before"])
         parts = {"before": before, "after": Imprint(*values["after"]), **pairs}
