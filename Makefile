@@ -4,15 +4,19 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help docs docs-links demo test wheels page check fuzz damage corpus heavy windows macos kernel bench lint format clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz damage corpus heavy windows macos kernel bench lint format clean
 
 help:  ## what there is to make
-	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
 demo:  ## touch the built-in grating, or a file: make demo IMAGE=path OUT=folder
 	@tools/setup.sh demo
 	@$(VENV)/nanotouch touch $(if $(IMAGE),"$(IMAGE)") $(if $(OUT),--out "$(OUT)")
 	@$(VENV)/python -m nanotouch_app.live.offer $(if $(IMAGE),"$(IMAGE)")
+
+demo-paper:  ## the paper's work from scan to push as one film, build/demo-paper/workflow.gif; a minute
+	@tools/setup.sh demo
+	@$(VENV)/nanotouch workflow --out build/demo-paper --overwrite
 
 docs:  ## the site, with its gallery and the examples of its pages run; warnings are errors; build/docs/index.html
 	@tools/setup.sh docs

@@ -48,6 +48,7 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
     ),
     "export": (("nanotouch export result/recording.mcap --out touch.csv", "a recording as a table, with units"),),
     "recover": (("nanotouch recover cut.mcap --out whole.mcap", "what a killed touch has left"),),
+    "workflow": (("nanotouch workflow --pixels 48", "the paper's work from scan to push, roughly, as a film"),),
     "reproduce": (("nanotouch reproduce --figure 5", "a figure of the paper, and which statements hold"),),
     "tradeoff": (("nanotouch tradeoff --quick", "speed against accuracy on this machine, roughly"),),
     "bench": (("nanotouch bench --quick", "what each law costs, roughly"),),

@@ -26,9 +26,9 @@ from nanotouch_app.output import as_json
 
 COMMANDS = (
     "touch", "live", "scan", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review",
-    "recalibrate", "export", "recover", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
+    "recalibrate", "export", "recover", "workflow", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
 )  # fmt: skip
-STUDIES = ("reproduce", "tradeoff")
+STUDIES = ("workflow", "reproduce", "tradeoff")
 EPILOG = """exit status:
   0    done
   1    done, and the answer is no (margins: refused; rig probe: too slow; fit: no curve), or nobody read it

@@ -24,6 +24,7 @@ SURFACES: dict[str, Callable[[], nt.Topography]] = {
     "dots": nt.surface.dots,
     "flat": nt.surface.flat,
     "spikes": nt.surface.spikes,
+    "spheres": nt.surface.spheres,
 }
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
 MOVING = ("scan", "topography")

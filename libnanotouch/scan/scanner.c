@@ -104,7 +104,7 @@ static double play(double hysteresis, double stroke, double share)
 nt_pose nt_scanner_at(const nt_scanner *scanner, long line, double share, int back, double time)
 {
     const nt_raster *raster = &scanner->scan.raster;
-    const double along = back ? 1.0 - share : share, across = ((double)line + 0.5) / raster->lines;
+    const double along = (back ? 1.0 - share : share) - 0.5 / raster->pixels, across = (double)line / raster->lines;
     const double lag = play(raster->hysteresis, raster->width, along);
     const double x = raster->x + along * raster->width + (back ? lag : -lag);
     const double y = raster->y + across * raster->height - play(raster->hysteresis, raster->height, across);

@@ -66,8 +66,8 @@ def test_a_slow_image_is_the_surface(mode: Literal["contact", "tapping", "phase"
     )
     scanner = nt.Scanner(scene.plan(0.1, surface=surface), settings, rig())
     image = scanner.run()
-    at = (np.arange(32) + 0.5) * 0.9e-6 / 32
-    y = (np.arange(2) + 0.5) * 0.05e-6
+    at = np.arange(32) * 0.9e-6 / 32
+    y = np.arange(2) * 0.05e-6
     expected = np.asarray(surface.height(at[None, :], y[:, None])) + 0.05 * y[:, None]
     lag = scanner.speed * 2e6 * np.pi * 5e-9 / scanner.integral
     for channels in image[:2]:

@@ -628,9 +628,9 @@ class ScanZloopValues(TypedDict, total=False):
 
 class ScanRaster(Section):
     x: float
-    """x of the lower left corner [m], -0.001 .. 0.001"""
+    """x of the first pixel [m], -0.001 .. 0.001"""
     y: float
-    """y of the lower left corner [m], -0.001 .. 0.001"""
+    """y of the first pixel [m], -0.001 .. 0.001"""
     width: float
     """width of the scan [m], 1e-09 .. 0.001"""
     height: float

@@ -30,7 +30,7 @@ typedef struct nt_zloop {
 
 /* Lines along x, each there (trace) and back (retrace), from y upwards. */
 typedef struct nt_raster {
-    double x, y;           /* lower left corner [m] */
+    double x, y;           /* of the first pixel: the mean over half a pixel on either side [m] */
     double width, height;  /* [m] */
     double pixels, lines;  /* [-] */
     double line_rate;      /* lines, there and back, per second [Hz] */

@@ -15,6 +15,7 @@ from .filters import gaussian, median
 from .level_report import Candidate, LevelReport, LevelStep
 from .levelling import level, prepare
 from .masking import mask_above, mask_grains, mask_image
+from .moving import moved
 from .parameters import Parameter, parameters
 from .particles import GrainTable, grains
 from .pictures import draw
@@ -65,6 +66,7 @@ __all__ = [
     "mask_image",
     "median",
     "mip_levels",
+    "moved",
     "parameters",
     "planes",
     "prepare",

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from .particle import Particle, ParticleContact, ParticlePath, ParticleState
-from .pushing import Bench, Lost, Pushed, arrange, push
+from .pushing import Bench, Lost, Pushed, Track, arrange, push
 
 __all__ = [
     "Bench",
@@ -14,6 +14,7 @@ __all__ = [
     "ParticlePath",
     "ParticleState",
     "Pushed",
+    "Track",
     "arrange",
     "push",
 ]

@@ -19,6 +19,8 @@ from nanotouch.errors import Error, InvalidValue
 
 from .particle import Particle, ParticleState
 
+_SHOWN = 8  # points of a push in the track
+
 
 class Lost(Error):
     """A look did not find the particle, or it hangs on the tip."""
@@ -60,6 +62,20 @@ class Bench:
                 raise InvalidValue(f"{name} = {getattr(self, name):g}: valid is 0 and above")
 
 
+class Track(NamedTuple):
+    """Where tip and particle went, of the sample, and what the tip felt; one row per point. Empty for a task without
+    moves."""
+
+    time: Floats
+    """[s]"""
+    tip: Floats
+    """x, y, z of its apex [m]"""
+    particle: Floats
+    """x, y, z of its centre [m]"""
+    force: Floats
+    """x, y, z, on the tip [N]"""
+
+
 class Pushed(NamedTuple):
     """How a task ended. Positions are of the sample, without its drift [m]."""
 
@@ -79,6 +95,8 @@ class Pushed(NamedTuple):
     """where each look found it, x and y [m]"""
     spun: float
     """how far it has turned about the vertical [rad]"""
+    track: Track
+    """of all moves"""
 
 
 @dataclass
@@ -93,6 +111,7 @@ class _World:
     lines: int = 0
     drifted: Floats = field(default_factory=lambda: np.zeros(2))
     heading: float = 0.0
+    rows: list[Floats] = field(default_factory=list)
 
     def wait(self, duration: float) -> None:
         """The direction of the drift wanders by 3 degrees in a second (root of time)."""
@@ -106,13 +125,19 @@ class _World:
         """Along points x, y, z of the stage; the sample drifts under each part of the way."""
         off = self.bench.position_noise * self.random.standard_normal(2)
         last = np.array(self.state.tip) + np.array([*self.drifted, 0.0])
-        for point in points:  # five at least
+        for point in points:
             self.wait(float(np.linalg.norm(point - last)) / self.bench.speed)
             x, y = point[:2] - self.drifted + off
             path = self.particle.run(x, y, point[2], state=self.state)
             self.state, last = path.state, point
+            self.rows.append(np.array([self.time, x, y, point[2], *path.position[-1], *path.force[-1]]))
         if path.happened("lifted")[-1]:
             raise Lost("the particle hangs on the tip, which holds it more than the substrate does")
+
+    def track(self) -> Track:
+        """Of all moves so far."""
+        rows = np.array(self.rows).reshape(-1, 10)
+        return Track(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:])
 
     def line(self, centre: Floats, axis: int, at: Floats) -> float:
         """Where a line along an axis, through `centre` of the stage, shows the middle of a sphere that is at `at`."""
@@ -148,6 +173,7 @@ def push(
     target: tuple[float, float],
     *,
     start: tuple[float, float] = (0.0, 0.0),
+    seen: tuple[float, float] | None = None,
     bench: Bench | None = None,
     tolerance: float = 30e-9,
     longest: float | None = None,
@@ -161,6 +187,8 @@ def push(
     particle : Particle
     target, start : tuple of float
         x and y on the sample [m].
+    seen : tuple of float, optional
+        Where a map shows it [m]: there the operator looks first; by default at ``start``.
     bench : Bench, optional
         What disturbs; the defaults if left out.
     tolerance : float
@@ -183,7 +211,7 @@ def push(
     check_between("longest", longest, "m", above=0.0)
     world = _world(particle, bench or Bench(), start, seed)
     mark = np.array([start[0], start[1] - 10.0 * particle.radius])
-    return _Operator(world, mark, np.array(target), longest).work(tolerance, most)
+    return _Operator(world, mark, np.array(target), longest).work(seen or start, tolerance, most)
 
 
 def _world(particle: Particle, bench: Bench, start: tuple[float, float], seed: int) -> _World:
@@ -202,10 +230,10 @@ class _Operator:
     longest: float
     ahead: Floats = field(default_factory=lambda: np.zeros(2))
 
-    def work(self, tolerance: float, most: int) -> Pushed:
+    def work(self, seen: tuple[float, float], tolerance: float, most: int) -> Pushed:
         world = self.world
         drift = world.look(self.mark, self.mark) - self.mark
-        found = self._find(np.array(world.state.position[:2]) + drift)
+        found = self._find(np.array(seen) + drift)
         looks, pushes = [found - drift], 0
         while (left := float(np.linalg.norm(self.target - looks[-1]))) > tolerance and pushes < most:
             self._push(found, drift)
@@ -218,7 +246,7 @@ class _Operator:
         position = np.array(world.state.position[:2])
         error = float(np.linalg.norm(position - self.target))
         spun = float(world.particle.run(*world.state.tip, state=world.state).turned[-1, 2])
-        return Pushed(position, error, left, pushes, world.lines, world.time, np.array(looks), spun)
+        return Pushed(position, error, left, pushes, world.lines, world.time, np.array(looks), spun, world.track())
 
     def _find(self, guess: Floats) -> Floats:
         return self.world.look(guess, np.array(self.world.state.position[:2]))
@@ -239,12 +267,11 @@ class _Operator:
     def _push(self, found: Floats, drift: Floats) -> None:
         """Down behind the particle, against it, back, and up. Of the stage."""
         particle, way = self.world.particle, self._wanted(found - drift)
-        unit = way / np.linalg.norm(way)
-        reach, low, high = self._reach(), self._height(), 4.0 * particle.radius
-        points = [(-reach - 0.3 * particle.radius, high), (-reach - 0.3 * particle.radius, low)]
-        points += [(-reach + float(np.linalg.norm(way)), low), (-reach - 0.3 * particle.radius, low)]
-        points += [(-reach - 0.3 * particle.radius, high)]
-        self.world.move(np.array([[*(found + along * unit), z] for along, z in points]))
+        length = float(np.linalg.norm(way))
+        behind, low, high = -self._reach() - 0.3 * particle.radius, self._height(), 4.0 * particle.radius
+        against = np.linspace(behind, length - self._reach(), _SHOWN + 1)[1:]
+        points = [(behind, high), (behind, low), *((along, low) for along in against), (behind, low), (behind, high)]
+        self.world.move(np.array([[*(found + along * way / length), z] for along, z in points]))
 
     def _height(self) -> float:
         return 0.3 * self.world.particle.radius

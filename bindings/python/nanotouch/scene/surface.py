@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -241,6 +242,24 @@ def spikes(
     away = along - pitch * np.round(along / pitch)
     depth = rounded_cone(np.hypot(away[:, None], away), radius, half_angle)
     return Topography(heights=np.maximum(height - depth, 0.0), pixel_size=(pixel, pixel), name="spikes")
+
+
+def spheres(
+    size: float = 4.8e-6,
+    pixels: int = 480,
+    *,
+    radius: float = 250e-9,
+    centres: Sequence[tuple[float, float]] = ((1.2e-6, 2.4e-6), (3.6e-6, 1.2e-6), (3.4e-6, 3.8e-6)),
+) -> Topography:
+    """Spheres of one ``radius`` [m] that lie on a flat at ``centres`` [m], as latex on glass; seen from above."""
+    pixel = _pixel(size, pixels)
+    check_between("radius", radius, "m", above=0.0, up_to=1e-3)
+    along = np.arange(pixels) * pixel
+    heights = np.zeros((pixels, pixels))
+    for x, y in centres:
+        inside = radius**2 - ((along - x)[None, :] ** 2 + (along - y)[:, None] ** 2)
+        heights = np.maximum(heights, np.where(inside > 0.0, radius + np.sqrt(np.maximum(inside, 0.0)), 0.0))
+    return Topography(heights=heights, pixel_size=(pixel, pixel), name="spheres")
 
 
 def flat(size: float = 6e-6, pixels: int = 64) -> Topography:
