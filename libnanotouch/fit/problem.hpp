@@ -93,6 +93,10 @@ class Residuals : public ceres::EvaluationCallback
     {
         return *model_;
     }
+    const std::vector<Point> &points() const
+    {
+        return points_;
+    } // of the data, where the residuals are valid
     Parameters values() const
     {
         return coordinates_.values(x_.data());

@@ -196,7 +196,28 @@ void write_result(const nt_fit_options &options, const Found &found, nt_fit_resu
     write_message(options, result);
 }
 
-nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
+// Derivatives by the parameters themselves, in SI.
+void write_points(const nt_fit_options &options, const double *value, const std::vector<Point> &points,
+                  nt_fit_point *written)
+{
+    Parameters per;
+    for (int p = 0; p < NT_FIT_PARAMETERS; p++)
+        per[static_cast<std::size_t>(p)] = is_logarithmic(options, p) ? value[p] : 1.0;
+    for (std::size_t i = 0; i < points.size(); i++) {
+        written[i] = {points[i].force, points[i].indentation, {}, points[i].held};
+        for (std::size_t p = 0; p < NT_FIT_PARAMETERS; p++)
+            written[i].gradient[p] = points[i].gradient[p] / per[p];
+    }
+}
+
+void write_points(const nt_fit_options &options, const Found &found, std::vector<nt_fit_point> *points)
+{
+    points->resize(found.points.size());
+    write_points(options, found.result.value, found.points, points->data());
+}
+
+nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
+              std::vector<nt_fit_point> *points)
 {
     Found found;
     const nt_status status = has_several_minima(options) ? run_from_all(options, data, &found)
@@ -205,6 +226,8 @@ nt_status run(const nt_fit_options &options, const nt_fit_data &data, nt_fit_res
         try_depths(options, data, &found);
     if (status == NT_OK)
         write_result(options, found, result);
+    if (status == NT_OK && points)
+        write_points(options, found, points);
     return status;
 }
 
@@ -216,7 +239,8 @@ bool has_several_minima(const nt_fit_options &options)
            std::isnan(options.parameter[NT_FIT_COHESIVE_RANGE].initial);
 }
 
-nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result)
+nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
+                   std::vector<nt_fit_point> *points)
 {
     Parameters start;
     for (int p = 0; p < NT_FIT_PARAMETERS; p++)
@@ -224,9 +248,20 @@ nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fi
             std::isnan(result->value[p]) ? options.parameter[p].initial : result->value[p];
     Found found;
     const nt_status status = Fit(options, data, start).run(&found);
-    if (status == NT_OK)
+    if (status == NT_OK) {
         write_result(options, found, result);
+        write_points(options, found, points);
+    }
     return status;
+}
+
+nt_status run_with_points(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
+                          std::vector<nt_fit_point> *points, nt_problem *problem)
+{
+    nt_status status = nt_fit_check(&options, problem);
+    if (status == NT_OK)
+        status = check_data(options, &data, problem);
+    return status == NT_OK ? run(options, data, result, points) : status;
 }
 
 } // namespace nanotouch
@@ -239,7 +274,7 @@ nt_status nt_fit_run(const nt_fit_options *options, const nt_fit_data *data, nt_
     if (status != NT_OK)
         return status;
     try {
-        return nanotouch::run(*options, *data, result);
+        return nanotouch::run(*options, *data, result, nullptr);
     } catch (const std::bad_alloc &) {
         return NT_E_NO_MEMORY;
     } catch (...) {
@@ -273,12 +308,8 @@ nt_status nt_fit_model_n(const nt_fit_options *options, const double value[NT_FI
         nt_status status = prepare(options, value, &model);
         if (status == NT_OK)
             status = model->points_at(*data, &points);
-        for (std::size_t i = 0; i < points.size() && status == NT_OK; i++) {
-            point[i] = {points[i].force, points[i].indentation, {}, points[i].held};
-            for (int p = 0; p < NT_FIT_PARAMETERS; p++)
-                point[i].gradient[p] = points[i].gradient[static_cast<std::size_t>(p)] /
-                                       (nanotouch::is_logarithmic(*options, p) ? value[p] : 1.0);
-        }
+        if (status == NT_OK)
+            nanotouch::write_points(*options, value, points, point);
         return status;
     } catch (const std::bad_alloc &) {
         return NT_E_NO_MEMORY;

@@ -120,7 +120,7 @@ void Fit::fill_values(nt_fit_result *result) const
 
 void Fit::fill(Found *found) const
 {
-    *found = {{}, noise_variance(residuals_, coordinates_, loss_.get()), 0.0};
+    *found = {{}, noise_variance(residuals_, coordinates_, loss_.get()), 0.0, residuals_.points()};
     for (long i = 0; i < residuals_.count(); i++)
         found->cost += residuals_.residual(i) * residuals_.residual(i);
     fill_values(&found->result);

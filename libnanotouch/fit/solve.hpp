@@ -9,7 +9,8 @@ namespace nanotouch
 
 struct Found {
     nt_fit_result result;
-    double variance, cost; // of a residual, and the sum of all squares, in the residuals' unit
+    double variance, cost;     // of a residual, and the sum of all squares, in the residuals' unit
+    std::vector<Point> points; // of the model at the result
 };
 
 // Nothing about the fit outlives this object.
@@ -38,7 +39,11 @@ class Fit
 
 // Whether fits from several starts have to be compared.
 bool has_several_minima(const nt_fit_options &options);
+// nt_fit_run, and the model at every point, which it has computed anyway.
+nt_status run_with_points(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
+                          std::vector<nt_fit_point> *points, nt_problem *problem);
 // A fit like the one whose result is there, with other weights, from its values on.
-nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result);
+nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
+                   std::vector<nt_fit_point> *points);
 
 } // namespace nanotouch

@@ -82,18 +82,16 @@ void Solving::let_vary()
 
 nt_status Solving::fit()
 {
-    const nt_status status = nt_fit_run(&solution_.options, &data_, &solution_.fit, problem_);
-    return status == NT_OK ? look() : status;
+    const nt_status status = run_with_points(solution_.options, data_, &solution_.fit, &points_, problem_);
+    if (status == NT_OK)
+        look();
+    return status;
 }
 
 // What the fit leaves over.
-nt_status Solving::look()
+void Solving::look()
 {
-    points_.resize(static_cast<std::size_t>(data_.count));
-    const nt_status status = nt_fit_model_n(&solution_.options, solution_.fit.value, &data_, points_.data());
-    if (status == NT_OK)
-        scatter_ = std::max(scatter(), correlated_noise());
-    return status;
+    scatter_ = std::max(scatter(), correlated_noise());
 }
 
 // Standard deviation of one point such that N independent ones would scatter as the mean of these N does [N].
@@ -149,10 +147,11 @@ nt_status Solving::fit_with_scatter()
     if (has_several_minima(solution_.options))
         return fit();
     nt_fit_result found = solution_.fit;
-    if (run_near(solution_.options, data_, &found) != NT_OK)
+    if (run_near(solution_.options, data_, &found, &points_) != NT_OK)
         return fit();
     solution_.fit = found;
-    return look();
+    look();
+    return NT_OK;
 }
 
 nt_status Solving::fit_without_false_tear()

@@ -25,7 +25,7 @@ class Solving
     void know(nt_fit_parameter parameter, double value, double sigma);
     nt_status fit();
     nt_status fit_with_scatter();
-    nt_status look();
+    void look();
     nt_status fit_without_false_tear();
     nt_status contradicts_tear(bool *contradicts) const;
     nt_status leave_steep_part();
