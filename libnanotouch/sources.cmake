@@ -154,6 +154,7 @@ set(nanotouch_sources_control
     control/laws.c
     control/lift.c
     control/margins.c
+    control/margins_sideways.c
     control/modes.c
     control/motor.c
     control/own_law.c
@@ -168,6 +169,7 @@ set(nanotouch_sources_control
     control/scaling.c
     control/servo.c
     control/settings.c
+    control/sideways.c
     control/stability.c
     control/stage_loop.c
     control/stage_loop_make.c
@@ -200,6 +202,7 @@ set(nanotouch_sources_session
     session/composition.c
     session/frame.c
     session/frames.c
+    session/grip.c
     session/halves.c
     session/hazard.c
     session/history.c

@@ -17,7 +17,7 @@ from pathlib import Path
 LIBRARY = Path(__file__).parent.parent / "libnanotouch"
 PUBLIC = LIBRARY / "include/nanotouch"
 HEADERS = ["status", "types", "rig", "settings", "scaling", "passivity", "stage_loop", "servo", "supervisor", "touch"]
-PRIVATE = ["follow", "lift", "modes", "motor", "stuck"]
+PRIVATE = ["follow", "lift", "modes", "motor", "sideways", "stuck"]
 SOURCES = [
     "motor",
     "laws",
@@ -29,6 +29,7 @@ SOURCES = [
     "stuck",
     "supervisor",
     "modes",
+    "sideways",
     "touch",
     "requests",
 ]

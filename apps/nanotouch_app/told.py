@@ -70,12 +70,18 @@ def _felt(session: nt.Session, facts: dict[str, Any]) -> list[str]:
 
 
 def _rubbed(session: nt.Session, facts: dict[str, Any]) -> list[str]:
-    """Friction is in the simulation and not in the hand."""
+    """Friction, and who feels it."""
     friction, largest = session.plan.friction, facts["largest_sideways_force_N"]
     if not friction.included:
         return []
     seen = "" if largest is None else f"{largest * 1e9:.1f} nN at most, "
-    return [f"sideways       {seen}friction up to {friction.force * 1e9:.3g} nN; not felt: no motor acts sideways"]
+    sideways = session.sideways()
+    felt = "not felt: no motor acts sideways"
+    if session.settings.gains.projection_x != 0.0 or session.settings.gains.projection_y != 0.0:
+        felt = "felt along z, by the projection"
+    elif sideways.loop_stiffness > 0.0:
+        felt = f"felt in x and y: margin {sideways.least:.3g} ({sideways.rule})"
+    return [f"sideways       {seen}friction up to {friction.force * 1e9:.3g} nN; {felt}"]
 
 
 def _safe(session: nt.Session, facts: dict[str, Any]) -> list[str]:

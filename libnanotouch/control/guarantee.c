@@ -130,6 +130,21 @@ static double outlasting(const nt_guarantee *g, const basis *b, const nt_hazard 
     return most - still;
 }
 
+/* Friction and slope can hold the tip with no more than this. A lever that shows it is stopped at the limit: x and y
+ * stand within D, and what the sample meanwhile presses the more acts along its slope. */
+static double lateral_force(const nt_guarantee *found, const basis *b, const nt_rig *rig, const nt_settings *settings,
+                            const nt_hazard *hazard)
+{
+    const nt_limits *limits = &settings->limits;
+    const double most = hazard->friction + hazard->slope * found->force;
+    if (!(rig->probe.lateral_stiffness > 0.0))
+        return most;
+    const double grows = hazard->stick + hazard->slope * hazard->slope * b->k_eff + hazard->curvature * found->force;
+    const double way = limits->lateral_speed * (b->reaction + 2.0 / settings->gains.rate);
+    const double pressed = hazard->slope * fmax(0.0, found->force - limits->force);
+    return fmin(most, limits->lateral_force + grows * way + pressed);
+}
+
 nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings, const nt_hazard *hazard)
 {
     const nt_limits *limits = &settings->limits;
@@ -157,6 +172,7 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     const double still = limits->force + found.calibration + found.motion + found.ringing + found.noise + found.tare;
     found.snap_in = fmax(outlasting(&found, &b, hazard, still), hazard->pull_off_force); /* of either sign */
     found.force = still + found.snap_in;
+    found.lateral_force = lateral_force(&found, &b, rig, settings, hazard);
     add_failures(&found, &b, rig, limits);
     /* first touch is noticed where the force leaves the noise, and read with it; a tip that snaps in goes over what
      * that stretches the lever by */

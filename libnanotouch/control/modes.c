@@ -34,7 +34,7 @@ static double couple(const nt_touch *touch, nt_touch_state *state)
 {
     const nt_gains *gains = &touch->settings.gains;
     const nt_signals *signals = &state->signals;
-    const double reflected = signals->scaling.alpha_f * signals->slave_force;
+    const double reflected = signals->scaling.alpha_f * state->projected_force;
     if (gains->coupling_stiffness == 0.0)
         return reflected;
     const double drag = gains->coupling_damping * gains->rate; /* over a period [N/m] */

@@ -9,6 +9,7 @@
 #include "control/lift.h"
 #include "control/stuck.h"
 #include "core/clamp.h"
+#include "core/same_bits.h"
 
 #define STALE_HOLD_PERIODS 2.0
 #define STALE_RETRACT_PERIODS 5.0
@@ -39,6 +40,13 @@ static int is_within_sideways(const nt_supervisor *supervisor, const nt_sample *
            is_within(sample->master_position[NT_Y], supervisor->master_range);
 }
 
+/* A lever that shows lateral forces does so always. */
+static int shows_sideways(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    return supervisor->lateral_stiffness == 0.0 ||
+           (isfinite(sample->deflection[NT_X]) && isfinite(sample->deflection[NT_Y]));
+}
+
 /* Numbers that no sensor of this rig can give (twice its range) are as bad as no numbers. The deflection is judged by
  * its force. */
 static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
@@ -49,8 +57,8 @@ static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
            (!supervisor->leads_sideways || is_within_sideways(supervisor, sample)) &&
            (gauge == 0.0 || is_within(sample->operator_force[NT_Z], 2.0 * gauge)) &&
            is_within(sample->stage_position[NT_Z], supervisor->stage_range) && isfinite(sample->deflection[NT_Z]) &&
-           isfinite(sample->stage_position[NT_X]) && isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) &&
-           sample->age >= 0.0;
+           shows_sideways(supervisor, sample) && isfinite(sample->stage_position[NT_X]) &&
+           isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) && sample->age >= 0.0;
 }
 
 static nt_state blame(nt_supervisor_state *state, uint32_t reason, nt_state verdict)
@@ -81,6 +89,13 @@ static int tells_force(const nt_supervisor *supervisor, const nt_supervisor_stat
            state->stuck_run < NT_STUCK_SAMPLES;
 }
 
+static int is_held_too_hard(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    const double stiffness = supervisor->lateral_stiffness;
+    return stiffness > 0.0 && stiffness * hypotenuse(sample->deflection[NT_X], sample->deflection[NT_Y]) >
+                                  supervisor->limits.lateral_force;
+}
+
 static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
                             int saturated)
 {
@@ -90,6 +105,8 @@ static nt_state judge_force(const nt_supervisor *supervisor, nt_supervisor_state
         verdict = blame(state, NT_REASON_SATURATED, NT_RETRACT);
     if (fabs(force) > supervisor->limits.force)
         verdict = blame(state, NT_REASON_FORCE_LIMIT, NT_RETRACT);
+    if (is_held_too_hard(supervisor, sample))
+        verdict = blame(state, NT_REASON_LATERAL, NT_RETRACT);
     if (supervisor->gauge_range > 0.0 && fabs(sample->operator_force[NT_Z]) >= supervisor->gauge_range)
         state->reasons |= NT_REASON_OPERATOR_CLIPPED;
     return verdict;

@@ -34,7 +34,8 @@ const char *nt_reason_name(uint32_t reason)
                                         "indentation limit",
                                         "control law gave no number",
                                         "gain backed off",
-                                        "stale master"};
+                                        "stale master",
+                                        "lateral force limit"};
     for (uint32_t bit = 0; bit < sizeof names / sizeof *names; ++bit)
         if (reason == 1u << bit)
             return names[bit];
@@ -78,6 +79,7 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
     return (nt_supervisor){.period = period,
                            .master_period = rig->master.rate > 0.0 ? greater(period, 1.0 / rig->master.rate) : period,
                            .spring_constant = probe->spring_constant,
+                           .lateral_stiffness = probe->lateral_stiffness,
                            .deflection_range = nt_probe_deflection_range(probe),
                            .free_force = probe->spring_constant * (FREE_SIGMA * sigma + FREE_STEPS * step),
                            .master_range = rig->master.travel,

@@ -7,6 +7,7 @@
 #include "control/lift.h"
 #include "control/modes.h"
 #include "control/motor.h"
+#include "control/sideways.h"
 #include "core/clamp.h"
 #include "core/same_bits.h"
 
@@ -81,7 +82,7 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
     const int coupled = touch->settings.gains.coupling_stiffness > 0.0;
     const double tip_step =
         coupled ? signals->master_position - passivity->last_hand.position : stage_step / scaling->alpha_p;
-    const nt_port tip = {scaling->alpha_f * (coupled ? signals->felt_force : signals->slave_force),
+    const nt_port tip = {scaling->alpha_f * (coupled ? signals->felt_force : state->projected_force),
                          passivity->last_tip.position + tip_step};
     if (state->supervisor.reasons & NT_REASON_OPERATOR_CLIPPED) { /* the hand gives more than the gauge can tell */
         passivity->last_hand = hand;
@@ -92,27 +93,17 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
     state->signals.gain_factor = passivity->gain;
 }
 
-/* How far the hand has gone sideways since the tip last followed; nothing while they are uncoupled. */
-static void follow_hand_sideways(nt_touch_state *state, const nt_sample *sample)
-{
-    for (int i = NT_X; i < NT_Z; ++i) {
-        const double step = sample->master_position[i] - state->hand_at[i];
-        if (isfinite(step) && state->engaged > 0.0 && !state->clutch_open)
-            state->sideways[i] += step;
-        state->hand_at[i] = sample->master_position[i];
-    }
-}
-
 static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
     nt_signals *signals = &state->signals;
     const double stage_step = sample->stage_position[NT_Z] - signals->stage_position;
     follow_motion(touch, signals, sample);
     if (touch->leads_sideways)
-        follow_hand_sideways(state, sample);
+        nt_sideways_follow_hand(touch, state, sample);
     signals->operator_force = touch->rig.master.gauge ? sample->operator_force[NT_Z] : 0.0;
     signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
     signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
+    nt_sideways_read(touch, state, sample);
     rescale(touch, state);
     const int closes = touch->rig.master.motor; /* without a motor no loop closes through the hand */
     if (closes && state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
@@ -143,39 +134,6 @@ static double lift_of(const nt_touch *touch, nt_touch_state *state)
     return state->supervisor.reasons & NT_REASON_STUCK ? PROBE_STEPS * touch->rig.stage.resolution : 0.0;
 }
 
-/* A master of three axes leads the tip sideways, as it presses: from where it was last coupled, no faster than the
- * lateral limit. */
-static void follow_sideways(const nt_touch *touch, nt_touch_state *state)
-{
-    const double most = touch->settings.limits.lateral_speed * touch->period;
-    double *stage = state->command.stage_position, way[2];
-    for (int i = NT_X; i < NT_Z; ++i)
-        way[i] = state->signals.scaling.alpha_p * state->sideways[i];
-    const double length = hypotenuse(way[NT_X], way[NT_Y]), share = length > most ? most / length : 1.0;
-    for (int i = NT_X; i < NT_Z; ++i) {
-        const double wanted = stage[i] + share * way[i];
-        stage[i] = clamp(wanted, touch->borders[i][0], touch->borders[i][1]);
-        if (stage[i] != wanted)
-            state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
-        state->sideways[i] *= 1.0 - share; /* what is left is owed */
-    }
-    state->target_x = stage[NT_X];
-    state->target_y = stage[NT_Y];
-}
-
-static void move_lateral(const nt_touch *touch, nt_touch_state *state)
-{
-    if (touch->leads_sideways) {
-        follow_sideways(touch, state);
-        return;
-    }
-    const nt_sum left = state->target_time;
-    const double share = left > touch->period ? touch->period / left : 1.0;
-    state->command.stage_position[NT_X] += share * (state->target_x - state->command.stage_position[NT_X]);
-    state->command.stage_position[NT_Y] += share * (state->target_y - state->command.stage_position[NT_Y]);
-    state->target_time = greater(0.0, left - touch->period);
-}
-
 /* Mode and law, or what a stop leaves; the motor force that is wanted. */
 static double act(const nt_touch *touch, nt_touch_state *state)
 {
@@ -184,7 +142,7 @@ static double act(const nt_touch *touch, nt_touch_state *state)
         if (isfinite(force)) {
             state->supervisor.law_run = 0;
             state->retracted = 0.0;
-            move_lateral(touch, state);
+            nt_sideways_move(touch, state);
             return force;
         }
         nt_supervisor_fail_law(&state->supervisor);
@@ -223,6 +181,7 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     if (state->supervisor.invalid_run == 0)
         observe(touch, state, sample);
     drive_motor(touch, state, act(touch, state));
+    nt_sideways_drive(touch, state);
     state->command.stage_position[NT_Z] = drive_stage(touch, state, sample);
     if (state->passivity.gain < 1.0)
         state->supervisor.reasons |= NT_REASON_BACKED_OFF;

@@ -34,6 +34,8 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
     const nt_limits *limits = &settings->limits;
     const double saturation = rig->probe.spring_constant * nt_probe_deflection_range(&rig->probe);
     const int needs_gauge = settings->control.choice != NT_CONTROL_IMPEDANCE && settings->gains.force_gain > 0.0;
+    const int projects = rig->master.axes == 1.0 && rig->probe.lateral_stiffness > 0.0;
+    const double share = fabs(settings->gains.projection_x) + fabs(settings->gains.projection_y);
     const nt_problem promises[] = {
         {"gains.rate", "Hz", settings->gains.rate, 0.0, stale_rate(&rig->converters)},
         {"limits.force", "N", limits->force, 0.0, saturation},
@@ -41,6 +43,8 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
         {"limits.stage_speed", "m/s", limits->stage_speed, 0.0, rig->stage.max_speed},
         {"limits.retract_speed", "m/s", limits->retract_speed, 0.0, rig->stage.max_speed},
         {"limits.motor_force", "N", limits->motor_force, 0.0, rig->master.max_force},
+        {"gains.projection_x, _y (of a master of one axis, over a lever of known lateral_stiffness)", "",
+         projects ? 0.0 : share, 0.0, 0.0},
         {"gains.force_gain", "", needs_gauge && !rig->master.gauge ? settings->gains.force_gain : 0.0, 0.0, 0.0},
     };
     for (size_t i = 0; i < sizeof promises / sizeof promises[0]; ++i) {
@@ -59,6 +63,12 @@ static double spike_of(const nt_rig *rig, const nt_settings *settings)
     const double motion = settings->limits.stage_speed + settings->limits.lateral_speed;
     const double noise = rig->probe.sensitivity * hypotenuse(rig->probe.noise / 6.0, rig->probe.resolution);
     return SPIKE_SIGMA * noise + SPIKE_MOTION * motion / settings->gains.rate;
+}
+
+/* A master of three axes with motors, over a lever that shows what holds the tip. */
+static int feels_sideways(const nt_rig *rig)
+{
+    return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->master.motor && rig->probe.lateral_stiffness > 0.0;
 }
 
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
@@ -82,6 +92,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .law = nt_control_law_of(&settings->control),
                      .stage_loop = nt_stage_loop_make(&rig->stage, &equivalent.gains),
                      .leads_sideways = rig->master.axes > 1.0 && rig->stage.axes > 1.0,
+                     .feels_sideways = feels_sideways(rig),
                      .borders = {{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}},
                      .delay = (uint32_t)lesser(round(settings->gains.delay), NT_TOUCH_SENT - 1.0),
                      .force_filter = low_pass_factor(settings->gains.force_filter, period),

@@ -8,14 +8,24 @@
 #include "session/state.h"
 
 /* A law of one's own is not tried where the margin is overridden: it may have a memory. */
-nt_verdict nt_composition_judge(const nt_composition *composition, const nt_settings *settings, nt_mode mode,
-                                nt_margins *margins)
+nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *settings, nt_mode mode)
 {
+    nt_margins *margins = &composition->margins;
+    nt_sideways_margins *sideways = &composition->sideways;
+    *sideways = (nt_sideways_margins){
+        .margin = HUGE_VAL, .exact_limit = HUGE_VAL, .exact_frequency = NAN, .coupled_margin = HUGE_VAL};
     nt_settings judged = *settings;
     if (!(composition->setup.minimum_margin > 0.0) && judged.control.choice == NT_CONTROL_OWN)
         judged.control.law = NULL;
+    const nt_rig *rig = &composition->touch.rig;
     const double stiffness = nt_terrain_plan(composition->terrain)->maximum_stiffness;
-    return nt_margins_judge(&composition->touch.rig, &judged, stiffness, mode, margins);
+    judged.gains.alpha_f *= nt_margins_projected(rig, settings, stiffness, &composition->grip);
+    const nt_verdict along_z = nt_margins_judge(rig, &judged, stiffness, mode, margins);
+    if (mode != NT_MODE_TOUCH || !composition->touch.feels_sideways)
+        return along_z;
+    *sideways = nt_margins_sideways(rig, settings, stiffness, &composition->grip, margins);
+    const nt_verdict found = nt_verdict_sideways(sideways);
+    return along_z.margin <= found.margin ? along_z : found;
 }
 
 int nt_composition_allows(const nt_composition *composition, double margin)
@@ -27,7 +37,9 @@ int nt_composition_allows(const nt_composition *composition, double margin)
 static nt_status promise(nt_composition *made, nt_problem *problem)
 {
     const nt_session_setup *setup = &made->setup;
-    const nt_verdict verdict = nt_composition_judge(made, &setup->settings, setup->mode, &made->margins);
+    if (setup->rig.probe.lateral_stiffness > 0.0)
+        made->grip = nt_grip_of(nt_terrain_plan(made->terrain), made->reach.slope, setup->settings.limits.force);
+    const nt_verdict verdict = nt_composition_judge(made, &setup->settings, setup->mode);
     if (!nt_composition_allows(made, verdict.margin))
         return nt_problem_set(problem, verdict.field, "", verdict.margin, setup->minimum_margin, INFINITY);
     const nt_plan *plan = nt_terrain_plan(made->terrain);

@@ -16,6 +16,7 @@
 #include "nanotouch/preflight.h"
 #include "nanotouch/servo.h"
 #include "nanotouch/supervisor.h"
+#include "session/grip.h"
 #include "session/well.h"
 
 #define BOLTZMANN 1.380649e-23
@@ -198,6 +199,13 @@ nt_hazard nt_hazard_of(const nt_plan *plan, const nt_rig *rig, const nt_settings
         real.probe.spring_constant *= 1.0 + side * NT_GUARANTEE_SIGMAS * rig->probe.spring_constant_sigma;
         add_places(&hazard, plan, &real, &still, rings);
     }
-    hazard.deepest = deepest_under(plan, nt_guarantee_compute(rig, settings, &hazard).force);
+    const double most = nt_guarantee_compute(rig, settings, &hazard).force;
+    hazard.deepest = deepest_under(plan, most);
+    hazard.friction = nt_grip_friction(plan, most);
+    if (lever->lateral_stiffness > 0.0) { /* what it shows can be stopped */
+        const nt_sideways_contact grip = nt_grip_of(plan, slope, most);
+        hazard.stick = grip.stick;
+        hazard.curvature = grip.curvature;
+    }
     return hazard;
 }

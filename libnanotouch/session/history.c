@@ -18,6 +18,7 @@ static void save(const nt_session *session, nt_past *past)
     past->setup = now->setup;
     past->touch = now->touch;
     past->margins = now->margins;
+    past->sideways = now->sideways;
     past->guarantee = now->guarantee;
     past->touch_state = session->touch_state;
     past->sim = session->sim;
@@ -33,6 +34,7 @@ static void load_standing(nt_composition *now, const nt_past *past)
     now->setup.mode = past->setup.mode;
     now->setup.settings.gains = past->setup.settings.gains;
     now->margins = past->margins;
+    now->sideways = past->sideways;
     now->guarantee = past->guarantee;
     now->touch = past->touch;
     now->touch.settings.control = control;

@@ -9,6 +9,7 @@ typedef struct nt_past {
     nt_session_setup setup;
     nt_touch touch;
     nt_margins margins;
+    nt_sideways_margins sideways;
     nt_guarantee guarantee;
     nt_touch_state touch_state;
     nt_sim sim;

@@ -295,6 +295,10 @@ nt_margins nt_session_margins(const nt_session *session)
 {
     return session->now->margins;
 }
+nt_sideways_margins nt_session_sideways(const nt_session *session)
+{
+    return session->now->sideways;
+}
 nt_reach nt_session_reach(const nt_session *session)
 {
     return session->now->reach;

@@ -17,7 +17,9 @@ typedef struct nt_composition {
     nt_terrain *terrain; /* shared with the composition before where only settings differ */
     nt_terrain *ground;  /* the first one, which owns the surface of all that follow */
     nt_reach reach;
+    nt_sideways_contact grip;
     nt_margins margins;
+    nt_sideways_margins sideways;
     nt_guarantee guarantee;
 } nt_composition;
 
@@ -103,9 +105,8 @@ nt_status nt_compose_standing(nt_composition **made, const nt_composition *befor
 void nt_composition_close(nt_composition *composition, const nt_composition *other);
 /* Is this margin enough? A minimum of 0 asks for none. */
 int nt_composition_allows(const nt_composition *composition, double margin);
-/* Of these settings in a mode at the stiffest contact of the plan. */
-nt_verdict nt_composition_judge(const nt_composition *composition, const nt_settings *settings, nt_mode mode,
-                                nt_margins *margins);
+/* Of these settings in a mode at the stiffest contact of the plan: margins and sideways. */
+nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *settings, nt_mode mode);
 
 /* --- halves.c --- */
 

@@ -292,12 +292,40 @@ static void a_master_that_falls_silent_holds(void **unused)
     }
 }
 
+/* Its size counts, whatever its direction; a lever that shows it must give numbers. */
+static void a_lateral_force_past_its_limit_lifts(void **unused)
+{
+    (void)unused;
+    input in = healthy(NT_RUN);
+    in.sample.deflection[NT_X] = in.sample.deflection[NT_Y] = NAN;
+    assert_int_equal(step(&in), NT_RUN); /* nobody reads them */
+    touch.supervisor.lateral_stiffness = 50.0;
+    const double most = touch.supervisor.limits.lateral_force / 50.0;
+    for (int i = 0; i < 16; i++) {
+        const double angle = 0.4 * i;
+        in = healthy(NT_RUN);
+        for (int past = 0; past < 2; past++) {
+            in.sample.deflection[NT_X] = most * (past ? 1.0001 : 0.9999) * cos(angle);
+            in.sample.deflection[NT_Y] = most * (past ? 1.0001 : 0.9999) * sin(angle);
+            in.sample.deflection[NT_Z] = 1e-9 + 1e-12 * past;
+            assert_int_equal(step(&in), past ? NT_RETRACT : NT_RUN);
+        }
+        assert_int_equal(in.history.reasons, NT_REASON_LATERAL);
+    }
+    in = healthy(NT_RUN);
+    in.sample.deflection[NT_Y] = NAN;
+    assert_int_equal(step(&in), NT_HOLD);
+    assert_int_equal(step(&in), NT_RETRACT);
+    assert_int_equal(in.history.reasons, NT_REASON_INVALID);
+    touch.supervisor.lateral_stiffness = 0.0;
+}
+
 static void reasons_have_names(void **unused)
 {
     (void)unused;
-    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_MASTER_STALE; bit <<= 1)
+    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_LATERAL; bit <<= 1)
         assert_true(nt_reason_name(bit)[0] != 0);
-    assert_string_equal(nt_reason_name(NT_REASON_MASTER_STALE << 1), "");
+    assert_string_equal(nt_reason_name(NT_REASON_LATERAL << 1), "");
     assert_string_equal(nt_reason_name(0), "");
     assert_string_equal(nt_reason_name(NT_REASON_FORCE_LIMIT), "force limit");
 }
@@ -311,6 +339,7 @@ int main(void)
         cmocka_unit_test(a_good_sample_between_bad_ones_ends_the_run),
         cmocka_unit_test(just_inside_every_limit_is_run),
         cmocka_unit_test(a_master_that_falls_silent_holds),
+        cmocka_unit_test(a_lateral_force_past_its_limit_lifts),
         cmocka_unit_test(reasons_have_names),
     };
     return cmocka_run_group_tests(tests, make_touch, NULL);

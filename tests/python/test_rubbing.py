@@ -127,3 +127,36 @@ def test_a_recording_without_friction_is_what_it_was() -> None:
     for name in set(rubbed.columns) - {"tip_force_x", "tip_force_y", "deflection_x", "deflection_y"}:
         np.testing.assert_array_equal(rubbed.columns[name], slid.columns[name])
     assert np.all(slid.columns["tip_force_x"] == 0.0)
+
+
+def test_a_hand_of_three_axes_is_judged_and_feels_what_the_lever_shows() -> None:
+    scene = nt.Scene(friction={"shear_strength": 50e6, "coefficient": 0.1})
+    rig = nt.Rig(master={"axes": 3}, probe={"noise": 1e-3})  # so quiet that noise does not decide
+    bare = nt.Session(scene=scene, rig=rig, seed=1)
+    rig.probe.lateral_stiffness = 50.0
+    felt = nt.Session(scene=scene, rig=rig, seed=1)
+    assert bare.sideways().least == np.inf
+    found, along_z = felt.sideways(), bare.margins()
+    assert found.coupled_margin <= min(found.margin, along_z.margin)
+    assert felt.margins().least == min(found.least, along_z.least)
+    settings = felt.settings.copy()
+    settings.gains.alpha_f *= found.least  # R1 of all axes is then 1, below the 1.5 that is asked for
+    with pytest.raises(nt.errors.InvalidValue, match=r"R1 of all axes"):
+        nt.Session(scene=scene, rig=felt.rig, settings=settings, seed=1)
+    assert 0.0 < felt.guarantee().lateral_force < np.inf
+    assert "sideways at most" in str(felt.guarantee())
+
+
+def test_a_projection_stiffens_the_loop_of_one_axis() -> None:
+    scene, rig = (
+        nt.Scene(friction={"shear_strength": 50e6, "coefficient": 0.3}),
+        nt.Rig(probe={"lateral_stiffness": 50}),
+    )
+    plain = nt.Session(scene=scene, rig=rig, seed=1)
+    settings = plain.settings.copy()
+    settings.gains.projection_x = -1.0
+    along = nt.Session(scene=scene, rig=rig, settings=settings, seed=1)
+    assert along.margins().margin < 0.99 * plain.margins().margin
+    assert along.margins().margin == pytest.approx(along.core.margin, rel=1e-12)
+    with pytest.raises(nt.errors.InvalidValue, match=r"lateral_stiffness"):
+        nt.Session(scene=scene, settings=settings, seed=1)

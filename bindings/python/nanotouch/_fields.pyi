@@ -479,6 +479,10 @@ class SettingsGains(Section):
     """spring between master and virtual tool, 0 for none [N/m], 0 .. 1e+09"""
     coupling_damping: float
     """damping of the virtual tool [N s/m], 0 .. 1e+06"""
+    projection_x: float
+    """share of the lateral force in x that a master of one axis feels [-], -10 .. 10"""
+    projection_y: float
+    """the same of the lateral force in y [-], -10 .. 10"""
     ramp_time: float
     """the force fades in over this time [s], 0 .. 10"""
     set_point: float
@@ -509,6 +513,8 @@ class SettingsGainsValues(TypedDict, total=False):
     stage_derivative: float
     coupling_stiffness: float
     coupling_damping: float
+    projection_x: float
+    projection_y: float
     ramp_time: float
     set_point: float
     height_gain: float
@@ -520,6 +526,8 @@ class SettingsGainsValues(TypedDict, total=False):
 class SettingsLimits(Section):
     force: float
     """largest force on the sample, either sign [N], 1e-12 .. 0.001"""
+    lateral_force: float
+    """largest lateral force on the sample, where the lever shows it [N], 1e-12 .. 0.001"""
     indentation: float
     """largest indentation past first touch [m], 1e-10 .. 0.001"""
     stage_speed: float
@@ -551,6 +559,7 @@ class SettingsLimits(Section):
 
 class SettingsLimitsValues(TypedDict, total=False):
     force: float
+    lateral_force: float
     indentation: float
     stage_speed: float
     lateral_speed: float

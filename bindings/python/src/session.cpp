@@ -146,9 +146,34 @@ static py::dict guarantee_of(const Session &self)
     out["failures"] = failures;
     out["with_failure"] = guarantee.with_failure;
     out["indentation"] = guarantee.indentation;
+    out["lateral_force"] = guarantee.lateral_force;
     out["moves_sideways"] = guarantee.moves_sideways != 0;
     out["help_time"] = guarantee.help_time;
     out["frame_drift"] = guarantee.frame_drift;
+    return out;
+}
+
+static py::dict sideways_of(const Session &self)
+{
+    const nt_session_setup *setup = nt_session_setup_of(self.handle);
+    const nt_plan *plan = nt_session_plan(self.handle);
+    const nt_sideways_margins m = nt_session_sideways(self.handle);
+    const nt_verdict verdict = nt_verdict_sideways(&m);
+    py::dict out;
+    out["loop_stiffness"] = m.loop_stiffness;
+    out["loop_delay"] = m.loop_delay;
+    out["margin"] = m.margin;
+    out["exact_limit"] = m.exact_limit;
+    out["exact_frequency"] = m.exact_frequency;
+    out["coupling"] = m.coupling;
+    out["coupled_margin"] = m.coupled_margin;
+    out["least"] = m.loop_stiffness > 0.0 ? verdict.margin : m.coupled_margin;
+    out["rule"] = verdict.rule;
+    const bool shows = setup->rig.probe.lateral_stiffness > 0.0;
+    const double slope = nt_session_reach(self.handle).slope;
+    const nt_sideways_contact grip =
+        shows ? nt_grip_of(plan, slope, setup->settings.limits.force) : nt_sideways_contact{};
+    out["projected"] = nt_margins_projected(&setup->rig, &setup->settings, plan->maximum_stiffness, &grip);
     return out;
 }
 
@@ -253,6 +278,7 @@ static void bind_facts(py::class_<Session> &type)
             "scene", [](const Session &self) { return Described<nt_scene>{nt_session_setup_of(self.handle)->scene}; })
         .def_property_readonly("mode",
                                [](const Session &self) { return mode_name(nt_session_setup_of(self.handle)->mode); })
+        .def_property_readonly("sideways", &sideways_of)
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
         .def_property_readonly("start_height",

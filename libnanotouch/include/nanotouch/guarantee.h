@@ -37,6 +37,9 @@ typedef struct nt_hazard {
     double failing[NT_FAILURES]; /* ... and on to what a failure adds; 0: no more than that [N/m] */
     double tared;                /* the sample's force where the tare is taken, which nobody reads from then on [N] */
     double unseen;               /* indentation at which the force leaves the noise of the reading [m] */
+    double stick;                /* what holds a tip sideways, tip and lever in series [N/m] */
+    double friction;             /* largest friction, as all that is promised presses [N] */
+    double curvature;            /* of the surface [1/m] */
     double deepest;              /* indentation that no force presses beyond, as all that is promised presses [m] */
 } nt_hazard;
 
@@ -55,6 +58,7 @@ typedef struct nt_guarantee {
     double failure[NT_FAILURES]; /* what each adds; infinite where nothing would show it [N] */
     double with_failure;         /* force and the largest of them [N] */
     double indentation;          /* never more than this past first touch, at rest sideways [m] */
+    double lateral_force;        /* never more than this on the sample in x and y [N] */
     double help_time;            /* the stage can lift from the drift of the frame for this long [s] ... */
     double frame_drift;          /* ... a stop that cannot lift is pressed by this much more in a second [N/s] */
     int moves_sideways; /* 0: the stage has one axis, and all this holds at the place where the session starts */

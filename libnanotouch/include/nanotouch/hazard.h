@@ -4,11 +4,15 @@
 #define NANOTOUCH_HAZARD_H
 
 #include "nanotouch/guarantee.h"
+#include "nanotouch/margins.h"
 #include "nanotouch/plan.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* How the forces on the tip grow with its way, on a surface of this slope [-] under loads up to `load` [N], > 0. */
+NT_API nt_sideways_contact nt_grip_of(const nt_plan *plan, double slope, double load);
 
 /* slope: of the surface where it is steepest, dilated by the tip [-]; clearance: of the tip above it where the tare is
  * taken [m], infinite where none is. Rig and settings have been checked, the plan is

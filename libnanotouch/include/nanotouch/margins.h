@@ -54,6 +54,34 @@ NT_API nt_verdict nt_margins_judge(const nt_rig *rig, const nt_settings *setting
 NT_API nt_status nt_margins_own_law(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
                                     nt_settings *amounts);
 
+/* How the forces on a tip grow with its way, at most: what a plan and a surface hold ready. */
+typedef struct nt_sideways_contact {
+    double stick;     /* of a contact that sticks, with tip and lever in series [N/m]; 0: no friction */
+    double grip;      /* of friction's limit, by indentation [N/m] */
+    double slope;     /* of the surface [-] */
+    double curvature; /* of the surface [1/m] */
+    double load;      /* largest vertical force [N] */
+} nt_sideways_contact;
+
+/* Of a master of three axes, x and y alike, and of all three together (docs/margins.md). */
+typedef struct nt_sideways_margins {
+    double loop_stiffness;  /* kappa_l = alpha_f alpha_p times what holds the tip sideways [N/m] */
+    double loop_delay;      /* D_l: of x or y, from the master's reading to its motor [s] */
+    double margin;          /* R1 sideways: b/(D_l kappa_l) [-] */
+    double exact_limit;     /* kappa_l at which the sampled loop over a spring oscillates, hand included [N/m] */
+    double exact_frequency; /* at which it does [Hz] */
+    double coupling;        /* of z into x and y and back, over the mean of both alone [-] */
+    double coupled_margin;  /* R1 of all axes together; never above those of each [-] */
+} nt_sideways_margins;
+/* along_z: the margins of the same settings and stiffness k [N/m] (nt_margins_judge). */
+NT_API nt_sideways_margins nt_margins_sideways(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
+                                               const nt_sideways_contact *contact, const nt_margins *along_z);
+/* The least of margin, exact limit and coupled margin: "R1 sideways", "exact sideways", "R1 of all axes". */
+NT_API nt_verdict nt_verdict_sideways(const nt_sideways_margins *margins);
+/* By how much more of its force along z a master of one axis feels, by its projection: a factor on alpha_f, >= 1. */
+NT_API double nt_margins_projected(const nt_rig *rig, const nt_settings *settings, double contact_stiffness,
+                                   const nt_sideways_contact *contact);
+
 /* What stirs the hand where nothing moves: steps of converters and noise of sensors. */
 typedef enum nt_ripple_source {
     NT_RIPPLE_MASTER,        /* steps of the master's position sensor */

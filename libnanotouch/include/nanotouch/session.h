@@ -251,6 +251,8 @@ NT_API const nt_touch *nt_session_touch(const nt_session *session);
 NT_API const nt_touch_state *nt_session_touch_state(const nt_session *session);
 /* The margins in this mode and at these scales; 1 is the limit. */
 NT_API nt_margins nt_session_margins(const nt_session *session);
+/* Those in x and y, and of all axes together; infinite where no motor pushes back sideways. */
+NT_API nt_sideways_margins nt_session_sideways(const nt_session *session);
 /* What of the surface it can reach, on its path or in its area. */
 NT_API nt_reach nt_session_reach(const nt_session *session);
 /* What holds whatever the operator does; to be read before the first tick. */

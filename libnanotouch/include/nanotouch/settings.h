@@ -52,6 +52,8 @@ typedef struct nt_gains {
     double stage_derivative;     /* K_v of Eq. 17, the paper's law only [s] */
     double coupling_stiffness;   /* of the spring between master and virtual tool, 0: rigid [N/m] */
     double coupling_damping;     /* of the virtual tool against the ground [N s/m] */
+    double projection_x;         /* share of the lateral tip force that a master of one axis feels along z ... */
+    double projection_y;         /* ... of x, and of y; 0: z alone [-] */
     double ramp_time;            /* force fades in over this on engagement, a new scale too [s] */
     double set_point;            /* force held in topography mode, sought in approach and curve [N] */
     double height_gain;          /* integral gain of the height servo [1/s] */
@@ -63,6 +65,7 @@ typedef struct nt_gains {
 
 typedef struct nt_limits {
     double force;            /* on the sample, either sign [N] */
+    double lateral_force;    /* on the sample in x and y, where the lever shows it [N] */
     double indentation;      /* of tip and sample past first touch [m] */
     double stage_speed;      /* [m/s] */
     double lateral_speed;    /* [m/s] */

@@ -27,7 +27,8 @@ enum {
     NT_REASON_INDENTATION = 1u << 13,     /* the indentation is at its limit */
     NT_REASON_LAW = 1u << 14,             /* the control law gave no number */
     NT_REASON_BACKED_OFF = 1u << 15,      /* the passivity observer has taken gain away: a flag */
-    NT_REASON_MASTER_STALE = 1u << 16     /* the master's reading is older than two of its own periods */
+    NT_REASON_MASTER_STALE = 1u << 16,    /* the master's reading is older than two of its own periods */
+    NT_REASON_LATERAL = 1u << 17          /* the lateral force is at its limit */
 };
 /* "force limit", ... of one reason bit; "" for none. */
 NT_API const char *nt_reason_name(uint32_t reason);
@@ -44,24 +45,25 @@ typedef enum nt_lift {
 
 /* All that does not change while it runs. */
 typedef struct nt_supervisor {
-    double master_period;    /* between two readings of the master [s] */
-    double period;           /* T [s] */
-    double spring_constant;  /* k_c [N/m] */
-    double deflection_range; /* [m] */
-    double free_force;       /* forces below this are the sensor's noise [N] */
-    double master_range;     /* readings beyond these cannot be [m] */
-    int leads_sideways;      /* a master of three axes: its x and y are judged, too */
-    double gauge_range;      /* [N], 0 without a gauge */
-    double stage_range;      /* [m] */
-    double stuck_distance;   /* deflections without noise over this travel are a dead sensor, 0: cannot be told [m] */
-    double noise;            /* of the deflection, as declared: standard deviation [m] */
-    double stage_share;      /* of the way to its reference that the stage should go in a period [-] */
-    double stage_slack;      /* by which it may be off at rest, or three quarters of the way that it was to go [m] */
-    double stage_most;       /* never by more than this: follow_error, and hysteresis that no integral takes away [m] */
-    double correction_most;  /* that the integral may add to where the stage is told to be [m] */
-    double turn_slack;       /* when it should be farther back than this, a lift has begun to show [m] */
-    double lift_share;       /* of the way up that declared hysteresis and creep may take, while no integral acts [-] */
-    double path_kept;        /* of that way, per period: it fades over follow_time [-] */
+    double master_period;     /* between two readings of the master [s] */
+    double period;            /* T [s] */
+    double spring_constant;   /* k_c [N/m] */
+    double lateral_stiffness; /* k_l: x and y of the deflection are judged; 0: the lever does not show them [N/m] */
+    double deflection_range;  /* [m] */
+    double free_force;        /* forces below this are the sensor's noise [N] */
+    double master_range;      /* readings beyond these cannot be [m] */
+    int leads_sideways;       /* a master of three axes: its x and y are judged, too */
+    double gauge_range;       /* [N], 0 without a gauge */
+    double stage_range;       /* [m] */
+    double stuck_distance;    /* deflections without noise over this travel are a dead sensor, 0: cannot be told [m] */
+    double noise;             /* of the deflection, as declared: standard deviation [m] */
+    double stage_share;       /* of the way to its reference that the stage should go in a period [-] */
+    double stage_slack;       /* by which it may be off at rest, or three quarters of the way that it was to go [m] */
+    double stage_most;      /* never by more than this: follow_error, and hysteresis that no integral takes away [m] */
+    double correction_most; /* that the integral may add to where the stage is told to be [m] */
+    double turn_slack;      /* when it should be farther back than this, a lift has begun to show [m] */
+    double lift_share;      /* of the way up that declared hysteresis and creep may take, while no integral acts [-] */
+    double path_kept;       /* of that way, per period: it fades over follow_time [-] */
     nt_limits limits;
 } nt_supervisor;
 typedef struct nt_supervisor_state {

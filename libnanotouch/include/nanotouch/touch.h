@@ -24,6 +24,7 @@ typedef struct nt_touch {
     nt_control_law law;
     nt_stage_loop stage_loop;
     int leads_sideways;   /* master and stage have more than one axis: x and y follow the hand, not a path ... */
+    int feels_sideways;   /* and its motors push back in x and y, for the lever shows what holds the tip */
     double borders[2][2]; /* ... within these, of x and of y; infinite where nothing borders it [m] */
     double force_filter;  /* of the low-pass of f_m, per period [-] */
     uint32_t delay;       /* after which a motor force acts, as far as it is remembered [periods] */
@@ -62,6 +63,10 @@ typedef struct nt_touch_state {
     nt_sum retracted;           /* lifted so far [m] */
     double hand_at[2];          /* x and y of the master when it was last seen [m] */
     double sideways[2];         /* how far it has gone since that the tip has not followed yet [m] */
+    double hand_speed[2];       /* of the master in x and y, behind the same low-pass as along z [m/s] */
+    double lateral_force[2];    /* on the tip, + along x and y; 0 where the lever does not show it [N] */
+    double projected_force;     /* f_s, and what a hand of one axis feels of the lateral force [N] */
+    double coupled_sideways[2]; /* last force on the hand in x and y while coupled [N] */
     double target_x, target_y;  /* lateral set-point [m] */
     nt_sum target_time;         /* left to get there [s] */
     double sent[NT_TOUCH_SENT]; /* motor forces of the last ticks, by their number [N] */

@@ -21,6 +21,7 @@ from nanotouch.touch._open import TOLD, Frozen, Runs, as_now
 from nanotouch.touch._path import MODES, Mode, checked_path, core_mode
 from nanotouch.touch._plant import ProbeModel, plant_options
 from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
+from nanotouch.touch._sideways import Sideways, margins_of, sideways_of
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.faults import Faults
 from nanotouch.touch.hal import Halves, halves_of
@@ -157,13 +158,12 @@ class Session(Runs, Frozen):
         return self._mode
 
     def margins(self) -> Margins:
-        """Margins in this mode and at these scales, at the stiffest contact of the plan; of a law of one's own by what
-        it was seen to do when it was tried last, NaN where that is not known (docs/control.md)."""
-        settings = self.settings
-        amounts: Settings | None = settings
-        if self.control == "own":
-            amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts)
-        return margins.of_own_law(self.rig, settings, amounts, self.plan.maximum_stiffness, self.mode)
+        """In this mode, at these scales and the stiffest contact of the plan; a law of one's own: docs/control.md."""
+        return margins_of(self)
+
+    def sideways(self) -> Sideways:
+        """In x and y, and of all axes together; ``margins`` counts them."""
+        return sideways_of(self)
 
     def calm(self) -> Calm:
         """What is felt of the loop itself in touch, at these scales and the stiffest contact of the plan; of a law of

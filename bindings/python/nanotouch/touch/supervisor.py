@@ -55,6 +55,8 @@ class Guarantee(NamedTuple):
     """force and the largest of them, where the tip stands sideways [N]"""
     indentation: float
     """never more than this past first touch, where the tip stands sideways [m]"""
+    lateral_force: float
+    """never more than this on the sample in x and y [N]"""
     moves_sideways: bool
     """no: the stage has one axis, and all this holds at the place where the session starts"""
     help_time: float
@@ -104,6 +106,8 @@ class Guarantee(NamedTuple):
             f"after a stop help is needed within {_long(self.help_time)}; at once if the stage does not lift "
             f"({self.frame_drift * 1e9:.3g} nN more each second)",
         ]
+        if self.moves_sideways and self.lateral_force > 0.0:
+            lines.insert(2, f"sideways at most {self.lateral_force * 1e9:.4g} nN")
         if not self.moves_sideways:
             lines.append("the tip stays at its place, for the stage has one axis")
         if self.warning is not None:

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * x and y of a touch: where the tip goes, and what the hand feels of what holds it. */
+#include "control/sideways.h"
+
+#include <math.h>
+
+#include "control/motor.h"
+#include "core/clamp.h"
+#include "core/same_bits.h"
+
+void nt_sideways_follow_hand(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
+{
+    for (int i = NT_X; i < NT_Z; ++i) {
+        const double step = sample->master_position[i] - state->hand_at[i];
+        if (isfinite(step)) {
+            const double speed = step * touch->settings.gains.rate;
+            state->hand_speed[i] += touch->speed_filter * (speed - state->hand_speed[i]);
+        }
+        if (isfinite(step) && state->engaged > 0.0 && !state->clutch_open)
+            state->sideways[i] += step; /* nothing while they are uncoupled */
+        state->hand_at[i] = sample->master_position[i];
+    }
+}
+
+void nt_sideways_read(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
+{
+    const nt_gains *gains = &touch->settings.gains;
+    const double stiffness = touch->rig.probe.lateral_stiffness;
+    const double shares[] = {gains->projection_x, gains->projection_y};
+    state->projected_force = state->signals.slave_force;
+    for (int i = NT_X; i < NT_Z && stiffness > 0.0; ++i) {
+        state->lateral_force[i] = stiffness * sample->deflection[i];
+        if (shares[i] != 0.0)
+            state->projected_force += shares[i] * state->lateral_force[i];
+    }
+}
+
+/* A master of three axes leads the tip sideways, as it presses: from where it was last coupled, no faster than the
+ * lateral limit. */
+static void follow(const nt_touch *touch, nt_touch_state *state)
+{
+    const double most = touch->settings.limits.lateral_speed * touch->period;
+    double *stage = state->command.stage_position, way[2];
+    for (int i = NT_X; i < NT_Z; ++i)
+        way[i] = state->signals.scaling.alpha_p * state->sideways[i];
+    const double length = hypotenuse(way[NT_X], way[NT_Y]), share = length > most ? most / length : 1.0;
+    for (int i = NT_X; i < NT_Z; ++i) {
+        const double wanted = stage[i] + share * way[i];
+        stage[i] = clamp(wanted, touch->borders[i][0], touch->borders[i][1]);
+        if (stage[i] != wanted)
+            state->supervisor.reasons |= NT_REASON_COMMAND_LIMITED;
+        state->sideways[i] *= 1.0 - share; /* what is left is owed */
+    }
+    state->target_x = stage[NT_X];
+    state->target_y = stage[NT_Y];
+}
+
+void nt_sideways_move(const nt_touch *touch, nt_touch_state *state)
+{
+    if (touch->leads_sideways) {
+        follow(touch, state);
+        return;
+    }
+    const nt_sum left = state->target_time;
+    const double share = left > touch->period ? touch->period / left : 1.0;
+    state->command.stage_position[NT_X] += share * (state->target_x - state->command.stage_position[NT_X]);
+    state->command.stage_position[NT_Y] += share * (state->target_y - state->command.stage_position[NT_Y]);
+    state->target_time = greater(0.0, left - touch->period);
+}
+
+void nt_sideways_drive(const nt_touch *touch, nt_touch_state *state)
+{
+    if (!touch->feels_sideways)
+        return;
+    const int coupled = state->supervisor.state == NT_RUN && state->mode == NT_MODE_TOUCH &&
+                        state->wanted_mode == NT_MODE_TOUCH && !state->clutch_open;
+    for (int i = NT_X; i < NT_Z; ++i) {
+        if (coupled)
+            state->coupled_sideways[i] = state->signals.scaling.alpha_f * state->lateral_force[i];
+        else if (!(state->engaged > 0.0))
+            state->coupled_sideways[i] = 0.0;
+        const double felt = state->engaged * state->coupled_sideways[i], speed = state->hand_speed[i];
+        const int fades = !coupled && felt != 0.0;
+        const double wanted = fades ? nt_motor_fade(&touch->rig.master, felt, speed) : felt;
+        state->command.motor_force[i] =
+            nt_motor_limit(&touch->settings.limits, touch->motor_step, state->command.motor_force[i], wanted, speed);
+    }
+}

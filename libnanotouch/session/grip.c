@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What holds a tip sideways, at most: friction of the places of a plan, slope and curvature of a surface. */
+#include <math.h>
+
+#include "core/same_bits.h"
+#include "nanotouch/hazard.h"
+#include "session/grip.h"
+#include "session/well.h"
+
+enum { STEPS = 64 };
+
+/* A place of the sharpest or the bluntest contact, on the softest or the hardest sample. */
+static nt_place corner(const nt_plan *plan, int blunt, int hard)
+{
+    nt_place place = {.radius = {.radius = blunt ? plan->most.radius : plan->least.radius}};
+    if (!plan->properties)
+        return place;
+    const nt_surface *moduli = &plan->properties->youngs_modulus;
+    place.youngs_modulus.value = hard ? moduli->height_maximum : moduli->height_minimum;
+    place.work_of_adhesion.value = plan->properties->work_of_adhesion.height_maximum;
+    return place;
+}
+
+static double limit_at(const nt_plan *plan, const nt_place *place, double gap)
+{
+    const nt_interaction_state attached = {.attached = 1};
+    const nt_friction_contact contact = nt_interaction_friction_contact(plan, &attached, place, gap);
+    return nt_friction_limit(&plan->friction.law, &contact);
+}
+
+double nt_grip_friction(const nt_plan *plan, double load)
+{
+    double most = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        const nt_well well = {.plan = plan, .place = corner(plan, i & 1, i >> 1)};
+        most = fmax(most, limit_at(plan, &well.place, nt_well_gap_of_force(&well, load, 0.0)));
+    }
+    return most;
+}
+
+static double stiffest_shear(const nt_plan *plan)
+{
+    const nt_plan_friction *friction = &plan->friction;
+    if (!plan->properties || !(plan->properties->youngs_modulus.height_maximum > 0.0))
+        return friction->law.effective_shear_modulus;
+    return 1.0 / (friction->tip_compliance + friction->sample_factor / plan->properties->youngs_modulus.height_maximum);
+}
+
+/* From no load to the largest one: below, adhesion holds the tip by a bounded distance only. */
+static void add_friction(nt_sideways_contact *found, const nt_plan *plan, double load)
+{
+    nt_friction law = plan->friction.law;
+    law.effective_shear_modulus = stiffest_shear(plan);
+    const nt_interaction_state attached = {.attached = 1};
+    for (int i = 0; i < 4; ++i) {
+        const nt_well well = {.plan = plan, .place = corner(plan, i & 1, i >> 1)};
+        const double shallow = nt_well_gap_of_force(&well, 0.0, 0.0), deep = nt_well_gap_of_force(&well, load, 0.0);
+        const double step = (shallow - deep) / STEPS;
+        for (int k = 0; k < STEPS && step > 0.0; ++k) {
+            const double above = shallow - k * step, below = above - step;
+            const double rise = limit_at(plan, &well.place, below) - limit_at(plan, &well.place, above);
+            found->grip = fmax(found->grip, rise / step);
+        }
+        const double radius = nt_interaction_eval_gap(plan, &attached, &well.place, deep).a;
+        found->stick = fmax(found->stick, nt_friction_stiffness(&law, radius));
+    }
+}
+
+/* Second derivatives of a cubic spline are means of second differences of its coefficients: their largest sizes. */
+static double curvature_of(const nt_surface *surface)
+{
+    const long nx = surface->nx, ny = surface->ny;
+    double xx = 0.0, yy = 0.0, xy = 0.0;
+    for (long j = 0; j < ny; ++j)
+        for (long i = 0; i < nx; ++i) {
+            const double *c = surface->coefficients + j * nx + i;
+            const long right = i + 1 < nx ? 1 : -1, up = j + 1 < ny ? nx : -nx; /* mirrored at the borders */
+            const long left = i > 0 ? -1 : 1, down = j > 0 ? -nx : nx;
+            xx = fmax(xx, fabs(c[left] - 2.0 * c[0] + c[right]));
+            yy = fmax(yy, fabs(c[down] - 2.0 * c[0] + c[up]));
+            xy = fmax(xy, fabs(c[0] - c[right] - c[up] + c[right + up]));
+        }
+    const double dx = surface->dx, dy = surface->dy;
+    return hypotenuse(hypotenuse(xx / (dx * dx), yy / (dy * dy)), sqrt(2.0) * xy / (dx * dy));
+}
+
+nt_sideways_contact nt_grip_of(const nt_plan *plan, double slope, double load)
+{
+    nt_sideways_contact found = {.slope = slope, .load = load};
+    if (plan->friction.term.form != NT_FORM_OFF)
+        add_friction(&found, plan, load);
+    if (plan->surface && plan->surface->coefficients)
+        found.curvature = curvature_of(plan->surface);
+    return found;
+}

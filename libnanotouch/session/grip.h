@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Private to session/: friction for the hazard. */
+#ifndef NANOTOUCH_SESSION_GRIP_H
+#define NANOTOUCH_SESSION_GRIP_H
+
+#include "nanotouch/plan.h"
+
+/* The largest friction of any place of a plan under a load [N], whether the plan computes friction or not. */
+double nt_grip_friction(const nt_plan *plan, double load);
+
+#endif
