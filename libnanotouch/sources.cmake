@@ -78,6 +78,7 @@ set(nanotouch_sources_scene
     scene/distance.c
     scene/elastic.c
     scene/facts.c
+    scene/flank.c
     scene/interaction.c
     scene/laws.c
     scene/local.c

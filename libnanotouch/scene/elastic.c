@@ -140,6 +140,16 @@ static double radius_before_contact(const nt_plan *plan, double gap)
     return radius_at(plan, u * sqrt(bluntest(plan)) - gap);
 }
 
+/* They press the surface away by u: sqrt(d) - sqrt(d - u) is largest where contact would begin, for stiffness, too. */
+double nt_plan_press_error(const nt_plan *plan)
+{
+    const double u = under_all(plan, 1);
+    if (plan->demand.quantity != NT_QUANTITY_STIFFNESS || !(u > 0.0) || plan->source != NT_ADHESION_NONE)
+        return 0.0;
+    const double k = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), u).k;
+    return fmin(k, plan->maximum_stiffness) * sqrt(bluntest(plan)) / plan->scale;
+}
+
 /* In contact without adhesion: a force that is less by k_c u, a radius that is that of an indentation less u. */
 static double error_in_contact(const nt_plan *plan)
 {

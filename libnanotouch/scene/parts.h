@@ -133,6 +133,8 @@ double nt_plan_share(const nt_plan *plan, double error);
  * exponential. */
 #define NT_ELASTIC_JUMP 0.55
 double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene);
+/* What terms that are left out do to the stiffness of a contact without adhesion, beside their own, as a share. */
+double nt_plan_press_error(const nt_plan *plan);
 /* The gap below which the surface would jump to a pull [m]. */
 double nt_plan_jump_gap(const nt_plan *plan);
 /* Whether contact is that of the layer, and not of a half-space. */
@@ -186,6 +188,8 @@ void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene);
 /* warnings.c: what the bound does not cover. */
 void nt_plan_warn(nt_plan *plan, const nt_scene *scene);
 void nt_plan_add_warning(nt_plan *plan, nt_plan_warning warning);
+/* flank.c: how far laws of a sphere are from those of a cone, a punch, a truncated tip. */
+void nt_plan_warn_flank(nt_plan *plan);
 
 /* interaction.c: the effective radius at a place (NULL: the tip's own) [m]; its contact, with dU/dR; whether it
  * is captured by contact or meniscus: already, or because the gap is inside the capture range. */

@@ -123,6 +123,17 @@ static int is_alone(const nt_plan *plan)
     return felt && plan->on_count == 0 && plan->source == NT_ADHESION_NONE;
 }
 
+/* Laws that are not computed press the surface away all the same, so that a contact alone is too stiff. 0: it keeps to
+ * the demand, of which this is a part from here on. */
+static int add_press(nt_plan *plan)
+{
+    const double error = plan->bound.force_error + nt_plan_press_error(plan);
+    if (error > plan->demand.relative_accuracy)
+        return 1;
+    plan->bound.force_error = error;
+    return 0;
+}
+
 /* With the error of terms that add on the undeformed gap: inside the demand, or beside it. */
 static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int inside, nt_problem *problem)
 {
@@ -132,8 +143,10 @@ static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int
     plan->demand.relative_accuracy = inside && demanded > 0.0 ? demanded - rigid : demanded;
     const nt_status status = nt_plan_choose(plan, options, problem);
     plan->demand.relative_accuracy = demanded;
-    if (status != NT_OK || is_alone(plan))
+    if (status != NT_OK)
         return status;
+    if (is_alone(plan) && add_press(plan) == 0)
+        return NT_OK;
     plan->bound.force_error += rigid; /* a tail that was left out, too, pulls by so much more */
     return NT_OK;
 }
@@ -248,7 +261,7 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     const double demanded = plan->demand.relative_accuracy;
     nt_status status = nt_plan_choose(plan, &options, problem);
     plan->rigid_error = nt_plan_rigid_error(plan, scene);
-    const int alone = status == NT_OK && is_alone(plan);
+    const int alone = status == NT_OK && is_alone(plan) && add_press(plan) == 0;
     if ((plan->rigid_error == 0.0 && plan->around_error == 0.0) || alone)
         return status;
     const double errs = fmax(plan->rigid_error, plan->around_error);

@@ -131,6 +131,7 @@ void nt_plan_warn(nt_plan *plan, const nt_scene *scene)
     nt_plan_warn_plastic(plan, scene);
     check_drag(plan, scene);
     check_surface(plan);
+    nt_plan_warn_flank(plan);
     check_yielding(plan);
     check_folds(plan);
     check_layer(plan, scene);

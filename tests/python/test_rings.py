@@ -59,6 +59,18 @@ def test_within_the_bound(rings, modulus, accuracy, quantity):
     assert np.all(np.abs(found - true) <= plan.bound * np.maximum(np.abs(true), plan.scale))
 
 
+@pytest.mark.parametrize(("modulus", "length", "energy"), [(1e7, 30e-9, 1e-5), (1e6, 30e-9, 1e-5), (1e7, 3e-9, 1e-6)])
+def test_a_law_that_is_left_out_presses_the_surface_away(rings, modulus, length, energy):
+    """At first touch the tip is below where the surface was: there Hertz alone would be stiff, the sample is not."""
+    radius = 100e-9
+    touch = rings.state(exponential(energy, length), radius, 1 / (0.75 / modulus + 1 / TIP), length, 1e-4 * length)
+    plan = soft(modulus, energy, length, radius, 1e-9).plan(relative_accuracy=0.2, quantity="stiffness")
+    found = plan.run([1e-6, touch.gap]).k[1]
+    error = abs(found - touch.stiffness) / max(touch.stiffness, plan.scale)
+    assert plan.explain()["terms"][5]["form"] == "off"
+    assert 0.1 * plan.bound < error <= plan.bound
+
+
 @pytest.mark.parametrize("accuracy", [1e-3, 1.1e-4])
 def test_the_stiffest_contact_is_that_at_the_largest_load(accuracy):
     """A table's last nodes lie far apart: the stiffness at the load is between them."""

@@ -56,7 +56,7 @@ typedef struct nt_plan_warning {
     const char *unit;    /* of the two numbers */
     double value, limit; /* limit: NaN where it is not a matter of size [unit] */
 } nt_plan_warning;
-enum { NT_PLAN_WARNINGS_MAX = 27 };
+enum { NT_PLAN_WARNINGS_MAX = 29 };
 
 /* Models that the plan did not take: largest |dF|/max(|F|, S) at equal indentation, from 0.9 of that
  * of the pull-off (Hertz and DMT: from first touch) to the largest load. */

@@ -49,13 +49,16 @@ static double hold(const void *law)
     return ((const nt_double_layer *)law)->minimum_gap;
 }
 
-/* Attraction and repulsion both fall with the gap, their difference need not: of opposite potentials both attract. */
+/* It is a repulsion ~ (a + b)^2 less an attraction ~ (a - b)^2 of the potentials a, b. Both fall with the gap, their
+ * difference need not; it is never above the larger one. */
 static nt_law_value limit(const void *law, double gap)
 {
-    nt_double_layer apart = *(const nt_double_layer *)law;
-    apart.tip_potential = fabs(apart.tip_potential);
-    apart.sample_potential = -fabs(apart.sample_potential);
-    return nt_double_layer_potential_eval(&apart, gap);
+    nt_double_layer push = *(const nt_double_layer *)law, pull = push;
+    push.tip_potential = push.sample_potential = 0.5 * (push.tip_potential + push.sample_potential);
+    pull.tip_potential = 0.5 * (pull.tip_potential - pull.sample_potential);
+    pull.sample_potential = -pull.tip_potential;
+    const nt_law_value a = nt_double_layer_potential_eval(&push, gap), b = nt_double_layer_potential_eval(&pull, gap);
+    return (nt_law_value){.U = fmax(a.U, -b.U), .F = fmax(a.F, -b.F), .k = fmax(a.k, -b.k)};
 }
 
 /* p = k/(2 pi R) ~ e [S/(1 + e)^2 - D/(1 - e)^2], e = exp(-h/debye_length) (forces/double_layer.c), and its slope. */

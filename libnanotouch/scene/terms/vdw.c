@@ -50,6 +50,23 @@ static nt_pressure pressure(const void *law, double gap)
     return (nt_pressure){W, 2.0 * W / s, -6.0 * W / (s * s)};
 }
 
+/* Without adhesion there is no w to stand for it. The larger of cone and punch: H tan^2 psi/(6 s), H R^2/(6 s^3). */
+static void warn(nt_plan *plan, const nt_scene *scene)
+{
+    const nt_quantity quantity = plan->demand.quantity;
+    const int felt = quantity == NT_QUANTITY_FORCE || quantity == NT_QUANTITY_STIFFNESS;
+    if (has_tail(scene) || plan->source != NT_ADHESION_NONE || !felt)
+        return;
+    const double s = scene->adhesion.equilibrium_distance + 0.5 * scene->sample.roughness,
+                 H = scene->adhesion.hamaker_constant;
+    const double t = tan(scene->tip.half_angle), R = scene->tip.radius;
+    const double force = scene->tip.shape == NT_SHAPE_CONE ? H * t * t / (6.0 * s) : H * R * R / (6.0 * s * s * s);
+    const double least = plan->demand.relative_accuracy * nt_plan_force_scale(plan, scene->range.maximum_load);
+    if (force > least)
+        nt_plan_add_warning(plan, (nt_plan_warning){"van der Waals force of this shape, left out: it has no law here",
+                                                    "N", force, least});
+}
+
 static const nt_term_form forms[] = {
     {NT_FORM_DERJAGUIN, 0.3, 0.25, "in Derjaguin's form"},
     {NT_FORM_SPHERE, 0.5, 0.5, "of the sphere"},
@@ -59,4 +76,4 @@ static const nt_term_form forms[] = {
 NT_TERM_BESIDE(vdw, prepare, full_form, eval, hold, pressure,
                .words = {"vdw", "van der Waals", "Hamaker's sum over sphere, or sphere and cone, and a flat",
                          "adhesion.hamaker_constant", forms, 3, 1},
-               .refused = NT_TERM_REFUSED("van der Waals"));
+               .warn = warn, .refused = NT_TERM_REFUSED("van der Waals"));
