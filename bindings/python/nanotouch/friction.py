@@ -219,6 +219,91 @@ def compressive_load(model: Model, law: LawValue, contact: Contact) -> Any:
     return plain(_core.Friction.compressive_load(MODELS.index(model), *parameters, force, radius))
 
 
+class FrictionFit(NamedTuple):
+    """tau0 and alpha of measured friction over load."""
+
+    shear_strength: float
+    """tau0 [Pa]; below 0 where the data are so"""
+    shear_strength_sigma: float
+    """standard deviation, the scale's included"""
+    coefficient: float
+    """alpha, of the load inside the contact"""
+    coefficient_sigma: float
+    """standard deviation, the scale's included"""
+    correlation: float
+    """between both, -1 .. 1: near -1 the loads tell only their sum"""
+    reduced_chi_square: float
+    """mean square of what is left over, in sigmas: about 1 where law and sigmas are right; NaN of two points"""
+
+
+def fit(
+    load: ArrayLike,
+    force: ArrayLike,
+    sigma: ArrayLike,
+    contact: Contact,
+    *,
+    model: Model = "jkr",
+    scale_sigma: float = 0.0,
+) -> FrictionFit:
+    """tau0 and alpha from half-widths of friction loops at several loads: F = tau0 pi a^2 + alpha N_c, weighted least
+    squares. Nothing is clamped at 0.
+
+    Parameters
+    ----------
+    load : array (n,)
+        Net load of the lever, negative where adhesion holds the tip down [N].
+    force, sigma : array (n,)
+        Friction, and its standard deviation, above 0 (one, or one for all) [N].
+    contact : Contact
+        Radius, effective modulus and work of adhesion, taken as known.
+    model : {"hertz", "dmt", "jkr"}
+        From load to radius and load inside.
+    scale_sigma : float
+        Relative standard deviation of the lateral calibration, common to all forces.
+    """
+    loads, forces = as_floats(load, "load"), as_floats(force, "force")
+    sigmas = np.broadcast_to(as_floats(sigma, "sigma"), forces.shape)
+    if loads.ndim != 1 or loads.shape != forces.shape or len(loads) < 2:
+        raise InvalidValue(f"load and force of {loads.shape} and {forces.shape}: two equal arrays of 2 or more")
+    if not (np.isfinite(loads + forces).all() and np.isfinite(sigmas).all() and (sigmas > 0.0).all()):
+        raise InvalidValue("a fit of friction needs finite loads and forces, and sigmas above 0 N")
+    if not 0.0 <= scale_sigma <= 1.0:
+        raise InvalidValue(f"scale_sigma = {scale_sigma:g}: valid is 0 to 1")
+    radius = radius_under(loads, contact, model)
+    law = LawValue(np.zeros_like(loads), loads, np.zeros_like(loads), radius)
+    rows = np.stack([np.pi * radius**2, as_floats(compressive_load(model, law, contact), "load")], axis=1)
+    weighted = rows / sigmas[:, None]
+    size = np.linalg.norm(weighted, axis=0)
+    if not (size > 0.0).all() or np.linalg.cond(weighted / size) > 1e8:
+        raise InvalidValue("these loads do not tell shear strength and coefficient apart: take more of them")
+    spread = np.linalg.inv((weighted / size).T @ (weighted / size))
+    found = spread @ ((weighted / size).T @ (forces / sigmas)) / size
+    left = forces / sigmas - weighted @ found
+    sigma_of = np.hypot(np.sqrt(np.diag(spread)) / size, scale_sigma * found)
+    freedom = len(loads) - 2
+    return FrictionFit(
+        float(found[0]), float(sigma_of[0]), float(found[1]), float(sigma_of[1]),
+        float(spread[0, 1] / np.sqrt(spread[0, 0] * spread[1, 1])),
+        float(left @ left) / freedom if freedom else float("nan"),
+    )  # fmt: skip
+
+
+def radius_under(load: ArrayLike, contact: Contact, model: Model = "jkr") -> Floats:
+    """Contact radius [m] under a net load [N]: a^3 = R/K P, K = 4/3 E*, with P the load (Hertz), load + 2 pi w R (DMT),
+    or load + 3 pi w R + sqrt(6 pi w R load + (3 pi w R)^2) (JKR, Johnson 1971). Below pull-off it is refused."""
+    loads, pull = as_floats(load, "load"), np.pi * contact.work_of_adhesion * contact.radius
+    if model not in ("hertz", "dmt", "jkr"):
+        raise InvalidValue(f"model {model!r}: valid for a load are hertz, dmt, jkr")
+    least = {"hertz": 0.0, "dmt": -2.0 * pull, "jkr": -1.5 * pull}[model]
+    if not (loads >= least * (1.0 + 1e-12)).all():
+        raise InvalidValue(f"load = {np.min(loads):g} N: the {model} contact holds from {least:g} N on")
+    pressed = loads - least if model != "jkr" else loads + 3.0 * pull
+    if model == "jkr":
+        pressed = pressed + np.sqrt(np.maximum(6.0 * pull * loads + (3.0 * pull) ** 2, 0.0))
+    radius: Floats = np.cbrt(contact.radius * np.maximum(pressed, 0.0) / (4.0 / 3.0 * contact.effective_modulus))
+    return radius
+
+
 def _check_at_least_zero(name: str, values: Floats, unit: str) -> None:
     if not (values >= 0.0).all():
         raise InvalidValue(f"{name} = {float(np.nanmin(values)):g} {unit}: valid is 0 and above")

@@ -87,6 +87,97 @@ def _sliding(half: Floats) -> tuple[int, int]:
     return 2 * first, len(half) - 2 * last
 
 
+class LateralImage(NamedTuple):
+    """What trace and retrace tell at each place; arrays of their shape."""
+
+    half_width: Floats
+    """half of what lies between the two ways [N]: friction on a flat"""
+    offset: Floats
+    """mean of the two ways [N]: what topography turns aside"""
+    coefficient: Floats
+    """mu, friction over normal force, free of the slope; NaN where no slope explains both ways"""
+    slope: Floats
+    """of the sample across the lever [rad]"""
+
+
+def image(trace: ArrayLike, retrace: ArrayLike, load: float, adhesion: float = 0.0) -> LateralImage:
+    """Friction apart from topography, at each place of an image or a line; the inverse of ``slope_forces``.
+
+    Parameters
+    ----------
+    trace, retrace : array (n,) or (rows, columns)
+        Lateral force of the lever on the way to larger x, and on the way back, at the same places [N]; zero and
+        cross-talk taken off.
+    load, adhesion : float
+        Of the lever, above 0, and normal to the surface, 0 or above [N].
+    """
+    up, down = as_floats(trace, "trace"), as_floats(retrace, "retrace")
+    if up.shape != down.shape or up.size == 0:
+        raise InvalidValue(f"trace and retrace of {up.shape} and {down.shape}: two equal arrays")
+    if not (0.0 < load < math.inf and 0.0 <= adhesion < math.inf):
+        raise InvalidValue(f"load, adhesion = {load:g}, {adhesion:g} N: load above 0, adhesion 0 or above")
+    # without adhesion the ways are L tan(slope +- atan mu)
+    slope = 0.5 * (np.arctan(up / load) + np.arctan(down / load))
+    for _ in range(40 if adhesion > 0.0 else 0):
+        slope = slope - _mismatch(slope, up, down, load, adhesion)
+    s, c = np.sin(slope), np.cos(slope)
+    coefficient = (up * c - load * s) / (up * s + load * c + adhesion)
+    other = (load * s - down * c) / (down * s + load * c + adhesion)
+    explained = np.abs(coefficient - other) <= 1e-9 * (1.0 + np.abs(coefficient))
+    nothing = np.where(explained, 0.0, np.nan)
+    return LateralImage(0.5 * (up - down), 0.5 * (up + down), coefficient + nothing, slope + nothing)
+
+
+def _mismatch(slope: Floats, up: Floats, down: Floats, load: float, adhesion: float) -> Floats:
+    """Newton's step to the slope at which mu is the same both ways: the balances, times both normal forces."""
+    s, c = np.sin(slope), np.cos(slope)
+    pulls, holds = up * c - load * s, load * s - down * c
+    above, below = up * s + load * c + adhesion, down * s + load * c + adhesion
+    value = pulls * below - holds * above
+    rise = -(above - adhesion) * below - pulls * holds - (below - adhesion) * above - holds * pulls
+    step: Floats = np.clip(value / rise, -0.2, 0.2)
+    return step
+
+
+class Crosstalk(NamedTuple):
+    """What the read-outs of a lever take from each other."""
+
+    lateral_per_normal: float
+    """lateral signal per normal signal where nothing acts sideways"""
+    lateral_per_normal_sigma: float
+    """standard deviation"""
+    normal_per_lateral: float = 0.0
+    """normal signal per lateral signal where nothing presses the more"""
+
+    def remove(self, normal: ArrayLike, lateral: ArrayLike) -> tuple[Floats, Floats]:
+        """Normal and lateral signals as they would be without: both equations solved at each place."""
+        seen_n, seen_l = as_floats(normal, "normal"), as_floats(lateral, "lateral")
+        whole = 1.0 - self.lateral_per_normal * self.normal_per_lateral
+        if not whole > 0.0:
+            raise InvalidValue(f"the product of both cross-talks is {1.0 - whole:g}: valid is below 1")
+        return (seen_n - self.normal_per_lateral * seen_l) / whole, (seen_l - self.lateral_per_normal * seen_n) / whole
+
+
+def crosstalk(normal: ArrayLike, lateral: ArrayLike, normal_per_lateral: float = 0.0) -> Crosstalk:
+    """From a tip that is pressed on a flat and does not slide: lateral over normal signal, by least squares.
+
+    Parameters
+    ----------
+    normal, lateral : array (n,)
+        Both signals, in the unit of each, at 3 or more loads.
+    normal_per_lateral : float
+        The other one, where it is known.
+    """
+    n, t = as_floats(normal, "normal"), as_floats(lateral, "lateral")
+    if n.ndim != 1 or n.shape != t.shape or len(n) < 3 or not np.ptp(n) > 0.0:
+        raise InvalidValue(f"normal and lateral of {n.shape} and {t.shape}: two equal arrays of 3 or more loads")
+    far = n - np.mean(n)
+    slope = float(far @ t / (far @ far))
+    left = t - np.mean(t) - slope * far
+    sigma = math.sqrt(float(left @ left) / (len(n) - 2) / float(far @ far))
+    return Crosstalk(slope, sigma, normal_per_lateral)
+
+
 def slope_forces(slope: float, coefficient: float, load: float, adhesion: float = 0.0) -> tuple[float, float]:
     """Half-width and offset of the loop [N] on a slope [rad] across the lever, under a load [N] of the lever and an
     adhesion [N] normal to the slope (Varenberg, Etsion, Halperin, Rev. Sci. Instrum. 74 (2003) 3362).
