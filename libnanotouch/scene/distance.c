@@ -80,11 +80,6 @@ static nt_law_value hertz_at(const nt_plan *plan, double indentation)
     return nt_plan_contact_eval(plan, NT_FORM_PARABOLOID, indentation);
 }
 
-static nt_law_value series_at(const nt_plan *plan, double indentation)
-{
-    return nt_plan_contact_eval(plan, NT_FORM_SERIES, indentation);
-}
-
 static nt_law_value dmt_at(const nt_plan *plan, double indentation)
 {
     return nt_dmt_eval(&plan->contact, indentation);
@@ -110,17 +105,23 @@ static nt_law_value bluntest_at(const nt_plan *plan, double indentation)
 }
 
 /* The difference between two laws of contact over max(|truth|, scale). S is that of the demanded quantity; of a force
- * that is not the one demanded, the pull-off force. */
+ * that is not the one demanded, the pull-off force. `other` NULL: contact in a form. */
 typedef struct rivals {
     contact_law *truth, *other;
     nt_quantity quantity;
+    nt_form form;
 } rivals;
+
+static nt_law_value other_at(const nt_plan *plan, const rivals *laws, double indentation)
+{
+    return laws->other ? laws->other(plan, indentation) : nt_plan_contact_eval(plan, laws->form, indentation);
+}
 
 static double difference(const nt_plan *plan, const rivals *laws, double indentation)
 {
     const double scale = laws->quantity == plan->demand.quantity ? plan->scale : pull_of(plan);
     const double truth = nt_plan_pick(laws->truth(plan, indentation), laws->quantity);
-    return fabs(nt_plan_pick(laws->other(plan, indentation), laws->quantity) - truth) / fmax(fabs(truth), scale);
+    return fabs(nt_plan_pick(other_at(plan, laws, indentation), laws->quantity) - truth) / fmax(fabs(truth), scale);
 }
 
 /* The largest of it over all indentations from the release gap to the largest load; denser near the fold, where they
@@ -140,8 +141,7 @@ static double distance(const nt_plan *plan, const rivals *laws, double lowest)
 
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 {
-    const nt_quantity quantity = plan->demand.quantity;
-    return distance(plan, &(rivals){full_at, form == NT_FORM_SERIES ? series_at : hertz_at, quantity}, -INFINITY);
+    return distance(plan, &(rivals){full_at, NULL, plan->demand.quantity, form}, -INFINITY);
 }
 
 double nt_plan_away_from_folds(const nt_plan *plan)

@@ -96,7 +96,7 @@ double nt_plan_pick(nt_law_value value, nt_quantity quantity);
 double nt_plan_force_scale(const nt_plan *plan, double maximum_load);
 /* S: the pull-off force or what would be its like; never so small that what cannot be felt would count. */
 double nt_plan_scale_of(const nt_plan *plan, double maximum_load);
-/* The largest difference, over max(|truth|, S), of a form of contact (paraboloid: Hertz) to the fullest one; of the
+/* The largest difference, over max(|truth|, S), of a form of contact to the fullest one; of the
  * tip's own radius to the radii of the surface. */
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form);
 double nt_plan_curvature_distance(const nt_plan *plan);

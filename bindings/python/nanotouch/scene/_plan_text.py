@@ -47,7 +47,7 @@ def _contact(term: Term, facts: dict[str, Any]) -> str:
         return "contact: none within the range of gaps"
     if facts["adhesion_source"] == "none":
         felt = " that could be felt" if math.isfinite(facts["lambda"]) else ""
-        apart = term.form in ("paraboloid", "series") and facts["quantity"] != "folds"
+        apart = term.form not in ("shape", "local", "yielding") and facts["quantity"] != "folds"
         within = f", within {_percent(term.bound)}" if apart else ""
         return f"contact: {law}{within}, no adhesion{felt}"
     text = f"contact: {law}"
