@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
+import tempfile
 import warnings
 from pathlib import Path
 from typing import Any
@@ -77,7 +78,10 @@ print("RESULT" + json.dumps(found))
 def asked(python: str, program: str, files: list[Path]) -> dict[str, Any]:
     """What the other program says of each file."""
     given = json.dumps([str(file) for file in files])
-    done = subprocess.run([python, "-c", program], input=given, capture_output=True, text=True, check=True)
+    with tempfile.TemporaryDirectory() as away:  # TopoStats writes a log where it runs
+        done = subprocess.run(
+            [python, "-c", program], input=given, capture_output=True, text=True, check=True, cwd=away
+        )
     answer: dict[str, Any] = json.loads(done.stdout[done.stdout.rindex("RESULT") + 6 :] if "RESULT" in done.stdout
                                         else done.stdout.splitlines()[-1])  # fmt: skip
     return answer
@@ -130,7 +134,8 @@ if __name__ == "__main__":
     parser.add_argument("--topostats", metavar="PYTHON")
     args = parser.parse_args()
     warnings.simplefilter("ignore")
+    folder = args.data.resolve()
     if args.nanite:
-        curves(args.data, args.nanite)
+        curves(folder, args.nanite)
     if args.topostats:
-        images(args.data, args.topostats)
+        images(folder, args.topostats)
