@@ -65,10 +65,10 @@ static double spike_of(const nt_rig *rig, const nt_settings *settings)
     return SPIKE_SIGMA * noise + SPIKE_MOTION * motion / settings->gains.rate;
 }
 
-/* A master of three axes with motors, over a lever that shows what holds the tip. */
+/* A master of three axes over a lever that shows what holds the tip; one without motors is told, too. */
 static int feels_sideways(const nt_rig *rig)
 {
-    return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->master.motor && rig->probe.lateral_stiffness > 0.0;
+    return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->probe.lateral_stiffness > 0.0;
 }
 
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,

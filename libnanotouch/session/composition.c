@@ -21,7 +21,7 @@ nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *
     const double stiffness = nt_terrain_plan(composition->terrain)->maximum_stiffness;
     judged.gains.alpha_f *= nt_margins_projected(rig, settings, stiffness, &composition->grip);
     const nt_verdict along_z = nt_margins_judge(rig, &judged, stiffness, mode, margins);
-    if (mode != NT_MODE_TOUCH || !composition->touch.feels_sideways)
+    if (mode != NT_MODE_TOUCH || !composition->touch.feels_sideways || !rig->master.motor)
         return along_z;
     *sideways = nt_margins_sideways(rig, settings, stiffness, &composition->grip, margins);
     const nt_verdict found = nt_verdict_sideways(sideways);

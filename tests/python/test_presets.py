@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from nanotouch import Scene, Session, Surface, Topography, presets, surface
 from nanotouch.errors import InvalidValue
+from nanotouch.scene.interaction import Interaction
 from nanotouch_app.main import main
 from nanotouch_app.plan import PAPER, PRESETS
 
@@ -87,6 +88,7 @@ FACTS = {
     "mica_in_air": Facts(0.59e-9, 3.4e-9, 366.0, 0.83e-9),
     "polyester": Facts(0.195e-9, 444e-9, 363.0, 3.89e-9),
     "silicone_rubber": Facts(0.195e-9, 746.4e-9, 18.42, 144.1e-9),
+    "polystyrene_ball": Facts(0.195e-9, 284.8e-9, 343.7, 2.267e-9),
     "inas_dots": Facts(0.7e-9, 17.9e-9, 359.0, 0.89e-9),
 }
 
@@ -125,6 +127,20 @@ def test_the_noise_of_the_lever_is_as_said() -> None:
         assert plan.pull_off_force / plan.explain()["probe_noise"] == pytest.approx(times, abs=0.1)
     gold = presets.silicon_on_gold()[0].plan(relative_accuracy=0.0)
     assert -float(gold.law("electrostatic", 0.0).F) == pytest.approx(0.26e-9, rel=0.01)
+
+
+def test_a_ball_that_is_rubbed_slips_as_said() -> None:
+    """Rubbed over 0.4 um at the largest load: the lever shows tau0 pi a^2, and the hand would have 0.5 N of it."""
+    scene, rig = presets.polystyrene_ball()
+    plan = scene.plan(rig=rig, relative_accuracy=0.0)
+    assert plan.friction.force == pytest.approx(0.18e-6, rel=0.03)
+    rubbed = Interaction(plan)
+    x = np.linspace(0.0, 0.4e-6, 401)
+    found = rubbed.advance(np.column_stack([x, 0 * x, np.full_like(x, -2.267e-9)]))
+    assert -found.Fx[-1] == pytest.approx(plan.friction.force, rel=0.01)
+    session = Session(scene, rig)
+    assert session.sideways().least > 1.5
+    assert 0.4 < session.settings.gains.alpha_f * plan.friction.force < 1.0
 
 
 def test_the_cell_feels_as_fur_over_jelly() -> None:

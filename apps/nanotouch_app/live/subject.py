@@ -116,6 +116,10 @@ PRESETS: dict[str, Preset] = {
         "Silicone rubber", lambda: relief(60e-6, 400e-9, "silicone rubber", seed=5),
         "Press deep, then pull: the rubber stretches into a neck before it lets go.",
     ),
+    "polystyrene_ball": Preset(
+        "Polystyrene ball on glass", lambda: relief(4e-6, 10e-9, "polished glass", seed=7),
+        "Press, then draw it sideways: it sticks, and then slips.",
+    ),
     "inas_dots": Preset(
         "Quantum dots", lambda: nt.surface.dots(pixels=256),
         "Find a dot with the lightest touch that you can hold.",

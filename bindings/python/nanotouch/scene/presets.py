@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes with the rigs to touch them: seven that a first touch may begin with, and the paper's own.
+"""Scenes with the rigs to touch them: eight that a first touch may begin with, and the paper's own.
 
-The seven keep to loads and tips that the laws of contact hold for, so that their plans warn of nothing but what they
+The eight keep to loads and tips that the laws of contact hold for, so that their plans warn of nothing but what they
 say. What is felt of each is in :data:`FELT`. Those that begin with ``paper_`` have the numbers of the paper (Sitti and
 Hashimoto, Teleoperated Touch Feedback from the Surfaces at the Nanoscale) and the largest load of its rig. What is soft
 is pressed beyond small contacts there, in the paper as here (erratum E13): the plan warns of it.
@@ -34,6 +34,10 @@ FELT: dict[str, str] = {
     "silicone_rubber": (
         "Soft and sticky: the ball takes hold at the touch, sinks in by 144 nm under 1.2 µN at 18 N/m, "
         "and lets go only when 0.75 µN pull."
+    ),
+    "polystyrene_ball": (
+        "A wall of 344 N/m, to rub: the ball sticks, then slips at up to 0.18 µN sideways, and lets go "
+        "when 0.28 µN pull."
     ),
     "inas_dots": (
         "Hills as hard as a wall of 359 N/m: the hand follows their heights, not their give, and the "
@@ -122,6 +126,21 @@ def silicone_rubber() -> tuple[Scene, Rig]:
         range={"maximum_load": 1.2e-6},
     )
     return scene, Rig()
+
+
+def polystyrene_ball() -> tuple[Scene, Rig]:
+    """Polystyrene ball (1 um) on glass in dry air, to rub: a hand of three axes feels friction in x and y."""
+    scene = Scene(
+        tip={"radius": 1e-6, "material": "polystyrene", "yield_strength": 0.1e9},
+        sample={"material": "silica"},
+        medium={"relative_humidity": 0.0, "film_thickness": 0.0},
+        # all of it in contact, as for polyester
+        adhesion={"work_of_adhesion": 0.06, "hamaker_constant": 0.0},
+        # 9 to 15 MPa: polystyrene balls pushed over glass (Sumer and Sitti 2008)
+        friction={"shear_strength": 12e6},
+        range={"maximum_load": 0.3e-6},
+    )
+    return scene, Rig(master={"axes": 3}, probe={"lateral_stiffness": 50.0})
 
 
 def inas_dots() -> tuple[Scene, Rig]:
