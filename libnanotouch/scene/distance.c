@@ -141,7 +141,7 @@ static double distance(const nt_plan *plan, const rivals *laws, double lowest)
 
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 {
-    return distance(plan, &(rivals){full_at, NULL, plan->demand.quantity, form}, -INFINITY);
+    return distance(plan, &(rivals){.truth = full_at, .quantity = plan->demand.quantity, .form = form}, -INFINITY);
 }
 
 double nt_plan_away_from_folds(const nt_plan *plan)
@@ -167,14 +167,14 @@ static double curvature_distance(const nt_plan *plan, const rivals *laws)
 double nt_plan_curvature_distance(const nt_plan *plan)
 {
     const nt_quantity quantity = plan->demand.quantity;
-    return fmax(curvature_distance(plan, &(rivals){sharpest_at, full_at, quantity}),
-                curvature_distance(plan, &(rivals){bluntest_at, full_at, quantity}));
+    return fmax(curvature_distance(plan, &(rivals){.truth = sharpest_at, .other = full_at, .quantity = quantity}),
+                curvature_distance(plan, &(rivals){.truth = bluntest_at, .other = full_at, .quantity = quantity}));
 }
 
 void nt_plan_rivals_of(nt_plan *plan)
 {
     const double last = 0.9 * plan->maugis.folds.pull_off_indentation * plan->maugis.indentation_scale;
-    plan->rivals.hertz = distance(plan, &(rivals){full_at, hertz_at, NT_QUANTITY_FORCE}, 0.0);
-    plan->rivals.dmt = distance(plan, &(rivals){full_at, dmt_at, NT_QUANTITY_FORCE}, 0.0);
-    plan->rivals.jkr = distance(plan, &(rivals){full_at, jkr_at, NT_QUANTITY_FORCE}, last);
+    plan->rivals.hertz = distance(plan, &(rivals){.truth = full_at, .other = hertz_at}, 0.0);
+    plan->rivals.dmt = distance(plan, &(rivals){.truth = full_at, .other = dmt_at}, 0.0);
+    plan->rivals.jkr = distance(plan, &(rivals){.truth = full_at, .other = jkr_at}, last);
 }
