@@ -17,7 +17,7 @@ typedef enum bus_fault {
     BUS_WELL,
     BUS_ALL_ZERO, /* MISO hangs */
     BUS_ALL_ONE,
-    BUS_SHORT,   /* fewer bytes than asked went through */
+    BUS_SHORT,   /* the end of each frame does not go through: `lost` */
     BUS_REFUSED, /* EIO */
     BUS_GONE,    /* ENODEV */
     BUS_FLIPPED, /* one bit of what comes back is wrong */
@@ -30,16 +30,17 @@ typedef struct simulated_bus {
     uint32_t dac, control, reply; /* registers of an AD5791 */
     int has_reply;
     long frames[2];
-    uint32_t noise; /* of the ADC: its lowest bits change */
-    int has_crc;    /* the ADC is an AD7768-1, which reads the deflection alone, with status and check sum */
-    int corrupt;    /* so many of its frames come with a bit wrong; below 0: all */
-    int error;      /* errno of messages ... */
-    int errors;     /* ... so many of them; below 0: all */
+    uint32_t lost[2]; /* last bytes of each frame of a chip, while the bus is short; at power-up one */
+    uint32_t noise;   /* of the ADC: its lowest bits change */
+    int has_crc;      /* the ADC is an AD7768-1, which reads the deflection alone, with status and check sum */
+    int corrupt;      /* so many of its frames come with a bit wrong; below 0: all */
+    int error;        /* errno of messages ... */
+    int errors;       /* ... so many of them; below 0: all */
 } simulated_bus;
 
 static inline simulated_bus simulated_bus_after_power_up(void)
 {
-    return (simulated_bus){.control = 0x00000E};
+    return (simulated_bus){.control = 0x00000E, .lost = {1, 1}};
 }
 
 /* At ground while the output is off. */
@@ -59,11 +60,22 @@ static inline double simulated_deflection(const simulated_bus *bus)
     return beyond > 0.0 ? 0.5 * beyond : 0.0;
 }
 
-static inline void simulated_ad5791(simulated_bus *bus, const uint8_t *out, uint8_t *in)
+/* What goes through of a frame [bytes]. */
+static inline uint32_t simulated_through(const simulated_bus *bus, int chip, uint32_t count)
 {
-    const uint32_t word = (uint32_t)out[0] << 16 | (uint32_t)out[1] << 8 | out[2], at = word >> 20 & 7u;
+    const uint32_t lost = bus->fault == BUS_SHORT ? bus->lost[chip & 1] : 0u;
+    return count > lost ? count - lost : 0u;
+}
+
+/* Fewer than 24 clocks are no word: it sends what it has to, and takes nothing. */
+static inline void simulated_ad5791(simulated_bus *bus, const uint8_t *out, uint8_t *in, uint32_t count)
+{
     const uint32_t reply = bus->has_reply ? bus->reply : 0u;
-    in[0] = (uint8_t)(reply >> 16), in[1] = (uint8_t)(reply >> 8), in[2] = (uint8_t)reply;
+    for (uint32_t i = 0; i < count && i < 3; ++i)
+        in[i] = (uint8_t)(reply >> (16 - 8 * i));
+    if (count != 3)
+        return;
+    const uint32_t word = (uint32_t)out[0] << 16 | (uint32_t)out[1] << 8 | out[2], at = word >> 20 & 7u;
     bus->has_reply = word >> 23 != 0;
     bus->reply = at << 20 | (at == 1 ? bus->dac : at == 2 ? bus->control : 0u);
     if (word >> 23 || bus->fault == BUS_DEAF)
@@ -89,20 +101,22 @@ static inline void simulated_ad7606(simulated_bus *bus, uint8_t *in, uint32_t co
 
 static inline void simulated_ad7768(simulated_bus *bus, const uint8_t *out, uint8_t *in, uint32_t count)
 {
-    if (count != 5 || out[0] == 0x6C)
+    uint8_t answer[5];
+    if (count < 4 || out[0] == 0x6C)
         return;
     const double volts = simulated_deflection(bus) / DEFLECTION_GAIN;
     const uint32_t bits = (uint32_t)(int32_t)floor(volts / 20.0 * 16777216.0 + 0.5) + (++bus->noise >> 1 & 1u);
     uint8_t sum = 0x03; /* x^8 + x^2 + x + 1 */
-    in[0] = (uint8_t)(bits >> 16), in[1] = (uint8_t)(bits >> 8), in[2] = (uint8_t)bits, in[3] = 0;
+    answer[0] = (uint8_t)(bits >> 16), answer[1] = (uint8_t)(bits >> 8), answer[2] = (uint8_t)bits, answer[3] = 0;
     for (int i = 0; i < 32; ++i) {
-        const uint32_t bit = (uint32_t)(in[i / 8] >> (7 - i % 8) & 1) ^ (uint32_t)(sum >> 7);
+        const uint32_t bit = (uint32_t)(answer[i / 8] >> (7 - i % 8) & 1) ^ (uint32_t)(sum >> 7);
         sum = (uint8_t)(sum << 1 ^ (bit ? 0x07 : 0));
     }
-    in[4] = sum;
+    answer[4] = sum;
     if (bus->corrupt != 0)
-        in[1] ^= 0x10;
+        answer[1] ^= 0x10;
     bus->corrupt -= bus->corrupt > 0;
+    memcpy(in, answer, count < 5 ? count : 5);
 }
 
 /* One frame under one chip select. */
@@ -110,15 +124,15 @@ static inline void simulated_frame(simulated_bus *bus, int chip, const uint8_t *
 {
     ++bus->frames[chip & 1];
     memset(in, 0, count);
-    if (chip == 0 && count == 3)
-        simulated_ad5791(bus, out, in);
+    if (chip == 0)
+        simulated_ad5791(bus, out, in, count);
     if (chip == 1 && bus->has_crc)
         simulated_ad7768(bus, out, in, count);
     if (chip == 1 && !bus->has_crc)
         simulated_ad7606(bus, in, count);
     if (bus->fault == BUS_ALL_ZERO || bus->fault == BUS_ALL_ONE)
         memset(in, bus->fault == BUS_ALL_ONE ? 0xFF : 0x00, count);
-    if (bus->fault == BUS_FLIPPED)
+    if (bus->fault == BUS_FLIPPED && count > 0)
         in[count - 1] ^= 1u;
 }
 

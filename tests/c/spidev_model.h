@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What the kernel's spidev makes of its requests, over the simulated bus: settings that it keeps, and messages whose
- * transfers belong to one frame until the chip select changes. Copying is left to whoever uses it. */
+ * transfers belong to one frame until the chip select changes. Copying is left to whoever uses it. A frame of which the
+ * end does not go through is told as the kernel tells it (spidev_message in drivers/spi/spidev.c): by the whole length,
+ * with what the message before left in spidev's buffer where nothing came. */
 #ifndef TESTS_SPIDEV_MODEL_H
 #define TESTS_SPIDEV_MODEL_H
 
@@ -12,7 +14,7 @@
 
 #include "simulated_bus.h"
 
-enum { MODEL_MESSAGE = 4096 };
+enum { MODEL_MESSAGE = 4096, MODEL_ALIGN = 64 }; /* spidev's buffer; where each transfer begins in it, on Arm [bytes] */
 
 typedef struct spidev_model {
     simulated_bus *bus;
@@ -21,6 +23,7 @@ typedef struct spidev_model {
     uint32_t clock;
     uint32_t longest; /* message so far [bytes] */
     long messages;
+    uint8_t received[MODEL_MESSAGE]; /* nobody clears it between two messages */
 } spidev_model;
 
 /* Copies between a message's buffers and here; 0 or -errno. */
@@ -52,29 +55,50 @@ static inline int model_setting(spidev_model *m, unsigned request, uint8_t *argu
     }
 }
 
+/* One frame, of transfers `first` to `last`: what came goes to where each transfer has its place, from `place` on. */
+static inline uint32_t model_frame(spidev_model *m, const struct spi_ioc_transfer *first,
+                                   const struct spi_ioc_transfer *last, const uint8_t *out, uint32_t place)
+{
+    uint8_t in[MODEL_MESSAGE];
+    uint32_t length = 0, at = 0;
+    for (const struct spi_ioc_transfer *t = first; t <= last; ++t)
+        length += t->len;
+    const uint32_t through = simulated_through(m->bus, m->chip, length);
+    simulated_frame(m->bus, m->chip, out, in, through);
+    for (const struct spi_ioc_transfer *t = first; t <= last; at += t++->len) {
+        const uint32_t came = through <= at ? 0u : through - at < t->len ? through - at : t->len;
+        memcpy(m->received + place, in + at, came);
+        place += (t->len + MODEL_ALIGN - 1) / MODEL_ALIGN * MODEL_ALIGN;
+    }
+    return place;
+}
+
 static inline int model_message(spidev_model *m, const struct spi_ioc_transfer *list, uint32_t count, spidev_copy *copy,
                                 void *context)
 {
-    uint8_t out[MODEL_MESSAGE], in[MODEL_MESSAGE];
-    uint32_t total = 0, start = 0, first = 0;
+    uint8_t out[MODEL_MESSAGE];
+    uint32_t total = 0, room = 0, start = 0, first = 0, place = 0;
+    int error = 0;
     ++m->messages;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (total + list[i].len > MODEL_MESSAGE)
-            return -EMSGSIZE;
-        int error = copy(context, list[i].tx_buf, out + total, list[i].len, 0);
-        total += list[i].len;
-        if (error)
-            return error;
+    for (uint32_t i = 0; i < count && !error; total += list[i++].len) {
+        room += (list[i].len + MODEL_ALIGN - 1) / MODEL_ALIGN * MODEL_ALIGN;
+        error = room > MODEL_MESSAGE ? -EMSGSIZE : copy(context, list[i].tx_buf, out + total, list[i].len, 0);
+    }
+    for (uint32_t i = 0, end = 0; i < count && !error; ++i) {
+        end += list[i].len;
         if (!list[i].cs_change && i + 1 < count)
             continue;
-        simulated_frame(m->bus, m->chip, out + start, in + start, total - start);
-        for (uint32_t at = start; first <= i; at += list[first++].len)
-            if ((error = copy(context, list[first].rx_buf, in + at, list[first].len, 1)) != 0)
-                return error;
-        start = total;
+        place = model_frame(m, list + first, list + i, out + start, place);
+        first = i + 1;
+        start = end;
+    }
+    place = 0;
+    for (uint32_t i = 0; i < count && !error; ++i) {
+        error = copy(context, list[i].rx_buf, m->received + place, list[i].len, 1);
+        place += (list[i].len + MODEL_ALIGN - 1) / MODEL_ALIGN * MODEL_ALIGN;
     }
     m->longest = total > m->longest ? total : m->longest;
-    return m->bus->fault == BUS_SHORT ? (int)total - 1 : (int)total;
+    return error ? error : (int)total;
 }
 
 /* A request with its argument, as long as it says; the result of the ioctl, or -errno. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The driver of spidev with the system calls in the test's hands: what it asks of the kernel, and what it makes of each
- * errno, of short transfers and of nonsense. */
+ * errno, of lengths that no kernel returns and of nonsense. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

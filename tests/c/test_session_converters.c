@@ -14,6 +14,7 @@
 
 #include "converter_rig.h"
 #include "host_fixture.h"
+#include "larger.h"
 #include "nanotouch/control.h"
 #include "nanotouch/hal_spi.h"
 #include "spidev_calls.h"
@@ -60,7 +61,7 @@ static void begin_touch(void)
     l.state = nt_touch_start(&l.touch, 0.0, 0.0, 0.0);
 }
 
-static void begin(void)
+static void begin(int has_sensor)
 {
     const nt_spi_calls calls = {open_call, control_call, close_call, NULL};
     const nt_spi_device devices[] = {{"0", 1, 10e6}, {"1", 2, 10e6}};
@@ -72,7 +73,7 @@ static void begin(void)
         model[i] = (spidev_model){.bus = &bus, .chip = i};
     begin_touch();
     assert_int_equal(nt_spi_open(&l.spi, devices, 2, &calls, NULL), NT_OK);
-    nt_converter_setup setup = slave_setup(&bus, 0);
+    nt_converter_setup setup = slave_setup(&bus, has_sensor);
     setup.exchange = nt_spi_exchange;
     setup.bus = &l.spi;
     setup.lines.flags = line_flags;
@@ -108,7 +109,7 @@ static uint32_t tick(void)
 
 static void hold_the_set_point(void)
 {
-    begin();
+    begin(0);
     for (int i = 0; i < APPROACH; ++i)
         assert_int_equal(tick(), NT_RUN);
     assert_true(simulated_deflection(&bus) > 0.0);
@@ -188,6 +189,70 @@ static void each_fault_in_ticks(void **state)
     }
 }
 
+/* No length tells of a short transfer: the kernel says the whole, and leaves what came last time. Of the DAC the
+ * read-back shows it, at the latest when the code changes. */
+static void a_dac_cut_short_is_seen_by_its_read_back(void **state)
+{
+    (void)state;
+    enum { CHANGES = 3 }; /* ticks without a new code, at the set-point */
+    for (uint32_t lost = 1; lost <= 3; ++lost) {
+        int ticks[4];
+        hold_the_set_point();
+        const double stood = simulated_travel(&bus);
+        bus.fault = BUS_SHORT;
+        bus.lost[0] = lost;
+        bus.lost[1] = 0;
+        react(ticks);
+        print_message("DAC, %u of 3 bytes lost: HOLD %d, RETRACT %d, LATCHED %d\n", (unsigned)lost, ticks[NT_HOLD],
+                      ticks[NT_RETRACT], ticks[NT_LATCHED]);
+        assert_true(ticks[NT_HOLD] >= 1 && ticks[NT_HOLD] <= CHANGES);
+        assert_int_equal(ticks[NT_RETRACT], ticks[NT_HOLD] + 1);
+        assert_int_equal(ticks[NT_LATCHED], ticks[NT_HOLD] + NT_CONVERTER_BAD - 1);
+        assert_true(simulated_travel(&bus) <= stood && l.spi.short_ones == 0);
+        end();
+    }
+}
+
+/* An ADC without a check sum is seen by what stands still: a deflection while the stage moves (row 3), or a stage that
+ * does not follow. On the spring, at the set-point, the loop may stand still as well, and nothing is amiss. */
+static void an_adc_cut_short_is_seen_by_what_stands_still(void **state)
+{
+    (void)state;
+    enum { IN_AIR = 2000 };
+    static const struct {
+        const char *name;
+        int has_sensor, from;
+        uint32_t lost;
+    } table[] = {{"deflection, in air", 0, IN_AIR, 14},
+                 {"deflection, at the set-point", 0, APPROACH, 14},
+                 {"stage and deflection, in air", 1, IN_AIR, 16},
+                 {"stage and deflection, at the set-point", 1, APPROACH, 16}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; ++i) {
+        begin(table[i].has_sensor);
+        for (int k = 0; k < table[i].from; ++k)
+            assert_int_equal(tick(), NT_RUN);
+        const double stood = simulated_travel(&bus);
+        double lowest = stood;
+        int ticks = 0;
+        bus.fault = BUS_SHORT;
+        bus.lost[0] = 0;
+        bus.lost[1] = table[i].lost;
+        for (uint32_t reached = NT_RUN; reached != NT_LATCHED && ticks < APPROACH; ++ticks) {
+            reached = tick();
+            lowest = larger(lowest, simulated_travel(&bus));
+        }
+        print_message("ADC, lost: %s: %d ticks, %.2f nm on\n", table[i].name, ticks, 1e9 * (lowest - stood));
+        const nt_supervisor *s = &l.touch.supervisor;
+        const double shown = table[i].has_sensor ? s->stage_most + s->correction_most : s->stuck_distance;
+        const double a_tick =
+            l.touch.settings.gains.approach_speed * l.touch.period; /* HOLD comes after it has moved */
+        assert_true(lowest - stood <= shown + 3.0 * a_tick);
+        assert_true(table[i].from == APPROACH || l.command.state == NT_LATCHED);
+        assert_int_equal(l.spi.short_ones, 0);
+        end();
+    }
+}
+
 /* A single bad tick is a HOLD, and the loop goes on by itself or waits; never more than that. */
 static void a_single_bad_tick_never_retracts(void **state)
 {
@@ -224,6 +289,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_the_loop_without_converters),
         cmocka_unit_test(each_fault_in_ticks),
+        cmocka_unit_test(a_dac_cut_short_is_seen_by_its_read_back),
+        cmocka_unit_test(an_adc_cut_short_is_seen_by_what_stands_still),
         cmocka_unit_test(a_single_bad_tick_never_retracts),
         cmocka_unit_test(interrupts_cost_nothing),
     };

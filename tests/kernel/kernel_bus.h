@@ -46,6 +46,7 @@ static inline void *bus_serve(void *context)
         k->wrong_mode += frame.mode != (frame.chip ? 2u : 1u);
         memcpy(out, frame.bytes, frame.length);
         frame.error = bus_error(&k->bus);
+        frame.length = simulated_through(&k->bus, (int)frame.chip, frame.length);
         if (frame.error == 0)
             simulated_frame(&k->bus, (int)frame.chip, out, frame.bytes, frame.length);
         if (!k->is_mute)

@@ -12,7 +12,7 @@ struct nanotouch_frame {
     __u32 chip;
     __u32 mode;  /* of SPI, 0 to 3 */
     __u32 clock; /* [Hz] */
-    __u32 length;
+    __u32 length; /* of an answer: what went through */
     __s32 error; /* of an answer: 0 or -errno */
     __u8 bytes[NANOTOUCH_FRAME];
 };

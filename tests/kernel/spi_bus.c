@@ -29,6 +29,7 @@ static int exchange(struct spi_device *spi, u32 clock, u32 length)
 	if (!READ_ONCE(is_open)) {
 		memset(answered.bytes, 0xff, length);
 		answered.error = 0;
+		answered.length = length;
 		return 0;
 	}
 	asked.sequence++;
@@ -44,13 +45,14 @@ static int exchange(struct spi_device *spi, u32 clock, u32 length)
 	return answered.error;
 }
 
+/* As the kernel's own loop does (spi_transfer_one_message), each transfer counts as whole, whatever came of it. */
 static void hand_out(struct spi_message *message, struct spi_transfer *first, struct spi_transfer *last)
 {
 	u32 at = 0;
 
 	for (;; first = list_next_entry(first, transfer_list)) {
-		if (first->rx_buf)
-			memcpy(first->rx_buf, answered.bytes + at, first->len);
+		if (first->rx_buf && answered.length > at)
+			memcpy(first->rx_buf, answered.bytes + at, min(first->len, answered.length - at));
 		at += first->len;
 		message->actual_length += first->len;
 		if (first == last)
@@ -105,7 +107,8 @@ static ssize_t bus_write(struct file *file, const char __user *from, size_t size
 {
 	if (size != sizeof(answered) || copy_from_user(&answered, from, size))
 		return -EINVAL;
-	if (answered.sequence != asked.sequence || answered.error < -MAX_ERRNO || answered.error > 0)
+	if (answered.sequence != asked.sequence || answered.error < -MAX_ERRNO || answered.error > 0 ||
+	    answered.length > asked.length)
 		return -ESTALE;
 	complete(&answer);
 	return size;

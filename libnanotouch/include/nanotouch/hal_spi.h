@@ -36,7 +36,7 @@ typedef struct nt_spi {
     int count;
     int file[NT_CONVERTERS]; /* -1: not open */
     uint32_t clock[NT_CONVERTERS];
-    uint64_t messages, interrupted, short_ones, refused; /* so far [-] */
+    uint64_t messages, interrupted, short_ones, refused; /* so far [-]; short: of another length than was asked for */
     int error;                                           /* errno of the last one that was refused */
 } nt_spi;
 
@@ -45,8 +45,10 @@ typedef struct nt_spi {
  * then; NT_E_UNSUPPORTED without calls where there is no spidev. */
 NT_API nt_status nt_spi_open(nt_spi *spi, const nt_spi_device *devices, int count, const nt_spi_calls *calls,
                              char reason[NT_SPI_REASON]);
-/* As nt_exchange wants it; the context is the nt_spi. A short transfer, EIO and the like are NT_E_STATE: this tick did
- * not work. ENODEV, ENXIO, ESHUTDOWN and EBADF are NT_E_DEVICE: the bus is gone. */
+/* As nt_exchange wants it; the context is the nt_spi. EIO and the like are NT_E_STATE: this tick did not work. ENODEV,
+ * ENXIO, ESHUTDOWN and EBADF are NT_E_DEVICE: the bus is gone. The kernel returns the whole length whatever went
+ * through, and leaves bytes of the message before where nothing came: a short transfer is for read-back and check sum
+ * to find. Any other length is no answer of the kernel's, and NT_E_STATE. */
 NT_API NT_REALTIME nt_status nt_spi_exchange(void *spi, int converter, const nt_transfer *transfers, int count);
 /* Accepts NULL and one that is closed. */
 NT_API void nt_spi_close(nt_spi *spi);
