@@ -278,7 +278,7 @@ def test_the_page_to_add_a_force_runs(tmp_path: Path, capsys: pytest.CaptureFixt
     assert Scene.from_toml(path) == made["scene"]
     listed = re.findall(r"^\| `(\S+)`(?:, `(\S+)`)? \|", page, re.MULTILINE)
     files = [name for row in listed for name in row if "/" in name]
-    assert len(files) == 7
+    assert len(files) == 8
     assert all((Path(__file__).parents[2] / name).exists() for name in files)
 
 

@@ -321,6 +321,10 @@ map                                 | required: FILE
 reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 19
 reproduce --figure -5               | --figure -5 | 5, 6, 9
 reproduce --figure x                | 'x' | int
+workflow --pixels 0                 | --pixels 0 | 48 .. 512
+workflow --pixels x                 | 'x' | int
+workflow --seed -1                  | '-1' | 0 .. 2^32 - 2
+workflow --out file                 | cannot write into file
 live prose.txt --film new.gif       | prose.txt
 live --record file                  | --record file | .mcap
 live --film file                    | --film file | .gif, .mp4, .png
