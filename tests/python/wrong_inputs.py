@@ -322,7 +322,6 @@ reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 
 reproduce --figure -5               | --figure -5 | 5, 6, 9
 reproduce --figure x                | 'x' | int
 workflow --pixels 0                 | --pixels 0 | 48 .. 512
-workflow --pixels x                 | 'x' | int
 workflow --seed -1                  | '-1' | 0 .. 2^32 - 2
 workflow --out file                 | cannot write into file
 live prose.txt --film new.gif       | prose.txt
@@ -382,12 +381,10 @@ for arguments, words in rows(SCENES)[::4]:
     CASES += [(["curve", "--scene", *arguments], words), (["touch", "--scene", *arguments], words)]
     CASES += [(["margins", "--no-map", *arguments], words), (["fit", "prose.txt", "--scene", *arguments], [])]
 CASES += [(shlex.split(form.format(name)), [name]) for form in READ_BY.values() for name in MEASURED]
-CASES += [(["fit", "folder.txt"], ["results.csv"])]
-CASES += [(["report", "prose.txt"], ["prose.txt", "no folder"]), (["report", "nowhere"], ["nowhere"])]
-CASES += [(["fit", "prose.txt", "--groups", "folder"], ["--groups", "results.csv"])]
+CASES += rows("fit folder.txt | results.csv\nreport prose.txt | prose.txt | no folder\nreport nowhere | nowhere")
 CASES += [(["touch", "--seed", DIGITS], ["999", "0 .. 2^64 - 1"]), (["plan", "\udcff.toml"], ["no such file"]),
           (["info", "bad\udcff.txt"], ["\\udcff"]), (["plan", "a\nb.toml"], ["a\\nb.toml: no such file"]),
-          (["info", "x" * 5000], ["xxx"])]  # fmt: skip
+          (["info", "x" * 5000], ["xxx"]), (["fit", "prose.txt", "--groups", "folder"], ["--groups", "results.csv"])]  # fmt: skip
 
 
 def make_files(folder: Path) -> None:
