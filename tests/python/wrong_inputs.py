@@ -384,7 +384,7 @@ CASES += [(shlex.split(form.format(name)), [name]) for form in READ_BY.values() 
 CASES += rows("fit folder.txt | results.csv\nreport prose.txt | prose.txt | no folder\nreport nowhere | nowhere")
 CASES += [(["touch", "--seed", DIGITS], ["999", "0 .. 2^64 - 1"]), (["plan", "\udcff.toml"], ["no such file"]),
           (["info", "bad\udcff.txt"], ["\\udcff"]), (["plan", "a\nb.toml"], ["a\\nb.toml: no such file"]),
-          (["info", "x" * 5000], ["xxx"]), (["fit", "prose.txt", "--groups", "folder"], ["--groups", "results.csv"])]  # fmt: skip
+          (["info", "x" * 5000], ["xxx"]), (["fit", "prose.txt", "--groups", "folder"], ["results.csv"])]  # fmt: skip
 
 
 def make_files(folder: Path) -> None:
