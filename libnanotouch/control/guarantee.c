@@ -45,7 +45,9 @@ typedef struct basis {
     double k_eff;                /* on the stiffest contact [N/m] */
     double failing[NT_FAILURES]; /* the same, as far as each failure presses [N/m] */
     double reaction;             /* D [s] */
-    double vertical;             /* the stage's speed, with hysteresis and what its loop may add [m/s] */
+    double travel;               /* of what is driven, as far as it may go instead: 1 + 3 sigma [-] */
+    double unread;   /* of a way that the read-out tells, what it may leave out: 3 sigma/(1 - 3 sigma) [-] */
+    double vertical; /* the stage's speed, with hysteresis and what its loop may add [m/s] */
 } basis;
 
 static double in_series(double spring, double stiffness)
@@ -66,8 +68,10 @@ static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_h
     nt_rig slave = b.equivalent.rig;
     slave.master.rate = 0.0; /* a slow master takes no part in a stop */
     b.reaction = nt_margins_loop_delay(&slave, &b.equivalent.gains);
-    b.vertical =
-        (1.0 + rig->stage.hysteresis) * limits->stage_speed + b.equivalent.gains.stage_integral * limits->follow_error;
+    b.travel = 1.0 + NT_GUARANTEE_SIGMAS * rig->stage.travel_sigma;
+    b.unread = 1.0 / (1.0 - NT_GUARANTEE_SIGMAS * rig->stage.position_sigma) - 1.0;
+    b.vertical = b.travel * ((1.0 + rig->stage.hysteresis) * limits->stage_speed +
+                             b.equivalent.gains.stage_integral * limits->follow_error);
     return b;
 }
 
@@ -76,7 +80,15 @@ static basis basis_of(const nt_rig *rig, const nt_settings *settings, const nt_h
 static double falls_behind(const basis *b, const nt_stage *stage)
 {
     const nt_supervisor *s = &b->supervisor;
-    return b->vertical > stage->max_speed ? s->stage_most + s->correction_most + 3.0 * b->vertical * s->period : 0.0;
+    const double hidden = b->travel * (s->stage_most + s->correction_most);
+    return b->vertical > b->travel * stage->max_speed ? hidden + 3.0 * b->vertical * s->period : 0.0;
+}
+
+/* The tip's way past first touch when the limit shows: the stage's reading may leave out part of its own way, which is
+ * the tip's and the lever's [m]. */
+static double indentation_limit(const basis *b, const nt_limits *limits)
+{
+    return limits->indentation + b->unread * (limits->indentation + limits->force * b->share / b->spring);
 }
 
 /* Deflection and travel watch each other. Read as g times what it is, the deflection x is stopped by the force limit
@@ -85,14 +97,15 @@ static double falls_behind(const basis *b, const nt_stage *stage)
 static double misread(const basis *b, const nt_limits *limits)
 {
     const double seen = limits->force - 2.0 * b->supervisor.free_force;
-    return seen > 0.0 ? b->spring * limits->indentation * limits->force / seen : HUGE_VAL;
+    return seen > 0.0 ? b->spring * indentation_limit(b, limits) * limits->force / seen : HUGE_VAL;
 }
 
 /* How far the stage goes before a sensor without noise is called dead [m]. */
 static double unnoticed(const basis *b)
 {
     const nt_supervisor *s = &b->supervisor;
-    return s->stuck_distance > 0.0 ? fmax(b->vertical * NT_STUCK_SAMPLES * s->period, s->stuck_distance) : HUGE_VAL;
+    const double way = (1.0 + b->unread) * s->stuck_distance;
+    return way > 0.0 ? fmax(b->vertical * NT_STUCK_SAMPLES * s->period, way) : HUGE_VAL;
 }
 
 static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig, const nt_limits *limits)
@@ -100,9 +113,10 @@ static void add_failures(nt_guarantee *found, const basis *b, const nt_rig *rig,
     const nt_stage *stage = &rig->stage;
     const nt_supervisor *s = &b->supervisor;
     const double three = 3.0 * s->period; /* ticks in a row */
-    const double stuck = (1.0 + overshoot(stage)) * (s->stage_most + s->correction_most + b->vertical * three);
-    const double runs = stage->max_speed * (b->reaction + three) + 2.0 * s->turn_slack +
-                        nt_servo_ringing(&b->equivalent, stage->max_speed);
+    const double hidden = b->travel * (s->stage_most + s->correction_most), fastest = b->travel * stage->max_speed;
+    const double stuck = (1.0 + overshoot(stage)) * (hidden + b->vertical * three);
+    const double runs = fastest * (b->reaction + three) + 2.0 * (1.0 + b->unread) * s->turn_slack +
+                        nt_servo_ringing(&b->equivalent, fastest);
     const double tolerance = s->free_force + b->spring * 1e-9;
     found->failure[NT_FAILURE_READ_OUT] = misread(b, limits);
     found->failure[NT_FAILURE_SENSOR] = b->failing[NT_FAILURE_SENSOR] * unnoticed(b);
@@ -140,7 +154,7 @@ static double lateral_force(const nt_guarantee *found, const basis *b, const nt_
     if (!(rig->probe.lateral_stiffness > 0.0))
         return most;
     const double grows = hazard->stick + hazard->slope * hazard->slope * b->k_eff + hazard->curvature * found->force;
-    const double way = limits->lateral_speed * (b->reaction + 2.0 / settings->gains.rate);
+    const double way = b->travel * limits->lateral_speed * (b->reaction + 2.0 / settings->gains.rate);
     const double pressed = hazard->slope * fmax(0.0, found->force - limits->force);
     return fmin(most, limits->lateral_force + grows * way + pressed);
 }
@@ -150,7 +164,8 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
     const nt_limits *limits = &settings->limits;
     const basis b = basis_of(rig, settings, hazard);
     const nt_probe *probe = &b.equivalent.rig.probe;
-    const double swing = nt_servo_ringing(&b.equivalent, b.vertical) + stepping_amplitude(&b.equivalent.rig.stage);
+    const double swing =
+        nt_servo_ringing(&b.equivalent, b.vertical) + b.travel * stepping_amplitude(&b.equivalent.rig.stage);
     const double read_error = NT_GUARANTEE_SIGMAS * probe->sensitivity_sigma;
     nt_guarantee found = {.reaction_time = b.reaction,
                           .moves_sideways = rig->stage.axes > 1.0,
@@ -158,11 +173,11 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
                           .zero_drift = b.spring * probe->drift,
                           .frame_drift = b.spring * rig->stage.drift, /* however deep it presses in the end */
                           .tare = hazard->tared,
-                          .help_time = 0.5 * rig->stage.travel / rig->stage.drift};
+                          .help_time = (2.0 - b.travel) * 0.5 * rig->stage.travel / rig->stage.drift};
     /* (1 + a)/(1 - b) of the limit, a^2/sigma_k^2 + b^2/sigma_S^2 = 9: a + b is at most 3 hypot */
     const double off = NT_GUARANTEE_SIGMAS * hypotenuse(probe->spring_constant_sigma, probe->sensitivity_sigma);
     found.calibration = limits->force * off / (1.0 - off);
-    found.speed = b.vertical + (found.moves_sideways ? hazard->slope * limits->lateral_speed : 0.0);
+    found.speed = b.vertical + (found.moves_sideways ? b.travel * hazard->slope * limits->lateral_speed : 0.0);
     const double closer = found.speed * b.reaction + falls_behind(&b, &rig->stage);
     const int slides = found.moves_sideways && limits->lateral_speed > 0.0;
     found.motion = b.k_eff * closer + (slides ? b.spring * hazard->rise : 0.0);
@@ -178,7 +193,8 @@ nt_guarantee nt_guarantee_compute(const nt_rig *rig, const nt_settings *settings
      * that stretches the lever by */
     const double read =
         (2.0 * found.noise + found.tare + hazard->pull_off_force + read_error * limits->force) / probe->spring_constant;
-    const double by_travel = limits->indentation + closer + swing + read + hazard->unseen + hazard->snap_in_depth;
+    const double by_travel =
+        indentation_limit(&b, limits) + closer + swing + read + hazard->unseen + hazard->snap_in_depth;
     found.indentation = fmin(by_travel, hazard->deepest); /* a hard sample is not pressed in that far by this force */
     return found;
 }

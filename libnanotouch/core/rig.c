@@ -38,6 +38,8 @@ static const nt_field rig_fields[] = {
     FIELD(stage.axes, "", 1.0, 3.0, "axes that it has: 1 is z, x and y stay where a session starts; 3 are all"),
     FIELD(stage.drift, "m/s", 0.0, 1e-3, "drift of the frame, tip against sample, at most"),
     FIELD(stage.slip, "m", 0.0, 1e-3, "largest jump of the surface that is reckoned with"),
+    FIELD(stage.travel_sigma, "", 0.0, 0.2, "standard deviation of the calibration of the stage's travel, over it"),
+    FIELD(stage.position_sigma, "", 0.0, 0.2, "the same of the stage's read-out"),
     FIELD(master.mass, "kg", 1e-4, 1e2, "moving mass m_m of the master"),
     FIELD(master.damping, "N s/m", 0.0, 1e5, "damping b_m of the master"),
     FIELD(master.friction, "N", 0.0, 1e2, "Coulomb friction of the master"),

@@ -173,6 +173,19 @@ def test_the_uncertainty_of_a_channel_enters_the_guarantee(tmp_path: Path) -> No
     assert promised[0] < promised[1] < promised[2]
 
 
+@pytest.mark.parametrize(("channel", "field"), [("travel_z", "travel_sigma"), ("position_z", "position_sigma")])
+def test_so_does_that_of_the_stage(channel: str, field: str) -> None:
+    promised = []
+    for uncertainty in (0.0, 0.01, 0.1):
+        tables = tomllib.loads(FILE.read_text())
+        tables["slave"][channel]["uncertainty_percent"] = 100.0 * uncertainty
+        rig = nt.Rig.from_tables(rig_file.from_tables(tables).rig)
+        assert getattr(rig.stage, field) == pytest.approx(uncertainty)
+        found = nt.Session(rig=rig, scene=nt.Scene(sample={"youngs_modulus": 1e6})).guarantee()
+        promised.append(found.indentation)
+    assert promised[0] < promised[1] < promised[2]
+
+
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rig.toml"
     path.write_text("[probe]\nspring_constant_N_per_m = 0.3  # by its maker\n")

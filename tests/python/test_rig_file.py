@@ -28,7 +28,8 @@ def test_the_file_of_the_docs():
     assert found.master is None
     assert found.slave is not None
     probe = {"spring_constant_N_per_m": 8, "sensitivity_m_per_V": 33e-9, "sensitivity_sigma": 0.02}
-    assert found.rig == {"probe": pytest.approx(probe), "stage": {"axes": 1}}
+    stage = {"axes": 1, "travel_sigma": 0.01, "position_sigma": 0.005}
+    assert found.rig == {"probe": pytest.approx(probe), "stage": pytest.approx(stage)}
     assert nt.Rig.from_tables(found.rig).probe.spring_constant == 8.0
     setup = found.slave.setup
     assert [chip["chip"] for chip in setup["chips"]] == ["AD5791", "AD7606"]

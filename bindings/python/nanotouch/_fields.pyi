@@ -330,6 +330,10 @@ class RigStage(Section):
     """drift of the frame, tip against sample, at most [m/s], 0 .. 0.001"""
     slip: float
     """largest jump of the surface that is reckoned with [m], 0 .. 0.001"""
+    travel_sigma: float
+    """standard deviation of the calibration of the stage's travel, over it [-], 0 .. 0.2"""
+    position_sigma: float
+    """the same of the stage's read-out [-], 0 .. 0.2"""
 
 class RigStageValues(TypedDict, total=False):
     resonance: float
@@ -345,6 +349,8 @@ class RigStageValues(TypedDict, total=False):
     axes: float
     drift: float
     slip: float
+    travel_sigma: float
+    position_sigma: float
 
 class RigMaster(Section):
     mass: float

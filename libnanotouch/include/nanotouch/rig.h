@@ -43,6 +43,8 @@ typedef struct nt_stage {
     double axes;               /* that it has: 1 (z: x and y stay where a session starts), or 3 [-] */
     double drift;              /* of the frame, tip against sample, at most [m/s] */
     double slip;               /* largest jump of the surface that is reckoned with [m] */
+    double travel_sigma;       /* standard deviation of the calibration of what is driven, over it [-] */
+    double position_sigma;     /* the same of the read-out [-] */
 } nt_stage;
 
 /* 1-degree-of-freedom haptic master (paper, Eq. 12). */

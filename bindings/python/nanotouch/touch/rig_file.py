@@ -218,11 +218,10 @@ def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     return _elsewhere(half, backend, table, folder) if backend in ELSEWHERE else _half(half, table)
 
 
-def _probe(given: Any, deflection: Mapping[str, Any]) -> Any:
-    """[probe] with the sensitivity of the channel that reads the lever, so that margins and guarantee count with it."""
+def _known(given: Any, stated: Mapping[str, tuple[float, str]]) -> Any:
+    """A table of the rig with what the channels say of it, so that margins and guarantee count with it."""
     if not isinstance(given, Mapping):
         return given  # refused with the other tables
-    stated = {"sensitivity": (abs(deflection["gain"]), "m/V"), "sensitivity_sigma": (deflection["uncertainty"], "")}
     made = dict(given)
     for name, (value, unit) in stated.items():
         keys = key_spellings(name, unit)
@@ -237,7 +236,13 @@ def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> 
     left = dict(tables)
     found = {half: _taken(half, left, Path(folder)) for half in HALVES}
     if isinstance(found["slave"], Converters):
-        left["probe"] = _probe(left.get("probe", {}), found["slave"].setup["felt"][2])
+        setup = found["slave"].setup
+        deflection = setup["felt"][2]
+        lever = {"sensitivity": (abs(deflection["gain"]), "m/V"), "sensitivity_sigma": (deflection["uncertainty"], "")}
+        left["probe"] = _known(left.get("probe", {}), lever)
+        ways = {"travel_sigma": "driven", "position_sigma": "position"}
+        sigmas = {key: (max(axis["uncertainty"] for axis in setup[name] if axis), "") for key, name in ways.items()}
+        left["stage"] = _known(left.get("stage", {}), sigmas)
     return RigFile(left, found["master"], found["slave"])
 
 
