@@ -198,7 +198,9 @@ def obey(controller: Controller, line: str) -> str:
     with controller.lock:
         controller.tip.move()
     asked = {name: controller.count(name) for name in COMMANDS}
-    return json.dumps({"z": controller.tip.z, "status": controller.tip.status, "asked": asked})
+    return json.dumps(
+        {"z": controller.tip.z, "status": controller.tip.status, "limited": controller.tip.limited, "asked": asked}
+    )
 
 
 if __name__ == "__main__":

@@ -4,15 +4,17 @@ garbage, silence, losses in a touch."""
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +22,7 @@ import nanotouch as nt
 import pytest
 from mock_nanonis import MANGLES, SURFACE, Controller
 from nanotouch.errors import DeviceError, InvalidValue
-from nanotouch_app.devices import nanonis
+from nanotouch_app.devices import nanonis, nanonis_watcher
 from nanotouch_app.devices.nanonis_link import LinkError
 
 PATIENCE = 60.0  # with a machine that is busy [s]
@@ -299,10 +301,66 @@ def test_a_slow_controller_holds_or_lifts() -> None:
         assert bridge.poll() is None
 
 
-def test_a_killed_bridge_latches_and_the_controller_keeps_its_guard() -> None:
+def test_a_killed_bridge_latches_and_is_withdrawn() -> None:
+    """By the process beside it, which gives the user's limits back, too."""
     with touching() as (rig, bridge):
         bridge.kill()
+        until(lambda: rig.tell()["asked"]["ZCtrl.Withdraw"] == 1)
         rig.awaited("LATCHED")
+        until(lambda: rig.tell()["z"] > 0.5e-6)
         found = rig.tell()
-        assert found["status"] == nanonis.ON  # nobody is left to withdraw: docs/devices.md says what remains
-        assert found["z"] > SURFACE - GUARD / 0.5
+        assert (found["status"], found["limited"]) == (1, 0)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no process can be stopped here")
+def test_a_bridge_that_hangs_is_withdrawn_and_may_come_back() -> None:
+    with touching() as (rig, bridge):
+        os.kill(bridge.pid, signal.SIGSTOP)
+        rig.awaited("LATCHED")
+        until(lambda: rig.tell()["z"] > 0.5e-6)
+        os.kill(bridge.pid, signal.SIGCONT)
+        time.sleep(0.5)
+        assert rig.tell()["z"] > 0.5e-6
+        assert bridge.poll() is None
+
+
+def watchers_of(process: int) -> list[int]:
+    return [int(each) for each in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="the children of a process are not told here")
+@pytest.mark.parametrize("way", ["SIGKILL", "SIGSTOP"])
+def test_a_touch_without_a_watcher_is_none(way: str) -> None:
+    with touching() as (rig, bridge):
+        (watcher,) = watchers_of(bridge.pid)
+        os.kill(watcher, getattr(signal, way))
+        try:
+            rig.awaited("LATCHED")
+            until(lambda: rig.tell()["z"] > 0.5e-6)
+            assert bridge.wait(PATIENCE) == 2
+        finally:
+            with suppress(ProcessLookupError):
+                os.kill(watcher, signal.SIGKILL)
+
+
+def test_a_bridge_that_ends_by_itself_leaves_no_watcher() -> None:
+    with touching() as (rig, bridge):
+        watchers = watchers_of(bridge.pid) if Path("/proc/self/task").is_dir() else []
+        rig.session.halt()
+        until(lambda: rig.tell()["asked"]["ZCtrl.Withdraw"] == 1)
+        bridge.terminate()
+        assert bridge.wait(PATIENCE) == 0
+        assert not any(Path(f"/proc/{each}").exists() for each in watchers)
+        assert rig.tell()["asked"]["ZCtrl.Withdraw"] == 1
+
+
+def test_a_watcher_gives_up_after_a_while(
+    controller: Controller, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(nanonis_watcher, "LONGEST", 0.3)
+    monkeypatch.setattr(nanonis_watcher, "PAUSE", 0.01)
+    controller.refuse = {"ZCtrl.Withdraw"}
+    monkeypatch.setattr("sys.stdin", io.StringIO("free\nheld 1e-06 -1e-06 1\n"))
+    nanonis_watcher.watch("127.0.0.1", [controller.port], 0.3)
+    assert controller.count("ZCtrl.Withdraw") > 1
+    assert "the tip may still touch" in capsys.readouterr().err

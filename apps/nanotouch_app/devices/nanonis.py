@@ -27,11 +27,10 @@ from nanotouch.touch import mailbox
 from nanotouch.touch.hal import NONE, Capabilities, Channel, Reading
 
 from nanotouch_app.devices.nanonis_link import Address, Link, LinkError
+from nanotouch_app.devices.nanonis_watcher import PAUSE, Limits, Watcher, give_back, withdraw
 
 PERIOD = 20e-3
 """between two readings, at the latest [s]"""
-PAUSE = 0.5
-"""before a withdrawal is tried again [s]"""
 ON = 2
 """what ZCtrl.StatusGet says of a servo that is on; 1 is off, 5 after a safe-tip event"""
 
@@ -65,6 +64,8 @@ class Bridge:
     counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("readings", "withdrawals", "attempts"), 0))
     is_ours: bool = False
     """the servo is on at our request, so the tip may touch"""
+    watcher: Watcher | None = None
+    """that withdraws if we cannot; told each round where we stand"""
 
     def connect(self) -> None:
         """Find signal and limits. The z limits that the user has set are the range of the session."""
@@ -82,10 +83,11 @@ class Bridge:
         if setup.scale == 1.0 and not re.search(r"\(m\)$", setup.signal):
             raise InvalidValue(f"signal = {setup.signal!r} is not in m: give its scale in m per unit")
         self.index = names.index(setup.signal)
-        (self.was_limited,) = self.link.call("ZCtrl.LimitsEnabledGet", gives="I")
+        (was_limited,) = self.link.call("ZCtrl.LimitsEnabledGet", gives="I")
         self.high, self.low = self.link.call("ZCtrl.LimitsGet", gives="ff")
         if not -1.0 < self.low < self.high < 1.0:
             raise InvalidValue(f"z limits = {self.low:g} .. {self.high:g} m: the lower one must be below the other")
+        self.limits = Limits(self.high, self.low, was_limited)
 
     def capabilities(self) -> Capabilities:
         """A slave with a servo of its own. Towards the sample is down: our z is minus theirs."""
@@ -98,12 +100,18 @@ class Bridge:
         """Until it is stopped; then the tip is withdrawn. LinkError if the controller fails."""
         while not self.stopped.is_set():
             begun = time.monotonic()
+            self._tell()
             self._steer(box.ask())
+            self._tell()
             box.publish(self._reading(box))
             self.counts["readings"] += 1
             self.stopped.wait(max(0.0, begun + self.setup.period / 4 - time.monotonic()))
         if self.is_ours:
             self._withdraw(self.link)
+
+    def _tell(self) -> None:
+        if self.watcher:
+            self.watcher.tell(self.limits if self.is_ours else None)
 
     # --- what the controller is told ---
 
@@ -127,6 +135,7 @@ class Bridge:
         (z,) = self.link.call("ZCtrl.ZPosGet", gives="f")
         guard = self.setup.guard / self.setup.scale
         self.is_ours = True  # from here on a failure withdraws
+        self._tell()
         self._limit(z)
         self.link.call("ZCtrl.LimitsEnabledSet", "I", 1)
         self.link.call("ZCtrl.SetpntSet", "f", guard)
@@ -139,13 +148,11 @@ class Bridge:
         self.link.call("ZCtrl.OnOffSet", "I", 1)
 
     def _withdraw(self, link: Link) -> None:
-        """Servo off, tip up to the upper limit; the user's limits come back."""
         self.counts["attempts"] += 1
-        link.call("ZCtrl.Withdraw", "Ii", 0, -1)
+        withdraw(link)
         self.is_ours = False
         self.counts["withdrawals"] += 1
-        link.call("ZCtrl.LimitsSet", "ff", self.high, self.low)
-        link.call("ZCtrl.LimitsEnabledSet", "I", self.was_limited)
+        give_back(link, self.limits)
 
     # --- what it says ---
 
@@ -171,30 +178,38 @@ class Bridge:
             with suppress(LinkError):
                 self.link.tell("ZCtrl.Withdraw", "Ii", 0, -1)
         self.link.close()
-        while self.is_ours:
-            for port in self.setup.ports:
-                with suppress(LinkError), Link(Address(self.setup.host, port), self.setup.patience) as link:
-                    self._withdraw(link)
-                if not self.is_ours:
-                    return
-            if self.stopped.wait(PAUSE):
-                return
+        while self.is_ours and not self._is_withdrawn_anew() and not self.stopped.wait(PAUSE):
+            pass
+        with suppress(LinkError):
+            self._tell()
+
+    def _is_withdrawn_anew(self) -> bool:
+        for port in self.setup.ports:
+            with suppress(LinkError):
+                self._tell()
+            with suppress(LinkError), Link(Address(self.setup.host, port), self.setup.patience) as link:
+                self._withdraw(link)
+            if not self.is_ours:
+                return True
+        return False
 
 
 def run(name: str, bridge: Bridge, timeout: float) -> None:
     """Serve the mailbox `name`. If the controller fails it closes, which latches the session; then the tip lifts."""
     bridge.connect()
-    try:
-        with mailbox.Device(name, bridge.capabilities(), half="slave", timeout=timeout) as box:
-            bridge.serve(box)
-    except LinkError as error:
-        if bridge.is_ours:
-            print(f"nanonis: {error}: withdrawing", file=sys.stderr, flush=True)
-        raise
-    finally:
-        bridge.rescue()
-        if bridge.is_ours:
-            raise LinkError("no controller has acknowledged a withdrawal: the tip may still touch")
+    setup = bridge.setup
+    with Watcher(setup.host, setup.ports, setup.patience) as bridge.watcher:
+        try:
+            with mailbox.Device(name, bridge.capabilities(), half="slave", timeout=timeout) as box:
+                bridge.serve(box)
+        except LinkError as error:
+            if bridge.is_ours:
+                print(f"nanonis: {error}: withdrawing", file=sys.stderr, flush=True)
+            raise
+        finally:
+            bridge.rescue()
+            if bridge.is_ours:
+                raise LinkError("no controller has acknowledged a withdrawal: the tip may still touch")
 
 
 def _parser() -> argparse.ArgumentParser:
