@@ -4,7 +4,7 @@
 JOBS ?= $(shell nproc)
 VENV := .venv/bin
 
-.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz damage corpus heavy windows macos kernel bench lint format clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz damage corpus heavy windows macos kernel conformance bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -92,6 +92,12 @@ kernel:  ## the SPI and GPIO drivers on a Linux kernel that runs as a program; b
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target test_kernel
 	@tests/kernel/run.sh build/release/tests/kernel/test_kernel
+
+conformance:  ## what each backend keeps of the rules in docs/hal.md, as a table
+	@tools/setup.sh test
+	@cmake --preset release --log-level WARNING >/dev/null
+	@cmake --build --preset release --target test_hal_conformance test_hal_mailbox test_hal_spi test_hal_spi_fuse >/dev/null
+	@$(VENV)/python tools/conformance.py build/release/tests/c
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench
 	@tools/setup.sh test

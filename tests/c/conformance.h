@@ -217,18 +217,32 @@ static inline const char *conform_loss(const conformance *c)
     return rule ? rule : is_said ? NULL : broken_rule("a lost device says so");
 }
 
-/* All rules, in order. The device is lost at the end if it can be. */
-static inline const char *conform(const conformance *c)
+enum { NEEDS_NOTHING = 0, NEEDS_PLACE = 1, NEEDS_SILENCE = 2, NEEDS_LOSS = 4 };
+
+static inline int conform_has(const conformance *c)
 {
-    const char *(*const rules[])(const conformance *) = {conform_rehearsal, conform_unarmed,   conform_close,
-                                                         conform_disarm,    conform_no_number, conform_silence,
-                                                         conform_loss};
-    for (size_t i = 0; i < sizeof rules / sizeof *rules; ++i) {
-        const char *rule = rules[i](c);
-        if (rule)
-            return rule;
+    return (c->left_at ? NEEDS_PLACE : 0) | (c->silence ? NEEDS_SILENCE : 0) | (c->lose ? NEEDS_LOSS : 0);
+}
+
+/* All rules, in order, as a row of the table of `make conformance`: kept, broken, or - where a test cannot do to this
+ * device what the rule needs. The first that is broken, or NULL. The device is lost at the end if it can be. */
+static inline const char *conform(const char *name, const conformance *c)
+{
+    static const struct {
+        const char *(*rule)(const conformance *);
+        int needs;
+    } rules[] = {{conform_rehearsal, NEEDS_NOTHING}, {conform_unarmed, NEEDS_PLACE},   {conform_close, NEEDS_PLACE},
+                 {conform_disarm, NEEDS_PLACE},      {conform_no_number, NEEDS_PLACE}, {conform_silence, NEEDS_SILENCE},
+                 {conform_loss, NEEDS_LOSS}};
+    const char *broken = NULL;
+    (void)printf("| %s", name);
+    for (size_t i = 0; i < sizeof rules / sizeof *rules && !broken; ++i) {
+        const int can = (rules[i].needs & ~conform_has(c)) == 0;
+        broken = can ? rules[i].rule(c) : NULL;
+        (void)printf(" | %s", broken ? "broken" : can ? "kept" : "-");
     }
-    return NULL;
+    (void)printf(" |\n");
+    return broken;
 }
 
 #endif

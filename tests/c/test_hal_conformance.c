@@ -31,10 +31,9 @@ static conformance subject(nt_half half, const nt_backend *backend, void *contex
 
 static void assert_conforms(const conformance *c, const char *name)
 {
-    const char *rule = conform(c);
+    const char *rule = conform(name, c);
     if (rule)
         fail_msg("%s: %s", name, rule);
-    print_message("%s keeps all rules\n", name);
 }
 
 /* --- the simulated halves --- */
@@ -117,8 +116,8 @@ static double bus_left_at(void *device)
 static void converters(void **state)
 {
     (void)state;
-    static const char *const names[BUS_FAULTS] = {"well",    "all zero", "all one", "short",
-                                                  "refused", "gone",     "flipped", "deaf"};
+    static const char *const silences[BUS_FAULTS] = {"well", "0", "1", "short", "refusing", "gone", "flipped", "deaf"};
+    char name[80];
     for (int has_sensor = 0; has_sensor < 2; ++has_sensor)
         for (int fault = BUS_ALL_ZERO; fault < BUS_FAULTS; ++fault) {
             simulated_bus bus = simulated_bus_after_power_up();
@@ -134,7 +133,9 @@ static void converters(void **state)
             silence_is = (bus_fault)fault;
             if (fault == BUS_DEAF) /* it hears nothing, and nothing is asked of it: that is no silence */
                 c.silence = NULL;
-            assert_conforms(&c, names[fault]);
+            (void)snprintf(name, sizeof name, "converters%s, bus %s", has_sensor ? " with a sensor of travel" : "",
+                           silences[fault]);
+            assert_conforms(&c, name);
         }
 }
 
@@ -154,7 +155,7 @@ static void object_conforms(const char *path, nt_half half, const char *option)
     conformance c = subject(half, module.backend, NULL);
     c.host = &talking;
     c.configuration.option = option;
-    assert_conforms(&c, module.backend->name);
+    assert_conforms(&c, strrchr(path, '/') + 1);
     nt_hal_unload(&module);
 }
 
@@ -195,7 +196,7 @@ static void device_behind_a_socket(void **state)
     c.configuration.option = pointer.port;
     c.pass = pass_with_pointer;
     c.silence = silence_pointer;
-    assert_conforms(&c, "pointer");
+    assert_conforms(&c, "pointer.so, a device behind a socket");
     pointer_end(&pointer);
     nt_hal_unload(&module);
 }
@@ -327,7 +328,9 @@ static void every_offence_is_found(void **state)
         c.lose = mock_lose;
         c.left_at = mock_left_at;
         c.slack = 1e-12;
-        const char *rule = conform(&c);
+        char name[80];
+        (void)snprintf(name, sizeof name, "mock%s%s", found[is] ? " that breaks: " : "", found[is] ? found[is] : "");
+        const char *rule = conform(name, &c);
         if (found[is] ? !rule || strcmp(rule, found[is]) != 0 : rule != NULL)
             fail_msg("offence %d: \"%s\" instead of \"%s\"", is, rule ? rule : "", found[is] ? found[is] : "");
     }

@@ -76,7 +76,7 @@ static void both_halves_conform(void **state)
                                .lose = lose,
                                .left_at = left_at,
                                .slack = 1e-15};
-        const char *rule = conform(&c);
+        const char *rule = conform(half == NT_HALF_MASTER ? "master behind a mailbox" : "slave behind a mailbox", &c);
         if (rule)
             fail_msg("half %d: %s", half, rule);
         mailbox_end(&program);

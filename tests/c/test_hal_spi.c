@@ -236,7 +236,7 @@ static void the_half_conforms(void **state)
                            .lose = lose,
                            .left_at = left_at,
                            .slack = 1e-9};
-    const char *rule = conform(&c);
+    const char *rule = conform("spidev's driver on a model of the kernel", &c);
     if (rule)
         fail_msg("%s", rule);
     assert_true(kernel.model[0].longest <= NT_SPI_MESSAGE && kernel.model[1].longest <= NT_SPI_MESSAGE);

@@ -58,6 +58,7 @@ static double left_at(void *device)
 static void the_half_conforms(void **state)
 {
     (void)state;
+    static const char *const silences[] = {"well", "0", "1", "short", "refusing"};
     for (int fault = BUS_ALL_ZERO; fault <= BUS_REFUSED; ++fault) {
         start();
         nt_converter_setup setup = slave_setup(&bus, fault % 2);
@@ -76,9 +77,11 @@ static void the_half_conforms(void **state)
                                .left_at = left_at,
                                .slack = 1e-9};
         silence_is = (bus_fault)fault;
-        const char *rule = conform(&c);
+        char name[80];
+        (void)snprintf(name, sizeof name, "files that answer as spidev, bus %s", silences[fault]);
+        const char *rule = conform(name, &c);
         if (rule)
-            fail_msg("fault %d: %s", fault, rule);
+            fail_msg("%s: %s", name, rule);
         assert_true(files.model[0].longest <= NT_SPI_MESSAGE && files.model[1].longest <= NT_SPI_MESSAGE);
         nt_spi_close(&spi);
     }
