@@ -127,7 +127,7 @@ set(nanotouch_sources_curves
     curves/read.c
     curves/robust.c
     curves/wave.c)
-set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c hal/timing.c)
+set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c hal/replay_half.c hal/timing.c)
 set(nanotouch_sources_chips
     hal/chips/ad5686.c
     hal/chips/ad5791.c

@@ -56,7 +56,7 @@ HEADERS = {
     **dict.fromkeys(["commands", "frames", "hazard", "observer"], "session"),
     **dict.fromkeys(["chips", "converters"], "hal/chips"),
     **dict.fromkeys(["hal_linux", "hal_spi", "realtime"], "hal/linux"),
-    **dict.fromkeys(["mailbox", "timing"], "hal"),
+    **dict.fromkeys(["hal_replay", "mailbox", "timing"], "hal"),
 }
 
 # What the portable layers may take from the C library: nothing that allocates, prints or knows an operating system.

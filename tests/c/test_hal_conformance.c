@@ -167,6 +167,27 @@ static void shared_objects(void **state)
     object_conforms(OBJECTS "/real_slave.so", NT_HALF_SLAVE, "");
 }
 
+/* --- a recording, given again --- */
+
+static void replay(void **state)
+{
+    (void)state;
+    enum { ROWS = 200 };
+    static double time[ROWS], position[NT_AXES * ROWS], felt[NT_AXES * ROWS];
+    for (int i = 0; i < ROWS; ++i) {
+        time[i] = 1e-3 * i;
+        for (int j = 0; j < NT_AXES; ++j)
+            position[NT_AXES * i + j] = felt[NT_AXES * i + j] = 1e-9 * i;
+    }
+    const nt_replay_rows rows = {ROWS, NT_AXES, time, position, felt};
+    for (int half = 0; half < 2; ++half) {
+        nt_replay_half replayed;
+        assert_int_equal(nt_replay_half_init(&replayed, &rows, NULL), NT_OK);
+        conformance c = subject((nt_half)half, nt_replay_backend((nt_half)half), &replayed);
+        assert_conforms(&c, half == NT_HALF_MASTER ? "replayed master" : "replayed slave");
+    }
+}
+
 static pointer_device pointer;
 
 static void pass_with_pointer(const nt_host *of, double period)
@@ -340,8 +361,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(simulated_halves),       cmocka_unit_test(converters),
-        cmocka_unit_test(shared_objects),         cmocka_unit_test(device_behind_a_socket),
-        cmocka_unit_test(every_offence_is_found),
+        cmocka_unit_test(shared_objects),         cmocka_unit_test(replay),
+        cmocka_unit_test(device_behind_a_socket), cmocka_unit_test(every_offence_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

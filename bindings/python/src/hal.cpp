@@ -285,11 +285,13 @@ std::shared_ptr<Half> half_of(const py::object &given, nt_half half)
         return converter_half_of(given, half);
     if (py::isinstance(given, hal_name("Mailbox")))
         return mailbox_half_of(given, half);
+    if (py::isinstance(given, hal_name("Replay")))
+        return replay_half_of(given, half);
     if (py::isinstance(given, hal_name(half == NT_HALF_MASTER ? "Master" : "Slave")))
         return std::make_shared<PythonHalf>(given, half);
     throw py::type_error(std::string(names[half]) + ": " + py::repr(given).cast<std::string>() +
                          " is neither a nanotouch.hal." + (half == NT_HALF_MASTER ? "Master" : "Slave") +
-                         ", a nanotouch.hal.SharedObject nor a Mailbox");
+                         ", a nanotouch.hal.SharedObject, a Mailbox nor a Replay");
 }
 
 // --- the rehearsal ---

@@ -44,6 +44,9 @@ std::shared_ptr<Half> converter_half_of(const py::object &given, nt_half half);
 void bind_converters(py::module_ &module);
 void bind_drive(py::module_ &module); // of the submodule that it makes
 
+// A nanotouch.hal.Replay.
+std::shared_ptr<Half> replay_half_of(const py::object &given, nt_half half);
+
 // A nanotouch.hal.Mailbox.
 std::shared_ptr<Half> mailbox_half_of(const py::object &given, nt_half half);
 void bind_mailbox(py::module_ &module);

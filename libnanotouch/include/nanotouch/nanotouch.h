@@ -17,6 +17,7 @@
 #include "nanotouch/geometry.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/hal_backend.h"
+#include "nanotouch/hal_replay.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/material.h"
 #include "nanotouch/maugis_bank.h"

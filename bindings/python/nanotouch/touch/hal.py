@@ -20,7 +20,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from nanotouch import _core
 from nanotouch.errors import DeviceError, InvalidValue
@@ -229,6 +232,42 @@ class Mailbox:
     name: str
 
 
+@dataclass(frozen=True)
+class Replay:
+    """A half that gives again what it measured in a recording: the same hand on another sample, or a touch felt once
+    more. What it is told moves nothing.
+
+    As a master it takes ``master_position`` and ``operator_force``, as a slave ``stage_position`` and ``deflection``,
+    with x and y where the recording has them. Each row comes at its own time since the first. After the last one
+    nothing new comes: the session holds, and lifts if it was the slave.
+    """
+
+    recording: Any
+    """a Recording of one row or more"""
+
+    def rows(self, half: str) -> tuple[int, NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Axes; time (n,) [s]; position (n, 3) [m]; force [N] or deflection [m] (n, 3), NaN where none was measured."""
+        if not len(self.recording):
+            raise InvalidValue("Replay: the recording has no row")
+        position, felt = REPLAYED[half]
+        axes = 3 if all(name in self.recording for name in position) else 1
+        missing = np.full(len(self.recording), np.nan)
+
+        def columns(names: tuple[str, str, str]) -> NDArray[np.float64]:
+            sideways = [getattr(self.recording, name) if name in self.recording else missing for name in names[:2]]
+            return np.column_stack([*sideways, getattr(self.recording, names[2])]).astype(np.float64)
+
+        time = np.asarray(self.recording.time, np.float64)
+        return axes, time - time[0], columns(position), columns(felt)
+
+
+REPLAYED = {
+    "master": (("master_x", "master_y", "master_position"), ("operator_force_x", "operator_force_y", "operator_force")),
+    "slave": (("x", "y", "stage_position"), ("deflection_x", "deflection_y", "deflection")),
+}
+"""the columns that each half measured"""
+
+
 class Rehearsed(NamedTuple):
     """What was seen in a rehearsal."""
 
@@ -241,7 +280,7 @@ class Rehearsed(NamedTuple):
 
 
 def rehearse(
-    half: Master | Slave | SharedObject | Mailbox,
+    half: Master | Slave | SharedObject | Mailbox | Replay,
     *,
     slave: bool = False,
     period: float = 1e-3,
@@ -252,10 +291,10 @@ def rehearse(
 
     Parameters
     ----------
-    half : Master, Slave, SharedObject or Mailbox
+    half : Master, Slave, SharedObject, Mailbox or Replay
         What to try.
     slave : bool
-        Which half a shared object or a mailbox is.
+        Which half a shared object, a mailbox or a replay is.
     period : float
         Of the loop [s].
     duration : float

@@ -18,7 +18,7 @@ from nanotouch.touch import margins
 from nanotouch.touch._control import Control, ControlLaw, choose_control
 from nanotouch.touch._plant import ProbeModel
 from nanotouch.touch.faults import Faults
-from nanotouch.touch.hal import Mailbox, Master, SharedObject, Slave
+from nanotouch.touch.hal import Mailbox, Master, Replay, SharedObject, Slave
 from nanotouch.touch.margins import ForceRange
 from nanotouch.touch.rig_file import Converters
 
@@ -71,9 +71,9 @@ class Options(TypedDict, total=False):
     20 000 of them in a period [rad]"""
     faults: Faults
     """what fails in the simulated halves, and when"""
-    master: Master | SharedObject | Mailbox | Converters | None
+    master: Master | SharedObject | Mailbox | Replay | Converters | None
     """one's own half instead of the simulated hand and master (:mod:`nanotouch.touch.hal`, docs/hal.md)"""
-    slave: Slave | SharedObject | Mailbox | Converters | None
+    slave: Slave | SharedObject | Mailbox | Replay | Converters | None
     """one's own half instead of the simulated stage, probe and sample"""
     recorded: bool
     """False: no records are kept; for :meth:`Session.step`"""
