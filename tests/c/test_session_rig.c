@@ -5,51 +5,15 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 #include <time.h>
 
 #include <cmocka.h>
 
-#include "converter_rig.h"
-#include "nanotouch/hal_spi.h"
-#include "session_fixture.h"
-#include "spidev_calls.h"
-#include "spidev_model.h"
+#include "rig_session.h"
 
 enum { PATIENCE = 20000 }; /* readings of the ring, 2 ms apart where it is empty */
-
-static simulated_bus bus;
-static spidev_model model[2];
-static atomic_int is_pressed;
-
-static int control_call(void *context, int file, unsigned long request, void *argument)
-{
-    (void)context;
-    return model_request(&model[file], (unsigned)request, argument, copy_bytes, NULL);
-}
-static uint32_t line_flags(void *context)
-{
-    (void)context;
-    return atomic_load(&is_pressed) ? (uint32_t)NT_SAMPLE_EMERGENCY_STOP : 0u;
-}
-
-static nt_session_setup setup_on(nt_converter_half *half)
-{
-    nt_session_setup setup = nt_session_defaults();
-    setup.rig.master.gauge = setup.rig.master.motor = 0;
-    setup.rig.stage.axes = 1.0;
-    setup.rig.stage.resonance = 100.0; /* far from the rate of the loop */
-    setup.rig.stage.quality = 1.0;
-    setup.settings = nt_settings_defaults(&setup.rig);
-    setup.settings.gains.rate = 500.0;
-    setup.settings.gains.alpha_p = 1e-3;
-    setup.settings.limits.force = 0.4e-6;
-    setup.slave = (nt_hal_choice){nt_converter_half_backend(NT_HALF_SLAVE), half};
-    return setup;
-}
 
 /* Until a record has this state, or patience is over; how many records there were. */
 static long await_state(nt_session *session, uint32_t state, long least)
@@ -73,19 +37,9 @@ static long await_state(nt_session *session, uint32_t state, long least)
 static void it_runs_stops_and_lifts(void **state)
 {
     (void)state;
-    const nt_spi_calls calls = {open_call, control_call, close_call, NULL};
-    const nt_spi_device devices[] = {{"0", 1, 10e6}, {"1", 2, 10e6}};
     nt_spi spi;
     static nt_converter_half half;
-    bus = simulated_bus_after_power_up();
-    for (int i = 0; i < 2; ++i)
-        model[i] = (spidev_model){.bus = &bus, .chip = i};
-    assert_int_equal(nt_spi_open(&spi, devices, 2, &calls, NULL), NT_OK);
-    nt_converter_setup made = slave_setup(&bus, 1);
-    made.exchange = nt_spi_exchange;
-    made.bus = &spi;
-    made.lines.flags = line_flags;
-    assert_int_equal(nt_converter_half_init(&half, &made, NULL), NT_OK);
+    open_slave(&half, &spi);
     const nt_session_setup setup = setup_on(&half);
     nt_session *session = open_session(&setup);
     assert_int_equal(nt_session_start(session, NT_PACE_WALL, 1), NT_E_UNSUPPORTED); /* it can move something */
