@@ -25,9 +25,13 @@ nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
     const nt_status status = nt_supervisor_arm(&state->supervisor, confirmed);
     if (status != NT_OK)
         return status;
-    state->passivity.gain = 1.0;
-    state->passivity.damping = 0.0;
-    state->passivity.energy = 0.0;
+    nt_passivity_state *watched[] = {&state->passivity, &state->passivity_sideways[NT_X],
+                                     &state->passivity_sideways[NT_Y]};
+    for (int i = 0; i < NT_AXES; ++i) {
+        watched[i]->gain = 1.0;
+        watched[i]->damping = 0.0;
+        watched[i]->energy = 0.0;
+    }
     state->retracted = 0.0;
     state->phase = NT_PHASE_DOWN;
     state->target_x =

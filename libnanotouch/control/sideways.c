@@ -22,6 +22,38 @@ void nt_sideways_follow_hand(const nt_touch *touch, nt_touch_state *state, const
     }
 }
 
+/* What the hand shall feel of a force along an axis, before the motor's limits [N]. */
+static double felt_of(const nt_touch_state *state, int axis, double force)
+{
+    return state->passivity_sideways[axis].gain * state->engaged * force;
+}
+
+/* x and y back off together. */
+static void tie(nt_passivity_state of[2])
+{
+    of[NT_X].gain = of[NT_Y].gain = lesser(of[NT_X].gain, of[NT_Y].gain);
+    of[NT_X].damping = of[NT_Y].damping = greater(of[NT_X].damping, of[NT_Y].damping);
+}
+
+void nt_sideways_watch(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample, int closed)
+{
+    const nt_passivity *passivity = &touch->passivity_sideways;
+    const uint64_t acting = state->ticks + NT_TOUCH_SENT - 1u - touch->delay; /* the tick whose force has been held */
+    for (int i = NT_X; i < NT_Z; ++i) {
+        nt_passivity_state *of = &state->passivity_sideways[i];
+        const double step = (sample->stage_position[i] - state->stage_at[i]) / state->signals.scaling.alpha_p;
+        const nt_port hand = {-state->sent[acting % NT_TOUCH_SENT][i], sample->master_position[i]};
+        const double force = state->signals.scaling.alpha_f * state->lateral_force[i];
+        const nt_port tip = {-felt_of(state, i, force), of->last_tip.position + (isfinite(step) ? step : 0.0)};
+        state->stage_at[i] = sample->stage_position[i];
+        if (closed && isfinite(step) && isfinite(hand.position))
+            nt_passivity_step(passivity, of, &hand, &tip);
+        of->last_hand = hand;
+        of->last_tip = tip;
+    }
+    tie(state->passivity_sideways);
+}
+
 void nt_sideways_read(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
     const nt_gains *gains = &touch->settings.gains;
@@ -79,9 +111,11 @@ void nt_sideways_drive(const nt_touch *touch, nt_touch_state *state)
             state->coupled_sideways[i] = state->signals.scaling.alpha_f * state->lateral_force[i];
         else if (!(state->engaged > 0.0))
             state->coupled_sideways[i] = 0.0;
-        const double felt = state->engaged * state->coupled_sideways[i], speed = state->hand_speed[i];
+        const double felt = felt_of(state, i, state->coupled_sideways[i]), speed = state->hand_speed[i];
         const int fades = !coupled && felt != 0.0;
-        const double wanted = fades ? nt_motor_fade(&touch->rig.master, felt, speed) : felt;
+        const double damped =
+            felt + nt_passivity_damping_force(&touch->passivity_sideways, &state->passivity_sideways[i]);
+        const double wanted = fades ? nt_motor_fade(&touch->rig.master, felt, speed) : damped;
         state->command.motor_force[i] =
             nt_motor_limit(&touch->settings.limits, touch->motor_step, state->command.motor_force[i], wanted, speed);
     }

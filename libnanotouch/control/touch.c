@@ -21,6 +21,7 @@ nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, dou
                             .wanted_mode = touch->mode,
                             .supervisor = nt_supervisor_start(),
                             .passivity = {.gain = 1.0, .last_hand = {.position = master_position}},
+                            .passivity_sideways = {{.gain = 1.0}, {.gain = 1.0}},
                             .rescale = nt_rescale_start(&touch->rescale, &scaling),
                             .signals = {.period = touch->period,
                                         .master_position = master_position,
@@ -30,7 +31,8 @@ nt_touch_state nt_touch_start(const nt_touch *touch, double master_position, dou
                             .target_y = y,
                             .command = {.stage_position = {x, y}}};
     state.signals.scaling = state.rescale.now;
-    state.hand_at[NT_X] = state.hand_at[NT_Y] = NAN;  /* until it is seen */
+    state.hand_at[NT_X] = state.hand_at[NT_Y] = NAN; /* until it is seen */
+    state.stage_at[NT_X] = state.stage_at[NT_Y] = NAN;
     state.offset = -gains->alpha_p * master_position; /* the stage begins at 0 */
     return state;
 }
@@ -77,7 +79,8 @@ static void watch_energy(const nt_touch *touch, nt_touch_state *state, double st
     const nt_scaling *scaling = &signals->scaling;
     nt_passivity_state *passivity = &state->passivity;
     const uint64_t acting = state->ticks + NT_TOUCH_SENT - 1u - touch->delay; /* the tick whose force has been held */
-    const double hand_force = touch->rig.master.gauge ? signals->operator_force : -state->sent[acting % NT_TOUCH_SENT];
+    const double hand_force =
+        touch->rig.master.gauge ? signals->operator_force : -state->sent[acting % NT_TOUCH_SENT][NT_Z];
     const nt_port hand = {hand_force, signals->master_position};
     const int coupled = touch->settings.gains.coupling_stiffness > 0.0;
     const double tip_step =
@@ -108,6 +111,8 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     const int closes = touch->rig.master.motor; /* without a motor no loop closes through the hand */
     if (closes && state->mode == NT_MODE_TOUCH) /* a servo is meant to move the hand */
         watch_energy(touch, state, stage_step);
+    if (touch->feels_sideways)
+        nt_sideways_watch(touch, state, sample, closes && state->mode == NT_MODE_TOUCH);
 }
 
 static int moves_sideways(const nt_touch_state *state)
@@ -117,12 +122,16 @@ static int moves_sideways(const nt_touch_state *state)
            state->target_y != state->command.stage_position[NT_Y];
 }
 
+static int is_exhausted(const nt_touch_state *state)
+{
+    return nt_passivity_is_exhausted(&state->passivity) || nt_passivity_is_exhausted(&state->passivity_sideways[NT_X]);
+}
+
 static nt_state supervise(const nt_touch *touch, nt_touch_state *state, const nt_sample *sample)
 {
     const nt_situation situation = {.reference = state->reference,
                                     .moves_sideways = moves_sideways(state),
-                                    .unstable =
-                                        state->mode == NT_MODE_TOUCH && nt_passivity_is_exhausted(&state->passivity)};
+                                    .unstable = state->mode == NT_MODE_TOUCH && is_exhausted(state)};
     return nt_supervisor_step(&touch->supervisor, &state->supervisor, sample, &situation);
 }
 
@@ -183,9 +192,11 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     drive_motor(touch, state, act(touch, state));
     nt_sideways_drive(touch, state);
     state->command.stage_position[NT_Z] = drive_stage(touch, state, sample);
-    if (state->passivity.gain < 1.0)
+    if (state->passivity.gain < 1.0 || state->passivity_sideways[NT_X].gain < 1.0)
         state->supervisor.reasons |= NT_REASON_BACKED_OFF;
-    state->command.motor_force[NT_Z] = state->sent[state->ticks % NT_TOUCH_SENT] = state->motor_force;
+    state->command.motor_force[NT_Z] = state->motor_force;
+    for (int i = 0; i < NT_AXES; ++i)
+        state->sent[state->ticks % NT_TOUCH_SENT][i] = state->command.motor_force[i];
     state->command.state = (uint32_t)state->supervisor.state;
     state->command.reasons = state->supervisor.reasons;
     ++state->ticks;

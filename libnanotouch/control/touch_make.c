@@ -71,6 +71,18 @@ static int feels_sideways(const nt_rig *rig)
     return rig->master.axes > 1.0 && rig->stage.axes > 1.0 && rig->probe.lateral_stiffness > 0.0;
 }
 
+/* No force of the hand is known in x and y, K_f has no part there, and no more acts than the lateral limit. */
+static nt_passivity sideways_passivity(const nt_rig *rig, const nt_settings *settings)
+{
+    nt_rig plain = *rig;
+    nt_gains gains = settings->gains;
+    const double most = gains.alpha_f * settings->limits.lateral_force;
+    gains.force_gain = 0.0;
+    plain.master.gauge = 0;
+    plain.master.gauge_range = lesser(plain.master.gauge_range, most);
+    return nt_passivity_make(&plain, &gains);
+}
+
 nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *settings, nt_mode mode,
                         nt_problem *problem)
 {
@@ -104,6 +116,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .passivity = nt_passivity_make(&equivalent.rig, &equivalent.gains),
                      .rescale = nt_rescale_make(rig, settings),
                      .supervisor = nt_supervisor_make(rig, settings)};
+    made.passivity_sideways = sideways_passivity(rig, settings);
     made.passivity.damping = rig->master.damping; /* what the motor feeds forward is in its force already */
     made.passivity.credit = rig->master.gauge ? 0.0 : rig->master.damping;
     *touch = made;

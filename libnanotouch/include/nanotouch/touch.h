@@ -34,6 +34,7 @@ typedef struct nt_touch {
     double motor_step;    /* largest, in a period [N] */
     double spike;         /* a deflection that jumps by more than this may be a wrong reading [m] */
     nt_passivity passivity;
+    nt_passivity passivity_sideways; /* of x and of y, by what the master shows of the hand */
     nt_rescale rescale;
     nt_supervisor supervisor;
 } nt_touch;
@@ -49,28 +50,30 @@ typedef struct nt_touch_state {
     nt_sum turn; /* of a curve: where the stage has turned [m] */
     nt_supervisor_state supervisor;
     nt_passivity_state passivity;
+    nt_passivity_state passivity_sideways[2]; /* of one gain: to scale x and y apart would give energy */
     nt_rescale_state rescale;
     nt_stage_loop_state stage_loop;
-    nt_signals signals;         /* what the law is given */
-    double deflections[2];      /* of the last two valid samples [m] */
-    nt_sum reference;           /* where the stage shall be [m] */
-    nt_sum offset;              /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
-    double stretch;             /* of the virtual coupling, at the operator's scale [m] */
-    int clutch_open;            /* the master moves alone */
-    nt_sum engaged;             /* 0 .. 1, fades the force in and out [-] */
-    double motor_force;         /* last command [N] */
-    double coupled_force;       /* what is left of the last command given while coupled [N] */
-    nt_sum retracted;           /* lifted so far [m] */
-    double hand_at[2];          /* x and y of the master when it was last seen [m] */
-    double sideways[2];         /* how far it has gone since that the tip has not followed yet [m] */
-    double hand_speed[2];       /* of the master in x and y, behind the same low-pass as along z [m/s] */
-    double lateral_force[2];    /* on the tip, + along x and y; 0 where the lever does not show it [N] */
-    double projected_force;     /* f_s, and what a hand of one axis feels of the lateral force [N] */
-    double coupled_sideways[2]; /* last force on the hand in x and y while coupled [N] */
-    double target_x, target_y;  /* lateral set-point [m] */
-    nt_sum target_time;         /* left to get there [s] */
-    double sent[NT_TOUCH_SENT]; /* motor forces of the last ticks, by their number [N] */
-    nt_command command;         /* last command */
+    nt_signals signals;                  /* what the law is given */
+    double deflections[2];               /* of the last two valid samples [m] */
+    nt_sum reference;                    /* where the stage shall be [m] */
+    nt_sum offset;                       /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
+    double stretch;                      /* of the virtual coupling, at the operator's scale [m] */
+    int clutch_open;                     /* the master moves alone */
+    nt_sum engaged;                      /* 0 .. 1, fades the force in and out [-] */
+    double motor_force;                  /* last command [N] */
+    double coupled_force;                /* what is left of the last command given while coupled [N] */
+    nt_sum retracted;                    /* lifted so far [m] */
+    double hand_at[2];                   /* x and y of the master when it was last seen [m] */
+    double stage_at[2];                  /* x and y of the stage then [m] */
+    double sideways[2];                  /* how far it has gone since that the tip has not followed yet [m] */
+    double hand_speed[2];                /* of the master in x and y, behind the same low-pass as along z [m/s] */
+    double lateral_force[2];             /* on the tip, + along x and y; 0 where the lever does not show it [N] */
+    double projected_force;              /* f_s, and what a hand of one axis feels of the lateral force [N] */
+    double coupled_sideways[2];          /* last force on the hand in x and y while coupled [N] */
+    double target_x, target_y;           /* lateral set-point [m] */
+    nt_sum target_time;                  /* left to get there [s] */
+    double sent[NT_TOUCH_SENT][NT_AXES]; /* motor forces of the last ticks, by their number [N] */
+    nt_command command;                  /* last command */
     uint64_t ticks;
 } nt_touch_state;
 
