@@ -15,9 +15,8 @@ from nanotouch import images, scan
 from nanotouch.errors import InvalidValue, MissingExtra, require
 from nanotouch.plots import new_figure, saved
 
-from nanotouch_app import output, scenes, stop
+from nanotouch_app import output, scenes, stop, surfaces
 from nanotouch_app.quantity import parse_quantity
-from nanotouch_app.touch import SURFACES
 
 FILES = ("scan.gwy", "surface.gwy", "scan.json", "scan.png")
 MODES = ("contact", "tapping", "phase")
@@ -33,7 +32,7 @@ def add_parser(subparsers: Any) -> None:
         "scan", help="image a surface on the simulated rig", description=__doc__
     )
     parser.add_argument("what", nargs="?", metavar="IMAGE|SURFACE|PRESET", help="AFM image; built-in surface: "
-                        f"{', '.join(SURFACES)}; or a preset, over its surface (default: dots)")  # fmt: skip
+                        f"{', '.join(surfaces.BUILT_IN)}; or a preset, over its surface (default: dots)")  # fmt: skip
     how = parser.add_argument_group("how it is scanned")
     how.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what="scene, rig, [drive], [zloop], [raster]")
                      + " (default: silicon in humid air)")  # fmt: skip
@@ -106,12 +105,11 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) 
     if args.what is None or preset is not None:
         if named is not None:
             return named.touched_by(scene)
-        name = "grating" if preset is not None and "inas" not in preset else "dots"
-        return nt.Surface.touched_by(scene, SURFACES[name]())
+        return nt.Surface.touched_by(scene, surfaces.of_scene(preset) if preset else nt.surface.dots())
     if named is not None:
         raise InvalidValue(f"{args.scene} names a surface ([surface]): give it or {args.what}, not both")
-    if args.what in SURFACES:
-        return nt.Surface.touched_by(scene, SURFACES[args.what]())
+    if args.what in surfaces.BUILT_IN:
+        return nt.Surface.touched_by(scene, surfaces.BUILT_IN[args.what]())
     return nt.SurfaceFile(image=args.what).touched_by(scene)
 
 

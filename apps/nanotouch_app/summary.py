@@ -35,7 +35,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "planned_pull_off_force_N": session.plan.pull_off_force,
         "largest_force_N": float(np.max(recording.tip_force)),
         "largest_sideways_force_N": _sideways(recording),
-        "touched": bool(np.any(recording.contact_radius > 0.0)),
+        "touched": _touched(session, recording),
         "position_tracking_rms_m": None if session.mode in SERVOED else _rms(_position_error(session, recording)),
         "force_tracking_rms_N": _rms(_force_error(session, recording)),
         "alpha_p": session.settings.gains.alpha_p,
@@ -98,6 +98,12 @@ def words(summary: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def _touched(session: nt.Session, recording: Recording) -> bool:
+    """In contact, or pressed by forces before contact with more than a hundredth of the limit, as a soft sample is."""
+    pressed = float(np.max(recording.tip_force)) > 0.01 * session.settings.limits.force
+    return pressed or bool(np.any(recording.contact_radius > 0.0))
+
+
 def _sideways(recording: Recording) -> float | None:
     """Friction and slopes together; None where the recording does not have it."""
     columns = recording.columns
@@ -123,7 +129,7 @@ def force(summary: dict[str, Any], name: str) -> str:
     tip, hand = summary[f"{name}_force_N"], summary[f"hand_{name}_force_N"]
     if tip is not None:
         return f"{tip * 1e9:.1f} nN at the tip, {hand:.3f} N at the hand"
-    return f"none: {_WITHOUT[name] if summary['touched'] else 'never in contact'}"
+    return f"none: {_WITHOUT[name] if summary['touched'] else 'never touched'}"
 
 
 _WITHOUT = {"snap_in": "no sudden pull on the way in", "pull_off": "no sudden release on the way out"}
@@ -140,7 +146,7 @@ def _margin(margin: float | None) -> str:
 def _tracking(summary: dict[str, Any]) -> str:
     force = summary["force_tracking_rms_N"]
     if force is None:
-        return "none: " + ("the hand follows no force" if summary["mode"] == "curve" else "never in contact")
+        return "none: " + ("the hand follows no force" if summary["mode"] == "curve" else "never touched")
     return f"{force:.3f} N RMS at the hand"
 
 

@@ -16,16 +16,9 @@ from nanotouch.errors import InvalidValue, MissingExtra
 from nanotouch.touch.operator import script_for
 from nanotouch.touch.session import MODES, ProbeModel
 
-from nanotouch_app import loop, output, properties, scenes, stop, summary, told, view
+from nanotouch_app import loop, output, properties, scenes, stop, summary, surfaces, told, view
 from nanotouch_app.quantity import number, parse_points, parse_quantity, whole_number
 
-SURFACES: dict[str, Callable[[], nt.Topography]] = {
-    "grating": nt.surface.grating,
-    "dots": nt.surface.dots,
-    "flat": nt.surface.flat,
-    "spikes": nt.surface.spikes,
-    "spheres": nt.surface.spheres,
-}
 FILES = ("recording.mcap", "summary.json", "time.png", "force_gap.png", "line.png", "view.png")
 MOVING = ("scan", "topography")
 LONGEST = 600.0  # [s]
@@ -41,7 +34,11 @@ def add_parser(subparsers: Any) -> None:
     )
     where = parser.add_argument_group("what is touched, and where")
     where.add_argument("image", nargs="?", metavar="IMAGE", help="AFM image; without it a built-in surface")
-    where.add_argument("--surface", choices=SURFACES, help="built-in surface (default: grating)")
+    where.add_argument(
+        "--surface",
+        choices=surfaces.BUILT_IN,
+        help="built-in surface (default: that of the preset, as in nanotouch live; else grating)",
+    )
     where.add_argument("--mode", choices=MODES, default="point", help="press at a point, feel the forces along a line, "
                        "follow it at constant force and feel the height, find the surface and stay on it, or record a "
                        "force-distance curve (default: %(default)s)")  # fmt: skip
@@ -132,7 +129,8 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) 
         raise InvalidValue(f"give an IMAGE or --surface {args.surface}, not both")
     named = properties.surface_file(args, args.image, tables, args.scene)
     if named is None:
-        return nt.Surface.touched_by(scene, SURFACES[args.surface or "grating"]())
+        topography = surfaces.BUILT_IN[args.surface]() if args.surface else surfaces.of_scene(args.scene)
+        return nt.Surface.touched_by(scene, topography)
     if args.surface is not None:
         raise InvalidValue(f"{args.scene} names a surface ([surface]): give it or --surface {args.surface}, not both")
     surface: nt.Surface = named.touched_by(scene)

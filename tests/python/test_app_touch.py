@@ -209,7 +209,7 @@ def test_too_short_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str], 
     assert summary["force_tracking_rms_N"] is None
     assert summary["pull_off_force_N"] is None
     said = capsys.readouterr().out
-    assert "none: never in contact" in said
+    assert "none: never touched" in said
     assert "pull-off          none" in said
     assert not summary["touched"]
     touched = words(summary | {"touched": True})

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from nanotouch import Scene, surface
 from nanotouch.errors import InvalidValue
-from nanotouch_app import guard, plan, touch
+from nanotouch_app import guard, plan, surfaces
 from nanotouch_app.main import COMMANDS, main
 from wrong_inputs import CASES, make_files
 
@@ -45,7 +45,7 @@ def test_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     monkeypatch.chdir(files)
-    monkeypatch.setitem(touch.SURFACES, "grating", lambda: surface.grating(pixels=64))  # sooner dilated
+    monkeypatch.setitem(surfaces.BUILT_IN, "grating", lambda: surface.grating(pixels=64))  # sooner dilated
     before = sorted(files.rglob("*"))
     assert status_of(arguments) == 2
     said = capsys.readouterr().err

@@ -16,14 +16,19 @@ PRESETS = ("silicon_in_air", "silicon_on_gold", "mica_in_air", "polyester", "sil
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_may_be_armed_at_it(name: str) -> None:
-    """0.3 N at the hand, or as much as Eq. 19 gives from pull-off to largest load; never less than before."""
+    """0.3 N at the hand, or as much as Eq. 19 gives from pull-off to largest load, or, where nothing pulls, the
+    largest load as half of that; never less than before."""
     scene, rig = getattr(nt.presets, name)()
     plan, load = scene.plan(), scene.range.maximum_load
     pull_off, settings = plan.pull_off_force, nt.Settings.for_rig(rig)
     alpha_f = margins.felt_alpha_f(rig, settings, plan, load)
     assert alpha_f >= settings.gains.alpha_f
     felt = alpha_f * pull_off
-    assert felt >= 0.3 or alpha_f * (pull_off + load) == pytest.approx(2.0 * rig.master.max_force)
+    whole = 2.0 * rig.master.max_force
+    pulls = pull_off > 1e-3 * load
+    assert felt >= 0.3 or (
+        alpha_f * (pull_off + load) == pytest.approx(whole) if pulls else alpha_f * load > 0.5 * whole
+    )
     session = nt.Session(scene, rig)
     assert session.settings.gains.alpha_f == alpha_f
     assert session.margins().refusal is None

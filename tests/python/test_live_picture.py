@@ -337,7 +337,7 @@ def test_another_sample_is_laid_under_the_tip(monkeypatch: pytest.MonkeyPatch) -
         studio.picture.cards = studio.picture.help = False
         second = list(studio.play([(0.6, {"do": "preset", "name": "cell_in_liquid"})]))[-1]
         assert studio.picture.seen.world["title"] == "A living cell"
-        assert studio.picture.stage.unit == pytest.approx(40e-6)
+        assert studio.picture.stage.unit == pytest.approx(60e-6)
         assert "medium.brush_thickness" in [slider.field for slider in studio.picture.sliders.sliders]
         assert np.any(first != second)
     finally:

@@ -15,8 +15,9 @@ from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
 from nanotouch.units import in_words
 
+from nanotouch_app import surfaces
 from nanotouch_app.live import measured
-from nanotouch_app.live.subject import PRESETS, Subject, of_preset, relief
+from nanotouch_app.live.subject import PRESETS, Subject, of_preset
 
 MOST_PIXELS = 1024  # of an image that is touched, to a side
 EXTENT = 25.0  # of the relief that is made for a scene, in radii of the tip
@@ -105,7 +106,7 @@ def of_surface(named: nt.SurfaceFile, scene: nt.Scene, rig: nt.Rig, name: str) -
 
 def _made_for(scene: nt.Scene, name: str) -> nt.Topography:
     size = EXTENT * float(scene.tip.radius)
-    return relief(size, ROUGHNESS * size, name)
+    return surfaces.relief(size, ROUGHNESS * size, name)
 
 
 def of_image(path: Path, told: Callable[[str], object] = str) -> Subject:

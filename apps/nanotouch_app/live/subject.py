@@ -5,15 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import nanotouch as nt
 import numpy as np
 from nanotouch import presets
 
+from nanotouch_app import surfaces
 from nanotouch_app.live import samples
 
-WAVES = 6  # of a gentle relief, each of another direction
 LEAST_CLEARANCE = 20e-9  # [m]
 
 
@@ -48,39 +47,6 @@ class Subject:
         return float(max(LEAST_CLEARANCE, 1.5 * min(reach, 1e-6), 2.0 * release if np.isfinite(release) else 0.0))
 
 
-def relief(size: float, height: float, name: str, seed: int = 1, pixels: int = 128) -> nt.Topography:
-    """A gentle relief of so many metres from lowest to highest: waves of a third to a whole of the size [m]."""
-    rng = np.random.default_rng(seed)
-    y, x = np.meshgrid(*2 * [np.linspace(0.0, 2.0 * np.pi, pixels)], indexing="ij")
-    z = np.zeros((pixels, pixels))
-    for _ in range(WAVES):
-        angle, waves, phase = rng.uniform(0.0, np.pi), rng.uniform(1.0, 3.0), rng.uniform(0.0, 2.0 * np.pi)
-        z += np.cos(waves * (np.cos(angle) * x + np.sin(angle) * y) + phase) / waves
-    return _between(z, size, height, name)
-
-
-def terraces(size: float, step: float, count: int, name: str, pixels: int = 128) -> nt.Topography:
-    """Terraces between steps of one height [m] that wander across the surface, each a sixteenth of it wide."""
-    y, x = np.meshgrid(*2 * [np.linspace(0.0, 1.0, pixels)], indexing="ij")
-    way = count * (x + 0.35 * y + 0.06 * np.sin(5.0 * y) + 0.03 * np.sin(11.0 * y + 4.0 * x))
-    edge = np.tanh((way - np.floor(way) - 0.5) * 32.0 / count) * 0.5 + 0.5
-    z = np.floor(way) + edge
-    return nt.Topography(heights=(z - z.min()) * step, pixel_size=2 * (size / pixels,), name=name)
-
-
-def cell(size: float = 40e-6, height: float = 3e-6, pixels: int = 128) -> nt.Topography:
-    """A cell that lies spread on its dish: a dome over a nucleus that runs out flat."""
-    y, x = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, pixels)], indexing="ij")
-    r = np.hypot(x * (1.0 + 0.2 * y), 1.15 * y)
-    z = np.exp(-((r / 0.55) ** 2)) + 0.35 * np.exp(-(((x - 0.1) ** 2 + (y + 0.05) ** 2) / 0.05))
-    return _between(z, size, height, "cell")
-
-
-def _between(z: Any, size: float, height: float, name: str) -> nt.Topography:
-    z = (z - z.min()) / np.ptp(z) * height
-    return nt.Topography(heights=z, pixel_size=2 * (size / len(z),), name=name)
-
-
 @dataclass(frozen=True)
 class Preset:
     """Beside a scene of :mod:`nanotouch.scene.presets`: where it lies, and what to try."""
@@ -96,32 +62,32 @@ class Preset:
 
 PRESETS: dict[str, Preset] = {
     "silicon_in_air": Preset(
-        "Silicon in air", lambda: relief(500e-9, 6e-9, "polished silicon"),
+        "Silicon in air", surfaces.OF_SCENE["silicon_in_air"],
         "Scroll down until the water snaps, then pull up until it tears. Then set the humidity to 0.",
     ),
     "silicon_on_gold": Preset(
-        "Silicon on gold", lambda: terraces(400e-9, 2.4e-9, 5, "terraces of gold", pixels=192),
+        "Silicon on gold", surfaces.OF_SCENE["silicon_on_gold"],
         "Follow a terrace at a steady force and feel its edge.",
     ),
     "mica_in_air": Preset(
-        "Mica in dry air", lambda: terraces(600e-9, 1e-9, 2, "steps of mica", pixels=192),
+        "Mica in dry air", surfaces.OF_SCENE["mica_in_air"],
         "The soft lever jumps in before it touches: go down by single steps and watch its line meet the curve.",
         accuracy=0.03,
     ),
     "polyester": Preset(
-        "Polyester", lambda: relief(20e-6, 60e-9, "polyester film", seed=3),
+        "Polyester", surfaces.OF_SCENE["polyester"],
         "Press, then let go slowly: the way out is not the way in.",
     ),
     "silicone_rubber": Preset(
-        "Silicone rubber", lambda: relief(60e-6, 400e-9, "silicone rubber", seed=5),
+        "Silicone rubber", surfaces.OF_SCENE["silicone_rubber"],
         "Press deep, then pull: the rubber stretches into a neck before it lets go.",
     ),
     "polystyrene_ball": Preset(
-        "Polystyrene ball on glass", lambda: relief(4e-6, 10e-9, "polished glass", seed=7),
+        "Polystyrene ball on glass", surfaces.OF_SCENE["polystyrene_ball"],
         "Press, then draw it sideways: it sticks, and then slips.",
     ),
     "inas_dots": Preset(
-        "Quantum dots", lambda: nt.surface.dots(pixels=256),
+        "Quantum dots", surfaces.OF_SCENE["inas_dots"],
         "Find a dot with the lightest touch that you can hold.",
     ),
     "grating": Preset(
@@ -140,7 +106,7 @@ PRESETS: dict[str, Preset] = {
         "Rough film", samples.rough, "Pull off on a hill and in a hollow: the pull differs.", "silicon_in_air",
     ),
     "cell_in_liquid": Preset(
-        "A living cell", cell,
+        "A living cell", surfaces.OF_SCENE["cell_in_liquid"],
         "Nothing snaps: feel the fur first, then the cell. Press on the nucleus, then on the rim.",
     ),
 }  # fmt: skip

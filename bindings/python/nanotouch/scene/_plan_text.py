@@ -16,7 +16,7 @@ _UNITS = {"force": "N", "stiffness": "N/m", "radius": "m", "folds": "m"}
 #: below this a shift of a fold is no more than rounding [m]
 _IN_PLACE = 1e-15
 #: a pull-off below this share of the largest load is none to speak of
-_NO_PULL = 1e-6
+_NO_PULL = 1e-5
 
 
 def text_of(facts: dict[str, Any]) -> str:
