@@ -74,9 +74,11 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     parser.add_argument("--branch", choices=("retract", "approach"), help="default: retract for adhesive models")
     parser.add_argument("--radius", metavar="LENGTH", help="tip radius, as 20nm")
     parser.add_argument("--half-angle", metavar="ANGLE", help="of cone (flank) and pyramid (face), as 20deg")
+    parser.add_argument("--thickness", metavar="LENGTH", help="of a layer on rigid ground (layer, layer_cone), as 5um")
     parser.add_argument(
         "--known-to", action="append", default=[], metavar="WHAT=PERCENT", type=_uncertainty,
-        help="standard uncertainty of sensitivity (3 without this), spring_constant or radius, as spring_constant=10; "
+        help="standard uncertainty of sensitivity (3 without this), spring_constant, radius or thickness, as "
+        "spring_constant=10; "
         "or correlation of the first two",
     )  # fmt: skip
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
@@ -142,8 +144,9 @@ def _rivals(model: str) -> tuple[str, ...]:
 
 def _uncertainty(text: str) -> tuple[str, float]:
     name, _, percent = text.partition("=")
-    if name not in ("sensitivity", "spring_constant", "radius", "correlation"):
-        raise argparse.ArgumentTypeError(f"{name!r}: valid are sensitivity, spring_constant, radius, correlation")
+    valid = ("sensitivity", "spring_constant", "radius", "thickness", "correlation")
+    if name not in valid:
+        raise argparse.ArgumentTypeError(f"{name!r}: valid are {', '.join(valid)}")
     try:
         return name, float(percent) / 100.0
     except ValueError:
@@ -225,6 +228,8 @@ def knowledge(args: argparse.Namespace) -> dict[str, Any]:
         tools["baseline"] = args.baseline
     if args.half_angle is not None:
         tools["half_angle"] = parse_quantity(args.half_angle, "rad")
+    if args.thickness is not None:
+        tools["thickness"] = parse_quantity(args.thickness, "m")
     if args.scene is None:
         return tools | {"radius": radius, "poisson_ratio": args.poisson_ratio}
     scene = scenes.read(args.scene).scene

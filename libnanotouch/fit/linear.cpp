@@ -44,9 +44,11 @@ Eigen::MatrixXd design_of(const nt_fit_options &options, const nt_fit_data &data
     const double offset = held(NT_FIT_FORCE_OFFSET), tilt = held(NT_FIT_FORCE_TILT);
     const double zero = options.parameter[NT_FIT_CONTACT_POINT].initial;
     const nt_fit_row *row = nt_fit_row_of(options.model);
-    const double one[NT_FIT_PARAMETERS] = {1.0}; // Pa
+    Parameters one; // Pa
+    for (std::size_t p = 0; p < one.size(); p++)
+        one[p] = p == NT_FIT_EFFECTIVE_MODULUS ? 1.0 : options.parameter[p].initial;
     nt_fit_branch branch;
-    (void)row->prepare(&options, one, &branch);
+    (void)row->prepare(&options, one.data(), &branch);
     const auto columns = static_cast<Eigen::Index>(free.size());
     Eigen::MatrixXd design(data.count, columns + 1);
     for (long i = 0; i < data.count; i++) {

@@ -102,6 +102,9 @@ nt_fit_options changed_options(const nt_fit_solution &solution, nt_fit_calibrati
         options.half_angle += step;
     } else if (changed == NT_FIT_RADIUS) {
         options.radius *= 1.0 + step;
+    } else if (changed == NT_FIT_THICKNESS) {
+        nt_fit_start &thickness = options.parameter[NT_FIT_FOURTH];
+        thickness.initial = std::min(thickness.initial * (1.0 + step), thickness.maximum);
     } else {
         options.spring_constant *= 1.0 + step;
         options.force_noise *= 1.0 + step;

@@ -16,7 +16,7 @@
 
 enum { POINTS = 250 };
 
-static const double truth[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 0.0, 3e-9, 0.0, 0.0, 1.0}; /* lambda = 7.1 */
+static const double truth[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 300e-9, 3e-9, 0.0, 0.0, 1.0}; /* lambda = 7.1 */
 
 typedef struct {
     double position[POINTS], force[POINTS];
@@ -32,6 +32,7 @@ static inline nt_fit_options options_of(nt_fit_model model, double spring_consta
     nt_fit_options options = nt_fit_defaults(model);
     options.spring_constant = spring_constant;
     options.parameter[NT_FIT_COHESIVE_RANGE].initial = truth[NT_FIT_COHESIVE_RANGE];
+    options.parameter[NT_FIT_FOURTH].initial = truth[NT_FIT_FOURTH];
     return options;
 }
 

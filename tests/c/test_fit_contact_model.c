@@ -18,9 +18,9 @@ static void assert_near(double value, double expected, double tolerance)
         fail_msg("%.17g, expected %.17g +- %g", value, expected, tolerance);
 }
 
-/* E*, w, h0, -, delta0, F0, G, s */
-static const double soft[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 0.0, 3e-9, 0.4e-9, 1e-3, 1.1};
-static const double stiff[NT_FIT_PARAMETERS] = {80e9, 0.144, 0.2e-9, 0.0, -2e-9, 0.0, 0.0, 0.97};
+/* E*, w, h0, t, delta0, F0, G, s */
+static const double soft[NT_FIT_PARAMETERS] = {5e6, 0.05, 2e-9, 300e-9, 3e-9, 0.4e-9, 1e-3, 1.1};
+static const double stiff[NT_FIT_PARAMETERS] = {80e9, 0.144, 0.2e-9, 300e-9, -2e-9, 0.0, 0.0, 0.97};
 
 static nt_fit_options options_of(nt_fit_model model, double spring_constant)
 {
@@ -84,6 +84,39 @@ static void cone_and_pyramid(void **state)
             assert_near(point.indentation + force / 2.0, i * 2e-9, 1e-20);
         }
         assert_near(contact_force(&options, soft, 0.0), 0.0, 1e-24);
+    }
+}
+
+/* Of sphere, three-sided pyramid and layers, by differences. */
+static void gradient_of_the_shapes(void **state)
+{
+    (void)state;
+    for (int model = NT_FIT_SPHERE; model <= NT_FIT_LAYER_CONE; model++) {
+        nt_fit_options options = options_of((nt_fit_model)model, 0.0);
+        const int layer = model >= NT_FIT_LAYER;
+        options.half_angle = 0.4;
+        double value[NT_FIT_PARAMETERS];
+        for (int i = 0; i < NT_FIT_PARAMETERS; i++)
+            value[i] = soft[i];
+        value[NT_FIT_FOURTH] = layer ? 40e-9 : (double)NAN;
+        for (int i = 1; i < 60; i++) { /* to several times the thickness: past the end of the polynomials */
+            const double position = soft[NT_FIT_CONTACT_POINT] + i * 3e-9;
+            const nt_fit_point point = point_at(&options, value, position);
+            for (int p = 0; p < NT_FIT_OWN; p++) {
+                if (!nt_fit_quantity_of(&options, (nt_fit_parameter)p).name)
+                    continue;
+                double force[2];
+                for (int side = 0; side < 2; side++) {
+                    double moved[NT_FIT_PARAMETERS];
+                    for (int q = 0; q < NT_FIT_PARAMETERS; q++)
+                        moved[q] = value[q] * (q == p ? 1.0 + (side ? 1e-5 : -1e-5) : 1.0);
+                    force[side] = point_at(&options, moved, position).force;
+                }
+                const double by = (force[1] - force[0]) / (2e-5 * value[p]);
+                assert_near(point.gradient[p], by, 1e-6 * fabs(by));
+            }
+        }
+        assert_int_equal(nt_fit_quantity_of(&options, NT_FIT_FOURTH).name != NULL, layer);
     }
 }
 
@@ -273,6 +306,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(obeys_cantilever_equation),
         cmocka_unit_test(cone_and_pyramid),
+        cmocka_unit_test(gradient_of_the_shapes),
         cmocka_unit_test(constant_below_load_fold),
         cmocka_unit_test(follows_the_unstable_branch_to_the_tear),
         cmocka_unit_test(follows_the_contact_that_does_not_touch),

@@ -135,6 +135,7 @@ void bind_solving(py::module_ &module)
     calibrations["spring_constant"] = int(NT_FIT_SPRING_CONSTANT);
     calibrations["radius"] = int(NT_FIT_RADIUS);
     calibrations["half_angle"] = int(NT_FIT_HALF_ANGLE);
+    calibrations["thickness"] = int(NT_FIT_THICKNESS);
     module.attr("calibrations") = calibrations;
     module.def("solve", &solve, py::arg("options"), py::arg("known"), py::arg("position"), py::arg("force"));
     module.def("steep_width", &steep_width, py::arg("options"), py::arg("value"));

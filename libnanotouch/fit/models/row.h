@@ -25,6 +25,7 @@ typedef struct nt_fit_branch {
     double lambda;            /* Maugis' [-]; NaN: the law has none */
     double load, indentation; /* Maugis' units [N], [m] */
     double prefactor;         /* of F = prefactor delta^exponent */
+    double thickness;         /* t of a layer [m] */
     double pull_off;          /* force at the load fold, positive [N] */
     double touch_c;           /* Maugis-Dugdale: c at a = 0, reduced */
     double load_fold;         /* s there: the lowest force */
@@ -35,7 +36,7 @@ typedef struct nt_fit_branch {
 typedef struct nt_fit_state {
     double F, indentation;   /* [N], [m] */
     double F1, indentation1; /* their derivatives by s: never both 0 */
-    double range;            /* lambda dF/dlambda at constant indentation [N] (contact_model.cpp) */
+    double range; /* lambda dF/dlambda at constant indentation [N] (contact_model.cpp); of a layer -t dF/dt */
 } nt_fit_state;
 
 typedef struct nt_fit_row {
@@ -71,7 +72,15 @@ const nt_fit_row *nt_fit_row_of(nt_fit_model model);
 /* Parameters that models share. */
 #define NT_FIT_MODULUS {"effective_modulus", "Pa", NAN, 1.0, 1e14}
 #define NT_FIT_ADHESION {"work_of_adhesion", "J/m^2", NAN, 1e-9, 1e3}
+#define NT_FIT_OF_LAYER {"thickness", "m", 1.0, 1e-9, 1.0} /* until it is given: a half-space */
 #define NT_FIT_RANGE {"cohesive_range", "m", 0.2e-9, 1e-12, 1e-5}
+
+/* Of a law that is linear in E*. */
+static inline void nt_fit_derive_linear(const nt_fit_state *state, double stiffness, double own[NT_FIT_OWN])
+{
+    (void)stiffness;
+    own[NT_FIT_EFFECTIVE_MODULUS] = state->F;
+}
 
 static inline unsigned nt_fit_no_doubt(const nt_fit_options *options, const nt_fit_result *result)
 {

@@ -38,7 +38,7 @@ typedef enum nt_fit_parameter {
     NT_FIT_EFFECTIVE_MODULUS, /* E* [Pa] */
     NT_FIT_WORK_OF_ADHESION,  /* w [J/m^2]; DMT, JKR, Maugis-Dugdale */
     NT_FIT_COHESIVE_RANGE,    /* h0 = w/sigma0 [m]; Maugis-Dugdale */
-    NT_FIT_FOURTH,            /* of NT_FIT_CUSTOM only */
+    NT_FIT_FOURTH,            /* thickness t of a layer [m]; the fourth of NT_FIT_CUSTOM */
     NT_FIT_CONTACT_POINT,     /* delta0: X at which the undeformed bodies touch [m] */
     NT_FIT_FORCE_OFFSET,      /* F0 [N] */
     NT_FIT_FORCE_TILT,        /* G [N/m] */
@@ -83,7 +83,7 @@ typedef struct nt_fit_options {
     nt_fit_model model;
     const nt_fit_law *law;  /* of NT_FIT_CUSTOM, borrowed */
     double radius;          /* R of the tip [m] */
-    double half_angle;      /* psi of cone and pyramid [rad] */
+    double half_angle;      /* psi of cones and pyramids [rad] */
     double spring_constant; /* k_c [N/m]; 0: the position is the indentation */
     double tilt_position;   /* X_b: where the tilt adds nothing [m] */
     nt_fit_start parameter[NT_FIT_PARAMETERS];
@@ -94,8 +94,8 @@ typedef struct nt_fit_options {
     double tear_sigma;    /* its standard uncertainty [m]; needs force_noise, adhesion, spring constant */
     int max_iterations;
 } nt_fit_options;
-/* Free: E*, w and delta0 (guessed). Fixed: h0 = 0.2 nm, F0 = 0, G = 0, s = 1. R = 20 nm, psi = 20 degrees, k_c = 0,
- * least squares, no noise known, 100 iterations. */
+/* Free: E*, w and delta0 (guessed). Fixed: h0 = 0.2 nm, t = 1 m, F0 = 0, G = 0, s = 1. R = 20 nm, psi = 20 degrees, k_c
+ * = 0, least squares, no noise known, 100 iterations. */
 NT_API nt_fit_options nt_fit_defaults(nt_fit_model model);
 /* The same for a law of the user's own (borrowed), whose parameters are free and start where it says. */
 NT_API nt_fit_options nt_fit_defaults_for(const nt_fit_law *law);
@@ -190,13 +190,13 @@ typedef struct nt_fit_known {
 
 /* What the user of a fit has to know, one bit each. */
 typedef enum nt_fit_flag {
-    NT_FIT_NOT_CONVERGED = 1,    /* stopped at max_iterations */
-    NT_FIT_STIFF = 2,            /* contact much stiffer than the cantilever: E* hardly shows */
-    NT_FIT_MISFIT = 4,           /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
-    NT_FIT_WIDE = 8,             /* contact radius above R/2: no paraboloid on a half-space */
-    NT_FIT_CALIBRATION = 16,     /* the curve contradicts its calibration, or the model is wrong: E* not determined */
-    NT_FIT_WRONG_MODEL = 32,     /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
-    NT_FIT_WAVES = 64,           /* a wave of interference was taken off with the baseline */
+    NT_FIT_NOT_CONVERGED = 1, /* stopped at max_iterations */
+    NT_FIT_STIFF = 2,         /* contact much stiffer than the cantilever: E* hardly shows */
+    NT_FIT_MISFIT = 4,        /* residuals above 3 times the noise, and a rating below NT_FIT_GOOD */
+    NT_FIT_WIDE = 8,          /* contact radius above R/2, or twice a layer's thickness: the law is not valid there */
+    NT_FIT_CALIBRATION = 16,  /* the curve contradicts its calibration, or the model is wrong: E* not determined */
+    NT_FIT_WRONG_MODEL = 32,  /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
+    NT_FIT_WAVES = 64,        /* a wave of interference was taken off with the baseline */
     NT_FIT_TORN_ELSEWHERE = 128, /* than where this contact and cantilever let go: the tear is not used */
     NT_FIT_UNEVEN = 1 << 20 /* shallow and deep half of the contact ask for different E* and contact points: their sigma
                                covers half of that */
@@ -218,7 +218,12 @@ typedef struct nt_fit_solution {
 NT_API nt_status nt_fit_solve(const nt_fit_options *options, const nt_fit_known *known, const nt_fit_data *data,
                               nt_fit_solution *solution, nt_problem *problem);
 
-typedef enum nt_fit_calibration { NT_FIT_SPRING_CONSTANT, NT_FIT_RADIUS, NT_FIT_HALF_ANGLE } nt_fit_calibration;
+typedef enum nt_fit_calibration {
+    NT_FIT_SPRING_CONSTANT,
+    NT_FIT_RADIUS,
+    NT_FIT_HALF_ANGLE,
+    NT_FIT_THICKNESS
+} nt_fit_calibration;
 /* d value/d ln of what is calibrated (of the half angle: by the angle [rad]): differences of whole fits. */
 NT_API nt_status nt_fit_shift(const nt_fit_solution *solution, const nt_fit_data *data, nt_fit_calibration changed,
                               double shift[NT_FIT_PARAMETERS]);

@@ -17,7 +17,11 @@ extern "C" {
     X(MAUGIS, maugis)                                                                                                  \
     X(CONE, cone)                                                                                                      \
     X(PYRAMID, pyramid)                                                                                                \
-    X(PUNCH, punch)
+    X(PUNCH, punch)                                                                                                    \
+    X(SPHERE, sphere)                                                                                                  \
+    X(PYRAMID3, pyramid3)                                                                                              \
+    X(LAYER, layer)                                                                                                    \
+    X(LAYER_CONE, layer_cone)
 
 typedef enum nt_fit_model {
 #define NT_FIT_ENTRY(constant, name) NT_FIT_##constant,
@@ -33,7 +37,7 @@ typedef struct nt_fit_description {
     const char *law;     /* force over indentation delta */
     const char *valid;   /* where it holds */
     const char *scaling; /* what an error of the tip's size or angle does to the result */
-    const char *tip;     /* its shape, as a scene calls it: "paraboloid", "cone", "punch" */
+    const char *tip;     /* its shape, as a scene calls it: "paraboloid", "sphere", "cone", "punch" */
     int sides;           /* of a sharp tip, which has an angle and no radius: 0 of a cone; -1: not sharp */
     double exponent;     /* n of F ~ E* delta^n without adhesion [-]; 0: not known */
     double pull_off;     /* pull-off over pi w R with which a fit begins [-]; 0: no adhesion */

@@ -15,7 +15,7 @@ from nanotouch._arrays import Floats
 
 from .contact_part import Contact, contact_of
 from .fitting import ASSUMED_HALF_ANGLE
-from .models import Model, extension, find
+from .models import Model, extension, find, layer_of
 from .result import Status
 from .solving import Setup, solve
 from .uncertainties import Uncertainties
@@ -103,6 +103,7 @@ def fit_points(
     compiled, chosen = extension(), find(model)
     X, F = np.asarray(position, dtype=np.float64), np.asarray(force, dtype=np.float64)
     held = dict(fixed or {})
+    layer_of(chosen, None, None, held)
     if contact_point is not None:
         held["contact_point"] = contact_point
     fit_offset, fit_tilt = fit_offset and "force_offset" not in held, fit_tilt and "force_tilt" not in held

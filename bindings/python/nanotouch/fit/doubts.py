@@ -15,6 +15,7 @@ from .show import with_sigma
 from .solving import Setup, Solution
 from .uncertainties import Uncertainties
 
+_THICK = 2.0  # contact radius over thickness up to which the laws of layers hold
 _OF_THE_SAMPLE = 5  # places of the model's own parameters and the contact point; then the force offset
 
 
@@ -49,10 +50,7 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
             f"({stated:.3g} N/m), whose own slope the curve shows: it hardly depends on the modulus"
         )
     if "wide" in flagged:
-        notes.append(
-            f"contact radius {found['contact_radius'] * 1e9:.3g} nm at a tip of {options.radius * 1e9:.3g} nm: "
-            "a paraboloid on a half-space is not valid there"
-        )
+        notes.append(_wide(setup, solution))
     if "torn_elsewhere" in flagged:
         notes.append(
             "the tip was torn off elsewhere than where this contact and cantilever let go (by a shock, or the model is "
@@ -79,6 +77,17 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
         lost = "" if any(identifiable.values()) else ": other values fit as well, so that none of these is a result"
         notes.append(f"the fit stopped before it converged{lost}")
     return Doubts(identifiable, notes, reason)
+
+
+def _wide(setup: Setup, solution: Solution) -> str:
+    radius = solution.found["contact_radius"]
+    said = f"contact radius {radius * 1e9:.3g} nm at a tip of {setup.radius * 1e9:.3g} nm: "
+    if setup.model.is_layer and radius > _THICK * setup.held["thickness"]:
+        thickness = setup.held["thickness"] * 1e9
+        return f"contact radius {radius * 1e9:.3g} nm, more than twice the layer's {thickness:.3g} nm: not valid there"
+    if setup.model.tip == "sphere":
+        return said + "strains above 10 %, where linear elasticity is not valid"
+    return said + f"a paraboloid on a {'layer' if setup.model.is_layer else 'half-space'} is not valid there"
 
 
 def _calibration(solution: Solution, uncertainties: Uncertainties) -> str:

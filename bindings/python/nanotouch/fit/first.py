@@ -33,6 +33,7 @@ def first_choice(
     cohesive_range: float,
     *,
     sharp: bool = False,
+    layer: bool = False,
     branch: Literal["approach", "retract"] | None = None,
 ) -> FirstChoice:
     """The law to begin with.
@@ -45,13 +46,15 @@ def first_choice(
         k_c [N/m], R [m] and h0 [m]: whether an adhesive contact is soft depends on them.
     sharp : bool
         The tip is a cone (its half angle was given).
+    layer : bool
+        The sample is a layer (its thickness was given).
     branch : {"approach", "retract"}, optional
         The only one that is wanted.
     """
     found = adhesion_of(report)
     pushed = branch or ("approach" if "approach" in report.branches else "retract")
-    name = "cone" if sharp else "hertz"
-    if found.kind == "tear" and not sharp and branch != "approach":
+    name = ("layer_cone" if sharp else "layer") if layer else "cone" if sharp else "hertz"
+    if found.kind == "tear" and not sharp and not layer and branch != "approach":
         transition = _transition(report, spring_constant, radius, cohesive_range)
         soft, model = (  # Maugis-Dugdale holds for all: it is left to the fit where the slope does not tell
             ("soft", "jkr") if transition >= _JKR
@@ -66,7 +69,7 @@ def first_choice(
         return FirstChoice(model, "retract", f"{found.words} and is {about}: {title_of(model)} on the retraction")
     where = "approach" if pushed == "approach" else "retraction, where it repels"
     reason = {
-        "tear": "a law with adhesion needs the retraction and a round tip",
+        "tear": "a law with adhesion needs the retraction, a round tip and a half-space",
         "held": "no law of one contact describes that",
         "none": "a law without adhesion",
         "unknown": "a law without adhesion",

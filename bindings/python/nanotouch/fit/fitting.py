@@ -13,7 +13,7 @@ from nanotouch.curves.baseline import Kind
 from nanotouch.errors import InvalidValue
 
 from .first import AUTO, first_choice
-from .models import Model, extension, find, is_sharp
+from .models import Model, extension, find, is_sharp, layer_of
 from .points import Branch, Window, points_of
 from .reporting import Sample, Tip, make_result
 from .result import FitResult
@@ -45,6 +45,7 @@ def fit_curve(
     tip: TipLike | None = None,
     radius: float | None = None,
     half_angle: float | None = None,
+    thickness: float | None = None,
     poisson_ratio: float | None = None,
     contact_point: float | None = None,
     window: Window | None = None,
@@ -69,14 +70,16 @@ def fit_curve(
     model : str or Model
         ``"auto"``: by what the curve shows (``result.choice`` says why). Or a name of
         :func:`nanotouch.fit.models`: ``"maugis"``, ``"jkr"``, ``"dmt"`` (the retraction from the deepest
-        point to where the tip is torn off), ``"hertz"``, ``"cone"``, ``"pyramid"`` (the approach, where it repels), or
-        one of your own.
+        point to where the tip is torn off), ``"hertz"``, ``"sphere"``, ``"cone"``, ``"pyramid"``, ``"pyramid3"``,
+        ``"layer"``, ``"layer_cone"`` (the approach, where it repels), or one of your own.
     tip : object with ``radius``, optional
         For instance ``scene.tip``; its ``youngs_modulus`` and ``poisson_ratio`` enter the sample's modulus.
     radius : float, optional
         R of the tip [m], in place of `tip`. Without either it is the file's, or 20 nm, and the result says so.
     half_angle : float, optional
         Of cone (axis to flank) and pyramid (axis to face) [rad]; 20 degrees are assumed.
+    thickness : float, optional
+        Of an incompressible layer bonded to rigid ground, under the tip [m]; of ``"layer"`` and ``"layer_cone"``.
     poisson_ratio : float, optional
         Of the sample: then its Young's modulus is reported beside E*.
     contact_point : float, optional
@@ -124,14 +127,14 @@ def fit_curve(
     if model == AUTO:
         size, reach = _size(tip, radius), cohesive_range if isinstance(cohesive_range, float) else ASSUMED_RANGE
         model, branch, choice = first_choice(
-            report, curve.spring_constant, size, reach, sharp=half_angle is not None, branch=branch
-        )
+            report, curve.spring_constant, size, reach, sharp=half_angle is not None, layer=thickness is not None,
+            branch=branch,
+        )  # fmt: skip
     chosen = find(model)
     branch = branch or ("retract" if chosen.adhesive else "approach")
     points = points_of(report, branch, chosen, window if window_of == "force" else None, curve.name)
-    held = {name: _position(name, value) for name, value in (fixed or {}).items()}
-    if contact_point is not None:
-        held["contact_point"] = -contact_point
+    held = _held(fixed or {}, contact_point)
+    held |= layer_of(chosen, thickness, poisson_ratio, held)
     if chosen.has_range and cohesive_range != "free":
         held.setdefault("cohesive_range", _range(cohesive_range, assumptions))
     setup = Setup(
@@ -147,7 +150,7 @@ def fit_curve(
         loss_scale=loss_scale or max(_LOSS_SCALE * report.noise, 1e-18),
     )
     _check_names(setup, chosen.options(compiled, setup.radius).parameters)
-    assumptions += uncertainties.assumptions(sharp=is_sharp(chosen.name))
+    assumptions += uncertainties.assumptions(sharp=is_sharp(chosen.name), layer=chosen.is_layer)
     solution = solve(compiled, setup, points, uncertainties)
     if window is not None and window_of == "indentation":
         inside = (solution.indentation >= window[0]) & (solution.indentation <= window[1])
@@ -170,6 +173,11 @@ def _check_names(setup: Setup, parameters: tuple[tuple[str, str, float, float] |
     known = tuple(parameter[0] for parameter in parameters if parameter is not None)
     for name in (*setup.held, *setup.bounds):
         _check_choice("parameter", name, known)
+
+
+def _held(fixed: Mapping[str, float], contact_point: float | None) -> dict[str, float]:
+    held = {name: _position(name, value) for name, value in fixed.items()}
+    return held if contact_point is None else held | {"contact_point": -contact_point}
 
 
 def _position(name: str, value: float) -> float:

@@ -12,7 +12,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
@@ -25,6 +25,8 @@ from nanotouch.errors import InvalidValue, MissingExtra
 
 Floats = NDArray[np.float64]
 MOST_PARAMETERS = 4
+INCOMPRESSIBLE = 0.5  # Poisson's ratio of a layer
+_THINNEST, _THICKEST = 1e-9, 1.0  # m
 
 
 @dataclass(frozen=True)
@@ -76,10 +78,10 @@ class Model:
     valid: str = ""
     title: str = ""
     adhesive: bool = False
-    tip: Literal["paraboloid", "cone", "punch"] = "paraboloid"
+    tip: Literal["paraboloid", "sphere", "cone", "punch"] = "paraboloid"
     """shape of the tip, as a scene calls it; of a law of one's own it says nothing"""
     sides: int | None = None
-    """of a sharp tip of the library, which has an angle and no radius: 0 of a cone, 4 of a pyramid; None: round"""
+    """of a sharp tip of the library, which has an angle and no radius: 0 of a cone, 3 or 4 of a pyramid; None: round"""
     scaling: str = "E* goes as 1/sqrt(R), w as 1/R"
     """what an error of the tip's size or angle does to the result"""
     law: str = ""
@@ -95,6 +97,11 @@ class Model:
     def has_range(self) -> bool:
         """Whether it is a law of the library with a range of adhesion h0."""
         return self.force is None and any(parameter.name == "cohesive_range" for parameter in self.parameters)
+
+    @property
+    def is_layer(self) -> bool:
+        """Whether it is a law of the library for a layer of a thickness."""
+        return self.force is None and any(parameter.name == "thickness" for parameter in self.parameters)
 
     def options(self, extension: ModuleType, radius: float) -> Any:
         """Options of the C library for this model."""
@@ -131,6 +138,25 @@ def built_in() -> dict[str, Model]:
 def is_sharp(name: str) -> bool:
     """Whether the tip of a model of the library has an angle and no radius."""
     return name in built_in() and built_in()[name].sides is not None
+
+
+def layer_of(
+    model: Model, thickness: float | None, poisson_ratio: float | None, held: Mapping[str, float]
+) -> dict[str, float]:
+    """The thickness to hold [m], empty of a half-space; raises InvalidValue where it does not go with the model."""
+    if not model.is_layer:
+        if thickness is not None:
+            layers = ", ".join(name for name, known in built_in().items() if known.is_layer)
+            raise InvalidValue(f"model {model.name!r} is of a half-space: thickness goes with {layers}")
+        return {}
+    thickness = held.get("thickness") if thickness is None else thickness
+    if thickness is None:
+        raise InvalidValue(f"model {model.name!r} needs the thickness of the layer: thickness=, or --thickness 5um")
+    if not _THINNEST <= thickness <= _THICKEST:
+        raise InvalidValue(f"thickness {thickness:g} m: valid is {_THINNEST:g} to {_THICKEST:g} m")
+    if poisson_ratio not in (None, INCOMPRESSIBLE):
+        raise InvalidValue(f"poisson_ratio {poisson_ratio}: model {model.name!r} holds for {INCOMPRESSIBLE} only")
+    return {"thickness": float(thickness)}
 
 
 _own: dict[str, Model] = {}  # written in Python: the library's, and those that were registered

@@ -172,6 +172,8 @@ class FitResult:
             raise InvalidValue(f"{self.name}: the curve does not determine {' and '.join(unknown)}: no scene")
         if self.model not in built_in():
             raise InvalidValue(f"model {self.model!r} is none of contact alone: a scene cannot have it as its contact")
+        if built_in()[self.model].is_layer:
+            raise InvalidValue(f"model {self.model!r}: the contact of a scene is on a half-space, not on a layer")
         law = FittedLaw(
             model=self.model,
             radius=self.radius,

@@ -33,6 +33,8 @@ class Uncertainties:
         Of the tip's radius, relative.
     half_angle : float
         Of cone and pyramid [rad].
+    thickness : float
+        Of a layer's, relative.
     poisson_ratio : float
         Of the sample's; enters its Young's modulus only.
     """
@@ -41,6 +43,7 @@ class Uncertainties:
     spring_constant: float = 0.0
     radius: float = 0.0
     half_angle: float = 0.0
+    thickness: float = 0.0
     poisson_ratio: float = 0.0
     correlation: float = 0.0
 
@@ -59,11 +62,13 @@ class Uncertainties:
         s, k = self.sensitivity, self.spring_constant
         return sqrt(max(s**2 + k**2 + 2.0 * self.correlation * s * k, 0.0))  # below 0 by rounding only
 
-    def assumptions(self, sharp: bool) -> list[str]:
+    def assumptions(self, sharp: bool, layer: bool = False) -> list[str]:
         """What was taken for granted, in words; sharp: the tip has an angle in place of a radius."""
         named = {"deflection sensitivity": self.sensitivity, "spring constant": self.spring_constant}
         if not sharp:
             named["tip radius"] = self.radius
+        if layer:
+            named["layer's thickness"] = self.thickness
         known = [f"{name} to {100 * value:.3g} %" for name, value in named.items() if value > 0.0]
         if self.correlation != 0.0:
             known.append(f"errors of the first two correlated by {self.correlation:.2g}")

@@ -10,7 +10,8 @@ from row to row), may be drift of the instrument or a structure along the fast a
 * a step, and stays, where there are one or two jumps, or one that dwarfs the others;
 * drift for the rest, as far as (1) both halves of the columns agree on it and (2) it exceeds by far what the same
   surface does the other way: the profile of the columns, which drift does not enter, is the null of every band of
-  frequencies. The share taken out is 2c/(1 + c), c the correlation of the halves, times 1 - 3 P_columns/P_rows.
+  frequencies (less a straight line, which may be tilt). The share taken out is 2c/(1 + c), c the correlation of the
+  halves, times 1 - 3 P_columns/P_rows.
 """
 
 from __future__ import annotations
@@ -158,14 +159,13 @@ def _steps(profile: Floats, jumps: list[tuple[int, int, float]]) -> Floats:
 def _drift(strips: Floats, stairs: Floats) -> Floats:
     """What of the profile of the rows is drift [m]."""
     ny, half = len(strips), strips.shape[1] // 2
-    own, columns = _spectrum(strips, stairs), _spectrum(strips.T, None)
+    own = _spectrum(strips, stairs)
     pairs = [
         [_spectrum(part, stairs) for part in parts]
         for parts in ((strips[:, :half], strips[:, half:]), (strips[:, ::2], strips[:, 1::2]))
     ]
     bands = _bands(ny)
-    # power per frequency; amplitudes of a cosine transform of n samples grow as the square root of n
-    null = [_power(columns[a:b]) / len(columns) for a, b in bands]
+    null = _null(strips, bands)
     gain = np.zeros(ny)
     for number, (a, b) in enumerate(bands):
         surface = max(null[max(0, number - _NEIGHBOURS) : number + _NEIGHBOURS + 1])
@@ -177,12 +177,24 @@ def _drift(strips: Floats, stairs: Floats) -> Floats:
     return np.asarray(require("scipy.fft", "images").idct(own * gain, norm="ortho"))
 
 
-def _spectrum(strips: Floats, stairs: Floats | None) -> Floats:
+def _spectrum(strips: Floats, stairs: Floats) -> Floats:
     """Cosine transform of the profile of the rows, less `stairs`; the mean is left out."""
     profile = rows.summed(np.diff(strips, axis=0))
-    if stairs is not None:
-        profile = profile - stairs
+    return _transform(profile - stairs)
+
+
+def _transform(profile: Floats) -> Floats:
     return np.asarray(require("scipy.fft", "images").dct(profile - profile.mean(), norm="ortho"))
+
+
+def _null(strips: Floats, bands: list[tuple[int, int]]) -> list[float]:
+    """What the surface does along x in each band [m^2]; a tilt that levelling has left, a straight line, is none."""
+    profile = rows.summed(np.diff(strips.T, axis=0))
+    x = np.arange(len(profile))
+    level = _transform(profile - np.polyval(np.polyfit(x, profile, 1), x))
+    raw = _transform(profile)
+    # power per frequency; amplitudes of a cosine transform of n samples grow as the square root of n
+    return [min(_power(raw[a:b]), _power(level[a:b])) / len(raw) for a, b in bands]
 
 
 def _bands(n: int) -> list[tuple[int, int]]:

@@ -174,6 +174,6 @@ def status_names() -> dict[str, int]:
 def flag_names(model: str) -> dict[str, int]:
     """Every flag of a curve and its bit."""
     flags: dict[str, int] = dict(extension().flags)
-    settings = Settings(model=model, fit_offset=True)
+    settings = Settings(model=model, fit_offset=True, thickness=1.0 if find(model).is_layer else None)
     places = settings.parameters().items()
     return flags | {f"{n}_undetermined": undetermined_flag(place) for n, (place, _) in places if settings.asks(n)}

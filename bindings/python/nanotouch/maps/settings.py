@@ -13,7 +13,7 @@ from ..curves.baseline import Kind, choice_of
 from ..errors import InvalidValue
 from ..fit import TipLike, Uncertainties
 from ..fit.fitting import ASSUMED_HALF_ANGLE, ASSUMED_RADIUS, ASSUMED_RANGE, LOSSES, Loss
-from ..fit.models import extension, find, is_sharp
+from ..fit.models import extension, find, is_sharp, layer_of
 from ..fit.points import Branch
 from ..fit.show import with_sigma
 from ..fit.solving import Setup
@@ -33,6 +33,7 @@ class Settings:
     model: str = "maugis"
     radius: float | None = None
     half_angle: float | None = None
+    thickness: float | None = None
     tip_modulus: float | None = None
     tip_poisson_ratio: float = 0.0
     poisson_ratio: float | None = None
@@ -101,6 +102,7 @@ class Settings:
     def recipe(self) -> Any:
         """What the C library takes."""
         held = {name: _position(name, value) for name, value in self.fixed.items()}
+        held |= layer_of(find(self.model), self.thickness, self.poisson_ratio, held)
         if find(self.model).has_range and self.cohesive_range != "free":
             held.setdefault("cohesive_range", ASSUMED_RANGE if self.cohesive_range is None else self.cohesive_range)
         setup = Setup(
@@ -153,6 +155,8 @@ class Settings:
         if spread.half_angle > 0.0 and is_sharp(self.model):
             angle = ASSUMED_HALF_ANGLE if self.half_angle is None else self.half_angle
             yield replace(self, half_angle=angle + _STEP * spread.half_angle).recipe(), _STEP, 1.0
+        if spread.thickness > 0.0 and self.thickness is not None:
+            yield replace(self, thickness=self.thickness * (1.0 + _STEP * spread.thickness)).recipe(), _STEP, 1.0
 
     def assumptions(self) -> list[str]:
         """What was not given and had to be assumed."""
@@ -167,7 +171,7 @@ class Settings:
             said.append(f"tip radius {with_sigma(self.radius, 0.0, 'm')} (as the file states)")
         if find(self.model).has_range and self.cohesive_range is None:
             said.append(f"range of adhesion h0 = {ASSUMED_RANGE * 1e9:g} nm (atomic; not given)")
-        said += self.uncertainties.assumptions(sharp=is_sharp(self.model))
+        said += self.uncertainties.assumptions(sharp=is_sharp(self.model), layer=find(self.model).is_layer)
         if self.poisson_ratio is not None and self.tip_modulus is None:
             said.append("the tip is rigid (its modulus is not given)")
         return said

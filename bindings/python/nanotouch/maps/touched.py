@@ -33,6 +33,8 @@ def to_scene(data: Any, *, poisson_ratio: float = 0.3) -> Scene:
         Of the sample; it says which E an E* is, and changes no force.
     """
     settings = _settings(data)
+    if settings.thickness is not None:
+        raise InvalidValue(f"model {settings.model!r}: the contact of a scene is on a half-space, not on a layer")
     known = {name: _known(data, name) for name in ("effective_modulus", "work_of_adhesion") if name in data}
     median = {name: float(np.median(data[name].values[here])) for name, here in known.items() if here.any()}
     if "effective_modulus" not in median:
