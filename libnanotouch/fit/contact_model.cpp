@@ -35,7 +35,8 @@ namespace
 
 constexpr int max_iterations = 100;
 constexpr double linear = 1e-9; // of s: over a step that small the branch is straight to the last bit
-constexpr double tight = 1e-14; // of the part of the branch between its folds
+constexpr double tight = 1e-12; // of the part of the branch between its folds
+constexpr double far = 3.0;     // steps, beyond which a cubic through two points tells nothing
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
@@ -43,12 +44,22 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 double Track::predict(double position, double otherwise) const
 {
     const double travel = position - position_;
-    return known_ ? s_ + travel * (slope_ + 0.5 * travel * bend_) : otherwise;
+    const bool near = std::fabs(travel) <= far * std::fabs(step_);
+    const double curved = near ? travel * (bend_ + travel * twist_) : 0.0;
+    return known_ ? s_ + travel * (slope_ + curved) : otherwise;
 }
 
+// The cubic that takes s and slope at both points (Hermite).
 void Track::add(double position, double s, double slope)
 {
-    bend_ = known_ && position != position_ ? (slope - slope_) / (position - position_) : 0.0;
+    const double step = position - position_;
+    step_ = known_ ? step : 0.0;
+    bend_ = twist_ = 0.0;
+    if (step_ != 0.0) {
+        const double bent = (s_ - s + slope * step) / (step * step), turned = (slope - slope_) / step;
+        bend_ = 3.0 * bent - turned;
+        twist_ = (2.0 * bent - turned) / step;
+    }
     known_ = true;
     position_ = position;
     s_ = s;

@@ -8,7 +8,7 @@
 namespace nanotouch
 {
 
-// Where the points before lay on the branch: the next, mostly a neighbour, starts from there.
+// Where the two points before lay on the branch: the next, mostly a neighbour, starts from their cubic.
 class Track
 {
   public:
@@ -17,7 +17,8 @@ class Track
 
   private:
     bool known_ = false;
-    double position_ = 0.0, s_ = 0.0, slope_ = 0.0, bend_ = 0.0; // s, ds/dX, d2s/dX2 at X
+    double position_ = 0.0, s_ = 0.0, slope_ = 0.0; // s, ds/dX at X
+    double step_ = 0.0, bend_ = 0.0, twist_ = 0.0;  // from the point before it [m]; of the cubic through both
 };
 
 class ContactModel : public Model

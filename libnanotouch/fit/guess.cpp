@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the fit starts: w from the smallest force, the first other parameter that is not given (E*) from a coarse
 // logarithmic grid, and for each of its values the contact point at which the loaded points lie on the law, or, of a
-// law of the user's own, the best of some. Deterministic; the least-squares fit then only has to descend.
+// law of the user's own, the best of some. Of the grid of a law of the library only what lies about the E* of two
+// points is tried. Deterministic; the least-squares fit then only has to descend.
 #include "guess.hpp"
 
 #include <algorithm>
@@ -20,6 +21,8 @@ namespace
 
 constexpr int grid_per_decade = 1;
 constexpr long sample_size = 24, sorted_size = 480;
+constexpr long averaged = 4; // points of the sample, at its end and in its middle
+constexpr long weighed = 5;  // loaded points that vote for the contact point
 
 struct Sample {
     double position, force; // force as measured, + repulsive
@@ -51,16 +54,20 @@ double guess_work_of_adhesion(const nt_fit_options &options, const std::vector<S
     return std::clamp(pull_off / (per_radius * NT_PI * options.radius), bounds.minimum, bounds.maximum);
 }
 
-// delta0 at which the median point of the upper half of the load lies on the law; NaN if none can.
+// delta0 at which the median of some points of the upper half of the load lies on the law; NaN if none can.
 double median_contact_point(const Model &model, const std::vector<Sample> &sample, const Parameters &value)
 {
     const double half = 0.5 * (sample.front().force + sample.back().force);
+    const auto loaded = std::find_if(sample.begin(), sample.end(), [&](const Sample &p) { return p.force >= half; });
+    const std::ptrdiff_t step = std::max<std::ptrdiff_t>(1, (sample.end() - loaded) / weighed);
     std::vector<double> candidates;
-    for (const Sample &point : sample) {
+    for (auto point = loaded; point < sample.end(); point += step) {
         double travel;
-        const double force = (point.force - value[NT_FIT_FORCE_OFFSET]) * value[NT_FIT_SENSITIVITY];
-        if (point.force >= half && model.travel(force, &travel) == NT_OK)
-            candidates.push_back(point.position - travel);
+        const double force = (point->force - value[NT_FIT_FORCE_OFFSET]) * value[NT_FIT_SENSITIVITY];
+        if (model.travel(force, &travel) == NT_OK)
+            candidates.push_back(point->position - travel);
+        if (sample.end() - point <= step)
+            break;
     }
     if (candidates.empty())
         return std::numeric_limits<double>::quiet_NaN();
@@ -155,28 +162,112 @@ int parameter_of_grid(const nt_fit_options &options, const Parameters &start)
     return -1;
 }
 
+// Values of the searched parameter at equal steps of its logarithm; a single one where nothing is searched.
+class Grid
+{
+  public:
+    Grid(const nt_fit_options &options, const Parameters &start, double lambda);
+    int size() const
+    {
+        return steps_ + 1;
+    }
+    Parameters at(int i) const;
+    int nearest(double value) const
+    {
+        return static_cast<int>(std::lround(
+            std::clamp(steps_ * std::log(value / lowest_) / std::log(highest_ / lowest_), 0.0, double(steps_))));
+    }
+    bool is_of_modulus() const
+    {
+        return options_.model != NT_FIT_CUSTOM && searched_ == NT_FIT_EFFECTIVE_MODULUS;
+    }
+
+  private:
+    const nt_fit_options &options_;
+    const Parameters start_;
+    const double lambda_;
+    const int searched_;
+    double lowest_ = 1.0, highest_ = 1.0;
+    int steps_ = 0;
+};
+
+Grid::Grid(const nt_fit_options &options, const Parameters &start, double lambda)
+    : options_(options), start_(start), lambda_(lambda), searched_(parameter_of_grid(options, start))
+{
+    if (searched_ < 0)
+        return;
+    lowest_ = options.parameter[searched_].minimum;
+    highest_ = options.parameter[searched_].maximum;
+    steps_ = static_cast<int>(std::ceil(grid_per_decade * std::log10(highest_ / lowest_)));
+}
+
+Parameters Grid::at(int i) const
+{
+    Parameters candidate = start_;
+    if (searched_ >= 0)
+        candidate[static_cast<std::size_t>(searched_)] =
+            steps_ ? lowest_ * std::pow(highest_ / lowest_, double(i) / steps_) : lowest_;
+    if (has_several_minima(options_))
+        candidate[NT_FIT_COHESIVE_RANGE] = range_at(options_, candidate, lambda_);
+    return candidate;
+}
+
+Sample mean_of(const std::vector<Sample> &sample, std::size_t first)
+{
+    Sample mean{0.0, 0.0};
+    for (std::size_t i = first; i < first + averaged; i++) {
+        mean.position += sample[i].position / averaged;
+        mean.force += sample[i].force / averaged;
+    }
+    return mean;
+}
+
+// Place in the grid of the E* at which the contact yields as it does between half of the points and the deepest; -1
+// where they do not tell. At given forces, indentations go as E*^(-1/exponent).
+int likely_place(const nt_fit_options &options, const std::vector<Sample> &sample, const Grid &grid)
+{
+    if (!grid.is_of_modulus() || sample.size() < 3 * averaged)
+        return -1;
+    const Sample deep = mean_of(sample, sample.size() - averaged), half = mean_of(sample, sample.size() / 2);
+    Parameters trial = grid.at(grid.size() / 2);
+    trial[NT_FIT_CONTACT_POINT] = 0.0;
+    const std::unique_ptr<Model> model = Model::make(options);
+    double travel[2];
+    const auto force = [&](const Sample &p) {
+        return (p.force - trial[NT_FIT_FORCE_OFFSET]) * trial[NT_FIT_SENSITIVITY];
+    };
+    if (model->prepare(trial) != NT_OK || model->travel(force(deep), &travel[0]) != NT_OK ||
+        model->travel(force(half), &travel[1]) != NT_OK)
+        return -1;
+    const double bent = options.spring_constant > 0.0 ? (force(deep) - force(half)) / options.spring_constant : 0.0;
+    const double yielded = deep.position - half.position - bent, tried = travel[0] - travel[1] - bent;
+    const double modulus =
+        trial[NT_FIT_EFFECTIVE_MODULUS] * std::pow(tried / yielded, nt_fit_describe(options.model).exponent);
+    return yielded > 0.0 ? grid.nearest(modulus) : grid.size() - 1;
+}
+
 } // namespace
 
 nt_status guess(const nt_fit_options &options, const nt_fit_data &data, double lambda, Parameters *value)
 {
     const std::vector<Sample> sample = sample_of(data);
-    const Parameters start = start_of(options, sample);
-    const int searched = parameter_of_grid(options, start);
-    double lowest = 1.0, highest = 1.0;
-    if (searched >= 0) {
-        lowest = options.parameter[searched].minimum;
-        highest = options.parameter[searched].maximum;
-    }
-    const int steps = static_cast<int>(std::ceil(grid_per_decade * std::log10(highest / lowest)));
+    const Grid grid(options, start_of(options, sample), lambda);
+    const int likely = likely_place(options, sample, grid);
     Best best;
-    for (int i = 0; i <= steps; i++) {
-        Parameters candidate = start;
-        if (searched >= 0)
-            candidate[static_cast<std::size_t>(searched)] =
-                steps ? lowest * std::pow(highest / lowest, double(i) / steps) : lowest;
-        if (has_several_minima(options))
-            candidate[NT_FIT_COHESIVE_RANGE] = range_at(options, candidate, lambda);
-        consider_places(options, sample, candidate, &best);
+    const auto improves = [&](int i) {
+        const double before = best.misfit;
+        consider_places(options, sample, grid.at(i), &best);
+        return best.misfit < before;
+    };
+    if (likely >= 0 && improves(likely)) {
+        int i = likely + 1;
+        while (i < grid.size() && improves(i))
+            i++;
+        for (i = likely - 1; i >= 0 && improves(i);)
+            i--;
+    } else {
+        for (int i = 0; i < grid.size(); i++)
+            (void)improves(i);
     }
     if (!std::isfinite(best.misfit))
         return NT_E_NO_CONVERGENCE;

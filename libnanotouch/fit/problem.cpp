@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "data.hpp"
 #include "reserve.hpp"
@@ -81,6 +82,21 @@ void Residuals::PrepareForEvaluation(bool, bool new_evaluation_point)
     valid_ = evaluate();
 }
 
+bool Residuals::move_to(const double *x)
+{
+    std::copy_n(x, size(), x_.begin());
+    PrepareForEvaluation(true, true);
+    return valid_;
+}
+
+double Residuals::sum_of_squares() const
+{
+    double sum = 0.0;
+    for (const double residual : residual_)
+        sum += residual * residual;
+    return sum;
+}
+
 // From the start again; no step may then lead out of the bounds.
 void Residuals::make_bounds_walls(bool walls)
 {
@@ -143,6 +159,22 @@ void Residuals::store_known(long i, int coordinate)
     row[coordinate] = 1.0 / sigma;
     residual_[static_cast<std::size_t>(i)] =
         (x_[static_cast<std::size_t>(coordinate)] - coordinates_.inverse(coordinate, start.initial)) / sigma;
+}
+
+// The solver turns back from where the squares are infinite.
+bool Squares::operator()(const double *x, double *residuals, double *jacobian) const
+{
+    if (!all.move_to(x)) {
+        std::fill_n(residuals, all.count(), std::numeric_limits<double>::infinity());
+        return false;
+    }
+    std::copy_n(all.residuals(0), all.count(), residuals);
+    if (jacobian) {
+        using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        Eigen::Map<Eigen::MatrixXd>(jacobian, all.count(), all.size()) =
+            Eigen::Map<const Rows>(all.gradient(0), all.count(), all.size());
+    }
+    return true;
 }
 
 Residual::Residual(const Residuals &all, long first, long count, int parameters) : all_(all), first_(first)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ceres/ceres.h>
+#include <ceres/tiny_solver.h>
 
 #include <deque>
 #include <vector>
@@ -52,6 +53,7 @@ class Residuals : public ceres::EvaluationCallback
     {
         return x_.data();
     }
+    bool move_to(const double *x); // false where they are not valid there
     bool valid() const
     {
         return valid_;
@@ -60,6 +62,10 @@ class Residuals : public ceres::EvaluationCallback
     {
         return count_;
     } // of residuals
+    int size() const
+    {
+        return coordinates_.size();
+    }
     long data_count() const
     {
         return data_.count;
@@ -76,6 +82,7 @@ class Residuals : public ceres::EvaluationCallback
     {
         return *residuals(i);
     }
+    double sum_of_squares() const;
     const double *gradient(long i) const
     {
         return &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
@@ -119,6 +126,22 @@ class Residuals : public ceres::EvaluationCallback
     std::vector<Point> points_;
     std::vector<int> known_; // coordinates with a datum of their own
     bool valid_ = false, is_seen_ = false, walls_ = false, met_bound_ = false;
+};
+
+// All of Residuals as Ceres' small solver sees them.
+struct Squares {
+    using Scalar = double;
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
+    Residuals &all;
+    int NumResiduals() const
+    {
+        return static_cast<int>(all.count());
+    }
+    int NumParameters() const
+    {
+        return all.size();
+    }
+    bool operator()(const double *x, double *residuals, double *jacobian) const; // by columns
 };
 
 // Some of Residuals as one block: a single point where a loss acts on each, all of them where none does.

@@ -89,8 +89,8 @@ double Profile::end(double factor, double beyond)
     return outside;
 }
 
-// The same fit with what is calibrated changed by a step, and every force with it where that changes them.
-nt_fit_options changed_options(const nt_fit_solution &solution, nt_fit_calibration changed)
+// The same fit with what is calibrated changed by a step, 0 for none.
+nt_fit_options changed_options(const nt_fit_solution &solution, nt_fit_calibration changed, double by)
 {
     nt_fit_options options = solution.options;
     for (int i = 0; i <= NT_FIT_CONTACT_POINT; i++)
@@ -99,35 +99,45 @@ nt_fit_options changed_options(const nt_fit_solution &solution, nt_fit_calibrati
             start.initial = std::clamp(solution.fit.value[i], start.minimum, start.maximum);
         }
     if (changed == NT_FIT_HALF_ANGLE) {
-        options.half_angle += step;
+        options.half_angle += by;
     } else if (changed == NT_FIT_RADIUS) {
-        options.radius *= 1.0 + step;
+        options.radius *= 1.0 + by;
     } else if (changed == NT_FIT_THICKNESS) {
         nt_fit_start &thickness = options.parameter[NT_FIT_FOURTH];
-        thickness.initial = std::min(thickness.initial * (1.0 + step), thickness.maximum);
+        thickness.initial = std::min(thickness.initial * (1.0 + by), thickness.maximum);
     } else {
-        options.spring_constant *= 1.0 + step;
-        options.force_noise *= 1.0 + step;
+        options.spring_constant *= 1.0 + by;
+        options.force_noise *= 1.0 + by;
         for (const int background : {NT_FIT_FORCE_OFFSET, NT_FIT_FORCE_TILT})
-            options.parameter[background].sigma *= 1.0 + step;
+            options.parameter[background].sigma *= 1.0 + by;
     }
     return options;
 }
 
-nt_status shift(const nt_fit_solution &solution, nt_fit_data data, nt_fit_calibration changed, double *moved)
+// And every force with it where that changes them.
+nt_status fit_changed(const nt_fit_solution &solution, nt_fit_data data, nt_fit_calibration changed, double by,
+                      nt_fit_result *fit)
 {
-    const nt_fit_options options = changed_options(solution, changed);
-    const double scale = changed == NT_FIT_SPRING_CONSTANT ? 1.0 + step : 1.0;
+    const nt_fit_options options = changed_options(solution, changed, by);
+    const double scale = changed == NT_FIT_SPRING_CONSTANT ? 1.0 + by : 1.0;
     data.count = solution.count;
     std::vector<double> force(static_cast<std::size_t>(data.count));
     for (long i = 0; i < data.count; i++)
         force[static_cast<std::size_t>(i)] = scale * data.force[i * data.force_stride];
     data.force = force.data();
     data.force_stride = 1;
-    nt_fit_result fit;
-    const nt_status status = nt_fit_run(&options, &data, &fit, nullptr);
+    return nt_fit_run(&options, &data, fit, nullptr);
+}
+
+// The solution itself is not exact enough for differences.
+nt_status shift(const nt_fit_solution &solution, const nt_fit_data &data, nt_fit_calibration changed, double *moved)
+{
+    nt_fit_result fit, with;
+    nt_status status = fit_changed(solution, data, changed, 0.0, &fit);
+    if (status == NT_OK)
+        status = fit_changed(solution, data, changed, step, &with);
     for (int i = 0; i < NT_FIT_PARAMETERS && status == NT_OK; i++)
-        moved[i] = (fit.value[i] - solution.fit.value[i]) / step;
+        moved[i] = (with.value[i] - fit.value[i]) / step;
     return status;
 }
 

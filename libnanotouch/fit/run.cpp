@@ -63,22 +63,25 @@ constexpr double as_good = 9.0; // difference in chi^2, three standard deviation
 // A fit of some of the points costs little and leaves a step or two for all of them.
 constexpr long some = 50;
 
+nt_status start_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Parameters *start)
+{
+    const nt_status status = guess(options, data, lambda, start);
+    const long step = data.count / some;
+    if (status == NT_OK && step > 1) {
+        const nt_fit_data part{data.position, data.force, (data.count - 1) / step + 1, data.position_stride * step,
+                               data.force_stride * step};
+        (void)Fit(options, part, *start).approach(start);
+    }
+    return status;
+}
+
 nt_status run_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Found *found)
 {
     Parameters start;
     if (solve_linear(options, data, &start))
         return Fit(options, data, start).finish(found);
-    nt_status status = guess(options, data, lambda, &start);
-    if (status != NT_OK)
-        return status;
-    const long step = data.count / some;
-    if (step > 1) {
-        const nt_fit_data part{data.position, data.force, (data.count - 1) / step + 1, data.position_stride * step,
-                               data.force_stride * step};
-        (void)Fit(options, part, start).approach(&start);
-    }
-    Fit fit(options, data, start);
-    return fit.run(found);
+    const nt_status status = start_from(options, data, lambda, &start);
+    return status == NT_OK ? Fit(options, data, start).run(found, true) : status;
 }
 
 // Fits with the range held at those of other transition parameters, lambda h0 being the same; of those that converge.
@@ -161,12 +164,17 @@ nt_status run_from_all(const nt_fit_options &options, const nt_fit_data &data, F
 constexpr double depths[] = {0.03, 0.1, 0.3, 1.0}; // pull-off to start from, over the span of the forces
 constexpr double lowest_at = -0.8;                 // of the pull-off: where the lowest force may lie
 
-bool slid_off(const nt_fit_options &options, const nt_fit_result &found)
+bool may_slide_off(const nt_fit_options &options)
 {
     const nt_fit_start &offset = options.parameter[NT_FIT_FORCE_OFFSET],
                        &work = options.parameter[NT_FIT_WORK_OF_ADHESION];
     return options.model != NT_FIT_CUSTOM && is_free(options, NT_FIT_WORK_OF_ADHESION) && std::isnan(work.initial) &&
-           !offset.fixed && offset.sigma == 0.0 && (!found.converged || !found.identifiable[NT_FIT_WORK_OF_ADHESION]);
+           !offset.fixed && offset.sigma == 0.0;
+}
+
+bool slid_off(const nt_fit_options &options, const nt_fit_result &found)
+{
+    return may_slide_off(options) && (!found.converged || !found.identifiable[NT_FIT_WORK_OF_ADHESION]);
 }
 
 void try_depths(const nt_fit_options &options, const nt_fit_data &data, Found *best)
@@ -239,15 +247,28 @@ bool has_several_minima(const nt_fit_options &options)
            std::isnan(options.parameter[NT_FIT_COHESIVE_RANGE].initial);
 }
 
-nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
-                   std::vector<nt_fit_point> *points)
+bool has_one_start(const nt_fit_options &options)
 {
-    Parameters start;
-    for (int p = 0; p < NT_FIT_PARAMETERS; p++)
-        start[static_cast<std::size_t>(p)] =
-            std::isnan(result->value[p]) ? options.parameter[p].initial : result->value[p];
+    return !has_several_minima(options) && !may_slide_off(options);
+}
+
+nt_status run_roughly(const nt_fit_options &options, const nt_fit_data &data, Parameters *value,
+                      std::vector<double> *rest)
+{
+    nt_status status = start_from(options, data, std::nan(""), value);
+    if (status != NT_OK)
+        return status;
+    Fit fit(options, data, *value);
+    status = fit.approach(value);
+    *rest = fit.rest();
+    return status;
+}
+
+nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, const Parameters &value,
+                   nt_fit_result *result, std::vector<nt_fit_point> *points)
+{
     Found found;
-    const nt_status status = Fit(options, data, start).run(&found);
+    const nt_status status = Fit(options, data, value).run(&found, false);
     if (status == NT_OK) {
         write_result(options, found, result);
         write_points(options, found, points);
@@ -255,12 +276,16 @@ nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fi
     return status;
 }
 
+nt_status check(const nt_fit_options &options, const nt_fit_data *data, nt_problem *problem)
+{
+    const nt_status status = nt_fit_check(&options, problem);
+    return status == NT_OK ? check_data(options, data, problem) : status;
+}
+
 nt_status run_with_points(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
                           std::vector<nt_fit_point> *points, nt_problem *problem)
 {
-    nt_status status = nt_fit_check(&options, problem);
-    if (status == NT_OK)
-        status = check_data(options, &data, problem);
+    const nt_status status = check(options, &data, problem);
     return status == NT_OK ? run(options, data, result, points) : status;
 }
 

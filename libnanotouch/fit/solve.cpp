@@ -16,9 +16,12 @@ namespace nanotouch
 namespace
 {
 
-// Changes of the sum of squares, relative, at which a fit ends.
-constexpr double exactly = 1e-10; // a thousandth of a standard uncertainty
+// Changes of the sum of squares, relative, at which a fit ends: the last step was the root of so many points times
+// that, in standard uncertainties, and leaves a tenth of itself or less.
+constexpr double exactly = 1e-10; // for differences of fits
+constexpr double closely = 1e-7;
 constexpr double roughly = 1e-4;
+constexpr double near = 0.5; // of the sum of squares that a fit began with, at its end
 
 std::unique_ptr<ceres::LossFunction> loss_of(const nt_fit_options &options, double unit)
 {
@@ -43,7 +46,7 @@ Fit::Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameter
 {
 }
 
-void Fit::build(ceres::Problem *problem, bool bounded)
+void Fit::build(ceres::Problem *problem)
 {
     costs_.clear();
     double *x = residuals_.x();
@@ -57,21 +60,52 @@ void Fit::build(ceres::Problem *problem, bool bounded)
         costs_.emplace_back(residuals_, single, residuals_.count() - single, coordinates_.size());
         problem->AddResidualBlock(&costs_.back(), nullptr, x);
     }
-    for (int i = 0; i < coordinates_.size() && bounded; i++) {
+    for (int i = 0; i < coordinates_.size(); i++) {
         const nt_fit_start &bounds = options_.parameter[coordinates_.parameter(i)];
         problem->SetParameterLowerBound(x, i, coordinates_.inverse(i, bounds.minimum));
         problem->SetParameterUpperBound(x, i, coordinates_.inverse(i, bounds.maximum));
     }
 }
 
-bool Fit::solve(bool bounded, double tolerance, ceres::Solver::Summary *summary)
+bool Fit::is_good() const
 {
+    return residuals_.valid() && !residuals_.met_bound();
+}
+
+// By Ceres' small solver, which allocates and copies next to nothing; it knows neither losses nor bounds. What it ends
+// at is a change of the sum of squares: a relative one, as long as it begins near enough to the end.
+bool Fit::descend_freely(double tolerance)
+{
+    residuals_.make_bounds_walls(true);
+    ceres::TinySolver<Squares> solver;
+    solver.options.gradient_tolerance = 1e-14;
+    solver.options.parameter_tolerance = 1e-12;
+    solver.options.cost_threshold = 0.0;
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(coordinates_.size());
+    iterations_ = 0;
+    double before, after = residuals_.sum_of_squares();
+    do {
+        before = after;
+        solver.options.max_num_iterations = options_.max_iterations + 1 - iterations_;
+        solver.options.function_tolerance = tolerance * before;
+        after = 2.0 * solver.Solve(Squares{residuals_}, &x).final_cost;
+        converged_ = solver.summary.status != ceres::TinySolver<Squares>::HIT_MAX_ITERATIONS;
+        iterations_ += converged_ ? solver.summary.iterations : options_.max_iterations - iterations_;
+    } while (converged_ && after < near * before);
+    residuals_.move_to(x.data()); // not the last trial
+    return is_good();
+}
+
+bool Fit::descend_within_bounds(double tolerance)
+{
+    const Reserve reserve;
     ceres::Problem::Options ownership;
     ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ownership.evaluation_callback = &residuals_;
+    residuals_.make_bounds_walls(false);
     ceres::Problem problem(ownership);
-    build(&problem, bounded);
+    build(&problem);
     if (Reserve::is_used())
         throw std::bad_alloc();
     ceres::Solver::Options solver;
@@ -82,23 +116,23 @@ bool Fit::solve(bool bounded, double tolerance, ceres::Solver::Summary *summary)
     solver.function_tolerance = tolerance;
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-12;
-    residuals_.make_bounds_walls(!bounded);
-    ceres::Solve(solver, &problem, summary);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
     if (Reserve::is_used())
         throw std::bad_alloc();
     residuals_.PrepareForEvaluation(true, true); // at the result, not at the last trial
-    return summary->IsSolutionUsable() && residuals_.valid() && !residuals_.met_bound();
+    iterations_ = static_cast<int>(summary.iterations.size()) - 1;
+    converged_ = summary.termination_type == ceres::CONVERGENCE;
+    return summary.IsSolutionUsable() && is_good();
 }
 
-// Within bounds Ceres searches each step for a shorter one, at the cost of half of all evaluations: only where a step
-// without them leads out.
-nt_status Fit::descend(double tolerance, ceres::Solver::Summary *summary)
+nt_status Fit::descend(double tolerance)
 {
     residuals_.PrepareForEvaluation(true, true);
     if (!residuals_.valid())
         return NT_E_NO_CONVERGENCE;
-    const Reserve reserve;
-    return solve(false, tolerance, summary) || solve(true, tolerance, summary) ? NT_OK : NT_E_NO_CONVERGENCE;
+    const bool done = (!loss_ && descend_freely(tolerance)) || descend_within_bounds(tolerance);
+    return done ? NT_OK : NT_E_NO_CONVERGENCE;
 }
 
 void Fit::fill_values(nt_fit_result *result) const
@@ -121,8 +155,13 @@ void Fit::fill_values(nt_fit_result *result) const
 void Fit::fill(Found *found) const
 {
     *found = {{}, noise_variance(residuals_, coordinates_, loss_.get()), 0.0, residuals_.points()};
-    for (long i = 0; i < residuals_.count(); i++)
-        found->cost += residuals_.residual(i) * residuals_.residual(i);
+    for (long i = 0; i < residuals_.count(); i++) {
+        const double square = residuals_.residual(i) * residuals_.residual(i);
+        double rho[3] = {square, 1.0, 0.0};
+        if (loss_ && i < data_.count)
+            loss_->Evaluate(square, rho);
+        found->cost += rho[0];
+    }
     fill_values(&found->result);
     fill_uncertainties(options_, residuals_, coordinates_, found->variance, &found->result);
 }
@@ -137,25 +176,30 @@ nt_status Fit::finish(Found *found)
     return NT_OK;
 }
 
+std::vector<double> Fit::rest() const
+{
+    std::vector<double> found(static_cast<std::size_t>(data_.count));
+    for (long i = 0; i < data_.count; i++)
+        found[static_cast<std::size_t>(i)] = residuals_.unit() * residuals_.residual(i);
+    return found;
+}
+
 nt_status Fit::approach(Parameters *value)
 {
-    ceres::Solver::Summary summary;
-    const nt_status status = descend(roughly, &summary);
+    const nt_status status = descend(roughly);
     if (status == NT_OK)
         *value = residuals_.values();
     return status;
 }
 
-nt_status Fit::run(Found *found)
+nt_status Fit::run(Found *found, bool exact)
 {
-    ceres::Solver::Summary summary;
-    const nt_status status = descend(exactly, &summary);
+    const nt_status status = descend(exact ? exactly : closely);
     if (status != NT_OK)
         return status;
     fill(found);
-    found->cost = 2.0 * summary.final_cost;
-    found->result.iterations = static_cast<int>(summary.iterations.size()) - 1;
-    found->result.converged = summary.termination_type == ceres::CONVERGENCE;
+    found->result.iterations = iterations_;
+    found->result.converged = converged_;
     return NT_OK;
 }
 

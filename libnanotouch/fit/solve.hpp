@@ -18,14 +18,17 @@ class Fit
 {
   public:
     Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start);
-    nt_status run(Found *found);
-    nt_status approach(Parameters *value); // only the values, for another fit to start from
-    nt_status finish(Found *found);        // the start is known to be the solution
+    nt_status run(Found *found, bool exact); // to the last digits that differences of fits need, or as sigma needs
+    nt_status approach(Parameters *value);   // only the values, for another fit to start from
+    nt_status finish(Found *found);          // the start is known to be the solution
+    std::vector<double> rest() const;        // model less data, where it ended [N]
 
   private:
-    void build(ceres::Problem *problem, bool bounded);
-    nt_status descend(double tolerance, ceres::Solver::Summary *summary);
-    bool solve(bool bounded, double tolerance, ceres::Solver::Summary *summary);
+    void build(ceres::Problem *problem);
+    nt_status descend(double tolerance);
+    bool descend_freely(double tolerance); // false where a step leads out of the bounds
+    bool descend_within_bounds(double tolerance);
+    bool is_good() const;
     void fill(Found *found) const;
     void fill_values(nt_fit_result *result) const;
 
@@ -35,15 +38,24 @@ class Fit
     Residuals residuals_;
     std::unique_ptr<ceres::LossFunction> loss_;
     std::deque<Residual> costs_;
+    int iterations_ = 0; // of the last descent
+    bool converged_ = true;
 };
 
+// NT_OK, or what is wrong with options or data.
+nt_status check(const nt_fit_options &options, const nt_fit_data *data, nt_problem *problem);
 // Whether fits from several starts have to be compared.
 bool has_several_minima(const nt_fit_options &options);
+// Whether one start does for all weights of the points.
+bool has_one_start(const nt_fit_options &options);
 // nt_fit_run, and the model at every point, which it has computed anyway.
 nt_status run_with_points(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
                           std::vector<nt_fit_point> *points, nt_problem *problem);
-// A fit like the one whose result is there, with other weights, from its values on.
-nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
-                   std::vector<nt_fit_point> *points);
+// Values near the solution, and what they leave over [N], of checked options and data: by that the points are weighed.
+nt_status run_roughly(const nt_fit_options &options, const nt_fit_data &data, Parameters *value,
+                      std::vector<double> *rest);
+// The fit from values near its solution on.
+nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, const Parameters &value,
+                   nt_fit_result *result, std::vector<nt_fit_point> *points);
 
 } // namespace nanotouch

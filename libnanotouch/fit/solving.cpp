@@ -91,19 +91,20 @@ nt_status Solving::fit()
 // What the fit leaves over.
 void Solving::look()
 {
-    scatter_ = std::max(scatter(), correlated_noise());
+    std::vector<double> rest(points_.size());
+    for (std::size_t i = 0; i < rest.size(); i++)
+        rest[i] = points_[i].force - force_at(data_, static_cast<long>(i));
+    look_at(rest);
 }
 
 // Standard deviation of one point such that N independent ones would scatter as the mean of these N does [N].
-double Solving::scatter() const
+void Solving::look_at(const std::vector<double> &rest)
 {
-    std::vector<double> rest(points_.size());
     double squares = 0.0;
-    for (std::size_t i = 0; i < rest.size(); i++) {
-        rest[i] = points_[i].force - force_at(data_, static_cast<long>(i));
-        squares += rest[i] * rest[i];
-    }
-    return std::sqrt(squares / double(data_.count) * nt_curve_residual_correlation(rest.data(), data_.count));
+    for (const double one : rest)
+        squares += one * one;
+    const double correlation = nt_curve_residual_correlation(rest.data(), data_.count);
+    scatter_ = std::max(std::sqrt(squares / double(data_.count) * correlation), correlated_noise());
 }
 
 // Whether the tip was torn off elsewhere than where such a contact lets go: by a shock, or it is another contact.
@@ -135,23 +136,41 @@ bool Solving::is_exact() const
     return scatter_ < computed * largest_;
 }
 
+bool Solving::is_as_known() const
+{
+    return is_exact() || std::fabs(scatter_ / noise() - 1.0) <= as_given;
+}
+
 // With the noise from point to point; then once more with the scatter that was found.
 nt_status Solving::fit_with_scatter()
 {
-    const nt_status status = fit();
     double *used = &solution_.options.force_noise;
-    const bool as_known = std::fabs(scatter_ / noise() - 1.0) <= as_given;
-    if (status != NT_OK || is_exact() || *used == 0.0 || as_known)
+    if (*used > 0.0 && has_one_start(solution_.options))
+        return fit_by_scatter(used);
+    const nt_status status = fit();
+    if (status != NT_OK || *used == 0.0 || is_as_known())
         return status;
     *used = scatter_;
-    if (has_several_minima(solution_.options))
-        return fit();
-    nt_fit_result found = solution_.fit;
-    if (run_near(solution_.options, data_, &found, &points_) != NT_OK)
-        return fit();
-    solution_.fit = found;
-    look();
-    return NT_OK;
+    return fit();
+}
+
+// The same where the first fit need only be good enough for the scatter.
+nt_status Solving::fit_by_scatter(double *used)
+{
+    Parameters value;
+    std::vector<double> rest;
+    nt_status status = check(solution_.options, &data_, problem_);
+    if (status == NT_OK)
+        status = run_roughly(solution_.options, data_, &value, &rest);
+    if (status != NT_OK)
+        return status;
+    look_at(rest);
+    if (!is_as_known())
+        *used = scatter_;
+    status = run_near(solution_.options, data_, value, &solution_.fit, &points_);
+    if (status == NT_OK)
+        look();
+    return status;
 }
 
 nt_status Solving::fit_without_false_tear()

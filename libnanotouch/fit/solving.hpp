@@ -25,16 +25,18 @@ class Solving
     void know(nt_fit_parameter parameter, double value, double sigma);
     nt_status fit();
     nt_status fit_with_scatter();
+    nt_status fit_by_scatter(double *used);
     void look();
+    void look_at(const std::vector<double> &rest);
     nt_status fit_without_false_tear();
     nt_status contradicts_tear(bool *contradicts) const;
     nt_status leave_steep_part();
     nt_status doubt_calibration();
     nt_status fit_any_sensitivity(bool *doubtful);
     bool is_exact() const;
+    bool is_as_known() const;
     double correlated_noise() const;
     double noise() const; // of the free cantilever, as far as the points are worth independent ones [N]
-    double scatter() const;
     double rating() const;
     void judge();
 

@@ -66,7 +66,6 @@ int main(int count, char **argument)
     static nt_curve curve[MOST];
     static nt_fit_outcome outcome[MOST];
     nt_fit_recipe recipe = nt_fit_recipe_defaults((nt_fit_model)model);
-    recipe.baseline.kind = NT_CURVE_LINE;
     recipe.options.radius = radius;
     recipe.options.parameter[NT_FIT_COHESIVE_RANGE].initial = 0.2e-9;
     nt_fit_options truth = nt_fit_defaults((nt_fit_model)model);
