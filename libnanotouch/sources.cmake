@@ -61,7 +61,7 @@ set(nanotouch_sources_manipulation
     manipulation/balance.c
     manipulation/bristle.c
     manipulation/particle.c)
-set(nanotouch_sources_plasticity plasticity/imprint.c plasticity/indentation.c plasticity/scratch.c)
+set(nanotouch_sources_plasticity plasticity/dents.c plasticity/imprint.c plasticity/indentation.c plasticity/scratch.c)
 set(nanotouch_sources_surface
     surface/dilation.c
     surface/dots.c

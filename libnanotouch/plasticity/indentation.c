@@ -149,15 +149,17 @@ nt_first_loading nt_indentation_first(const nt_indentation *indentation, double 
     double rise;
     const double g = pressure(x, &rise), half = 0.5 * x * x, elastic = EIGHTH * x * g;
     const double residual = x <= ONSET ? 0.0 : half - elastic;
-    return (nt_first_loading){.contact_radius = contact_radius,
-                              .indentation = (half + elastic) * unit.depth,
-                              .force = NT_PI * x * x * g * unit.force,
-                              .mean_pressure = g * indentation->yield_strength,
-                              .residual_depth = residual * unit.depth,
-                              .effective_radius =
-                                  x <= ONSET ? indentation->radius : indentation->radius * 4.0 * x / (3.0 * NT_PI * g),
-                              .stored = 0.3 * NT_PI * NT_PI * x * x * x * g * g * unit.force * unit.depth,
-                              .dissipated = heat_at(x) * unit.force * unit.depth};
+    return (nt_first_loading){
+        .contact_radius = contact_radius,
+        .indentation = (half + elastic) * unit.depth,
+        .force = NT_PI * x * x * g * unit.force,
+        .mean_pressure = g * indentation->yield_strength,
+        .residual_depth = residual * unit.depth,
+        .effective_radius = x <= ONSET ? indentation->radius : indentation->radius * 4.0 * x / (3.0 * NT_PI * g),
+        .stored = 0.3 * NT_PI * NT_PI * x * x * x * g * g * unit.force * unit.depth,
+        .dissipated = heat_at(x) * unit.force * unit.depth,
+        .stiffness =
+            x > 0.0 ? NT_PI * x * (2.0 * g + rise) / (x + EIGHTH * (g + rise)) * unit.force / unit.depth : 0.0};
 }
 
 double nt_indentation_radius_at_depth(const nt_indentation *indentation, double depth)

@@ -174,6 +174,8 @@ nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
 
+/* plastic.c: a sample that keeps dents, if the scene wants one. NT_E_RANGE with what does not go with it. */
+nt_status nt_plan_dents_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
 /* sliding.c: whether friction is computed, its law, bound and cost. Of a plan that has chosen; NT_E_RANGE: a budget, or
  * a shape whose load inside is not known. */
 nt_status nt_plan_friction_of(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem);

@@ -10,8 +10,9 @@
 
 #define ONSET 1.6
 #define PLASTIC 3.0
-#define OF_MEAN 1.5 /* Hertz' peak over his mean */
-#define KEEPS 0.98  /* of a load that is named: another table is made for it */
+#define OF_MEAN 1.5              /* Hertz' peak over his mean */
+#define SQRT2 1.4142135623730951 /* a groove is wider than a dent by this */
+#define KEEPS 0.98               /* of a load that is named: another table is made for it */
 
 /* Y of the weaker body; 0 where neither is known [Pa]. */
 static double weaker(const nt_scene *scene, int *is_tip)
@@ -74,6 +75,55 @@ static double load_at(const nt_plan *plan, double pressure)
     return at(plan, low).F;
 }
 
+static nt_status refuse_dents(nt_problem *problem, nt_problem reason)
+{
+    if (problem)
+        *problem = reason;
+    return NT_E_RANGE;
+}
+
+/* Alone, a round tip on one material everywhere: what the law of dents knows (plasticity.h). */
+static nt_status check_dents(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    const nt_shape_kind kind = plan->shape.kind;
+    const double largest = NT_INDENTATION_LARGEST_RADIUS * plan->indentation.radius;
+    const nt_first_loading most = nt_indentation_first(&plan->indentation, largest / SQRT2);
+    const double load = scene->range.maximum_load;
+    if (!(scene->sample.yield_strength > 0.0))
+        return refuse_dents(problem, (nt_problem){"sample.yield_strength (of a sample that keeps dents)", "Pa",
+                                                  scene->sample.yield_strength, 1.0, 1e12});
+    if (plan->source != NT_ADHESION_NONE || plan->on_count > 0 || plan->yield.count > 0)
+        return refuse_dents(problem, (nt_problem){"sample.dents (beside adhesion or other forces than contact, which a "
+                                                  "sample that keeps dents does not know)",
+                                                  "no|yes", 1.0, 0.0, 0.0});
+    if (plan->properties || scene->sample.thickness > 0.0 || (kind != NT_SHAPE_PARABOLOID && kind != NT_SHAPE_SPHERE))
+        return refuse_dents(problem, (nt_problem){"sample.dents (of a layer, a map of properties, or a tip that is not "
+                                                  "round)",
+                                                  "no|yes", 1.0, 0.0, 0.0});
+    if (load > most.force)
+        return refuse_dents(problem, (nt_problem){"range.maximum_load (a groove wider than half of the tip)", "N", load,
+                                                  0.0, most.force});
+    return NT_OK;
+}
+
+nt_status nt_plan_dents_of(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+{
+    if (!scene->sample.dents)
+        return NT_OK;
+    plan->indentation =
+        (nt_indentation){plan->contact.radius, plan->contact.effective_modulus, scene->sample.yield_strength};
+    const nt_status status = check_dents(plan, scene, problem);
+    if (status != NT_OK)
+        return status;
+    const double a = nt_indentation_radius_at_load(&plan->indentation, scene->range.maximum_load);
+    const nt_first_loading groove = nt_indentation_first(&plan->indentation, SQRT2 * a);
+    plan->dents = 1;
+    plan->maximum_stiffness = fmax(plan->maximum_stiffness, 2.0 * plan->indentation.effective_modulus * SQRT2 * a);
+    plan->largest_indentation = fmax(plan->largest_indentation, groove.indentation);
+    plan->bound.force_error = NAN; /* beside finite elements it errs by a tenth (docs/indentation.md) */
+    return NT_OK;
+}
+
 nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     static const char *const reasons[] = {
@@ -81,7 +131,8 @@ nt_status nt_plan_check_plastic(const nt_plan *plan, const nt_scene *scene, nt_p
         "range.maximum_load (mean pressure above 3 times the yield strength of the tip, where no elastic law holds)"};
     int is_tip = 0, count = 0;
     const double limit = PLASTIC * weaker(scene, &is_tip);
-    if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) || !(largest_mean(plan, scene) > limit))
+    if (plan->dents || plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF || !(limit > 0.0) ||
+        !(largest_mean(plan, scene) > limit))
         return NT_OK;
     const nt_field *field = nt_scene_fields(&count);
     while (strcmp(field->name, "range.maximum_load") != 0)
@@ -98,6 +149,12 @@ void nt_plan_warn_plastic(nt_plan *plan, const nt_scene *scene)
                                         "peak pressure at the largest load, where the tip begins to yield"};
     int is_tip = 0;
     const double limit = ONSET * weaker(scene, &is_tip);
+    if (plan->dents)
+        nt_plan_add_warning(plan, (nt_plan_warning){"a sample that keeps dents (force within about a tenth of finite "
+                                                    "elements, without a bound) yields from",
+                                                    "N", nt_indentation_yield_load(&plan->indentation), NAN});
+    if (plan->dents && !is_tip)
+        return;
     const double peak = peak_pressure(plan, scene);
     if (plan->terms[NT_PLAN_CONTACT].form != NT_FORM_OFF && limit > 0.0 && peak > limit)
         nt_plan_add_warning(plan, (nt_plan_warning){texts[is_tip], "Pa", peak, limit});

@@ -27,6 +27,7 @@ static const nt_field scene_fields[] = {
     FIELD(sample.youngs_modulus, "Pa", 1e2, 1e13, "Young's modulus of the sample"),
     FIELD(sample.poisson_ratio, "", -0.99, 0.5, "Poisson ratio of the sample"),
     FIELD(sample.yield_strength, "Pa", 0.0, 1e12, "yield strength of the sample; 0: not known"),
+    CHOICE(sample.dents, NO_YES, 1.0, "whether it yields while a session touches it, and keeps its dents"),
     FIELD(sample.thickness, "m", 0.0, 1.0, "thickness of the layer that is pressed; 0: a half-space"),
     FIELD(sample.roughness, "m", 0.0, 1e-6, "roughness b, peak to peak, below what the surface map shows"),
     CHOICE(sample.conducting, NO_YES, 1.0, "whether the sample conducts"),

@@ -119,7 +119,10 @@ nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_proble
         return compose_change(session, call, problem);
     case NT_EVENT_REWIND:
         return session->history && value[0] >= 0.0 ? NT_OK : NT_E_UNSUPPORTED;
+    case NT_EVENT_UNDENT:
+        return nt_session_dents(session) ? NT_OK : NT_E_UNSUPPORTED;
     case NT_EVENT_INDEX:
+    case NT_EVENT_DENT:
     case NT_EVENT_KINDS:
         break;
     }
@@ -149,6 +152,11 @@ nt_status nt_session_arm(nt_session *session, int confirmed)
 nt_status nt_session_clutch(nt_session *session, int open)
 {
     return request(session, &(nt_event){.kind = NT_EVENT_CLUTCH, .value = {open != 0}}, NULL);
+}
+
+nt_status nt_session_undent(nt_session *session)
+{
+    return request(session, &(nt_event){.kind = NT_EVENT_UNDENT}, NULL);
 }
 
 nt_status nt_session_set_mode(nt_session *session, nt_mode mode, nt_problem *problem)

@@ -71,8 +71,11 @@ static nt_status apply_event(nt_session *session, const nt_event *event)
     case NT_EVENT_SETTING:
     case NT_EVENT_SCENE:
         return NT_OK; /* the swap is all */
+    case NT_EVENT_UNDENT:
+        return nt_dents_undo(&session->sim.slave.dents) ? NT_OK : NT_E_STATE;
     case NT_EVENT_REWIND:
     case NT_EVENT_INDEX:
+    case NT_EVENT_DENT:
     case NT_EVENT_KINDS:
         break;
     }

@@ -157,6 +157,23 @@ static void come_back(nt_session *session, const nt_sample *sample)
     session->comes_back = 0;
 }
 
+/* What the contact that has ended in this period has left. */
+static nt_status keep_dents(nt_session *session)
+{
+    const nt_dents *dents = &session->sim.slave.dents;
+    nt_status status = NT_OK;
+    for (int i = dents->count - session->sim.slave.left; i < dents->count && status == NT_OK; ++i) {
+        const nt_dent *dent = &dents->made[i];
+        const nt_imprint *of = &dent->imprint;
+        const nt_event events[] = {
+            {.kind = NT_EVENT_DENT, .value = {of->start[NT_X], of->start[NT_Y], of->end[NT_X], of->end[NT_Y]}},
+            {.kind = NT_EVENT_DENT, .field = 1, .value = {of->radius, of->depth, dent->load, dent->before}}};
+        for (int k = 0; k < 2 && status == NT_OK; ++k)
+            status = nt_session_keep_event(session, &events[k]);
+    }
+    return status;
+}
+
 static nt_status run_tick(nt_session *session, nt_record *record)
 {
     nt_sample sample;
@@ -177,8 +194,11 @@ static nt_status run_tick(nt_session *session, nt_record *record)
         come_back(session, &sample);
     nt_touch_step(&session->now->touch, &session->touch_state, &sample, &command);
     fill(record, session, &sample, &command);
-    const nt_status kept = keep(session, record);
-    return kept == NT_OK ? nt_session_write(session, tick, &command) : kept;
+    nt_status kept = keep(session, record);
+    if (kept == NT_OK)
+        kept = nt_session_write(session, tick, &command);
+    return kept == NT_OK && session->simulates[NT_HALF_SLAVE] && session->sim.slave.left > 0 ? keep_dents(session)
+                                                                                             : kept;
 }
 
 nt_status nt_session_tick(nt_session *session)
@@ -266,6 +286,10 @@ int nt_session_is_dynamic(const nt_session *session)
 const nt_capabilities *nt_session_capabilities(const nt_session *session, nt_half half)
 {
     return half == NT_HALF_MASTER ? &session->master.capabilities : &session->slave.capabilities;
+}
+const nt_dents *nt_session_dents(const nt_session *session)
+{
+    return session->simulates[NT_HALF_SLAVE] && session->sim.slave.plan->dents ? &session->sim.slave.dents : NULL;
 }
 const nt_session_setup *nt_session_setup_of(const nt_session *session)
 {

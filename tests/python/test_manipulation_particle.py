@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import math
+
 import mpmath
 import nanotouch as nt
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from planar_push_oracle import Flat, Joint
 
 E, G, W = 3.63e9, 0.85e9, 0.06
 SMOOTH = nt.ParticleContact(E, G)
@@ -116,3 +119,31 @@ def test_what_is_refused_is_told() -> None:
         particle(1e-6, 1e6, 1e-9).limit("tip", "turn", 1e-9)  # type: ignore[arg-type]
     with pytest.raises(nt.errors.InvalidValue, match="model 'morse'"):
         nt.Particle(1e-6, SMOOTH, nt.ParticleContact(E, G, model="morse"))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("radius", "share", "height", "strength", "mode"),
+    [(1.9e-6, 0.29, 1.45, 6e6, "roll"), (0.75e-6, 0.10, 1.35, 1e6, "slide"), (1.5e-6, 0.4, 1.6, 2e8, "roll")],
+)
+def test_beside_a_planar_model_of_its_own(
+    radius: float, share: float, height: float, strength: float, mode: str
+) -> None:
+    """planar_push_oracle.py, in the same steps: forces on the tip, and where the sphere goes."""
+    E, G, tip_radius = 5e9, 1.2e9, share * radius
+    rolling = 0.004 * radius, 0.004 * tip_radius
+    both = radius * tip_radius / (radius + tip_radius)
+    reach = -math.sqrt((radius + tip_radius) ** 2 - (height * radius - radius) ** 2)
+    tips = np.linspace(reach - 2e-9, reach + 4.0 * rolling[0], 150)
+    contacts = [
+        nt.ParticleContact(E, G, work, shear_strength=strength, rolling_distance=distance, model="dmt")
+        for work, distance in zip((0.06, 0.01), rolling, strict=True)
+    ]
+    step = 1.001 * float(tips[1] - tips[0])
+    sphere = nt.Particle(radius, *contacts, tip_radius=tip_radius, step=step)
+    path = sphere.run(tips, 0.0, height * radius - tip_radius)
+    joints = Joint(radius, E, G, 0.06, strength, rolling[0]), Joint(both, E, G, 0.01, strength, rolling[1])
+    flat = Flat(radius, tip_radius, height * radius, *joints, float(tips[0]))
+    force = np.array([flat.step(float(place)) for place in tips])
+    assert path.happened(mode).any()
+    np.testing.assert_allclose(path.force[:, [0, 2]], force, atol=1e-5 * np.abs(force).max())
+    assert path.position[-1, 0] == pytest.approx(flat.pose[0], rel=1e-5)

@@ -245,3 +245,35 @@ def test_a_dented_specimen_is_touched() -> None:
     assert event is not None
     surface = nt.Surface(specimen.heights, pixel_size=specimen.pixel_size)
     assert surface.height(40e-9, 35e-9) == pytest.approx(-event.after.depth, abs=0.4e-9)  # roughness of 0.1 nm
+
+
+@pytest.mark.parametrize(("strain", "force", "area"), [(1e-4, 0.90, 0.87), (1e-3, 0.90, 0.86), (3e-3, 0.91, 0.83)])
+def test_beside_the_finite_elements_of_jackson_and_green(strain: float, force: float, area: float) -> None:
+    """Jackson and Green (2005), Eq. 17 to 21 at nu = 0.3, with a hardness that falls with a/R: to 300 times the depth
+    of the onset, F and contact area from above 0.9 and 0.83 of theirs up to 1.0 and 1.08."""
+    E, R, nu = 100e9, 1e-6, 0.3
+    C, B = 1.295 * math.exp(0.736 * nu), 0.14 * math.exp(23.0 * strain)
+    w = np.geomspace(0.1, 300.0, 60)
+    depth, unit = (
+        (math.pi * C * strain / 2.0) ** 2 * R,
+        4.0 / 3.0 * (R / E) ** 2 * (math.pi * C * strain * E / 2.0) ** 3,
+    )
+    wide = math.pi * C * strain / 2.0 * np.sqrt(w * np.maximum(w / 1.9, 1.0) ** B)
+    hardness = 2.84 * (1.0 - np.exp(-0.82 * wide**-0.7))
+    plastic = np.exp(-0.25 * w ** (5 / 12)) * w**1.5 + 4.0 * hardness / C * (1.0 - np.exp(-0.04 * w ** (5 / 9))) * w
+    F, A = np.where(w < 1.9, w**1.5, plastic) * unit, w * np.maximum(w / 1.9, 1.0) ** B * math.pi * R * depth
+    found = Indentation(R, E, strain * E).at_depth(w * depth)
+    shares = found.force / F, math.pi * found.contact_radius**2 / A
+    assert force < shares[0].min() and shares[0].max() < 1.01
+    assert area < shares[1].min() and shares[1].max() < 1.09
+
+
+def test_ploughing_beside_goddard_and_wilman() -> None:
+    """Goddard and Wilman (1962): the front half of a sphere, 2/pi ((R/a)^2 asin(a/R) - sqrt((R/a)^2 - 1)) of the load.
+    A paraboloid shows less: by 8 % at a = R/2."""
+    scratching = Scratching(20e-9, hardness=1e9, shear_strength=0.0)
+    for share, within in ((0.05, 0.001), (0.2, 0.013), (0.5, 0.081)):
+        a = share * 20e-9
+        load = 0.5e9 * math.pi * a**2
+        theirs = 2.0 / math.pi * (share**-2 * math.asin(share) - math.sqrt(share**-2 - 1.0))
+        assert 1.0 - within <= scratching.groove(load * (1.0 - 1e-9)).ploughing / load / theirs <= 1.0

@@ -64,6 +64,8 @@ class SceneSample(Section):
     """Poisson ratio of the sample [-], -0.99 .. 0.5"""
     yield_strength: float
     """yield strength of the sample; 0: not known [Pa], 0 .. 1e+12"""
+    dents: YesNo
+    """whether it yields while a session touches it, and keeps its dents"""
     thickness: float
     """thickness of the layer that is pressed; 0: a half-space [m], 0 .. 1"""
     roughness: float
@@ -85,6 +87,7 @@ class SceneSampleValues(TypedDict, total=False):
     youngs_modulus: float
     poisson_ratio: float
     yield_strength: float
+    dents: Literal["no", "yes"] | bool
     thickness: float
     roughness: float
     conducting: Literal["no", "yes"] | bool

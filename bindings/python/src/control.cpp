@@ -159,8 +159,8 @@ static nt_status change_setting(Replay &replay, const std::string &name, double 
     return NT_E_ARGUMENT;
 }
 
-// A request between two ticks: its name and up to three numbers. A change of the scene, or a stop, shows in what was
-// measured.
+// A request between two ticks: its name and up to three numbers. A change of the scene, a dent, or a stop, shows in
+// what was measured.
 static nt_status request(Replay &replay, const std::string &name, const py::list &n)
 {
     const auto number = [&](size_t i) { return n[i].cast<double>(); };
@@ -177,7 +177,7 @@ static nt_status request(Replay &replay, const std::string &name, const py::list
         nt_touch_clutch(&state, n[0].cast<bool>());
         return NT_OK;
     }
-    if (name == "scene" || name == "stop")
+    if (name == "scene" || name == "stop" || name == "dent" || name == "dent_size" || name == "undent")
         return NT_OK;
     if (name == "index") {
         nt_touch_index(&state, number(0));

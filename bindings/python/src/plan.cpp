@@ -146,6 +146,7 @@ void bind_plan(py::module_ &module)
     module.def("term_rows", &term_rows);
     py::class_<nt_plan>(module, "Plan")
         .def("as_dict", &as_dict)
+        .def_property_readonly("dents", [](const nt_plan &plan) { return plan.dents != 0; })
         .def("term_eval", &term_eval)
         .def("term_pressure", &term_pressure)
         .def("cutoff_gap", &nt_plan_cutoff_gap)

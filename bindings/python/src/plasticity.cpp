@@ -14,11 +14,11 @@ static nt_indentation indentation_of(double radius, double modulus, double stren
     return made;
 }
 
-// A row of the 8 numbers of a first loading for each contact radius.
+// A row of the 9 numbers of a first loading for each contact radius.
 static Array first(const nt_indentation &self, const Array &radii)
 {
-    static_assert(sizeof(nt_first_loading) == 8 * sizeof(double));
-    Array rows(std::vector<py::ssize_t>{radii.size(), 8});
+    static_assert(sizeof(nt_first_loading) == 9 * sizeof(double));
+    Array rows(std::vector<py::ssize_t>{radii.size(), 9});
     auto *row = reinterpret_cast<nt_first_loading *>(rows.mutable_data());
     for (py::ssize_t i = 0; i < radii.size(); ++i)
         row[i] = nt_indentation_first(&self, radii.data()[i]);

@@ -16,6 +16,7 @@
 typedef struct probe_context {
     const nt_plan *plan;
     nt_interaction_state *interaction;
+    nt_dents *dents;
     const nt_place *place;
     double gap; /* of the last answer [m] */
     nt_law_value law;
@@ -28,7 +29,8 @@ static nt_law_value force_at(void *context, double gap)
     probe_context *probe = context;
     if (gap != probe->gap) {
         probe->gap = gap;
-        probe->law = nt_interaction_eval_gap(probe->plan, probe->interaction, probe->place, gap);
+        probe->law = probe->plan->dents ? nt_dents_eval(&probe->plan->indentation, probe->dents, gap)
+                                        : nt_interaction_eval_gap(probe->plan, probe->interaction, probe->place, gap);
     }
     return probe->law;
 }
@@ -36,7 +38,14 @@ static nt_law_value force_at(void *context, double gap)
 static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
-    nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
+    if (!probe->plan->dents) {
+        nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
+        return;
+    }
+    const double heat = probe->dents->dissipated;
+    nt_dents_advance(&probe->plan->indentation, probe->dents, gap);
+    if (probe->dents->dissipated > heat)
+        probe->gap = NAN; /* the law is another one now */
 }
 
 /* A dynamic probe has really been where it passes. */
@@ -65,6 +74,33 @@ static nt_law_value law_there(probe_context *probe, double gap)
     return law;
 }
 
+/* On a sample that yields the front half alone holds a tip that ploughs; what the groove takes adds to the limit, as a
+ * load with a coefficient of 1. */
+static void slide_in_dent(nt_sim_slave *slave)
+{
+    const nt_dents *dents = &slave->dents;
+    nt_slide *last = &slave->slide;
+    nt_friction law = slave->plan->friction.law;
+    const double way[2] = {last->placed ? slave->x - last->x : 0.0, last->placed ? slave->y - last->y : 0.0};
+    const double ploughing = nt_dents_ploughing(&slave->plan->indentation, dents);
+    const nt_friction_contact contact = {sqrt(1.0 - 0.5 * dents->ploughed) * dents->contact.contact_radius,
+                                         law.coefficient * dents->contact.force + ploughing};
+    law.coefficient = 1.0;
+    (void)nt_friction_advance(&law, &last->friction, &contact, way);
+    last->x = slave->x;
+    last->y = slave->y;
+    last->placed = 1;
+}
+
+/* A tip that hangs back by its springs leaves its groove where it slips. */
+static void plough(nt_sim_slave *slave)
+{
+    const nt_friction_state *friction = &slave->slide.friction;
+    const double give = friction->stiffness > 0.0 ? 1.0 / friction->stiffness : 0.0;
+    nt_dents_slide(&slave->plan->indentation, &slave->dents, slave->x + give * friction->force[NT_X],
+                   slave->y + give * friction->force[NT_Y]);
+}
+
 /* Friction at the end of a period; what it held is lost where the contact was, even for a moment. The support of the
  * tip is where the stage is: tip and lever are its spring. */
 static void slide(nt_sim_slave *slave, int parted, double gap)
@@ -75,12 +111,31 @@ static void slide(nt_sim_slave *slave, int parted, double gap)
     if (parted)
         (void)nt_friction_advance(&slave->plan->friction.law, &slave->slide.friction, &none, (double[2]){0.0, 0.0});
     const nt_pose here = {slave->x, slave->y, gap};
-    nt_interaction_slide_gap(slave->plan, &slave->interaction, &slave->slide, &slave->place, &here);
+    if (slave->plan->dents)
+        slide_in_dent(slave);
+    else
+        nt_interaction_slide_gap(slave->plan, &slave->interaction, &slave->slide, &slave->place, &here);
 }
 
 double nt_sim_surface_height(const nt_sim_slave *slave)
 {
-    return nt_interaction_place(slave->plan, slave->x, slave->y).surface.z + nt_sim_surface_jump(&slave->link);
+    return nt_interaction_place(slave->plan, slave->x, slave->y).surface.z - slave->lowered +
+           nt_sim_surface_jump(&slave->link);
+}
+
+/* Where it touches nothing: what the last contact has left, and how deep the dents are here. */
+static void find_dents(nt_sim_slave *slave)
+{
+    slave->left = 0;
+    if (!slave->plan->dents || slave->dents.touches)
+        return;
+    const double before = slave->lowered;
+    slave->left = nt_dents_place(&slave->plan->indentation, &slave->dents, slave->x, slave->y);
+    slave->lowered = nt_dents_lowered(&slave->plan->indentation, &slave->dents, slave->x, slave->y);
+    const double gap = slave->cantilever.tip_height + slave->lowered - before; /* the apex stays where it is ... */
+    const double lift = fmax(-gap, 0.0); /* ... unless a rim lifts it: what only comes near does not yield */
+    slave->cantilever.tip_height = gap + lift;
+    slave->cantilever.deflection += lift / cos(slave->link.rig.probe.tilt);
 }
 
 /* What is known of the place under the tip; 1: it is another one. */
@@ -99,16 +154,30 @@ void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
     if (plan == slave->plan)
         return;
     slave->plan = plan;
-    slave->place_x = slave->law_gap = NAN; /* nothing is known of it yet */
+    slave->lowered = slave->dents.touches = 0; /* what touched by another law has let go */
+    slave->place_x = slave->law_gap = NAN;     /* nothing is known of it yet */
+}
+
+/* A sample that keeps dents has one contact everywhere: the slope alone turns its force aside. */
+static void sides_of(const nt_sim_slave *slave, double gap, double force, double sides[2])
+{
+    if (!slave->plan->dents) {
+        nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, force, sides);
+        return;
+    }
+    sides[NT_X] = -force * slave->place.surface.zx;
+    sides[NT_Y] = -force * slave->place.surface.zy;
 }
 
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
     const int is_elsewhere = find_place(slave);
-    const double surface = slave->place.surface.z + nt_sim_surface_jump(&slave->link);
+    find_dents(slave);
+    const double surface = slave->place.surface.z - slave->lowered + nt_sim_surface_jump(&slave->link);
     const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties);
     probe_context context = {.plan = slave->plan,
                              .interaction = &slave->interaction,
+                             .dents = &slave->dents,
                              .place = &slave->place,
                              .gap = knows ? slave->law_gap : (double)NAN, /* another place: nothing is known there */
                              .law = slave->law,
@@ -125,8 +194,10 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     slave->law_gap = gap;
     double sides[2] = {0.0, 0.0}; /* of a flat */
     if (slave->plan->surface)
-        nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, law.F, sides);
+        sides_of(slave, gap, law.F, sides);
     slide(slave, context.parted, gap);
+    if (slave->plan->dents)
+        plough(slave);
     const nt_friction_state *friction = &slave->slide.friction;
     slave->truth = (nt_truth){.gap = gap,
                               .tip_force = {sides[0] + friction->force[0], sides[1] + friction->force[1], law.F},
@@ -135,10 +206,11 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
                               .contact_radius = law.a,
                               .surface_height = surface,
                               .tip_height = gap + surface,
-                              .energy = law.U,
+                              .energy = slave->plan->dents ? slave->dents.contact.stored : law.U,
+                              .dent_heat = slave->dents.dissipated,
                               .friction_stored = friction->stored,
                               .friction_heat = friction->dissipated};
-    return status;
+    return status == NT_OK && slave->dents.full ? NT_E_DEVICE : status;
 }
 
 int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period)

@@ -8,6 +8,7 @@
 #include "nanotouch/contact_equilibrium.h"
 #include "nanotouch/control.h"
 #include "nanotouch/curves.h"
+#include "nanotouch/dents.h"
 #include "nanotouch/dynamics.h"
 #include "nanotouch/field.h"
 #include "nanotouch/flow.h"

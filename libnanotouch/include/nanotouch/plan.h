@@ -8,6 +8,7 @@
 #include "nanotouch/friction.h"
 #include "nanotouch/maugis_bank.h"
 #include "nanotouch/maugis_table.h"
+#include "nanotouch/plasticity.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/surface.h"
@@ -122,6 +123,8 @@ typedef struct nt_plan {
     int warning_count;
 
     nt_plan_friction friction;
+    int dents;                  /* 1: a session computes a sample that yields (dents.h) in place of the contact ... */
+    nt_indentation indentation; /* ... by this */
 
     nt_adhesion_source source;
     nt_contact contact; /* w: what the tail leaves of it (E5b). Of a surface with properties the softest modulus and

@@ -41,6 +41,7 @@ typedef struct nt_first_loading {
     double effective_radius; /* R', of tip and dent together: 4 E* a^3/(3 F) [m] */
     double stored;           /* elastic energy, which unloading gives back [J] */
     double dissipated;       /* heat [J] */
+    double stiffness;        /* dF/d(delta) of going on; of unloading it is 2 E* a [N/m] */
 } nt_first_loading;
 /* At a contact radius a [m], 0 .. R/2. NaN in, NaN out. */
 NT_API NT_REALTIME nt_first_loading nt_indentation_first(const nt_indentation *indentation, double contact_radius);

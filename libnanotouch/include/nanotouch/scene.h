@@ -32,6 +32,7 @@ typedef struct nt_specimen {
     double youngs_modulus;    /* E_s [Pa] */
     double poisson_ratio;     /* nu_s [-] */
     double yield_strength;    /* Y_s [Pa]; 0: not known */
+    int dents;                /* "no|yes": it yields while a session touches it, and keeps dents */
     double thickness;         /* t of the layer that is pressed; 0: a half-space [m] */
     double roughness;         /* b, peak to peak, below what the surface map shows [m] */
     int conducting;           /* "no|yes" */

@@ -102,8 +102,12 @@ typedef enum nt_event_kind {
     NT_EVENT_SCENE,                  /* field: of nt_scene_fields; its value */
     NT_EVENT_REWIND,                 /* the tick that it goes back to; how many of the session's events had been kept
                                         there: only they hold then. -1: it has gone on from another session's snapshot */
-    NT_EVENT_INDEX, /* nobody asks for it: where a hand that is not simulated was when ticks went on after
-                       opening, a start or a pause; the stage did not follow it there. x_m [m] */
+    NT_EVENT_INDEX,  /* nobody asks for it: where a hand that is not simulated was when ticks went on after
+                        opening, a start or a pause; the stage did not follow it there. x_m [m] */
+    NT_EVENT_DENT,   /* nobody asks for it: what a contact that has ended left in a sample that keeps dents, as two
+                        events. Field 0: x, y of its start, x, y of its end [m]; field 1: radius, depth [m], load [N], the
+                        number of the dent that it has grown from or -1 */
+    NT_EVENT_UNDENT, /* the last dent is taken back; no value */
     NT_EVENT_KINDS
 } nt_event_kind;
 typedef struct nt_event {
@@ -152,6 +156,9 @@ NT_API nt_status nt_session_clutch(nt_session *session, int open);
  * surface with properties gives at each place); else as nt_session_open. The cantilever's model stays. */
 NT_API nt_status nt_session_change(nt_session *session, nt_event_kind kind, const char *field, double value,
                                    nt_problem *problem);
+/* Takes the last dent of a sample that keeps them back, while the tip touches nothing. NT_E_STATE where there is none,
+ * or the tip touches; NT_E_UNSUPPORTED where no such sample is simulated. */
+NT_API nt_status nt_session_undent(nt_session *session);
 /* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED
  * where none is simulated, NT_E_STATE while the session runs in its thread. */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
@@ -236,6 +243,9 @@ NT_API nt_status nt_session_restore(nt_session *session, const nt_snapshot *snap
 /* Accepts NULL. */
 NT_API void nt_snapshot_close(nt_snapshot *snapshot);
 
+/* What a simulated sample keeps of its touches (scene: sample.dents), the oldest first; NULL where none is simulated.
+ * Valid until the next tick. */
+NT_API const nt_dents *nt_session_dents(const nt_session *session);
 /* Is the cantilever computed as dynamic (1) or quasi-static (0)? 0 where the slave is not simulated. */
 NT_API int nt_session_is_dynamic(const nt_session *session);
 /* What a half can do. */

@@ -4,6 +4,7 @@
 #ifndef NANOTOUCH_SIM_H
 #define NANOTOUCH_SIM_H
 
+#include "nanotouch/dents.h"
 #include "nanotouch/dynamics.h"
 #include "nanotouch/faults.h"
 #include "nanotouch/hal.h"
@@ -52,6 +53,7 @@ typedef struct nt_truth {
     double energy;             /* U of the interaction [J] */
     double friction_stored;    /* by friction, in contact, tip and lever [J] */
     double friction_heat;      /* that friction has made so far [J] */
+    double dent_heat;          /* that a sample with dents has made so far [J] */
 } nt_truth;
 
 /* What is random, a stream each (random.h): no half draws from the other's. The four sensors come first, in the order
@@ -123,6 +125,9 @@ typedef struct nt_sim_slave {
     nt_cantilever_state cantilever; /* its tip_height counts from the surface under it */
     nt_interaction_state interaction;
     nt_slide slide;                        /* friction */
+    nt_dents dents;                        /* of a plan with a sample that keeps them */
+    double lowered;                        /* by them, where this contact began, or would here [m] */
+    int left;                              /* dents that were left in this period; the newest of the list */
     double x, y;                           /* [m] */
     double pending[NT_SIM_SLOTS][NT_AXES]; /* stage commands [m] */
     double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */

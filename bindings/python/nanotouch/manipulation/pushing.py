@@ -100,7 +100,7 @@ class Pushed(NamedTuple):
 
 
 @dataclass
-class _World:
+class World:
     """What is true: particle, drift, time. The operator's coordinates are those of the stage."""
 
     particle: Particle
@@ -139,8 +139,9 @@ class _World:
         rows = np.array(self.rows).reshape(-1, 10)
         return Track(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:])
 
-    def line(self, centre: Floats, axis: int, at: Floats) -> float:
-        """Where a line along an axis, through `centre` of the stage, shows the middle of a sphere that is at `at`."""
+    def heights(self, centre: Floats, axis: int, at: Floats) -> tuple[Floats, Floats]:
+        """Of a line along an axis, through `centre` of the stage, over a sphere that is at `at`: places from the centre
+        on, and heights over the middle of the sphere."""
         reach = self.particle.radius + self.particle.tip_radius
         along = np.linspace(-1.3, 1.3, self.bench.points) * reach
         begin = self.drifted
@@ -153,6 +154,12 @@ class _World:
         away = away + self.bench.position_noise * self.random.standard_normal(2)
         height = np.sqrt(np.maximum(reach**2 - np.sum(away**2, axis=1), 0.0))  # over the middle of the sphere
         height += self.bench.height_noise * self.random.standard_normal(self.bench.points)
+        return along, height
+
+    def line(self, centre: Floats, axis: int, at: Floats) -> float:
+        """Where such a line shows the middle of the sphere."""
+        reach = self.particle.radius + self.particle.tip_radius
+        along, height = self.heights(centre, axis, at)
         seen = height > 0.5 * reach
         if np.count_nonzero(seen) < 8:
             raise Lost(f"no particle within {0.8 * reach:.3g} m of where it should be: a scan of the whole is due")
@@ -209,22 +216,23 @@ def push(
     check_between("most", most, "", above=0)
     longest = longest if longest is not None else 0.5 * particle.radius
     check_between("longest", longest, "m", above=0.0)
-    world = _world(particle, bench or Bench(), start, seed)
+    world = world_of(World, particle, bench or Bench(), start, seed)
     mark = np.array([start[0], start[1] - 10.0 * particle.radius])
-    return _Operator(world, mark, np.array(target), longest).work(seen or start, tolerance, most)
+    return Operator(world, mark, np.array(target), longest).work(seen or start, tolerance, most)
 
 
-def _world(particle: Particle, bench: Bench, start: tuple[float, float], seed: int) -> _World:
+def world_of(kind: type[World], particle: Particle, bench: Bench, start: tuple[float, float], seed: int) -> World:
+    """With the tip high above the particle."""
     random = np.random.default_rng(seed)
     state = particle.place(*start, (start[0], start[1], 4.0 * particle.radius))
-    return _World(particle, bench, random, state, heading=2.0 * np.pi * random.uniform())
+    return kind(particle, bench, random, state, heading=2.0 * np.pi * random.uniform())
 
 
 @dataclass
-class _Operator:
+class Operator:
     """What it believes: the drift that the mark shows, and by how much the particle springs back."""
 
-    world: _World
+    world: World
     mark: Floats
     target: Floats
     longest: float
@@ -232,14 +240,14 @@ class _Operator:
 
     def work(self, seen: tuple[float, float], tolerance: float, most: int) -> Pushed:
         world = self.world
-        drift = world.look(self.mark, self.mark) - self.mark
+        drift = self.drift_of(np.zeros(2))
         found = self._find(np.array(seen) + drift)
         looks, pushes = [found - drift], 0
         while (left := float(np.linalg.norm(self.target - looks[-1]))) > tolerance and pushes < most:
             self._push(found, drift)
             guess = found + self._wanted(found - drift) - self.ahead
             pushes += 1
-            drift = world.look(self.mark + drift, self.mark) - self.mark
+            drift = self.drift_of(drift)
             found = self._find(guess)
             self._learn(looks[-1], found - drift)
             looks.append(found - drift)
@@ -247,6 +255,10 @@ class _Operator:
         error = float(np.linalg.norm(position - self.target))
         spun = float(world.particle.run(*world.state.tip, state=world.state).turned[-1, 2])
         return Pushed(position, error, left, pushes, world.lines, world.time, np.array(looks), spun, world.track())
+
+    def drift_of(self, drift: Floats) -> Floats:
+        """What the mark shows; the last one helps to find it."""
+        return self.world.look(self.mark + drift, self.mark) - self.mark
 
     def _find(self, guess: Floats) -> Floats:
         return self.world.look(guess, np.array(self.world.state.position[:2]))

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from .dents import Dent, dents_of
 from .indentation import FirstLoading, Indentation, IndentationPath, IndentationState
 from .scratch import Groove, Scratching, worn_flat, worn_volume
 from .specimen import Displacement, Event, Imprint, Specimen
 
 __all__ = [
+    "Dent",
     "Displacement",
     "Event",
     "FirstLoading",
@@ -18,6 +20,7 @@ __all__ = [
     "IndentationState",
     "Scratching",
     "Specimen",
+    "dents_of",
     "worn_flat",
     "worn_volume",
 ]

@@ -38,6 +38,8 @@ class FirstLoading(NamedTuple):
     """elastic energy, which unloading gives back [J]"""
     dissipated: Any
     """heat [J]"""
+    stiffness: Any
+    """dF/d(delta) of going on; of unloading it is 2 E* a [N/m]"""
 
 
 class IndentationState(NamedTuple):

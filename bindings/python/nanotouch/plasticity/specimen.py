@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,9 @@ from nanotouch.errors import InvalidValue
 
 from .indentation import Indentation
 from .scratch import Scratching
+
+if TYPE_CHECKING:
+    from .dents import Dent
 
 
 @dataclass(frozen=True)
@@ -197,6 +200,18 @@ class Specimen:
         if known is not None:
             imprint = Imprint(*known.after[:4], *imprint[4:])
         return self._make("scratch", load, None if known is None else known.after, imprint, groove.lateral_force)
+
+    def take(self, dent: Dent) -> Event:
+        """Draw what a session has left (``Session.dents``, ``Recording.dents``), in their order.
+
+        The number of a dent counts from the first that was taken.
+        """
+        taken = len(self._events)
+        if dent.before is not None and dent.before >= taken:
+            raise InvalidValue(f"dent {dent.before} is to grow, of {taken} that were taken: take all of them")
+        before = None if dent.before is None else self._events[dent.before].after
+        is_groove = dent.imprint[:2] != dent.imprint[2:4]
+        return self._make("scratch" if is_groove else "indent", dent.load, before, dent.imprint, 0.0)
 
     def apply(self, event: Event) -> Event:
         """Do a recorded event again: on the same heights, after the same events, it gives the same bits."""

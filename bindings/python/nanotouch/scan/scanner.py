@@ -128,6 +128,7 @@ class Scanner:
     def __init__(
         self, plan: Plan, scan: Scan | None = None, rig: Rig | None = None, drive: Drive | None = None
     ) -> None:
+        plan.refuse_dents("a scan")
         self.plan = plan
         self.scan = Scan() if scan is None else scan.copy()
         self.rig = Rig() if rig is None else rig.copy()

@@ -143,6 +143,8 @@ def _total(facts: dict[str, Any]) -> str:
 
 def _within(facts: dict[str, Any]) -> str:
     quantity = facts["quantity"]
+    if math.isnan(facts["bound"]):
+        return f"{_QUANTITIES[quantity]} without a bound"
     text = f"{_QUANTITIES[quantity]} within {_percent(facts['bound'])}"
     scale = in_words(facts["scale"], _UNITS[quantity])
     pulled = ", the pull-off" if quantity == "force" and facts["scale"] == facts["pull_off_force"] else ""

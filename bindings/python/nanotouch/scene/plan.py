@@ -70,6 +70,11 @@ class Plan:
     def _all_terms(self) -> list[Term]:
         return [Term(*term) for term in self._facts["terms"]]
 
+    def refuse_dents(self, what: str) -> None:
+        """Raise `InvalidValue` where the sample keeps dents: only a session computes that."""
+        if self.core.dents:
+            raise InvalidValue(f"sample.dents = yes: {what} does not know a sample that keeps dents; a Session does")
+
     @property
     def bound(self) -> float:
         """Largest error of the demanded quantity over max(\\|it\\|, its scale), all terms together, at gaps that are

@@ -10,6 +10,7 @@ from typing import Any, NoReturn, TypeVar
 
 from nanotouch import _core
 from nanotouch.errors import DeviceError, InvalidValue
+from nanotouch.plasticity import Dent
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.touch.options import PACES, Pace, Progress
 
@@ -115,6 +116,15 @@ class Runs:
     def progress(self) -> Progress:
         """How a run in its own thread goes."""
         return Progress(**self.core.progress)
+
+    @property
+    def dents(self) -> tuple[Dent, ...]:
+        """What the tip has left in a simulated sample that keeps dents (scene: ``sample.dents``), the oldest first."""
+        return tuple(Dent.from_numbers(numbers) for numbers in self.core.dents())
+
+    def undent(self) -> None:
+        """Take the last dent back, while the tip touches nothing."""
+        self.core.undent()
 
     def rewind(self, duration: float) -> None:
         """Take a running simulation back by a time [s], to the last quarter of a second before that moment."""

@@ -25,6 +25,7 @@ from nanotouch._io.writing import BLOCK_ROWS
 from nanotouch._io.writing import replacing as replacing
 from nanotouch._io.writing import write_csv as write_csv
 from nanotouch.errors import Error, InvalidValue, ReadError, require
+from nanotouch.plasticity import Dent, dents_of
 from nanotouch.touch._control import ControlLaw
 from nanotouch.touch._recorder import ENCODING, INCOMPLETE, recovered_name
 from nanotouch.touch._recorder import Metadata as Metadata
@@ -163,6 +164,11 @@ class Recording(Columns):
         from nanotouch.touch.replay import replay  # the next layer, which needs this one: a method for convenience
 
         return replay(self, control)
+
+    @property
+    def dents(self) -> tuple[Dent, ...]:
+        """What the tip has left in a sample that keeps dents, the oldest first."""
+        return dents_of(self.without_rewinds().metadata.get("events", []))
 
     def without_rewinds(self) -> Recording:
         """The rows and events that a session went on from. Itself where the session never went back."""
