@@ -21,6 +21,7 @@ static const double plausible = 0.05;                /* likelihood of a film tha
 static const double deep = 8.0; /* times the visible force: there the indentation is 4 times that at the visible one, */
 static const double foot_part = 0.33; /* so that contact begins about a third of the way between them further out; */
 static const double clear_part = 0.7; /* of the way: surely outside */
+static const double least_free = 0.5; /* of the travel: a bow of less is slow noise, and huge where it is continued */
 
 /* Means of equal blocks of the free part, x from its middle in halves of its length. */
 typedef struct means {
@@ -307,7 +308,8 @@ void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room
     const double step = approach->z[seen] - approach->z[deeper], foot = approach->z[seen] + foot_part * step;
     while (first < count && approach->z[first] < approach->z[seen] + clear_part * step)
         first++;
-    if (count - first < LEAST_BLOCKS * BLOCK)
+    const double all = approach->z[count - 1] - approach->z[0];
+    if (count - first < LEAST_BLOCKS * BLOCK || approach->z[count - 1] - approach->z[first] < least_free * all)
         return;
     means m = means_of(approach, first);
     m.foot = (foot - m.middle) / m.half;

@@ -64,6 +64,17 @@ def test_three_chains_give_their_contour_lengths(kind: str, segment: float) -> N
         assert np.mean(np.abs(errors) < 1.96) > 0.8
 
 
+@pytest.mark.parametrize(("kind", "segment"), [("worm-like", 0.4e-9), ("freely-jointed", 0.8e-9)])
+def test_contour_lengths_have_no_bias(kind: str, segment: float) -> None:
+    """On a stiff sample the contact's place was 0.4 nm inside, and every chain by as much too long."""
+    contours, errors = (120e-9, 240e-9, 400e-9), []
+    for seed in range(20, 32):
+        curve = pulled(seed, contours, (200e-12, 250e-12, 300e-12), segment, kind)
+        found = curves.chains(curve, curves.analyse(curve), kind)  # type: ignore[arg-type]
+        errors += [chain.contour_length - truth for chain, truth in zip(found, contours, strict=True)]
+    assert abs(np.mean(errors)) < 3.0 * np.std(errors) / np.sqrt(len(errors)) + 0.1e-9
+
+
 def test_a_plateau_is_no_chain_and_a_weak_rupture_says_nothing() -> None:
     curve = pulled(1, (400e-9,), (300e-12,), 0.4e-9, "worm-like")
     z, retract = curve.segments[1].z, curve.segments[1]

@@ -19,13 +19,13 @@ K = KNOWN.spring_constant
 NAMES = ("Line0003Point0007Defl.ibw", "Line0003Point0007ZSnsr.ibw")
 
 
-def write_pair(folder: Path, note: str | None = "Indexes") -> Path:
+def write_pair(folder: Path, note: str | None = "Indexes", facts: dict[str, object] | None = None) -> Path:
     """Approach, retraction and a rest, one wave each for deflection and height."""
     rest = np.full(40, KNOWN.retract_z[-1]) + 1e-12 * np.arange(40)
     z = np.concatenate([KNOWN.approach_z, KNOWN.retract_z, rest])
     deflection = np.concatenate([KNOWN.approach_force, KNOWN.retract_force, np.zeros(40)]) / K
     ends = np.cumsum([0, KNOWN.approach_z.size, KNOWN.retract_z.size, 40]) - 1
-    facts: dict[str, object] = {"XLVDT": -3e-5}
+    facts = {"XLVDT": -3e-5, **(facts or {})}
     if note:
         facts[note] = f"0,{','.join(str(end) for end in ends[1:])},"
     for name, values in zip(NAMES, (deflection, -z), strict=True):
@@ -54,6 +54,22 @@ def test_without_a_spring_constant_it_has_deflections_and_says_so(tmp_path: Path
     assert "states no spring constant: deflections alone; give it for forces" in curve.meta["notes"]
     with pytest.raises(InvalidValue, match="spring constant"):
         curves.analyse(curve)
+
+
+def test_a_pair_in_capitals_that_states_its_calibration(tmp_path: Path) -> None:
+    path = write_pair(tmp_path)
+    for name in NAMES:
+        (tmp_path / name).rename(tmp_path / name.upper())
+    (curve,) = curves.read(tmp_path / path.name.upper(), spring_constant=K)
+    np.testing.assert_allclose(curve.approach.force, KNOWN.approach_force, atol=1e-18)  # type: ignore[union-attr,arg-type]
+    for old in tmp_path.iterdir():
+        old.unlink()
+    path = write_pair(tmp_path, facts={"SpringConstant": 2.0 * K, "InvOLS": 5e-8})
+    (curve,) = curves.read(path)
+    assert (curve.spring_constant, curve.meta["sensitivity"]) == (2.0 * K, 5e-8)
+    np.testing.assert_allclose(curve.approach.force, 2.0 * KNOWN.approach_force, atol=1e-18)  # type: ignore[union-attr]
+    (curve,) = curves.read(path, spring_constant=K, sensitivity=1e-7)
+    np.testing.assert_allclose(curve.approach.force, 2.0 * KNOWN.approach_force, atol=1e-18)  # type: ignore[union-attr]
 
 
 def test_the_half_with_the_heights_is_refused_as_the_curve_would_count_twice(tmp_path: Path) -> None:
@@ -171,6 +187,10 @@ def test_a_thermal_spectrum_gives_its_spring_constant(tmp_path: Path) -> None:
     tune = curves.thermal_tune(found.frequency, found.density, averages=1000, temperature=293.0, correction=1.0)
     assert tune.spring_constant == pytest.approx(k, rel=0.01)
     text = (tmp_path / "a.tnd").read_text(encoding="utf-8")
+    (tmp_path / "c.tnd").write_text(text.replace("V²", "V^2") + "1e5 2e-9", encoding="utf-8")  # its last row is cut
+    (tmp_path / "d.tnd").write_text(text, encoding="latin-1")
+    for name in ("c.tnd", "d.tnd"):
+        np.testing.assert_array_equal(curves.thermal_spectrum(tmp_path / name).density, found.density)
     for old, new in (("# thermal", "# cold"), ("'Frequency'", "'Time'"), ("24.0 ", "24.0 7 "), ("nm/V", "furlong")):
         (tmp_path / "b.tnd").write_text(text.replace(old, new, 1), encoding="utf-8")
         with pytest.raises(ReadError):

@@ -41,6 +41,16 @@ def test_intervals_hold_the_truth(model: str, kind: str) -> None:
         assert 0.65 < width < 1.4, name  # 1 +- 4/sqrt(120)
 
 
+@pytest.mark.parametrize("seed", [16, 96, 244])
+def test_slow_noise_is_no_bow(seed: int) -> None:
+    """A bow was found in the last tenth of the free travel; continued into the contact it left E* 25 times low."""
+    curve, told = bench_coverage.synthetic("cone", seed, kind="flicker")
+    result = nt.fit.fit_curve(curve, "cone", uncertainties=bench_coverage.CALIBRATION, **told)
+    assert result.status == "ok"
+    assert abs(np.log(result.values["effective_modulus"] / MODULUS)) < 0.3
+    assert result.values["contact_point"] == pytest.approx(bench_coverage.CONTACT, abs=4e-9)
+
+
 @pytest.mark.parametrize("model", ["hertz", "jkr"])
 def test_calibration_sigma_equals_monte_carlo(model: str) -> None:
     """The same curve read with spring constants, radii and sensitivities that scatter as they are said to: the fits

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,19 +26,22 @@ SIDE = (3e-6, 4e-6)
 ROUNDING = 2.0**-22  # of single precision
 
 
-def write_sxm(path: Path, *, direction: str = "down", end: bytes = b"\n\n\x1a\x04") -> Path:
-    rows = HEIGHTS[::-1] if direction == "down" else HEIGHTS
+def write_sxm(
+    path: Path, *, direction: str = "down", end: bytes = b"\n\n\x1a\x04", order: str = ">f4", name: str = "Z"
+) -> Path:
+    rows = HEIGHTS[::-1] if direction.lower() == "down" else HEIGHTS
     current = 1e-9 * np.arange(NX) * np.ones((NY, 1))
     pictures = [rows, (rows + 1e-9)[:, ::-1], current, current[:, ::-1]]
+    first = "MSB" if order == ">f4" else "LSB"
     header = [
-        ":NANONIS_VERSION:", "2", ":SCANIT_TYPE:", "              FLOAT            MSBFIRST",
+        ":NANONIS_VERSION:", "2", ":SCANIT_TYPE:", f"              FLOAT            {first}FIRST",
         ":REC_DATE:", " 16.12.2015",
         ":SCAN_PIXELS:", f"       {NX}       {NY}", ":SCAN_RANGE:", f"           {SIDE[1]:E}           {SIDE[0]:E}",
         ":SCAN_DIR:", direction, ":Current>Gain:", "LN 10^9", ":DATA_INFO:",
-        "\tChannel\tName\tUnit\tDirection\tCalibration\tOffset", "\t14\tZ\tm\tboth\t-8.71E-10\t0.000E+0",
+        "\tChannel\tName\tUnit\tDirection\tCalibration\tOffset", f"\t14\t{name}\tm\tboth\t-8.71E-10\t0.000E+0",
         "\t0\tCurrent\tA\tboth\t-1.000E-10\t-8.014E-13", "", ":SCANIT_END:",
     ]  # fmt: skip
-    data = b"".join(np.ascontiguousarray(p, ">f4").tobytes() for p in pictures)
+    data = b"".join(np.ascontiguousarray(p, order).tobytes() for p in pictures)
     path.write_bytes("\n".join(header).encode("latin-1") + end + data)
     return path
 
@@ -145,7 +149,7 @@ def test_heights_are_read_in_metres_the_right_way_up(tmp_path: Path, name: str) 
 def test_cut_files_are_refused_in_one_sentence(tmp_path: Path, name: str) -> None:
     path = FILES[name][0](tmp_path)
     content = path.read_bytes()
-    for size in (40, len(content) // 3):
+    for size in (40, len(content) // 5):
         path.write_bytes(content[:size])
         with pytest.raises(ReadError) as caught:
             images.read(path)
@@ -162,7 +166,7 @@ def test_a_nanonis_scan_goes_up_or_down_and_back(tmp_path: Path, direction: str)
         images.read(path, "Current")
     text = path.read_bytes()
     for old, new, message in (
-        (b"MSBFIRST", b"LSBFIRST", "FLOAT LSBFIRST"),
+        (b"MSBFIRST", b"PDPFIRST", "FLOAT PDPFIRST"),
         (b"both\t-8", b"four\t-8", "expected number, name, unit, direction"),
         (b":SCAN_DIR:", b":SCAN_XXX:", "lacks SCAN_DIR"),
         (b"\x1a\x04", b"\x1a\x05", "does not end"),
@@ -170,6 +174,45 @@ def test_a_nanonis_scan_goes_up_or_down_and_back(tmp_path: Path, direction: str)
         path.write_bytes(text.replace(old, new, 1))
         with pytest.raises(ReadError, match=message):
             images.read(path)
+
+
+@pytest.mark.parametrize(
+    "spelling",
+    [{"order": "<f4"}, {"direction": "DOWN"}, {"direction": "Up"}, {"name": "[P1]_Z"}, {"end": b"\r\n\r\n\x1a\x04"}],
+)
+def test_spellings_of_a_nanonis_scan(tmp_path: Path, spelling: dict[str, Any]) -> None:
+    path = write_sxm(tmp_path / "a.sxm", **spelling)
+    np.testing.assert_allclose(images.read(path).heights, HEIGHTS, atol=1e-14)
+
+
+def test_a_cut_nanonis_scan_gives_the_pictures_it_holds(tmp_path: Path) -> None:
+    path = write_sxm(tmp_path / "a.sxm")
+    path.write_bytes(path.read_bytes()[: -NX * NY * 4 * 2 - 8])
+    whole = images.read(path)
+    np.testing.assert_allclose(whole.heights, HEIGHTS, atol=1e-14)
+    assert "it is cut off after this picture" in whole.notes[0]
+    with pytest.raises(ReadError, match="it is cut off"):
+        images.read(path, "Z backward")
+
+
+def test_spellings_of_a_movie(tmp_path: Path) -> None:
+    """Two measurements of one name, attributes that are arrays or truth values, a channel without a scale."""
+    path = write_movie(tmp_path / "a.h5-jpk")
+    with h5py.File(path, "r+") as file:
+        file.copy("Measurement_000", "Measurement_001")
+        file.create_group("Measurement_002").create_group("Channel_000").attrs["channel.name"] = np.bytes_("height")
+        first = file["Measurement_000"]
+        first.attrs["position-pattern.grid.ilength"] = np.array([NX])
+        first["Channel_000"].attrs["retrace"] = True
+        first["Channel_001"].attrs["channel.fancy-name"] = np.array([b"Height (measured)"])
+        for key in ("multiplier", "offset"):
+            del first["Channel_002"].attrs[f"net-encoder.scaling.{key}"]
+    names = [one.name for one in images.channels(path)]
+    assert len(names) == len(set(names)) == 18
+    assert "Height (measured) trace#2 frame 1" in names
+    assert "Height retrace frame 1" in names
+    for name in ("Height (measured) trace frame 1", "height (measured) trace#2 frame 1"):
+        np.testing.assert_allclose(images.read(path, name).heights, HEIGHTS, atol=1e-13)
 
 
 def test_lines_that_were_not_scanned_are_masked(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def test_a_first_touch_of_its_surface_warns_of_nothing(name: str) -> None:
     left_out = ("viscous drag at the fastest approach, left out", "curvature of the surface, which this tip's law")
     said = [warning.text for warning in session.plan.warnings if not warning.text.startswith(left_out)]
     assert said == []
-    assert (name == "cell_in_liquid" or session.plan.warnings == [])
+    assert name == "cell_in_liquid" or session.plan.warnings == []
     assert session.guarantee().warning is None
     assert session.calm().is_calm
 

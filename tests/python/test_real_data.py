@@ -13,6 +13,7 @@ import synthetic
 pytest.importorskip("SurfaceTopography")
 pytest.importorskip("afmformats")
 
+import nanotouch as nt
 from nanotouch import curves, images
 
 if not synthetic.DATA.is_dir():
@@ -70,3 +71,39 @@ def test_every_curve(path: Path) -> None:
 def test_uncalibrated_files_are_flagged() -> None:
     flagged = {path.name for path in CURVES if "placeholders" in curves.read(path)[0].meta}
     assert flagged == {"Test.000", "Test.001", "Test.003"}
+
+
+def test_a_tilted_baseline_is_what_nanite_differs_by() -> None:
+    """nanite 4.2.3 without its step against tilts, by plain least squares of its law; and with the tilt taken off."""
+    least_squares = pytest.importorskip("scipy.optimize").least_squares
+    name = "fmt-jpk-fd_single_tilted-baseline-drift-mitotic_2021-01-29.jpk-force"
+    path = next(synthetic.DATA.rglob(name), None)
+    if path is None:
+        pytest.skip(f"real data not here: {name}")
+    (curve,) = curves.read(path)
+    approach, k = curve.approach, curve.spring_constant
+    assert approach is not None
+    assert approach.force is not None
+    assert k is not None
+    free = approach.z > approach.z.min() + 1.2e-6
+    line = np.polyfit(approach.z[free], approach.force[free], 1)
+    assert line[0] == pytest.approx(-51e-6, rel=0.02)
+
+    def modulus(force: np.ndarray) -> tuple[float, float]:
+        tip = approach.z + force / k
+        offset = float(np.mean(force[: len(force) // 10]))
+
+        def left(p: np.ndarray) -> np.ndarray:
+            pressed = np.maximum(p[1] * 1e-6 - tip, 0.0)
+            return 1e10 * (4e-3 / 3.0 / 0.75 * np.exp(p[0]) * pressed**1.5 + p[2] * 1e-9 - force + offset)
+
+        start = [np.log(3e3), 1e6 * float(approach.z.min()) + 0.6, 0.0]
+        found = least_squares(left, start)
+        return float(np.exp(found.x[0])), 1e-10 * float(np.sqrt(2.0 * found.cost / len(force)))
+
+    with_tilt, level = modulus(approach.force), modulus(approach.force - np.polyval(line, approach.z))
+    assert with_tilt[0] == pytest.approx(3581, rel=0.01)  # nanite's
+    assert with_tilt[1] > 7.0 * level[1]
+    ours = nt.fit.fit_curve(curve, "hertz", radius=1e-6, poisson_ratio=0.5)
+    assert level[0] == pytest.approx(ours.values["youngs_modulus"], rel=0.02)
+    assert level[1] == pytest.approx(ours.report.noise, rel=0.1)

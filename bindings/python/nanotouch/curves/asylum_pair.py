@@ -2,8 +2,8 @@
 """Asylum force curves in two files, one wave each: ``...Defl.ibw`` and ``...ZSnsr.ibw`` (or ``...Raw.ibw``) beside it.
 
 So a map is stored, ``Line0000Point0000Defl.ibw``. Both waves are in metres; the sensor's voltage grows towards the
-sample, so z is its negative. The note says with ``Indexes`` where the movements end. It states no spring constant:
-without one that is given the curve has deflections alone.
+sample, so z is its negative. The note says with ``Indexes`` where the movements end. Where it states no spring constant
+and none is given the curve has deflections alone.
 """
 
 from __future__ import annotations
@@ -56,8 +56,11 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
         raise ReadError(f"{file}: {deflection.size} deflections, but {height.size} heights in {height_file.name}")
     known = np.isfinite(deflection) & np.isfinite(height)
     meta: dict[str, Any] = {"format": "Asylum Research (pair of binary waves)", "path": file, "enum": 0}
-    if calibration.spring_constant is not None:
-        meta["spring constant"] = calibration.spring_constant
+    stated = {
+        "spring constant": _stated(note, "SpringConstant") or calibration.spring_constant,
+        "sensitivity": _stated(note, "InvOLS"),
+    }
+    meta |= {key: value for key, value in stated.items() if value is not None}
     place = _PLACE.search(file.name)
     if place:
         meta |= {"grid index y": int(place[1]), "grid index x": int(place[2])}
@@ -81,15 +84,24 @@ def _half(file: Path) -> tuple[Path, Path, str] | None:
     """Files of deflection and height, and the column z comes from."""
     stem = file.stem
     endings = [_DEFLECTION, *(name for name, _ in _HEIGHTS)]
-    ending = next((e for e in endings if stem.endswith(e)), None)
+    ending = next((e for e in endings if stem.casefold().endswith(e.casefold())), None)
     if ending is None:
         return None
-    common = stem.removesuffix(ending)
-    deflection = file.with_name(f"{common}{_DEFLECTION}{file.suffix}")
+    common = stem[: -len(ending)]
+    deflection = _beside(file, common + _DEFLECTION)
     for name, channel in _HEIGHTS:
-        height = file.with_name(f"{common}{name}{file.suffix}")
-        if height.exists() and deflection.exists():
-            return deflection, file if ending == name else height, channel
+        height = _beside(file, common + name)
+        if height and deflection:
+            return deflection, height, channel
+    return None
+
+
+def _beside(file: Path, stem: str) -> Path | None:
+    """The file of this stem, in whatever case."""
+    for suffix in (file.suffix, ".ibw", ".IBW"):
+        for name in (stem, stem.lower(), stem.upper()):
+            if file.with_name(name + suffix).exists():
+                return file.with_name(name + suffix)
     return None
 
 
@@ -102,6 +114,16 @@ def _wave(file: Path) -> tuple[Floats, str]:
     if values.ndim != 1 or not MIN_POINTS <= values.size <= MAX_POINTS:
         raise ReadError(f"{file}: a wave of shape {values.shape}, expected one of at least {MIN_POINTS} points")
     return values, bytes(wave["note"]).decode("latin-1")
+
+
+def _stated(note: str, key: str) -> float | None:
+    """A positive number of the note."""
+    match = re.search(rf"(?m)^{key}:\s*([-+0-9.eE]+)\s*$", note.replace("\r", "\n"))
+    try:
+        value = float(match[1]) if match else 0.0
+    except ValueError:
+        return None
+    return value if 0.0 < value < np.inf else None
 
 
 def _parts(note: str, z: Floats, known: np.ndarray[Any, np.dtype[np.bool_]]) -> list[slice]:

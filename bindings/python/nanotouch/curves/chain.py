@@ -29,6 +29,7 @@ _SMALL = 1e-5  # relative change for a derivative
 _SHORTEST, _LONGEST = 1e-11, 1e-6  # m, of persistence and Kuhn length
 _MISFIT = 3.0  # residual over noise
 _DETERMINED = 0.5  # sigma over value
+_STIFF = 0.9  # contact slope over spring constant from where tip and sample part at a kink
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,8 @@ def chains(
     Returns
     -------
     tuple of Chain
-        One for each of ``report.ruptures``. The chain is taken to begin where the undeformed bodies touch.
+        One for each of ``report.ruptures``. The chain is taken to begin where the undeformed bodies touch: on a stiff
+        sample where the lines of contact and free lever meet, else the contact point of the report.
     """
     laws = {"worm-like": _worm_like_force, "freely-jointed": _freely_jointed_force}
     if model not in laws:
@@ -116,12 +118,26 @@ def chains(
         raise InvalidValue(f"{curve.name}: no spring constant; give it to curves.read, or --spring-constant")
     if retract is None:
         return ()
-    found, after = [], report.contact_point
+    contact = _contact(report, retract, stiffness)
+    found, after = [], contact[0]
     for rupture in report.ruptures:
-        pull = _Pull.of(retract, after, rupture, report, BOLTZMANN * temperature, stiffness)
+        pull = _Pull.of(retract, after, rupture, contact, BOLTZMANN * temperature, stiffness)
         found.append(_chain(rupture, pull, laws[model], segment_length))
         after = rupture.z
     return tuple(found)
+
+
+def _contact(report: CurveReport, retract: Branch, stiffness: float) -> tuple[float, float]:
+    """z where the chain begins [m], and its standard uncertainty.
+
+    On a stiff sample the methods that look for the first deviation from the baseline lie some 1 nm inside the contact,
+    which is where their noise ends: the kink, where two lines meet, has no such bias.
+    """
+    methods = report.contact_points
+    kink, foot = methods.get("two_lines", np.nan), methods.get("hertz", np.nan)
+    if not (retract.contact_slope[0] > _STIFF * stiffness and np.isfinite([kink, foot]).all()):
+        return report.contact_point, report.sigma["contact_point"]
+    return kink, float(np.hypot(kink - foot, retract.noise / retract.contact_slope[0]))
 
 
 Law = Callable[["_Pull", float, float], Floats]
@@ -141,17 +157,23 @@ class _Pull:
 
     @classmethod
     def of(
-        cls, retract: Branch, after: float, rupture: Rupture, report: CurveReport, energy: float, stiffness: float
+        cls,
+        retract: Branch,
+        after: float,
+        rupture: Rupture,
+        contact: tuple[float, float],
+        energy: float,
+        stiffness: float,
     ) -> _Pull:
         settled = after + 3.0 * float(np.median(np.diff(retract.z)))  # right after a tear the lever still swings
-        inside = (retract.z > max(settled, report.contact_point)) & (retract.z <= rupture.z)
+        inside = (retract.z > max(settled, contact[0])) & (retract.z <= rupture.z)
         free = retract.baseline.noise
         points = int(np.count_nonzero(inside))
         return cls(
-            height=retract.z[inside] - report.contact_point,
+            height=retract.z[inside] - contact[0],
             pull=-retract.force[inside],
             noise=max(retract.noise, correlated_noise(retract.noise, free, points)),
-            contact_sigma=report.sigma["contact_point"],
+            contact_sigma=contact[1],
             level_sigma=retract.baseline.sigma(rupture.z),
             energy=energy,
             stiffness=stiffness,

@@ -64,6 +64,8 @@ def _table(file: Path, body: str) -> tuple[list[str], Floats]:
     lines = body.strip("\r\n").splitlines()
     names = [name.strip() for name in lines[0].split("\t")] if lines else []
     rows = [line.split("\t") for line in lines[1:] if line.strip()]
+    if rows and len(rows[-1]) < len(names):
+        rows.pop()  # cut off
     if not MIN_POINTS <= len(rows) <= MAX_POINTS or any(len(row) != len(names) for row in rows):
         raise ReadError(f"{file}: {len(rows)} rows, or rows of another length than its {len(names)} columns")
     return names, np.array(rows, np.float64).T

@@ -129,6 +129,7 @@ def _is_capture(found: list[Section]) -> bool:
 def _points(found: list[Section], image: Section) -> tuple[int, int]:
     """Of approach and retraction; in a capture both are half a period, whatever is said of the approach."""
     points = image.counts("Samps/line")
+    points = points * 2 if len(points) == 1 else points
     if len(points) != 2 or min(points) == 0:
         raise ReadError(f"{image.file}: 'Samps/line' is {image.text('Samps/line')!r}, expected both directions' points")
     far, near = points

@@ -15,9 +15,9 @@ from pathlib import Path
 from ..errors import ReadError
 
 _HEADER_LIMIT = 1 << 20  # byte; those seen have 80 KiB
-_UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
+_UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "µm/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
-_SCALED = re.compile(rf"V \[Sens\. ([^\]]+)\] \({_NUMBER} (m?V)/LSB\)\s+{_NUMBER} (m?V)")
+_SCALED = re.compile(rf"V\s*\[Sens\. ([^\]]+)\]\s*\({_NUMBER}\s*(m?V)/LSB\)\s*{_NUMBER}\s*(m?V)")
 _SENSITIVITY = re.compile(rf"V {_NUMBER}\s*(\S*)")
 
 

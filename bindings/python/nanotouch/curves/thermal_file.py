@@ -66,15 +66,17 @@ def _read(file: Path) -> ThermalSpectrum:
     with file.open("rb") as stream:
         if not stream.read(len(_FIRST)).decode("latin-1") == _FIRST:
             raise ReadError(f"{file}: no thermal spectrum of JPK's (.tnd)")
-    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = _decoded(file.read_bytes()).splitlines()
     pairs = [line[1:].partition(":") for line in lines if line.startswith("#")]
     facts = {key.strip(): value.strip() for key, colon, value in pairs if colon}
-    names, units = (re.findall(r"'([^']*)'", facts.get(key, "")) for key in ("Channels", "Units"))
+    names, units = (re.findall(r"'([^']*)'", facts.get(key, "").replace("^2", "²")) for key in ("Channels", "Units"))
     if names[:2] != ["Frequency", "Vertical Deflection"] or units[:2] != ["Hz", "V²/Hz"]:
         raise ReadError(
             f"{file}: columns {names} in {units}, expected frequency and vertical deflection in Hz and V²/Hz"
         )
     rows = [line.split() for line in lines if line.strip() and not line.startswith("#")]
+    if rows and len(rows[-1]) < len(names):
+        rows.pop()  # cut off
     if not 16 <= len(rows) <= _MAX_POINTS or any(len(row) != len(names) for row in rows):
         raise ReadError(f"{file}: {len(rows)} rows, or rows of another length than its {len(names)} columns")
     frequency, volts = np.array([row[:2] for row in rows], np.float64).T
@@ -90,6 +92,14 @@ def _read(file: Path) -> ThermalSpectrum:
         _quantity(facts.get("spring constant"), "N/m"),
         {k: v for k, v in facts.items() if k not in ("Channels", "Units", "sensitivity", "spring constant")},
     )
+
+
+def _decoded(content: bytes) -> str:
+    """JPK writes UTF-8, what went through an old editor is Latin-1."""
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
 
 
 def _quantity(text: str | None, unit: str) -> float | None:

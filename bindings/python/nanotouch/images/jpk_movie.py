@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -99,36 +99,48 @@ def _opened(file: Path) -> Iterator[list[_Movie]]:
         ]
         if not found:
             raise ReadError(f"{file}: holds no channel")
-        several = {movie.name for movie in found if sum(other.name == movie.name for other in found) > 1}
-        if several:
-            raise ReadError(f"{file}: holds several channels of the name {sorted(several)[0]!r}, which is not read")
-        yield found
+        yield [replace(movie, name=_numbered(found[:n], movie.name)) for n, movie in enumerate(found)]
+
+
+def _numbered(before: list[_Movie], name: str) -> str:
+    """The name, with its number where others bear it: ``"Height trace#2"``."""
+    same = sum(movie.name == name for movie in before)
+    return f"{name}#{same + 1}" if same else name
 
 
 def _movies(file: Path, measurement: Any, channel: Any) -> Iterator[_Movie]:
+    if "position-pattern.grid.ilength" not in measurement.attrs:
+        return  # no grid: no picture
     nx, ny = (int(_number(file, measurement, f"position-pattern.grid.{key}")) for key in ("ilength", "jlength"))
     lx, ly = (_number(file, measurement, f"position-pattern.grid.{key}") for key in ("ulength", "vlength"))
     for key, node in channel.items():
         if key == "thumbnail" or getattr(node, "ndim", 0) != 2 or node.shape[0] != nx * ny:
             continue
         scale = (
-            _number(file, channel, "net-encoder.scaling.multiplier"),
-            _number(file, channel, "net-encoder.scaling.offset"),
+            _number(file, channel, "net-encoder.scaling.multiplier", 1.0),
+            _number(file, channel, "net-encoder.scaling.offset", 0.0),
         )
-        direction = "retrace" if _text(channel, "retrace") == "true" else "trace"
+        direction = "retrace" if _text(channel, "retrace").casefold() in ("true", "1") else "trace"
         name = f"{_text(channel, 'channel.fancy-name') or _text(channel, 'channel.name')} {direction}"
         kind = "height" if "height" in _text(channel, "channel.name").casefold() else key.casefold()
         unit = si_unit(_text(channel, "net-encoder.scaling.unit.unit"))
         yield _Movie(name, kind, node, (ny, nx), (ly, lx), scale, unit)
 
 
-def _number(file: Path, node: Any, key: str) -> float:
+def _number(file: Path, node: Any, key: str, otherwise: float | None = None) -> float:
+    if key not in node.attrs and otherwise is not None:
+        return otherwise
     try:
-        return float(node.attrs[key])
-    except (KeyError, TypeError, ValueError):
+        return float(_attribute(node, key))
+    except (KeyError, IndexError, TypeError, ValueError):
         raise ReadError(f"{file}: {node.name} states no number {key!r}") from None
 
 
 def _text(node: Any, key: str) -> str:
-    value = node.attrs.get(key, b"")
+    value = _attribute(node, key) if key in node.attrs else b""
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def _attribute(node: Any, key: str) -> Any:
+    """Of an array of one, what it holds."""
+    return np.ravel(node.attrs[key])[0]

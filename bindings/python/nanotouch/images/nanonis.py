@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Nanonis scans, ``.sxm``: a text header of ``:KEY:`` lines and their values, then big-endian floats.
+"""Nanonis scans, ``.sxm``: a text header of ``:KEY:`` lines and their values, then floats, mostly big-endian.
 
 The table ``DATA_INFO`` names channel, unit and direction. After ``:SCANIT_END:`` and the bytes 1A 04 each channel
 follows with its forward picture. Where the direction is ``both`` its backward one follows, whose lines are stored in
 the order of time, from right to left. ``SCAN_DIR`` says whether the first line is the lowest (``up``) or the top one
-(``down``). Lines that were not scanned are NaN.
+(``down``). Lines that were not scanned are NaN. A scan in several passes names the pass: ``[P1] Z``.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,12 +17,14 @@ import numpy as np
 
 from ..errors import ReadError
 from .channel import Channel, Plane, chosen, si_unit, with_default
-from .checks import check_shape
+from .checks import LENGTHS, check_shape
 
 NAME = "nanotouch/nanonis"
 SIGNATURE = b":NANONIS_VERSION:"
 _END, _MARK = b":SCANIT_END:", b"\x1a\x04"
 _HEADER_LIMIT = 1 << 22  # byte; those seen have 20 KiB
+_ORDERS = {"MSBFIRST": ">f4", "LSBFIRST": "<f4"}
+_PASS = re.compile(r"\[[^\]]*\]")
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,7 @@ class _Scan:
     up: bool  # the first line stored is the lowest
     pictures: tuple[tuple[str, str, bool], ...]  # name, unit, backward
     start: int  # of the data [byte]
+    order: str  # of the bytes
 
 
 def recognises(file: Path, head: bytes) -> bool:
@@ -53,13 +57,15 @@ def read(file: Path, channel: str | None) -> Plane:
     number = chosen(listed, channel, file)
     _, unit, backward = scan.pictures[number]
     count = scan.shape[0] * scan.shape[1]
-    needed = scan.start + 4 * count * len(scan.pictures)
-    if file.stat().st_size < needed:
-        raise ReadError(f"{file}: {file.stat().st_size} bytes long, but its header states {needed}: it is cut off")
-    raw = np.fromfile(file, ">f4", count, offset=scan.start + 4 * count * number)
+    held, needed = file.stat().st_size, scan.start + 4 * count * len(scan.pictures)
+    cut = f"{held} bytes long, but its header states {needed}: it is cut off"
+    if held < scan.start + 4 * count * (number + 1):
+        raise ReadError(f"{file}: {cut}")
+    raw = np.fromfile(file, scan.order, count, offset=scan.start + 4 * count * number)
     values = raw.astype(np.float64).reshape(scan.shape)[:: 1 if scan.up else -1, :: -1 if backward else 1]
     ny, nx = scan.shape
-    return Plane(listed[number].name, np.array(values), unit, (scan.size[0] / ny, scan.size[1] / nx), NAME)
+    pixel_size, notes = (scan.size[0] / ny, scan.size[1] / nx), (f"{cut} after this picture",) if held < needed else ()
+    return Plane(listed[number].name, np.array(values), unit, pixel_size, NAME, notes=notes)
 
 
 def _listed(scan: _Scan) -> list[Channel]:
@@ -70,7 +76,7 @@ def _listed(scan: _Scan) -> list[Channel]:
                 scan.shape,
                 scan.size,
                 unit,
-                "height" if name.casefold() == "z" and unit == "m" else name.casefold(),
+                "height" if _PASS.sub("", name).strip().casefold() == "z" and unit in LENGTHS else name.casefold(),
                 False,
             )
             for name, unit, backward in scan.pictures
@@ -93,18 +99,18 @@ def _header(file: Path) -> _Scan:
         elif line.strip():
             lines.append(line)
     scan_type = _words(file, facts, "SCANIT_TYPE")
-    if scan_type != ["FLOAT", "MSBFIRST"]:
-        raise ReadError(f"{file}: numbers of the type {' '.join(scan_type)}, expected FLOAT MSBFIRST")
+    if len(scan_type) != 2 or scan_type[0] != "FLOAT" or scan_type[1] not in _ORDERS:
+        raise ReadError(f"{file}: numbers of the type {' '.join(scan_type)}, expected FLOAT MSBFIRST or LSBFIRST")
     try:
         nx, ny = (int(word) for word in _words(file, facts, "SCAN_PIXELS"))
         width, height = (float(word) for word in _words(file, facts, "SCAN_RANGE"))
     except ValueError as error:
         raise ReadError(f"{file}: pixels or range of its header are no two numbers: {error}") from None
-    direction = _words(file, facts, "SCAN_DIR")
+    direction = [word.casefold() for word in _words(file, facts, "SCAN_DIR")]
     if direction not in (["up"], ["down"]):
         raise ReadError(f"{file}: scanned {' '.join(direction)!r}, expected up or down")
     start = len(text) + len(end) + at + len(_MARK)
-    return _Scan((ny, nx), (height, width), direction == ["up"], _pictures(file, facts), start)
+    return _Scan((ny, nx), (height, width), direction == ["up"], _pictures(file, facts), start, _ORDERS[scan_type[1]])
 
 
 def _words(file: Path, facts: dict[str, list[str]], key: str) -> list[str]:
@@ -117,12 +123,13 @@ def _pictures(file: Path, facts: dict[str, list[str]]) -> tuple[tuple[str, str, 
     """Rows of the table: number, name, unit, direction, ..."""
     found: list[tuple[str, str, bool]] = []
     for row in facts.get("DATA_INFO", [])[1:]:
-        cells = row.strip().split("\t")
-        if len(cells) < 4 or cells[3] not in ("both", "forward", "backward"):
+        cells = [cell.strip() for cell in row.strip().split("\t")]
+        if len(cells) < 4 or cells[3].casefold() not in ("both", "forward", "backward"):
             raise ReadError(
                 f"{file}: a channel of its table is {row.strip()!r}, expected number, name, unit, direction"
             )
-        directions = (False, True) if cells[3] == "both" else (cells[3] == "backward",)
+        way = cells[3].casefold()
+        directions = (False, True) if way == "both" else (way == "backward",)
         found += [(cells[1].replace("_", " "), si_unit(cells[2]), backward) for backward in directions]
     if not found:
         raise ReadError(f"{file}: its header lists no channel")
