@@ -36,34 +36,25 @@ namespace
 constexpr int max_iterations = 100;
 constexpr double linear = 1e-9; // of s: over a step that small the branch is straight to the last bit
 constexpr double tight = 1e-12; // of the part of the branch between its folds
-constexpr double far = 3.0;     // steps, beyond which a cubic through two points tells nothing
+constexpr long spacing = 4;     // points, of those that are searched one from the other
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
 
-double Track::predict(double position, double otherwise) const
+Cubic::Cubic(const Place &before, const Place &place, double otherwise) : s_(otherwise)
 {
-    const double travel = position - position_;
-    const bool near = std::fabs(travel) <= far * std::fabs(step_);
-    const double curved = near ? travel * (bend_ + travel * twist_) : 0.0;
-    return known_ ? s_ + travel * (slope_ + curved) : otherwise;
-}
-
-// The cubic that takes s and slope at both points (Hermite).
-void Track::add(double position, double s, double slope)
-{
-    const double step = position - position_;
-    step_ = known_ ? step : 0.0;
-    bend_ = twist_ = 0.0;
-    if (step_ != 0.0) {
-        const double bent = (s_ - s + slope * step) / (step * step), turned = (slope - slope_) / step;
-        bend_ = 3.0 * bent - turned;
-        twist_ = (2.0 * bent - turned) / step;
-    }
-    known_ = true;
-    position_ = position;
-    s_ = s;
-    slope_ = slope;
+    if (!place.known)
+        return;
+    position_ = place.position;
+    s_ = place.s;
+    slope_ = place.slope;
+    const double step = place.position - before.position;
+    if (!before.known || step == 0.0)
+        return;
+    const double inverse = 1.0 / step, turned = (place.slope - before.slope) * inverse; // Hermite's
+    const double bent = ((before.s - place.s) * inverse + place.slope) * inverse;
+    bend_ = 3.0 * bent - turned;
+    twist_ = (2.0 * bent - turned) * inverse;
 }
 
 // F1 + steepest dX/ds: negative where the curve over X is steeper than that.
@@ -165,7 +156,7 @@ nt_status ContactModel::search(double base, double start, double *s, nt_fit_stat
     return NT_E_NO_CONVERGENCE;
 }
 
-nt_status ContactModel::at(double position, Track *track, Point *point) const
+nt_status ContactModel::at(double position, const Cubic &near, Place *place, Point *point) const
 {
     const double base = position - value_[NT_FIT_CONTACT_POINT];
     if (std::isnan(base))
@@ -186,22 +177,35 @@ nt_status ContactModel::at(double position, Track *track, Point *point) const
     }
     double s;
     nt_fit_state state;
-    const nt_status status = search(base, track->predict(position, branch_.load_fold + branch_.unit), &s, &state);
+    const nt_status status = search(base, near.at(position), &s, &state);
     if (status != NT_OK)
         return status;
-    track->add(position, s, 1.0 / (state.indentation1 + compliance_ * state.F1));
+    if (place)
+        *place = {position, s, 1.0 / (state.indentation1 + compliance_ * state.F1), true};
     differentiate(state, state.F1 / state.indentation1, point);
     add_background(position, point);
     return NT_OK;
 }
 
+// Every so many points one after the other; those between from the cubic through them, each by itself, which a
+// processor computes side by side.
 nt_status ContactModel::points_at(const nt_fit_data &data, std::vector<Point> *points) const
 {
     points->resize(static_cast<std::size_t>(data.count));
-    Track track;
-    nt_status status = NT_OK;
-    for (long i = 0; i < data.count && status == NT_OK; i++)
-        status = at(data.position[i * data.position_stride], &track, &(*points)[static_cast<std::size_t>(i)]);
+    const auto position = [&](long i) { return data.position[i * data.position_stride]; };
+    const auto point = [&](long i) { return &(*points)[static_cast<std::size_t>(i)]; };
+    Place before, last;
+    nt_status status = at(position(0), Cubic(before, last, anywhere()), &last, point(0));
+    for (long first = 0; first + 1 < data.count && status == NT_OK; first += spacing) {
+        const long end = std::min(first + spacing, data.count - 1);
+        Place next;
+        status = at(position(end), Cubic(before, last, anywhere()), &next, point(end));
+        const Cubic between = next.known ? Cubic(last, next, anywhere()) : Cubic(before, last, anywhere());
+        for (long i = first + 1; i < end && status == NT_OK; i++)
+            status = at(position(i), between, nullptr, point(i));
+        before = last;
+        last = next;
+    }
     return status;
 }
 
@@ -236,8 +240,7 @@ void ContactModel::describe(double deepest, nt_fit_result *result) const
     result->transition_parameter = branch_.lambda;
     result->contact_radius = result->contact_stiffness = not_a_number;
     Point point;
-    Track track;
-    if (at(deepest, &track, &point) != NT_OK)
+    if (at(deepest, Cubic({}, {}, anywhere()), nullptr, &point) != NT_OK)
         return;
     const nt_law_value there = row_.contact(&branch_, point.indentation);
     result->contact_radius = there.a;

@@ -8,17 +8,25 @@
 namespace nanotouch
 {
 
-// Where the two points before lay on the branch: the next, mostly a neighbour, starts from their cubic.
-class Track
+// Where a point lies on the branch.
+struct Place {
+    double position = 0.0, s = 0.0, slope = 0.0; // X, s, ds/dX
+    bool known = false;
+};
+
+// The cubic through two places and their slopes, from which points between them, and not far beyond, are searched.
+class Cubic
 {
   public:
-    double predict(double position, double otherwise) const;
-    void add(double position, double s, double slope);
+    Cubic(const Place &before, const Place &place, double otherwise);
+    double at(double position) const
+    {
+        const double x = position - position_;
+        return s_ + x * (slope_ + x * (bend_ + x * twist_));
+    }
 
   private:
-    bool known_ = false;
-    double position_ = 0.0, s_ = 0.0, slope_ = 0.0; // s, ds/dX at X
-    double step_ = 0.0, bend_ = 0.0, twist_ = 0.0;  // from the point before it [m]; of the cubic through both
+    double position_ = 0.0, s_, slope_ = 0.0, bend_ = 0.0, twist_ = 0.0;
 };
 
 class ContactModel : public Model
@@ -34,7 +42,11 @@ class ContactModel : public Model
     void describe(double deepest, nt_fit_result *result) const override;
 
   private:
-    nt_status at(double position, Track *track, Point *point) const;
+    nt_status at(double position, const Cubic &near, Place *place, Point *point) const;
+    double anywhere() const
+    {
+        return branch_.load_fold + branch_.unit;
+    }
     nt_status search(double base, double start, double *s, nt_fit_state *state) const;
     double steepness_at(double s, double steepest) const;
     double where_steep(double steepest) const;

@@ -56,6 +56,21 @@ Span force_span(const nt_fit_data &data)
     return span(data.force, data.count, data.force_stride);
 }
 
+Means::Means(const nt_fit_data &data, long size)
+{
+    const long count = data.count / size;
+    for (long mean = 0; mean < count; mean++) {
+        const long first = mean * data.count / count, end = (mean + 1) * data.count / count;
+        double position = 0.0, force = 0.0;
+        for (long i = first; i < end; i++) {
+            position += data.position[i * data.position_stride];
+            force += data.force[i * data.force_stride];
+        }
+        position_.push_back(position / double(end - first));
+        force_.push_back(force / double(end - first));
+    }
+}
+
 nt_status check_data(const nt_fit_options &options, const nt_fit_data *data, nt_problem *problem)
 {
     nt_problem ignored;

@@ -24,4 +24,18 @@ struct Span {
 Span position_span(const nt_fit_data &data);
 Span force_span(const nt_fit_data &data);
 
+// Means of so many neighbours each, or one more.
+class Means
+{
+  public:
+    Means(const nt_fit_data &data, long size);
+    nt_fit_data data() const
+    {
+        return {position_.data(), force_.data(), static_cast<long>(position_.size()), 1, 1};
+    }
+
+  private:
+    std::vector<double> position_, force_;
+};
+
 } // namespace nanotouch

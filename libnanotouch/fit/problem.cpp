@@ -66,6 +66,8 @@ Residuals::Residuals(const nt_fit_options &options, const nt_fit_data &data, con
         if (start.sigma > 0.0)
             known_.push_back(i);
     }
+    for (int i = 0; i < coordinates_.size(); i++)
+        factor_.push_back(coordinates_.gradient_scale(i) / unit_);
     count_ = data.count + has_tear() + static_cast<long>(known_.size());
     residual_.resize(static_cast<std::size_t>(count_));
     gradient_.resize(static_cast<std::size_t>(count_ * coordinates_.size()));
@@ -120,18 +122,15 @@ bool Residuals::evaluate()
         met_bound_ = true;
         return false;
     }
-    const Parameters value = values();
-    Tear tear{};
-    if (model_->prepare(value) != NT_OK || model_->points_at(data_, &points_) != NT_OK ||
-        (has_tear() && model_->tear(&tear) != NT_OK))
+    if (model_->prepare(values()) != NT_OK || model_->points_at(data_, &points_) != NT_OK)
         return false;
     for (long i = 0; i < data_.count; i++) {
         const Point &point = points_[static_cast<std::size_t>(i)];
-        store(i, point.force - data_.force[i * data_.force_stride], point.gradient, unit_);
+        store(i, point.force - data_.force[i * data_.force_stride], point.gradient);
     }
     long i = data_.count;
-    if (has_tear())
-        store(i++, tear.position - options_.tear_position, tear.gradient, options_.tear_sigma);
+    if (has_tear() && !store_tear(i++))
+        return false;
     for (const int known : known_)
         store_known(i++, known);
     const auto finite = [](double number) { return std::isfinite(number); };
@@ -139,12 +138,36 @@ bool Residuals::evaluate()
            std::all_of(gradient_.begin(), gradient_.end(), finite);
 }
 
-void Residuals::store(long i, double residual, const Parameters &gradient, double unit)
+void Residuals::store(long i, double residual, const Parameters &gradient)
 {
-    residual_[static_cast<std::size_t>(i)] = residual / unit;
+    const int size = coordinates_.size();
+    residual_[static_cast<std::size_t>(i)] = residual / unit_;
+    double *row = &gradient_[static_cast<std::size_t>(i * size)];
+    for (int j = 0; j < size; j++)
+        row[j] = gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * factor_[static_cast<std::size_t>(j)];
+}
+
+bool Residuals::store_tear(long i)
+{
+    Tear tear;
+    if (model_->tear(&tear) != NT_OK)
+        return false;
+    residual_[static_cast<std::size_t>(i)] = (tear.position - options_.tear_position) / options_.tear_sigma;
     double *row = &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
     for (int j = 0; j < coordinates_.size(); j++)
-        row[j] = gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * coordinates_.gradient_scale(j) / unit;
+        row[j] = tear.gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * coordinates_.gradient_scale(j) /
+                 options_.tear_sigma;
+    return true;
+}
+
+void Residuals::weigh(double unit)
+{
+    const double change = unit_ / unit;
+    unit_ = unit;
+    for (double &factor : factor_)
+        factor *= change;
+    std::for_each_n(residual_.begin(), data_.count, [&](double &residual) { residual *= change; });
+    std::for_each_n(gradient_.begin(), data_.count * coordinates_.size(), [&](double &slope) { slope *= change; });
 }
 
 // The datum "initial +- sigma" of a free parameter; of its logarithm where that is fitted.

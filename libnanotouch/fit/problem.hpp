@@ -53,6 +53,7 @@ class Residuals : public ceres::EvaluationCallback
     {
         return x_.data();
     }
+    void weigh(double unit);       // as if it had been the unit of the data's residuals from the beginning
     bool move_to(const double *x); // false where they are not valid there
     bool valid() const
     {
@@ -112,14 +113,16 @@ class Residuals : public ceres::EvaluationCallback
   private:
     bool evaluate();
     bool is_outside() const;
-    void store(long i, double residual, const Parameters &gradient, double unit);
+    void store(long i, double residual, const Parameters &gradient);
+    bool store_tear(long i);
     void store_known(long i, int coordinate);
 
     const nt_fit_options &options_;
     const nt_fit_data &data_;
     const Coordinates &coordinates_;
     const std::unique_ptr<Model> model_;
-    const double unit_;
+    double unit_;
+    std::vector<double> factor_; // of each coordinate's gradient, of the points
     long count_ = 0;
     std::vector<double> x_, seen_; // seen: where the residuals are those of
     std::vector<double> residual_, gradient_, lowest_, highest_;

@@ -60,19 +60,20 @@ constexpr double transition_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0}; // Maugis
 constexpr double held_parameters[] = {0.05, 0.2, 0.6, 1.5, 4.0, 12.0, 40.0};
 constexpr double as_good = 9.0; // difference in chi^2, three standard deviations
 
-// A fit of some of the points costs little and leaves a step or two for all of them.
-constexpr long some = 50;
+// A fit of means of neighbours costs little and leaves a step or two for all points.
+constexpr long some = 50; // means at least
 
 nt_status start_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Parameters *start)
 {
     const nt_status status = guess(options, data, lambda, start);
-    const long step = data.count / some;
-    if (status == NT_OK && step > 1) {
-        const nt_fit_data part{data.position, data.force, (data.count - 1) / step + 1, data.position_stride * step,
-                               data.force_stride * step};
-        (void)Fit(options, part, *start).approach(start);
-    }
-    return status;
+    const long size = data.count / some;
+    if (status != NT_OK || size < 2)
+        return status;
+    const Means means(data, size);
+    nt_fit_options weighed = options;
+    weighed.force_noise /= std::sqrt(double(size));
+    (void)Fit(weighed, means.data(), *start).approach(start);
+    return NT_OK;
 }
 
 nt_status run_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Found *found)
@@ -210,11 +211,11 @@ void write_points(const nt_fit_options &options, const double *value, const std:
 {
     Parameters per;
     for (int p = 0; p < NT_FIT_PARAMETERS; p++)
-        per[static_cast<std::size_t>(p)] = is_logarithmic(options, p) ? value[p] : 1.0;
+        per[static_cast<std::size_t>(p)] = is_logarithmic(options, p) ? 1.0 / value[p] : 1.0;
     for (std::size_t i = 0; i < points.size(); i++) {
         written[i] = {points[i].force, points[i].indentation, {}, points[i].held};
         for (std::size_t p = 0; p < NT_FIT_PARAMETERS; p++)
-            written[i].gradient[p] = points[i].gradient[p] / per[p];
+            written[i].gradient[p] = points[i].gradient[p] == 0.0 ? 0.0 : points[i].gradient[p] * per[p];
     }
 }
 
@@ -252,28 +253,15 @@ bool has_one_start(const nt_fit_options &options)
     return !has_several_minima(options) && !may_slide_off(options);
 }
 
-nt_status run_roughly(const nt_fit_options &options, const nt_fit_data &data, Parameters *value,
-                      std::vector<double> *rest)
+nt_status start_near(const nt_fit_options &options, const nt_fit_data &data, Parameters *value)
 {
-    nt_status status = start_from(options, data, std::nan(""), value);
-    if (status != NT_OK)
-        return status;
-    Fit fit(options, data, *value);
-    status = fit.approach(value);
-    *rest = fit.rest();
-    return status;
+    return start_from(options, data, std::nan(""), value);
 }
 
-nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, const Parameters &value,
-                   nt_fit_result *result, std::vector<nt_fit_point> *points)
+void write(const nt_fit_options &options, const Found &found, nt_fit_result *result, std::vector<nt_fit_point> *points)
 {
-    Found found;
-    const nt_status status = Fit(options, data, value).run(&found, false);
-    if (status == NT_OK) {
-        write_result(options, found, result);
-        write_points(options, found, points);
-    }
-    return status;
+    write_result(options, found, result);
+    write_points(options, found, points);
 }
 
 nt_status check(const nt_fit_options &options, const nt_fit_data *data, nt_problem *problem)

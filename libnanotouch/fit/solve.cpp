@@ -128,8 +128,7 @@ bool Fit::descend_within_bounds(double tolerance)
 
 nt_status Fit::descend(double tolerance)
 {
-    residuals_.PrepareForEvaluation(true, true);
-    if (!residuals_.valid())
+    if (begin() != NT_OK)
         return NT_E_NO_CONVERGENCE;
     const bool done = (!loss_ && descend_freely(tolerance)) || descend_within_bounds(tolerance);
     return done ? NT_OK : NT_E_NO_CONVERGENCE;
@@ -168,12 +167,23 @@ void Fit::fill(Found *found) const
 
 nt_status Fit::finish(Found *found)
 {
-    residuals_.PrepareForEvaluation(true, true);
-    if (!residuals_.valid())
+    if (begin() != NT_OK)
         return NT_E_NO_CONVERGENCE;
     fill(found);
     found->result.converged = 1;
     return NT_OK;
+}
+
+nt_status Fit::begin()
+{
+    residuals_.PrepareForEvaluation(true, true);
+    return residuals_.valid() ? NT_OK : NT_E_NO_CONVERGENCE;
+}
+
+void Fit::weigh()
+{
+    residuals_.weigh(options_.force_noise);
+    loss_ = loss_of(options_, residuals_.unit());
 }
 
 std::vector<double> Fit::rest() const

@@ -21,7 +21,9 @@ class Fit
     nt_status run(Found *found, bool exact); // to the last digits that differences of fits need, or as sigma needs
     nt_status approach(Parameters *value);   // only the values, for another fit to start from
     nt_status finish(Found *found);          // the start is known to be the solution
-    std::vector<double> rest() const;        // model less data, where it ended [N]
+    nt_status begin();                       // only what is left at the start
+    void weigh();                            // by the noise that the options have now
+    std::vector<double> rest() const;        // model less data, where it stands [N]
 
   private:
     void build(ceres::Problem *problem);
@@ -51,11 +53,9 @@ bool has_one_start(const nt_fit_options &options);
 // nt_fit_run, and the model at every point, which it has computed anyway.
 nt_status run_with_points(const nt_fit_options &options, const nt_fit_data &data, nt_fit_result *result,
                           std::vector<nt_fit_point> *points, nt_problem *problem);
-// Values near the solution, and what they leave over [N], of checked options and data: by that the points are weighed.
-nt_status run_roughly(const nt_fit_options &options, const nt_fit_data &data, Parameters *value,
-                      std::vector<double> *rest);
-// The fit from values near its solution on.
-nt_status run_near(const nt_fit_options &options, const nt_fit_data &data, const Parameters &value,
-                   nt_fit_result *result, std::vector<nt_fit_point> *points);
+// Values near the solution, for checked options and data that have one start.
+nt_status start_near(const nt_fit_options &options, const nt_fit_data &data, Parameters *value);
+// What a fit found, as it is told.
+void write(const nt_fit_options &options, const Found &found, nt_fit_result *result, std::vector<nt_fit_point> *points);
 
 } // namespace nanotouch

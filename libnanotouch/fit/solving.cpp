@@ -25,6 +25,7 @@ constexpr double stiff = 5.0;          // contact stiffness over spring constant
 constexpr double misfitting = 3.0;     // residual over noise
 constexpr double wrong = 0.05;         // residual over the span of the force
 constexpr double as_given = 0.05;      // relative difference of scatter and noise that changes nothing
+constexpr int weighings = 3;           // of the points at most
 constexpr double torn_elsewhere = 2.5; // standard deviations of the place of the tear
 constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
 constexpr int steep_places = 100;      // where the model is asked how close to the tear it is only continued
@@ -38,6 +39,11 @@ bool asks(const nt_fit_options &options, nt_fit_parameter place, const char *nam
 {
     const nt_fit_quantity quantity = nt_fit_quantity_of(&options, place);
     return quantity.name && !std::strcmp(quantity.name, name) && !options.parameter[place].fixed;
+}
+
+bool is_near(double scatter, double noise)
+{
+    return std::fabs(scatter / noise - 1.0) <= as_given;
 }
 
 double force_at(const nt_fit_data &data, long i)
@@ -138,7 +144,7 @@ bool Solving::is_exact() const
 
 bool Solving::is_as_known() const
 {
-    return is_exact() || std::fabs(scatter_ / noise() - 1.0) <= as_given;
+    return is_exact() || is_near(scatter_, noise());
 }
 
 // With the noise from point to point; then once more with the scatter that was found.
@@ -154,22 +160,33 @@ nt_status Solving::fit_with_scatter()
     return fit();
 }
 
-// The same where the first fit need only be good enough for the scatter.
+double Solving::wanted_noise() const
+{
+    return is_as_known() ? noise() : scatter_;
+}
+
+// The same where what is left at the start, which is near, tells the scatter.
 nt_status Solving::fit_by_scatter(double *used)
 {
     Parameters value;
-    std::vector<double> rest;
     nt_status status = check(solution_.options, &data_, problem_);
     if (status == NT_OK)
-        status = run_roughly(solution_.options, data_, &value, &rest);
+        status = start_near(solution_.options, data_, &value);
     if (status != NT_OK)
         return status;
-    look_at(rest);
-    if (!is_as_known())
-        *used = scatter_;
-    status = run_near(solution_.options, data_, value, &solution_.fit, &points_);
+    Fit fit(solution_.options, data_, value);
+    Found found;
+    status = fit.begin();
     if (status == NT_OK)
-        look();
+        look_at(fit.rest());
+    for (int i = 0; status == NT_OK && i < weighings && (i == 0 || !is_near(wanted_noise(), *used)); i++) {
+        *used = wanted_noise();
+        fit.weigh();
+        status = fit.run(&found, false);
+        look_at(fit.rest());
+    }
+    if (status == NT_OK)
+        write(solution_.options, found, &solution_.fit, &points_);
     return status;
 }
 

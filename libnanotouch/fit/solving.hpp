@@ -35,6 +35,7 @@ class Solving
     nt_status fit_any_sensitivity(bool *doubtful);
     bool is_exact() const;
     bool is_as_known() const;
+    double wanted_noise() const;
     double correlated_noise() const;
     double noise() const; // of the free cantilever, as far as the points are worth independent ones [N]
     double rating() const;
