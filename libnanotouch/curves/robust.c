@@ -9,54 +9,70 @@
 
 enum { SAMPLE = 63, MIDDLE = 10, MANY = 256 }; /* MIDDLE: 2.5 standard deviations of the rank of a sample's median */
 
-static void swap(double *a, double *b)
+/* Those below the pivot, or equal to it, come first; returns how many. Without a branch that noise would make a processor
+ * mistake half of the time. */
+static long part(double values[], long count, double pivot, int equal)
 {
-    const double kept = *a;
-    *a = *b;
-    *b = kept;
+    long below = 0;
+    for (long i = 0; i < count; i++) {
+        const double value = values[i];
+        values[i] = values[below];
+        values[below] = value;
+        below += (value < pivot) | (equal & (value == pivot));
+    }
+    return below;
 }
 
 /* Puts the value of rank k at its place; smaller ones before it. */
 static double select(double values[], long count, long k)
 {
     uint64_t state = 0x9e3779b97f4a7c15u;
-    long low = 0, high = count - 1;
-    while (low < high) {
+    while (count > 1) {
         state = state * 6364136223846793005u + 1442695040888963407u;
-        const double pivot = values[low + (long)((state >> 33) % (uint64_t)(high - low + 1))];
-        long i = low, j = high;
-        while (i <= j) {
-            while (values[i] < pivot)
-                i++;
-            while (values[j] > pivot)
-                j--;
-            if (i <= j)
-                swap(&values[i++], &values[j--]);
+        const double pivot = values[(long)((state >> 32) * (uint64_t)count >> 32)];
+        long below = part(values, count, pivot, 0);
+        if (k < below) {
+            count = below;
+            continue;
         }
-        if (k <= j)
-            high = j;
-        else if (k >= i)
-            low = i;
-        else
-            break;
+        if (below == 0) { /* none is smaller: all that are equal at once */
+            below = part(values, count, pivot, 1);
+            if (k < below)
+                return pivot;
+        }
+        values += below;
+        count -= below;
+        k -= below;
     }
-    return values[k];
+    return values[0];
 }
 
 double nt_curve_highest(const double values[], long count)
 {
-    double highest = values[0];
-    for (long i = 1; i < count; i++)
-        highest = values[i] > highest ? values[i] : highest;
-    return highest;
+    double highest[4] = {values[0], values[0], values[0], values[0]};
+    long i = 0;
+    for (; i + 4 <= count; i += 4) /* side by side */
+        for (int j = 0; j < 4; j++)
+            highest[j] = values[i + j] > highest[j] ? values[i + j] : highest[j];
+    for (; i < count; i++)
+        highest[0] = values[i] > highest[0] ? values[i] : highest[0];
+    for (int j = 1; j < 4; j++)
+        highest[0] = highest[j] > highest[0] ? highest[j] : highest[0];
+    return highest[0];
 }
 
 double nt_curve_lowest(const double values[], long count)
 {
-    double lowest = values[0];
-    for (long i = 1; i < count; i++)
-        lowest = values[i] < lowest ? values[i] : lowest;
-    return lowest;
+    double lowest[4] = {values[0], values[0], values[0], values[0]};
+    long i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (int j = 0; j < 4; j++)
+            lowest[j] = values[i + j] < lowest[j] ? values[i + j] : lowest[j];
+    for (; i < count; i++)
+        lowest[0] = values[i] < lowest[0] ? values[i] : lowest[0];
+    for (int j = 1; j < 4; j++)
+        lowest[0] = lowest[j] < lowest[0] ? lowest[j] : lowest[0];
+    return lowest[0];
 }
 
 /* Of many values: those between two of a sample's ranks come first, and the median is looked for among them. */
@@ -65,8 +81,8 @@ static long gather_middle(double values[], long count, long *below)
     double sample[SAMPLE];
     for (long i = 0; i < SAMPLE; i++)
         sample[i] = values[i * (count / SAMPLE)];
-    nt_curve_sort_values(sample, SAMPLE);
-    const double low = sample[SAMPLE / 2 - MIDDLE], high = sample[SAMPLE / 2 + MIDDLE];
+    const double high = select(sample, SAMPLE, SAMPLE / 2 + MIDDLE);
+    const double low = select(sample, SAMPLE / 2 + MIDDLE, SAMPLE / 2 - MIDDLE);
     long inside = 0;
     *below = 0;
     for (long i = 0; i < count; i++) { /* without a branch */
