@@ -31,9 +31,11 @@ static line line_through(const double x[], double x0, const double y[], long cou
 {
     double x_mean = 0.0, y_mean = 0.0, spread = 0.0, product = 0.0;
     for (long i = 0; i < count; i++) {
-        x_mean += (x[i] - x0) / (double)count;
-        y_mean += y[i] / (double)count;
+        x_mean += x[i] - x0;
+        y_mean += y[i];
     }
+    x_mean /= (double)count;
+    y_mean /= (double)count;
     for (long i = 0; i < count; i++) {
         spread += (x[i] - x0 - x_mean) * (x[i] - x0 - x_mean);
         product += (x[i] - x0 - x_mean) * (y[i] - y_mean);
@@ -59,16 +61,16 @@ static double line_down(const outward *branch)
     return found.slope < 0.0 ? branch->z[start] - found.level / found.slope : (double)NAN;
 }
 
-/* Drop of the sum of squares by F = max(0, s (z0 - z)). */
-static double hinge_gain(const outward *branch, long start, long stop, double z0)
+/* Sums over the first points, x = z - z of the first of them. */
+typedef struct hinge_sums {
+    double count, x, xx, force, product;
+} hinge_sums;
+
+/* Drop of the sum of squares by F = max(0, s (x0 - x)) of the points before x0. */
+static double hinge_gain(const hinge_sums *s, double x0)
 {
-    double product = 0.0, squares = 0.0;
-    for (long i = start; i < stop; i++) {
-        const double above = fmax(z0 - branch->z[i], 0.0);
-        product += above * branch->force[i];
-        squares += above * above;
-    }
-    product = fmax(product, 0.0);
+    const double product = fmax(x0 * s->force - s->product, 0.0);
+    const double squares = fmax((x0 * s->count - 2.0 * s->x) * x0 + s->xx, 0.0);
     return product * product / fmax(squares, 1e-300);
 }
 
@@ -77,13 +79,24 @@ static double hinge(const outward *branch)
 {
     const long start = load_start(branch), wanted = start + 2 * (branch->crossing - start) + 8;
     const long stop = wanted < branch->count ? wanted : branch->count;
-    double low = branch->z[start], high = branch->z[stop - 1], best = NAN;
+    const double *z = branch->z, from = z[start];
+    double low = 0.0, high = z[stop - 1] - from, best = NAN;
     for (int round = 0; round < ROUNDS; round++) {
         const double step = (high - low) / (CANDIDATES - 1);
+        hinge_sums s = {0.0, 0.0, 0.0, 0.0, 0.0};
         double most = -1.0;
-        for (int i = 0; i < CANDIDATES; i++) {
-            const double tried = i + 1 < CANDIDATES ? low + step * i : high;
-            const double gain = hinge_gain(branch, start, stop, tried);
+        long i = start;
+        for (int candidate = 0; candidate < CANDIDATES; candidate++) {
+            const double tried = candidate + 1 < CANDIDATES ? low + step * candidate : high;
+            for (; i < stop && z[i] - from < tried; i++) { /* z grows */
+                const double x = z[i] - from;
+                s.count += 1.0;
+                s.x += x;
+                s.xx += x * x;
+                s.force += branch->force[i];
+                s.product += x * branch->force[i];
+            }
+            const double gain = hinge_gain(&s, tried);
             if (gain > most) {
                 most = gain;
                 best = tried;
@@ -92,7 +105,7 @@ static double hinge(const outward *branch)
         low = best - step;
         high = best + step;
     }
-    return best;
+    return from + best;
 }
 
 /* From outside, the first block of points that is steeper than the baseline's blocks are. */

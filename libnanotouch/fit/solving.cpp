@@ -25,6 +25,7 @@ constexpr double stiff = 5.0;          // contact stiffness over spring constant
 constexpr double misfitting = 3.0;     // residual over noise
 constexpr double wrong = 0.05;         // residual over the span of the force
 constexpr double as_given = 0.05;      // relative difference of scatter and noise that changes nothing
+constexpr double started = 1.5;        // scatter over noise below which a start is near
 constexpr int weighings = 3;           // of the points at most
 constexpr double torn_elsewhere = 2.5; // standard deviations of the place of the tear
 constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
@@ -165,7 +166,7 @@ double Solving::wanted_noise() const
     return is_as_known() ? noise() : scatter_;
 }
 
-// The same where what is left at the start, which is near, tells the scatter.
+// The same from a start that is near: what is left there tells the scatter, unless it is far above the noise.
 nt_status Solving::fit_by_scatter(double *used)
 {
     Parameters value;
@@ -179,7 +180,13 @@ nt_status Solving::fit_by_scatter(double *used)
     status = fit.begin();
     if (status == NT_OK)
         look_at(fit.rest());
-    for (int i = 0; status == NT_OK && i < weighings && (i == 0 || !is_near(wanted_noise(), *used)); i++) {
+    const bool is_there = scatter_ < started * noise();
+    if (status == NT_OK && !is_there) {
+        status = fit.approach(&value);
+        look_at(fit.rest());
+    }
+    for (int i = 0; status == NT_OK && (i == 0 || (i < weighings && is_there && !is_near(wanted_noise(), *used)));
+         i++) {
         *used = wanted_noise();
         fit.weigh();
         status = fit.run(&found, false);
