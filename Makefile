@@ -106,7 +106,7 @@ bench:  ## what one call costs on this machine; JSON in build/release/tests/benc
 	@$(VENV)/python tests/bench/bench_session.py
 
 # generated tables keep the generator's lines, a part of a kernel the kernel's style
-C_FILES = $(filter-out tests/reference/%_table.h tests/kernel/spi_bus.c, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
+C_FILES = $(filter-out tests/reference/%_table.h apps/mcu/plan.h tests/kernel/spi_bus.c, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
 
 lint:  ## format, style and types, without changing anything
 	@tools/setup.sh lint

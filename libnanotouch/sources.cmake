@@ -79,6 +79,8 @@ set(nanotouch_sources_scene
     scene/elastic.c
     scene/facts.c
     scene/flank.c
+    scene/force_table.c
+    scene/force_table_make.c
     scene/interaction.c
     scene/laws.c
     scene/local.c
@@ -136,6 +138,7 @@ set(nanotouch_sources_chips
     hal/chips/chips.c
     hal/chips/converters.c
     hal/chips/exchange.c
+    hal/chips/iio.c
     hal/chips/setup.c)
 set(nanotouch_sources_dynamics
     dynamics/cantilever.c
@@ -195,6 +198,7 @@ set(nanotouch_sources_hosted
     hal/shared_memory_windows.c
     hal/timed_loop.c)
 set(nanotouch_sources_linux hal/linux/gpio_lines.c hal/linux/gpio_lines_of_half.c hal/linux/gpiod.c)
+set(nanotouch_sources_iio hal/linux/iio.c) # within nanotouch::linux, where libiio is
 set(nanotouch_sources_session
     session/arming.c
     session/changes.c

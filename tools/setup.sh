@@ -12,7 +12,7 @@ say() {
 packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libceres-dev libegl1 libgl1-mesa-dri"
 extras=all
 if [ "$profile" = test ]; then
-  packages="$packages libcmocka-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
+  packages="$packages libcmocka-dev libiio-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
     gcc-mingw-w64-x86-64-posix qemu-user qemu-system-arm"
   extras=all,test
 elif [ "$profile" = docs ]; then
@@ -27,7 +27,7 @@ elif [ "$profile" = windows ]; then
   packages="cmake ninja-build gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix wine64 python3-venv curl ca-certificates
     xz-utils bzip2"
 elif [ "$profile" = kernel ]; then
-  packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libcmocka-dev linux-source-6.12 flex bison bc
+  packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libcmocka-dev libiio-dev linux-source-6.12 flex bison bc
     xz-utils"
 fi
 

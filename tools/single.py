@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Write the touch step in single precision from the sources that have it in double precision.
 
-single.py FOLDER           writes nanotouch_single.h and .c, which need C11 and libm and nothing of this library, and
-                           nanotouch_single_of.h, which makes their constants from those in double precision
+single.py FOLDER           writes nanotouch_single.h and .c, which need C11 and libm and nothing of this library;
+                           nanotouch_single_of.h, which makes their constants from those in double precision; and
+                           nanotouch_single_text.hpp, which writes them as C (nanotouch plan --c-header)
 single.py FOLDER TEST...   writes tests of the step as tests of the step in single precision, TEST_single.c
 
 The same law is not written twice: double becomes float, 0.5 becomes 0.5f, fabs becomes fabsf, nt_ becomes ntf_. What
-adds up over a session (nt_sum) stays double. Only what the step calls is taken.
+adds up over a session (nt_sum) stays double. Only what the step calls is taken, and the table of a plan's force, which
+has single precision in the library, too.
 """
 
 import re
@@ -16,22 +18,35 @@ from pathlib import Path
 
 LIBRARY = Path(__file__).parent.parent / "libnanotouch"
 PUBLIC = LIBRARY / "include/nanotouch"
-HEADERS = ["status", "types", "rig", "settings", "scaling", "passivity", "stage_loop", "servo", "supervisor", "touch"]
+HEADERS = [
+    "status",
+    "types",
+    "rig",
+    "settings",
+    "scaling",
+    "passivity",
+    "stage_loop",
+    "servo",
+    "supervisor",
+    "touch",
+    "force_table",
+]
 PRIVATE = ["follow", "lift", "modes", "motor", "sideways", "stuck"]
 SOURCES = [
-    "motor",
-    "laws",
-    "stage_loop",
-    "passivity",
-    "rescale",
-    "follow",
-    "lift",
-    "stuck",
-    "supervisor",
-    "modes",
-    "sideways",
-    "touch",
-    "requests",
+    "control/motor",
+    "control/laws",
+    "control/stage_loop",
+    "control/passivity",
+    "control/rescale",
+    "control/follow",
+    "control/lift",
+    "control/stuck",
+    "control/supervisor",
+    "control/modes",
+    "control/sideways",
+    "control/touch",
+    "control/requests",
+    "scene/force_table",
 ]
 CALLED = {"hypotenuse": "core/same_bits.h"}  # private functions of other folders
 
@@ -64,6 +79,55 @@ static inline double ntf_greater_sum(double a, double b)
 #define lesser(a, b) _Generic((a) + (b), float: ntf_lesser, double: ntf_lesser_sum)(a, b)
 #define greater(a, b) _Generic((a) + (b), float: ntf_greater, double: ntf_greater_sum)(a, b)
 #define clamp(value, minimum, maximum) lesser(greater(value, minimum), maximum)
+"""
+
+TEXT = r"""
+#ifndef NANOTOUCH_SINGLE_TEXT_HPP
+#define NANOTOUCH_SINGLE_TEXT_HPP
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "nanotouch/touch.h"
+
+/* So many digits that reading them gives the same number. */
+static inline std::string nt_digits_text(double value, int digits, const char *suffix)
+{
+    if (!std::isfinite(value))
+        return std::isnan(value) ? "NAN" : value > 0.0 ? "INFINITY" : "-INFINITY";
+    char text[40];
+    (void)std::snprintf(text, sizeof text, "%.*e%s", digits - 1, value, suffix);
+    return text;
+}
+static inline std::string nt_number_text(float value)
+{
+    return nt_digits_text((double)value, 9, "f");
+}
+static inline std::string nt_number_text(double value)
+{
+    return nt_digits_text(value, 17, "");
+}
+template <typename kept> static inline std::string nt_row_text(const double *values, int count)
+{
+    std::string text = "{";
+    for (int i = 0; i < count; ++i)
+        text += (i ? ", " : "") + nt_number_text((kept)values[i]);
+    return text + "}";
+}
+static inline std::string nt_rows_text(const double (*values)[2], int rows, int columns)
+{
+    std::string text = "{";
+    for (int i = 0; i < rows; ++i)
+        text += (i ? ", " : "") + nt_row_text<float>(values[i], columns);
+    return text + "}";
+}
+static inline std::string nt_law_text(nt_control_choice choice)
+{
+    return choice == NT_CONTROL_PAPER       ? "ntf_servo_paper"
+           : choice == NT_CONTROL_IMPEDANCE ? "ntf_servo_impedance"
+                                            : "ntf_servo_default";
+}
 """
 
 
@@ -145,7 +209,7 @@ def function_of(name: str, path: str) -> str:
 
 def declarations() -> list[str]:
     """Return the declarations that the sources need, in their order, and those that these need."""
-    sources = "\n".join(body_of(LIBRARY / f"control/{name}.c") for name in SOURCES)
+    sources = "\n".join(body_of(LIBRARY / f"{name}.c") for name in SOURCES)
     private = "\n".join((LIBRARY / f"control/{name}.h").read_text() for name in PRIVATE)
     defined = set(re.findall(r"^[\w ]+?\*?(nt_\w+)\([^;]*?\)\n\{", sources, re.MULTILINE))
     every = [status_enum(), *(item for name in HEADERS[1:] for item in items((PUBLIC / f"{name}.h").read_text()))]
@@ -185,9 +249,15 @@ def taken(kind: str, name: str, dimensions: str, structs: dict[str, str]) -> str
     return f"    {head}to.{name}{at} = ({single(kind)})from->{name}{at};\n"
 
 
+def structs_of(kept: list[str]) -> dict[str, str]:
+    """Return the structs that are in double precision here, by name."""
+    structs = {name_of(item): item for item in kept if code_of(item).startswith("typedef struct")}
+    return {name: item for name, item in structs.items() if not name.startswith("nt_force_")}
+
+
 def write_conversion(folder: Path, version: str, kept: list[str]) -> None:
     """Write functions that make constants, samples and states from those in double precision."""
-    structs = {name_of(item): item for item in kept if code_of(item).startswith("typedef struct")}
+    structs = structs_of(kept)
     parts = [NOTE.format(version=version, what="From double to single precision.")]
     parts.append("#ifndef NANOTOUCH_SINGLE_OF_H\n#define NANOTOUCH_SINGLE_OF_H\n")
     parts.append('#include "nanotouch/touch.h"\n#include "nanotouch_single.h"\n')
@@ -202,6 +272,51 @@ def write_conversion(folder: Path, version: str, kept: list[str]) -> None:
             f"    {single(name)} to = {{0}};\n{body}    return to;\n}}\n"
         )
     (folder / "nanotouch_single_of.h").write_text("\n".join(parts) + "\n#endif\n")
+
+
+def written(line: str, structs: dict[str, str]) -> str:
+    """Return the statement that writes one member as C; a pointer is none."""
+    match = re.match(r"\s*(\w+) (\w[^()*]*)$", line)
+    if match is None:
+        return '    text += in + "0, /* none */\\n";\n'
+    kind, statements = match[1], ""
+    for each in match[2].split(","):
+        name, *sizes = re.findall(r"\w+", each)
+        value = f"from.{name}"
+        if kind == "nt_control_law":
+            one = "nt_law_text(from.settings.control.choice)"
+        elif kind in structs:
+            one = f"nt_text_of({value}, in)"
+        elif kind in ("double", "nt_sum"):
+            one = f"nt_number_text({'(float)' if kind == 'double' else ''}%s)"
+        elif kind in ("int", "uint32_t", "uint64_t"):
+            one = "std::to_string(%s)" + ("" if kind == "int" else ' + "u"')
+        else:
+            one = f'"({single(kind)})" + std::to_string((int)%s)'
+        if len(sizes) == 2:
+            one = f"nt_rows_text({value}, {sizes[0]}, {sizes[1]})"
+        elif sizes:
+            one = f"nt_row_text<{'float' if kind == 'double' else 'double'}>({value}, {sizes[0]})"
+        statements += f'    text += in + {one.replace("%s", value)} + ", /* {name} */\\n";\n'
+    return statements
+
+
+def write_text(folder: Path, version: str, kept: list[str]) -> None:
+    """Write functions that write the constants of a touch step as C."""
+    structs, wanted = structs_of(kept), {"nt_touch"}
+    for name in reversed(structs):  # what a struct holds is declared before it
+        if name in wanted:
+            wanted |= {kind for kind, *_ in members(structs[name])}
+    parts = [NOTE.format(version=version, what="Constants in single precision, as C."), TEXT]
+    for name in (name for name in structs if name in wanted):
+        inside = code_of(structs[name]).split("{", 1)[1].rsplit("}", 1)[0]
+        body = "".join(written(line, structs) for line in inside.split(";") if line.strip())
+        parts.append(
+            f"static inline std::string nt_text_of(const {name} &from, const std::string &outside)\n{{\n"
+            f'    const std::string in = outside + "    ";\n    std::string text = "{{\\n";\n{body}'
+            '    return text + outside + "}";\n}\n'
+        )
+    (folder / "nanotouch_single_text.hpp").write_text("\n".join(parts) + "\n#endif\n")
 
 
 def write_header(folder: Path, version: str, kept: list[str]) -> None:
@@ -222,9 +337,9 @@ def write_source(folder: Path, version: str) -> None:
     for name in PRIVATE:
         parts += [single(i) for i in items((LIBRARY / f"control/{name}.h").read_text()) if is_prototype(i)]
     for name in SOURCES:
-        body = single(body_of(LIBRARY / f"control/{name}.c"))
+        body = single(body_of(LIBRARY / f"{name}.c"))
         macros = re.findall(r"^#define (\w+)", body, re.MULTILINE)
-        parts.append(f"/* --- control/{name}.c --- */\n{body}\n" + "".join(f"#undef {macro}\n" for macro in macros))
+        parts.append(f"/* --- {name}.c --- */\n{body}\n" + "".join(f"#undef {macro}\n" for macro in macros))
     (folder / "nanotouch_single.c").write_text("\n".join(parts))
 
 
@@ -249,6 +364,7 @@ def main() -> None:
     write_header(folder, version[1] if version else "", kept)
     write_source(folder, version[1] if version else "")
     write_conversion(folder, version[1] if version else "", kept)
+    write_text(folder, version[1] if version else "", kept)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A touch on a microcontroller: nanotouch::core, a DAC and an ADC, no operating system. */
+ * A touch on a microcontroller: a DAC and an ADC by nanotouch::core, the touch step and the plan's force in single
+ * precision (tools/single.py), no operating system. What does not change is in plan.h. */
 #ifndef APPS_MCU_TOUCH_H
 #define APPS_MCU_TOUCH_H
 
@@ -12,6 +13,7 @@ typedef struct board {
     nt_exchange exchange;
     void *bus;
     nt_host host;
+    int has_no_lever;            /* it is computed above the plan's sample: to train a hand, or to rehearse */
     void (*wait)(void *context); /* until the next period begins; a timer's interrupt on a real board */
     void *context;
 } board;
@@ -22,6 +24,7 @@ typedef struct outcome {
     uint32_t state; /* nt_state at the end */
     long ticks;
     double force;         /* at the end [N] */
+    double weakest;       /* the strongest pull on the way, negative [N] */
     double travel;        /* of the stage, at the end [m] */
     double largest;       /* force on the way [N] */
     uint64_t command_sum; /* over all commands: the same on each machine whose arithmetic is the same */

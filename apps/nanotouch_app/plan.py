@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
@@ -16,6 +18,7 @@ from nanotouch import presets
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import Demand, Rig, Scene, Settings, read_tables
 from nanotouch.scene.plan import hertz_nanoseconds
+from nanotouch.touch.session import MODES
 from nanotouch.units import in_words
 
 from nanotouch_app import output, properties, scenes
@@ -49,11 +52,18 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--image", metavar="IMAGE", help="plan over the surface of an AFM image or a map.nc")
     properties.add_options(parser)
     parser.add_argument("--probe", action="store_true", help="tell what the rig's probe cannot resolve, too")
+    parser.add_argument(
+        "--c-header", metavar="FILE", help="write plan and touch step as constants of C in single precision"
+    )
+    parser.add_argument("--mode", choices=MODES, default="point", help="of that touch step (default: %(default)s)")
+    output.add_overwrite(parser, "--c-header")
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    scene, rig, demand = _descriptions(args.scene)
+    if args.c_header is not None:
+        output.check_free(Path(args.c_header), args, "--c-header")
+    scene, rig, demand, settings = _descriptions(args.scene)
     with output.busy("reading the surface"):
         surface = _surface(args, scene)
     if args.relative_accuracy is not None:
@@ -73,6 +83,8 @@ def run(args: argparse.Namespace) -> int:
             sentence = sentence.replace(f"{field} =", f"{field} ({option}) =")
         raise InvalidValue(sentence) from refusal
     args.answer = plan.explain()
+    if args.c_header is not None:
+        _write_header(args, plan, rig, settings)
     if args.json:  # the measurement below takes its time
         return 0
     output.say(plan)
@@ -97,10 +109,19 @@ def _surface(args: argparse.Namespace, scene: Scene) -> nt.Surface | None:
     return surface
 
 
-def _descriptions(name: str) -> tuple[Scene, Rig, Demand]:
+def _write_header(args: argparse.Namespace, plan: nt.Plan, rig: Rig, settings: Settings) -> None:
+    """Write the constants; their names are that of the file."""
+    file = Path(args.c_header)
+    name = re.sub(r"\W", "_", file.stem.lower(), flags=re.ASCII)
+    text = nt.c_header.write(plan, rig, settings, args.mode, name if name[:1].isalpha() else f"plan_{name}")
+    with output.made(file.parent):
+        file.write_text(text)
+
+
+def _descriptions(name: str) -> tuple[Scene, Rig, Demand, Settings]:
     scene, rig, tables = scenes.read(name)
+    settings = Settings.for_rig(rig)
+    settings.update_from_tables(tables)
     if "limits" in tables:  # as a session does, up to its force limit
-        settings = Settings.for_rig(rig)
-        settings.update_from_tables(tables)
         scene.range.maximum_load = settings.limits.force
-    return scene, rig, Demand.from_tables(tables)
+    return scene, rig, Demand.from_tables(tables), settings

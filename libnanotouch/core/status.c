@@ -32,6 +32,10 @@ const char *nt_problem_print(const nt_problem *problem, char *text, unsigned siz
         return text;
     const char *field = problem->field == NULL ? "?" : problem->field;
     const char *unit = problem->unit == NULL ? "" : problem->unit;
+    if (strcmp(unit, NT_UNIT_REASON) == 0) {
+        (void)snprintf(text, size, "%s", field);
+        return text;
+    }
     if (strcmp(unit, NT_UNIT_ERROR) == 0) { /* no field, but a reason */
         if (isfinite(problem->value))
             (void)snprintf(text, size, "%s: error %.2g where %.2g is demanded", field, problem->value,

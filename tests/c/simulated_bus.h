@@ -90,12 +90,11 @@ static inline void simulated_ad7606(simulated_bus *bus, uint8_t *in, uint32_t co
 {
     const double inputs[8] = {simulated_volts(bus), simulated_deflection(bus) / DEFLECTION_GAIN};
     ++bus->noise;
-    for (uint32_t i = 0; i + 1 < count && i < 16; i += 2) {
+    for (uint32_t i = 0; i < count && i < 16; ++i) { /* a byte that comes alone is the upper one */
         double code = floor(inputs[i / 2] / 20.0 * 65536.0 + 0.5) + (double)(bus->noise >> 1 & 1u);
-        code += i >= 4 ? i : 0; /* offsets of inputs that nobody uses */
+        code += i >= 4 ? i / 2 * 2 : 0; /* offsets of inputs that nobody uses */
         code = code > 32767.0 ? 32767.0 : code < -32768.0 ? -32768.0 : code;
-        const uint32_t bits = (uint32_t)(int32_t)code;
-        in[i] = (uint8_t)(bits >> 8), in[i + 1] = (uint8_t)bits;
+        in[i] = (uint8_t)((uint32_t)(int32_t)code >> (i % 2 ? 0 : 8));
     }
 }
 

@@ -8,6 +8,7 @@
 #include "host_fixture.h"
 #include "kernel_bus.h"
 #include "nanotouch/control.h"
+#include "nanotouch/hal_iio.h"
 #include "nanotouch/hal_linux.h"
 #include "nanotouch/hal_spi.h"
 

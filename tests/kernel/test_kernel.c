@@ -334,6 +334,33 @@ static void latencies(void **state)
                   frame[TIMES / 2], frame[TIMES * 99 / 100], press_seen[TIMES / 2], press_seen[TIMES * 99 / 100]);
 }
 
+/* --- slow channels, by IIO --- */
+
+static void iio_gives_numbers_and_scans(void **state)
+{
+    (void)state;
+    enum { SCANS = 16 };
+    const double step = 1.333e-6;
+    const nt_iio_device dummy = {"dummy", {"voltage0"}, nt_chip_of_iio(13, 1, 0), {7 * step, 8198 * step}};
+    nt_iio iio;
+    char reason[NT_IIO_REASON] = "";
+    uint8_t out[4] = {0}, in[4];
+    const nt_transfer ask = {out, in, 4};
+    double volts[SCANS] = {0.0};
+    assert_true(iio_dummy());
+    if (nt_iio_open(&iio, "local:", &dummy, 1, reason) != NT_OK)
+        fail_msg("%s", reason);
+    assert_int_equal(nt_iio_exchange(&iio, 0, &ask, 1), NT_OK);
+    const double read = nt_chip_volts(&dummy.chip, &dummy.span, nt_chip_decode(&dummy.chip, in, 0));
+    assert_true(fabs(read - (73 + 7) * step) < 0.1 * step);
+    assert_int_equal(nt_iio_scan(&iio, 0, "clock", volts, SCANS), NT_OK);
+    for (int i = 0; i < SCANS; ++i)
+        assert_true(fabs(volts[i] - (7 + 7) * step) < 0.1 * step);
+    assert_int_equal(nt_iio_scan(&iio, 0, "nobody", volts, SCANS), NT_E_DEVICE);
+    nt_iio_close(&iio);
+    print_message("IIO: a number and %d scans at a trigger\n", SCANS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -345,6 +372,7 @@ int main(void)
         cmocka_unit_test(a_short_transfer_is_told_as_whole),
         cmocka_unit_test(a_bus_that_does_not_answer),
         cmocka_unit_test(the_watchdog_has_its_edges),
+        cmocka_unit_test(iio_gives_numbers_and_scans),
         cmocka_unit_test(latencies),
     };
     if (!kernel_bus_start(&chips) || !gpio_chip(1))

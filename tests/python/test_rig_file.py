@@ -88,7 +88,7 @@ WRONG = {
     ("slave", "lines", "emergency_stop"): (4, "estop"),
     ("slave", "lines", "stop"): ("x", "no key 'stop'"),
     ("slave", "axes"): (4, "axes"),
-    ("slave", "backend"): ("comedi", "valid are spidev, shared_object, mailbox, simulated"),
+    ("slave", "backend"): ("comedi", "valid are spidev, iio, shared_object, mailbox, simulated"),
     ("slave", "speed"): (1, "no key 'speed'"),
 }
 
@@ -220,7 +220,7 @@ ELSEWHERE = {
     "name is missing": {"backend": "mailbox"},
     "no key 'path'": {"backend": "mailbox", "name": "stage", "path": "stage.so"},
     "write option": {"backend": "shared_object", "path": "here", "option": 3},
-    "valid are spidev, shared_object, mailbox, simulated": {"backend": "usb"},
+    "valid are spidev, iio, shared_object, mailbox, simulated": {"backend": "usb"},
 }
 
 

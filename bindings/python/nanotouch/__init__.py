@@ -45,7 +45,7 @@ _ROOMS = {
     "contact.": "geometry",
     "scan.": "flow scanner tapping",
     "scene.": "interaction materials plan presets surface surface_file view",
-    "touch.": "commands faults frames hal mailbox margins operator record rig_file session",
+    "touch.": "c_header commands faults frames hal mailbox margins operator record rig_file session",
 }
 _MODULES = {name: room + name for room, names in _ROOMS.items() for name in names.split()}
 

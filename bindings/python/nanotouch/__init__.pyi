@@ -52,6 +52,7 @@ from nanotouch.scene.interaction import Interaction as Interaction
 from nanotouch.scene.plan import Plan as Plan
 from nanotouch.scene.surface import Surface as Surface
 from nanotouch.scene.surface_file import SurfaceFile as SurfaceFile
+from nanotouch.touch import c_header as c_header
 from nanotouch.touch import commands as commands
 from nanotouch.touch import faults as faults
 from nanotouch.touch import frames as frames
@@ -99,6 +100,7 @@ __all__ = [
     "Topography",
     "__version__",
     "batch",
+    "c_header",
     "commands",
     "contact",
     "curves",

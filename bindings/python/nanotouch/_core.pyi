@@ -2,7 +2,7 @@
 from collections.abc import Callable
 from typing import Any, Self
 
-from numpy import float64
+from numpy import float32, float64
 from numpy.typing import NDArray
 
 from nanotouch._frames import *  # noqa: F403
@@ -185,6 +185,19 @@ class Plan:
     def cutoff_gap(self, force: float, /) -> float: ...
     def stable_step(self, mass: float, /) -> float: ...
 
+class ForceTable:
+    def __init__(self, plan: Plan, /) -> None: ...
+    def text(self) -> tuple[str, str]: ...
+    def run(self, gaps: NDArray[float32], is_attached: bool, /) -> tuple[NDArray[float32], NDArray[float32]]: ...
+    pieces: int
+    scale: float
+    bound: float
+    fold_distance: float
+    capture_gap: float
+    release_gap: float
+    farthest: float
+
+def touch_text(rig: Any, settings: Any, mode: str, /) -> str: ...
 def term_rows() -> tuple[tuple[str, str, str, str | None, tuple[tuple[str, float, str, float], ...], bool], ...]: ...
 
 class Interaction:

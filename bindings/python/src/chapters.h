@@ -38,6 +38,7 @@ void bind_commands(py::module_ &module);
 void bind_view(py::module_ &module);
 void bind_curves(py::module_ &module);
 void bind_linux(py::module_ &module);
+void bind_c_header(py::module_ &module);
 
 // Raises the Python exception of a status, with this message.
 [[noreturn]] void raise(nt_status status, const std::string &message);

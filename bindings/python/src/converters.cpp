@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hal.h"
+#include "nanotouch/hal_iio.h"
 #include "nanotouch/hal_spi.h"
 #include "nanotouch/realtime.h"
 #include "nanotouch/timing.h"
@@ -16,8 +17,18 @@
 
 // --- the tables of a rig file, whose numbers are SI by now ---
 
-static nt_converter converter_of(const py::dict &table)
+using Chips = std::array<nt_chip, NT_CONVERTERS>; // of IIO's drivers; others are in the library's tables
+
+static nt_converter converter_of(const py::dict &table, nt_chip &own)
 {
+    if (table.contains("bits")) {
+        const auto channels = static_cast<int>(table["channels"].cast<py::list>().size());
+        own = nt_chip_of_iio(table["bits"].cast<int>(), channels, table["is_output"].cast<bool>());
+        if (!own.name)
+            raise(NT_E_RANGE, table["device"].cast<std::string>() + ": valid are 2 .. 24 bits and 1 .. 5 inputs, " +
+                                  "or 2 .. 20 bits and 1 .. 4 outputs");
+        return {&own, {table["low"].cast<double>(), table["high"].cast<double>()}};
+    }
     const auto name = table["chip"].cast<std::string>();
     nt_converter made{};
     made.chip = nt_chip_find(name.c_str());
@@ -54,7 +65,7 @@ static void channels_of(const py::dict &setup, const char *name, nt_converter_ch
         to[axis] = channel_of(list[static_cast<size_t>(axis)]);
 }
 
-static nt_converter_setup setup_of(const py::dict &given)
+static nt_converter_setup setup_of(const py::dict &given, Chips &own)
 {
     nt_converter_setup made{};
     const auto chips = given["chips"].cast<py::list>();
@@ -64,7 +75,7 @@ static nt_converter_setup setup_of(const py::dict &given)
         raise(NT_E_RANGE, std::to_string(chips.size()) + " chips: valid are 1 .. " + std::to_string(NT_CONVERTERS));
     made.converters = static_cast<int>(chips.size());
     for (int i = 0; i < made.converters; ++i)
-        made.converter[i] = converter_of(chips[static_cast<size_t>(i)].cast<py::dict>());
+        made.converter[i] = converter_of(chips[static_cast<size_t>(i)].cast<py::dict>(), own[static_cast<size_t>(i)]);
     channels_of(given, "position", made.position);
     channels_of(given, "felt", made.felt);
     channels_of(given, "driven", made.driven);
@@ -74,7 +85,7 @@ static nt_converter_setup setup_of(const py::dict &given)
 
 // --- the half ---
 
-static void open_buses(nt_spi &spi, const py::dict &setup)
+static void open_spi(nt_spi &spi, const py::dict &setup)
 {
     std::vector<std::string> paths;
     std::array<nt_spi_device, NT_CONVERTERS> devices{};
@@ -83,7 +94,8 @@ static void open_buses(nt_spi &spi, const py::dict &setup)
     for (size_t i = 0; i < chips.size() && i < devices.size(); ++i) {
         const auto table = chips[i].cast<py::dict>();
         paths.push_back(table["device"].cast<std::string>());
-        devices[i] = {paths.back().c_str(), converter_of(table).chip->spi_mode, table["clock"].cast<double>()};
+        nt_chip own;
+        devices[i] = {paths.back().c_str(), converter_of(table, own).chip->spi_mode, table["clock"].cast<double>()};
     }
     char reason[NT_SPI_REASON] = "";
     const nt_status status = nt_spi_open(&spi, devices.data(), static_cast<int>(chips.size()), nullptr, reason);
@@ -91,15 +103,69 @@ static void open_buses(nt_spi &spi, const py::dict &setup)
         raise(status, reason[0] ? reason : nt_status_message(status));
 }
 
+#ifdef NANOTOUCH_HAS_LINUX
+static void open_iio(nt_iio &iio, const py::dict &setup)
+{
+    std::vector<std::string> words; // that the devices point to
+    std::array<nt_iio_device, NT_CONVERTERS> devices{};
+    const auto chips = setup["chips"].cast<py::list>();
+    words.reserve(chips.size() * (NT_IIO_INPUTS + 1));
+    for (size_t i = 0; i < chips.size() && i < devices.size(); ++i) {
+        const auto table = chips[i].cast<py::dict>();
+        const nt_converter on = converter_of(table, devices[i].chip);
+        devices[i].span = on.span;
+        words.push_back(table["device"].cast<std::string>());
+        devices[i].device = words.back().c_str();
+        const auto channels = table["channels"].cast<py::list>();
+        for (size_t k = 0; k < channels.size(); ++k) {
+            words.push_back(channels[k].cast<std::string>());
+            devices[i].channels[k] = words.back().c_str();
+        }
+    }
+    char reason[NT_IIO_REASON] = "";
+    const auto uri = setup["context"].cast<std::string>();
+    const nt_status status = nt_iio_open(&iio, uri.c_str(), devices.data(), static_cast<int>(chips.size()), reason);
+    if (status == NT_E_UNSUPPORTED)
+        raise(status, "built without libiio (libiio-dev): backend \"iio\" cannot be used");
+    if (status != NT_OK)
+        raise(status, reason[0] ? reason : nt_status_message(status));
+}
+#else // its functions are in nanotouch::linux
+static void open_iio(nt_iio &, const py::dict &)
+{
+    raise(NT_E_UNSUPPORTED, "built without libiio (libiio-dev): backend \"iio\" cannot be used");
+}
+static void nt_iio_close(nt_iio *)
+{
+}
+static nt_status nt_iio_exchange(void *, int, const nt_transfer *, int)
+{
+    return NT_E_UNSUPPORTED;
+}
+#endif
+
+// spidev, or IIO where the rig file names its context.
 struct Buses {
     nt_spi spi{};
-    explicit Buses(const py::dict &setup)
+    nt_iio iio{};
+    bool is_iio;
+    explicit Buses(const py::dict &setup) : is_iio(setup.contains("context"))
     {
-        open_buses(spi, setup);
+        is_iio ? open_iio(iio, setup) : open_spi(spi, setup);
     }
     ~Buses()
     {
-        nt_spi_close(&spi);
+        nt_spi_close(is_iio ? nullptr : &spi);
+        nt_iio_close(is_iio ? &iio : nullptr);
+    }
+    void join(nt_converter_setup &setup)
+    {
+        setup.exchange = is_iio ? nt_iio_exchange : nt_spi_exchange;
+        setup.bus = is_iio ? static_cast<void *>(&iio) : &spi;
+    }
+    int error() const
+    {
+        return is_iio ? iio.error : spi.error;
     }
 };
 
@@ -152,13 +218,14 @@ struct Lines {
 struct ConverterHalf : Half {
     Buses buses;
     Lines lines;
+    Chips own{};
     nt_converter_half half{};
 
     ConverterHalf(const py::dict &given, nt_half which) : buses(given), lines(given["lines"])
     {
-        nt_converter_setup setup = setup_of(given);
+        nt_converter_setup setup = setup_of(given, own);
         nt_problem problem{};
-        setup.bus = &buses.spi;
+        buses.join(setup);
         setup.lines = lines.lines();
         raise_on(nt_converter_half_init(&half, &setup, &problem), problem, "rig");
         choice = {nt_converter_half_backend(which), &half};
@@ -176,7 +243,8 @@ std::shared_ptr<Half> converter_half_of(const py::object &given, nt_half half)
 
 static void check_converters(const py::dict &given)
 {
-    const nt_converter_setup setup = setup_of(given);
+    Chips own;
+    const nt_converter_setup setup = setup_of(given, own);
     nt_problem problem{};
     raise_on(nt_converter_setup_check(&setup, &problem), problem, given["half"].cast<std::string>());
 }
@@ -185,8 +253,10 @@ static void check_converters(const py::dict &given)
 static std::vector<std::vector<double>> time_frames(const py::dict &given, int count)
 {
     using Clock = std::chrono::steady_clock;
-    const nt_converter_setup setup = setup_of(given);
+    Chips own;
+    nt_converter_setup setup = setup_of(given, own);
     Buses buses(given);
+    buses.join(setup);
     std::vector<std::vector<double>> found(static_cast<size_t>(setup.converters));
     const py::gil_scoped_release release;
     for (int i = 0; i < setup.converters; ++i) {
@@ -196,12 +266,12 @@ static std::vector<std::vector<double>> time_frames(const py::dict &given, int c
             uint8_t in[NT_CHIP_FRAME_SIZE];
             const nt_transfer transfer = {frame.bytes, in, frame.count};
             const auto start = Clock::now();
-            const nt_status status = nt_spi_exchange(&buses.spi, i, &transfer, 1);
+            const nt_status status = setup.exchange(setup.bus, i, &transfer, 1);
             found[static_cast<size_t>(i)].push_back(std::chrono::duration<double>(Clock::now() - start).count());
             if (status != NT_OK) {
                 const py::gil_scoped_acquire gil;
                 raise(NT_E_DEVICE,
-                      std::string(chip->name) + ": a frame failed: errno " + std::to_string(buses.spi.error));
+                      std::string(chip->name) + ": a frame failed: errno " + std::to_string(buses.error()));
             }
         }
     }

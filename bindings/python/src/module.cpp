@@ -20,6 +20,7 @@ PYBIND11_MODULE(_core, module)
     bind_particle(module);
     bind_plasticity(module);
     bind_plan(module);
+    bind_c_header(module);
     bind_terrain(module);
     bind_interaction(module);
     bind_scan(module);

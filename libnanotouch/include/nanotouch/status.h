@@ -52,6 +52,8 @@ typedef struct nt_problem {
 /* The unit of a problem that is no value out of range but a reason in words, its field: `value` is then the error that
  * there would be (infinite: not known), `maximum` the one demanded. */
 #define NT_UNIT_ERROR "error"
+/* The unit of a problem that is nothing but a reason in words, its field. */
+#define NT_UNIT_REASON "reason"
 
 /* Writes "tip.radius = 20 m: valid is 1e-10 .. 0.001 m" into text (always ended by 0 when size > 0).
  * Returns text. */

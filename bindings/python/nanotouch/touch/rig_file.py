@@ -7,11 +7,11 @@
     session = nt.Session(rig=nt.Rig.from_tables(file.rig), slave=file.slave)    # and session.start(pace="hard")
 
 Nothing of a calibration has a default: a key that is missing is refused by its name. docs/hardware.md has a whole file.
-A half may also be a shared object, or a program with a mailbox::
+A half may also be a shared object, a program with a mailbox, or slow converters that drivers of IIO run::
 
-    [slave]                           [master]
-    backend = "shared_object"         backend = "mailbox"
-    path = "stage.so"                 name = "falcon"
+    [slave]                           [master]                     [slave]
+    backend = "shared_object"         backend = "mailbox"          backend = "iio"
+    path = "stage.so"                 name = "falcon"              context = "local:"
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from nanotouch.units import key_spellings, to_si
 HALVES = ("master", "slave")
 ELSEWHERE = {"shared_object": ("path", "option"), "mailbox": ("name",)}
 """backends that a program of its own makes, with their keys"""
-BACKENDS = ("spidev", *ELSEWHERE, "simulated")
+BACKENDS = ("spidev", "iio", *ELSEWHERE, "simulated")
 AXES = ("x", "y", "z")
 MOST = 1000
 """whole numbers of a rig file are small: axes, channels"""
@@ -124,6 +124,31 @@ def _chip(table: _Table) -> dict[str, Any]:
     return made
 
 
+def _iio_chip(table: _Table) -> dict[str, Any]:
+    """A device of IIO: what its driver does not say."""
+    ways = [way for way in ("inputs", "outputs") if way in table.left]
+    if len(ways) != 1:
+        raise InvalidValue(f'[{table.where}] needs inputs or outputs, one of them: write inputs = ["voltage0"]')
+    channels = table.left.pop(ways[0])
+    if not isinstance(channels, list) or not channels or not all(_is_word(channel) for channel in channels):
+        raise InvalidValue(f'[{table.where}] {ways[0]} = {channels!r}: write {ways[0]} = ["voltage0"]')
+    made = {
+        "chip": "IIO",
+        "device": table.word("device", example='"ad5791"'),
+        "channels": channels,
+        "is_output": ways[0] == "outputs",
+        "bits": table.word("bits", int, "16"),
+        "low": table.number("low", "V"),
+        "high": table.number("high", "V"),
+    }
+    table.done()
+    return made
+
+
+def _is_word(given: object) -> bool:
+    return isinstance(given, str) and bool(given) and given.isprintable() and " " not in given
+
+
 def _channel(table: _Table, chips: list[str], unit: str, calibrated: dict[str, datetime.date]) -> dict[str, Any]:
     chip = table.word("chip", example=f'"{chips[0]}"')
     if chip not in chips:
@@ -153,14 +178,16 @@ def _lines(table: _Table) -> dict[str, Any]:
     return made
 
 
-def _half(half: str, table: _Table) -> Converters:
+def _half(half: str, table: _Table, backend: str) -> Converters:
+    context = {"context": table.word("context", example='"local:"')} if backend == "iio" else {}
+    read_chip = _iio_chip if backend == "iio" else _chip
     axes = table.word("axes", int, "1")
     named = table.table("chips", "a table for each chip")
-    chips = {name: _chip(named.table(name, "a chip")) for name in list(named.left)}
+    chips = {name: read_chip(named.table(name, "a chip")) for name in list(named.left)}
     if not chips:
         raise InvalidValue(f"[{half}.chips] is empty: it needs a table for each chip")
     calibrated: dict[str, datetime.date] = {}
-    setup: dict[str, Any] = {"half": half, "axes": axes, "chips": list(chips.values())}
+    setup: dict[str, Any] = {"half": half, "axes": axes, "chips": list(chips.values())} | context
     for word, name in QUANTITIES[half].items():
         unit = "N" if half == "master" and word != "position" else "m"
         setup[name] = [
@@ -204,7 +231,8 @@ def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     if backend not in BACKENDS:
         raise InvalidValue(f"[{half}] backend = {backend!r}: valid are {', '.join(BACKENDS)}")
     channels = {f"{word}_{axis}" for word in QUANTITIES[half] for axis in AXES}
-    own = {"backend", *ELSEWHERE.get(backend, {"axes", "chips", "lines"} | channels)}
+    context = {"context"} if backend == "iio" else set()
+    own = {"backend", *ELSEWHERE.get(backend, {"axes", "chips", "lines"} | channels | context)}
     rest = {key: value for key, value in given.items() if key not in own}
     if half == "master":
         tables[half] = rest | ({"axes": given["axes"]} if "axes" in given else {})
@@ -215,7 +243,7 @@ def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     if backend == "simulated":
         return None
     table = _Table(half, {key: given[key] for key in given if key in own and key != "backend"})
-    return _elsewhere(half, backend, table, folder) if backend in ELSEWHERE else _half(half, table)
+    return _elsewhere(half, backend, table, folder) if backend in ELSEWHERE else _half(half, table, backend)
 
 
 def _known(given: Any, stated: Mapping[str, tuple[float, str]]) -> Any:
