@@ -8,7 +8,7 @@ import os
 from typing import Any, NamedTuple
 
 import nanotouch as nt
-from nanotouch import presets
+from nanotouch import presets, rig_file
 from nanotouch.errors import InvalidValue
 from nanotouch.scene import read_tables
 
@@ -35,7 +35,17 @@ def read(name: str | None) -> Described:
         scene, rig = getattr(presets, name)()
         return Described(scene, rig, {})
     tables = {} if name is None else read_tables(_checked(name))
+    if name is not None and rig_file.is_real(tables):  # what it says of scene, rig and loop
+        tables = rig_file.read(name).rig
     return Described(nt.Scene.from_tables(tables), nt.Rig.from_tables(tables), tables)
+
+
+def real_halves(name: str | None) -> dict[str, Any]:
+    """The halves of a rig file that are not simulated, for a session; of any other scene none."""
+    if name is None or name in PRESETS + PAPER or not rig_file.is_real(read_tables(_checked(name))):
+        return {}
+    file = rig_file.read(name)
+    return {half: real for half, real in (("master", file.master), ("slave", file.slave)) if real is not None}
 
 
 def _checked(name: str) -> str:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Touch a surface on the simulated rig: the probe comes down on it, and what the operator felt is recorded, summarised
-and drawn."""
+and drawn. A scene that is a rig file moves its real halves, by the same script."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument(
         "--surface",
         choices=surfaces.BUILT_IN,
-        help="built-in surface (default: that of the preset, as in nanotouch live; else grating)",
+        help="built-in surface (default: that of the preset, as in nanotouch live; under a real probe flat; else grating)",
     )
     where.add_argument("--mode", choices=MODES, default="point", help="press at a point, feel the forces along a line, "
                        "follow it at constant force and feel the height, find the surface and stay on it, or record a "
@@ -120,7 +120,7 @@ def describe(topography: nt.Topography) -> str:
     )
 
 
-def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) -> nt.Surface:
+def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], is_real: bool) -> nt.Surface:
     if args.image is None:
         for option in ("channel", "pixel_size", "z_unit", "level", "untrusted"):
             if getattr(args, option) not in (None, False):
@@ -129,7 +129,8 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) 
         raise InvalidValue(f"give an IMAGE or --surface {args.surface}, not both")
     named = properties.surface_file(args, args.image, tables, args.scene)
     if named is None:
-        topography = surfaces.BUILT_IN[args.surface]() if args.surface else surfaces.of_scene(args.scene)
+        chosen = args.surface or ("flat" if is_real else None)
+        topography = surfaces.BUILT_IN[chosen]() if chosen else surfaces.of_scene(args.scene)
         return nt.Surface.touched_by(scene, topography)
     if args.surface is not None:
         raise InvalidValue(f"{args.scene} names a surface ([surface]): give it or --surface {args.surface}, not both")
@@ -139,8 +140,9 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) 
 
 def _session(args: argparse.Namespace) -> nt.Session:
     scene, rig, tables = scenes.read(args.scene)
+    real = scenes.real_halves(args.scene)
     with output.busy("reading the surface"):
-        surface = _surface(args, scene, tables)
+        surface = _surface(args, scene, tables, "slave" in real)
     what: dict[str, Any] = {
         "surface": surface, "mode": args.mode, "path": _path(args), "seed": args.seed,
         "control": args.control, "probe_model": args.probe_model,
@@ -148,7 +150,7 @@ def _session(args: argparse.Namespace) -> nt.Session:
     with output.busy("planning"):
         session = nt.Session(
             scene, rig, settings=_settings(args, tables, scene, rig, what), rate=loop.rate_of(args.rate),
-            delay=loop.delay_of(args.delay), minimum_margin=0.0, **what,
+            delay=loop.delay_of(args.delay), minimum_margin=0.0, **what, **real,
         )  # fmt: skip
     found = session.margins()
     if not found.least >= args.minimum_margin:

@@ -15,14 +15,16 @@
 #include "nanotouch_bus.h"
 #include "simulated_bus.h"
 
-typedef struct kernel_bus {
+typedef struct kernel_bus kernel_bus;
+struct kernel_bus {
     simulated_bus bus;
     int device;
     uint32_t clock;  /* of the last frame [Hz] */
     int is_mute;     /* nothing is answered */
     long wrong_mode; /* frames in a mode that the chip does not know */
+    void (*plays)(kernel_bus *k, int chip, const uint8_t *out, struct nanotouch_frame *frame); /* NULL: the chips */
     pthread_t serving;
-} kernel_bus;
+};
 
 static inline int bus_error(simulated_bus *bus)
 {
@@ -47,7 +49,9 @@ static inline void *bus_serve(void *context)
         memcpy(out, frame.bytes, frame.length);
         frame.error = bus_error(&k->bus);
         frame.length = simulated_through(&k->bus, (int)frame.chip, frame.length);
-        if (frame.error == 0)
+        if (k->plays)
+            k->plays(k, (int)frame.chip, out, &frame);
+        else if (frame.error == 0)
             simulated_frame(&k->bus, (int)frame.chip, out, frame.bytes, frame.length);
         if (!k->is_mute)
             (void)!write(k->device, &frame, sizeof frame);

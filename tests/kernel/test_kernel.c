@@ -16,6 +16,8 @@
 #include "kernel_rig.h"
 #include "larger.h"
 
+#include "kernel_session.h"
+
 /* --- the rules of a half --- */
 
 static bus_fault silence_is;
@@ -366,6 +368,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_half_conforms),
         cmocka_unit_test(a_touch_is_the_simulated_one),
+        cmocka_unit_test(a_whole_touch_is_the_simulated_one),
         cmocka_unit_test(lines_in_ticks),
         cmocka_unit_test(outputs_are_what_was_asked),
         cmocka_unit_test(bus_in_ticks),

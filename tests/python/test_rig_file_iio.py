@@ -90,7 +90,7 @@ def test_odd_lists_of_channels(names: list[object]) -> None:
 def test_spidev_knows_no_context() -> None:
     given = tables()
     given["slave"]["backend"] = "spidev"
-    with pytest.raises(InvalidValue, match="context|chip"):
+    with pytest.raises(InvalidValue, match=r"context|chip"):
         rig_file.from_tables(given)
 
 
@@ -100,5 +100,5 @@ def test_a_context_that_is_not_there(context: str, tmp_path: Path) -> None:
     given["slave"]["context"] = context
     found = rig_file.from_tables(given)
     assert isinstance(found.slave, rig_file.Converters)
-    with pytest.raises(Error, match="libiio|nowhere|127|nonsense"):
+    with pytest.raises(Error, match=r"libiio|nowhere|127|nonsense"):
         rig_file.frame_times(found.slave, 1)

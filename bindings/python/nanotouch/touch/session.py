@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from typing import Any, Literal, Unpack
 
 import numpy as np
@@ -20,6 +21,7 @@ from nanotouch.touch._control import CONTROLS, Control, ControlLaw, choose_contr
 from nanotouch.touch._open import TOLD, Frozen, Runs, as_now
 from nanotouch.touch._path import MODES, Mode, checked_path, core_mode
 from nanotouch.touch._plant import ProbeModel, plant_options
+from nanotouch.touch._play import BLOCK_TICKS, joined, played
 from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
 from nanotouch.touch._sideways import Sideways, margins_of, sideways_of
 from nanotouch.touch.columns import STATES
@@ -37,7 +39,6 @@ __all__ = [
     "ProbeModel", "Progress", "Session", "choose_control", "settings_for_path",
 ]  # fmt: skip
 
-BLOCK_TICKS = 500  # rows that a killed process may lose
 RING_CAPACITY = 65536
 CLOCKS = ("virtual: ticks times period", "monotonic, of this machine: a tick for each of its periods")
 Columns = dict[str, NDArray[Any]]
@@ -213,7 +214,7 @@ class Session(Runs, Frozen):
             self.core.advance(ticks)
             blocks.append(self.read(ticks))
             left -= ticks
-        return _joined(blocks)
+        return joined(blocks)
 
     def step(self, input: Input | Hold | None = None) -> _core.Frame:
         """Run one period: some microseconds. The frame of that tick holds what was measured and what was true."""
@@ -241,7 +242,7 @@ class Session(Runs, Frozen):
         progress: Callable[[float], None] | None = None,
         keep: bool = True,
     ) -> Recording:
-        """Play an operator's script from here on.
+        """Play an operator's script from here on; where a half is real, at hard pace.
 
         Parameters
         ----------
@@ -260,26 +261,21 @@ class Session(Runs, Frozen):
         script = stretched(operator if operator is not None else script_for(self), duration)
         for step in script:
             self.core.check(core_input(step))
-        ticks = [round(step.duration * self.rate) for step in script]
         blocks: list[Columns] = []
-        done = told = 0
-        for step, left in zip(script, ticks, strict=True):
-            self.aim(step)
-            for start in range(0, left, BLOCK_TICKS):
-                length = min(BLOCK_TICKS, left - start)
-                block = self.advance(length / self.rate)
+        told = 0
+        with closing(played(self, script)) as comes:
+            for block, done in comes:
                 if not keep:
                     blocks.clear()
                 blocks.append(block)
-                done += length
                 if writer is not None:
                     if told < len(self._events):  # a recording that is cut short can be replayed, too
                         told = len(self._events)
                         writer.update({"events": self.metadata()["events"]})
                     writer.append(block)
                 if progress is not None:
-                    progress(done / sum(ticks))
-        columns = _joined(blocks) if blocks else self.advance(0.0)
+                    progress(done)
+        columns = joined(blocks) if blocks else self.read(0)
         metadata = self.metadata()
         if writer is not None:
             writer.update(metadata)
@@ -394,7 +390,3 @@ class Session(Runs, Frozen):
     def emergency_stop(self, pressed: bool = True) -> None:
         """Press or release the simulated emergency stop; from any thread, also during :meth:`advance`."""
         self.core.emergency_stop(pressed)
-
-
-def _joined(blocks: Sequence[Columns]) -> Columns:
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
