@@ -63,6 +63,7 @@ corpus:  ## every file under a folder, ours against every other reader that is i
 heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings of an hour and under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
 	@$(VENV)/python tests/heavy/plans.py --jobs $(JOBS)
+	@$(VENV)/python tests/heavy/force_tables.py
 	@$(VENV)/python tests/heavy/energy.py
 	@$(VENV)/python tests/heavy/yielding.py
 	@$(VENV)/python tests/heavy/kills.py

@@ -293,6 +293,8 @@ def written(line: str, structs: dict[str, str]) -> str:
             one = "std::to_string(%s)" + ("" if kind == "int" else ' + "u"')
         else:
             one = f'"({single(kind)})" + std::to_string((int)%s)'
+        if sizes and kind not in ("double", "nt_sum"):
+            raise SystemExit(f"single.py: it writes no array of {kind}")
         if len(sizes) == 2:
             one = f"nt_rows_text({value}, {sizes[0]}, {sizes[1]})"
         elif sizes:

@@ -211,6 +211,17 @@ static const ntf_touch plan_touch = {
         9.99999975e-05f, /* period */
     }, /* passivity */
     {
+        2.50000012e-04f, /* dead_zone */
+        2.00000009e-03f, /* due */
+        0.00000000e+00f, /* force_gain */
+        1.00000000e+02f, /* damping */
+        1.00000000e+02f, /* credit */
+        1.18088625e-01f, /* speed_filter */
+        4.72354479e-02f, /* speed_floor */
+        1.00000000e+00f, /* speed_limit */
+        9.99999975e-05f, /* period */
+    }, /* passivity_sideways */
+    {
         1.00000005e-03f, /* share */
         1.32002462e-08f, /* threshold */
         8.00000000e+00f, /* spring_constant */

@@ -29,9 +29,10 @@ def add_parser(subparsers: Any) -> None:
     output.add_overwrite(parser)
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """The loop that is tried."""
-    parser.add_argument("--rate", default="1kHz", metavar="RATE", help="of the loop (default: 1kHz)")
+def add_options(parser: argparse.ArgumentParser, rate: str = "1kHz") -> None:
+    """The loop that is tried; ``rate`` in words is for the caller to put in."""
+    default = rate if rate[0].isdigit() else None
+    parser.add_argument("--rate", default=default, metavar="RATE", help=f"of the loop (default: {rate})")
     parser.add_argument(
         "--seconds", type=number(0.01, 86400.0), default=10.0, metavar="S", help="how long (default: 10)"
     )

@@ -30,7 +30,7 @@ def add_parser(subparsers: Any) -> None:
         one = jobs.add_parser(job, help=words, description=words)
         one.add_argument("file", type=Path, metavar="RIG.toml")
         if job == "probe":
-            latency.add_options(one)
+            latency.add_options(one, "that of the session that the file describes")
     words = "drive the rig and fit its numbers, with their uncertainties"
     one = jobs.add_parser("calibrate", help=words, description=words)
     one.add_argument("file", type=Path, metavar="RIG.toml")
@@ -47,7 +47,13 @@ def run(args: argparse.Namespace) -> int:
         print(f"{name}: {_told(half)}")
     if args.job == "calibrate":
         return calibrate.run(args, found)
-    return 0 if args.job == "check" else _probe(args, halves)
+    if args.job == "check":
+        return 0
+    if args.rate is None:
+        settings = nt.Settings.for_rig(nt.Rig.from_tables(found.rig))
+        settings.update_from_tables(found.rig)
+        args.rate = f"{settings.gains.rate:g}Hz"
+    return _probe(args, halves)
 
 
 def _told(half: rig_file.RealHalf | None) -> str:
@@ -67,9 +73,10 @@ def _probe(args: argparse.Namespace, halves: dict[str, rig_file.RealHalf | None]
     for half in halves.values():
         if not isinstance(half, rig_file.Converters):
             continue
-        for chip, times in zip(half.setup["chips"], rig_file.frame_times(half), strict=True):
+        driven = [axis["converter"] for axis in half.setup["driven"] if axis]
+        for i, (chip, times) in enumerate(zip(half.setup["chips"], rig_file.frame_times(half), strict=True)):
             print(f"{chip['chip']}: a frame p50 {in_words(times.median, 's', 3)}, p99.9 {in_words(times.late, 's', 3)}")
-            frames += 3.0 * times.late if chip is half.setup["chips"][0] else times.late
+            frames += (1 + 2 * driven.count(i)) * times.late  # each output is written and asked for
     met = latency.measured(args)
     latency.tell(met, args.priority)
     late = met.quantiles[0.999]

@@ -37,7 +37,7 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument(
         "--surface",
         choices=surfaces.BUILT_IN,
-        help="built-in surface (default: that of the preset, as in nanotouch live; under a real probe flat; else grating)",
+        help="built-in surface (default: that of the preset, as in nanotouch live; of a real probe flat; else grating)",
     )
     where.add_argument("--mode", choices=MODES, default="point", help="press at a point, feel the forces along a line, "
                        "follow it at constant force and feel the height, find the surface and stay on it, or record a "

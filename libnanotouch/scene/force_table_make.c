@@ -30,6 +30,7 @@ typedef struct making {
     double accuracy;             /* [-] */
     double special[SPECIAL_MAX]; /* gaps where something may bend, rising [m] */
     int specials;
+    int has_holes; /* gaps at which the plan has no force */
 } making;
 
 static nt_law_value truth(const making *m, double gap)
@@ -114,9 +115,10 @@ static float cut(making *m, float from, double *width, float end)
         const float to = (double)end - (double)from <= 1.5 * wanted ? end : (float)((double)from + wanted);
         nt_force_piece piece = piece_between(m, from, to);
         const double error = error_of(m, &piece, from, to);
-        if (error > m->accuracy && wanted > least)
+        if (!(error <= m->accuracy) && wanted > least)
             continue;
-        if (error > m->accuracy) {
+        m->has_holes |= isnan(error);
+        if (!(error <= m->accuracy)) {
             /* no point of the piece is farther from all specials */
             const double away = 0.5 * (to_special(m, from) + to_special(m, to) + (double)to - (double)from);
             m->table->fold_distance = fmaxf(m->table->fold_distance, (float)(away * 1.001));
@@ -229,7 +231,7 @@ nt_status nt_force_table_make(nt_force_table *table, nt_force_piece *pieces, int
     if (!table || !pieces || !plan || capacity < 1)
         return NT_E_ARGUMENT;
     nt_force_table made = {.pieces = pieces};
-    making m = {&made, pieces, capacity, 0, plan, 1, FINEST, {0.0}, 0};
+    making m = {&made, pieces, capacity, 0, plan, 1, FINEST, {0.0}, 0, 0};
     if (plan->demand.quantity == NT_QUANTITY_FORCE)
         m.accuracy = fmax(SHARE * plan->demand.relative_accuracy, FINEST);
     if (plan->surface)
@@ -245,6 +247,8 @@ nt_status nt_force_table_make(nt_force_table *table, nt_force_piece *pieces, int
     const nt_status status = cut_table(&m, deepest);
     if (status != NT_OK)
         return refuse(problem, "it needs more pieces than there is place for", status);
+    if (m.has_holes)
+        return refuse(problem, "a plan without a force at some gaps of its range", NT_E_NO_SOLUTION);
     *table = made;
     return NT_OK;
 }

@@ -8,7 +8,8 @@
 #include "kernel_rig.h"
 #include "session_fixture.h"
 
-enum { TOUCH_TICKS = 1200, TOUCH_RATE = 1000 };
+enum { TOUCH_TICKS = 4000, TOUCH_RATE = 1000 };
+#define TOUCH_SPEED 0.1e-6 /* [m/s] */
 
 static nt_sim_slave played;
 
@@ -43,7 +44,7 @@ static nt_session_setup setup_of_touch(void)
     setup.rig.stage.noise = setup.rig.probe.noise = 0.0;
     setup.settings = nt_settings_defaults(&setup.rig);
     setup.settings.gains.rate = TOUCH_RATE;
-    setup.settings.gains.approach_speed = 0.5e-6;
+    setup.settings.gains.approach_speed = TOUCH_SPEED;
     setup.settings.gains.curve_length = 0.2e-6;
     setup.mode = NT_MODE_CURVE;
     setup.ring_capacity = TOUCH_TICKS;
@@ -88,26 +89,48 @@ static long touch_on_kernel(nt_record *records)
     return count;
 }
 
+/* The nearest deflection of the simulated touch within two ticks: where the lever jumps, it may do so a tick apart. */
+static double bend_apart(const nt_record *simulated, long at, double deflection)
+{
+    double least = HUGE_VAL;
+    for (long i = at - 2; i <= at + 2; ++i)
+        if (i >= 0 && i < TOUCH_TICKS)
+            least = smaller(least, fabs(deflection - simulated[i].deflection[NT_Z]));
+    return least;
+}
+
+/* In virtual time only: on a machine that is busy ticks come late, and a late tick is held. */
 static void a_whole_touch_is_the_simulated_one(void **state)
 {
     (void)state;
     static nt_record real[TOUCH_TICKS], simulated[TOUCH_TICKS];
+    const double tick = TOUCH_SPEED / TOUCH_RATE, dac = 20e-6 / 1048575.0, sensor = 20e-6 / 65536.0;
+    if (!getenv("TIME"))
+        return;
     const nt_session_setup setup = setup_of_touch();
+    /* of the travel one step of the simulated stage's own read-out, too, on whose edge both may lie */
+    const double bend_bound = tick + 2.0 * (dac + sensor), bound = bend_bound + setup.rig.stage.resolution;
     nt_session *session = open_session(&setup);
     run(session, simulated, TOUCH_TICKS);
     nt_session_close(session);
-    const long count = touch_on_kernel(real);
+    assert_int_equal(touch_on_kernel(real), TOUCH_TICKS);
     double way = 0.0, bend = 0.0, pull = 0.0, press = 0.0;
-    for (long i = 0; i < count; ++i) {
+    for (long i = 0; i < TOUCH_TICKS; ++i) {
         way = larger(way, fabs(real[i].stage_position[NT_Z] - simulated[i].stage_position[NT_Z]));
-        bend = larger(bend, fabs(real[i].deflection[NT_Z] - simulated[i].deflection[NT_Z]));
+        bend = larger(bend, bend_apart(simulated, i, real[i].deflection[NT_Z]));
         press = larger(press, real[i].slave_force);
         pull = larger(pull, -real[i].slave_force);
+        assert_int_equal(real[i].state, simulated[i].state);
     }
-    print_message("a touch of %ld ticks: at most %.1f nN, pulled by %.1f nN; beside the simulated one travel within %.3f "
-                  "nm, deflection within %.3f nm; phase %u and %u, state %u\n",
-                  count, 1e9 * press, 1e9 * pull, 1e9 * way, 1e9 * bend, real[count - 1].phase,
-                  simulated[count - 1].phase, real[count - 1].state);
+    print_message(
+        "a whole touch, %d ticks: pressed by %.1f nN, pulled by %.1f nN; beside the simulated one travel within "
+        "%.2f nm (steps: %.2f nm), deflection within %.2f nm\n",
+        TOUCH_TICKS, 1e9 * press, 1e9 * pull, 1e9 * way, 1e9 * bound, 1e9 * bend);
+    assert_true(press > 90e-9 && pull > 10e-9);
+    assert_int_equal(real[TOUCH_TICKS - 1].phase, NT_PHASE_DONE);
+    assert_int_equal(simulated[TOUCH_TICKS - 1].phase, NT_PHASE_DONE);
+    assert_true(way <= bound);
+    assert_true(bend <= bend_bound);
 }
 
 #endif

@@ -79,6 +79,34 @@ def test_wrong_values_are_refused(path: tuple[str, ...]) -> None:
         rig_file.from_tables(given)
 
 
+UNITS = {
+    "um": "uN",
+    "nm": "V",
+    "pm": "s",
+    "V": "nm",
+    "ms": "Hz",
+    "percent": "m",
+    "um_per_V": "um",
+    "nm_per_V": "N_per_V",
+}
+
+
+def test_each_wrong_unit_is_refused() -> None:
+    tried = 0
+    for name, table in tables()["slave"].items():
+        for key in table if isinstance(table, dict) else ():
+            unit = next((unit for unit in sorted(UNITS, key=len, reverse=True) if key.endswith(f"_{unit}")), None)
+            if unit is None:
+                continue
+            given = tables()
+            wrong = given["slave"][name]
+            wrong[key.removesuffix(unit) + UNITS[unit]] = wrong.pop(key)
+            with pytest.raises(InvalidValue, match=name):
+                rig_file.from_tables(given)
+            tried += 1
+    assert tried > 20
+
+
 @pytest.mark.parametrize("names", [["voltage0"] * 6, ["a b"], [""], [1], [["voltage0"]]])
 def test_odd_lists_of_channels(names: list[object]) -> None:
     given = tables()

@@ -130,17 +130,19 @@ static void open_iio(nt_iio &iio, const py::dict &setup)
     if (status != NT_OK)
         raise(status, reason[0] ? reason : nt_status_message(status));
 }
+const nt_exchange iio_exchange = nt_iio_exchange;
+static void close_iio(nt_iio &iio)
+{
+    nt_iio_close(&iio);
+}
 #else // its functions are in nanotouch::linux
 static void open_iio(nt_iio &, const py::dict &)
 {
     raise(NT_E_UNSUPPORTED, "built without libiio (libiio-dev): backend \"iio\" cannot be used");
 }
-static void nt_iio_close(nt_iio *)
+const nt_exchange iio_exchange = nullptr;
+static void close_iio(nt_iio &)
 {
-}
-static nt_status nt_iio_exchange(void *, int, const nt_transfer *, int)
-{
-    return NT_E_UNSUPPORTED;
 }
 #endif
 
@@ -155,12 +157,11 @@ struct Buses {
     }
     ~Buses()
     {
-        nt_spi_close(is_iio ? nullptr : &spi);
-        nt_iio_close(is_iio ? &iio : nullptr);
+        is_iio ? close_iio(iio) : nt_spi_close(&spi);
     }
     void join(nt_converter_setup &setup)
     {
-        setup.exchange = is_iio ? nt_iio_exchange : nt_spi_exchange;
+        setup.exchange = is_iio ? iio_exchange : nt_spi_exchange;
         setup.bus = is_iio ? static_cast<void *>(&iio) : &spi;
     }
     int error() const
@@ -261,7 +262,7 @@ static std::vector<std::vector<double>> time_frames(const py::dict &given, int c
     const py::gil_scoped_release release;
     for (int i = 0; i < setup.converters; ++i) {
         const nt_chip *chip = setup.converter[i].chip;
-        const nt_chip_frame frame = chip->is_dac ? nt_chip_nothing(chip) : nt_chip_poll(chip);
+        const nt_chip_frame frame = chip->is_dac ? nt_chip_ask(chip, 0) : nt_chip_poll(chip);
         for (int k = 0; k < count; ++k) {
             uint8_t in[NT_CHIP_FRAME_SIZE];
             const nt_transfer transfer = {frame.bytes, in, frame.count};
