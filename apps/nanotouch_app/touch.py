@@ -11,10 +11,13 @@ from pathlib import Path
 from typing import Any, get_args
 
 import nanotouch as nt
+import numpy as np
 from nanotouch import margins, plots, record
 from nanotouch.errors import InvalidValue, MissingExtra
+from nanotouch.touch.columns import STATES
 from nanotouch.touch.operator import script_for
 from nanotouch.touch.session import MODES, ProbeModel
+from nanotouch.units import in_words
 
 from nanotouch_app import loop, output, properties, scenes, stop, summary, surfaces, told, view
 from nanotouch_app.quantity import number, parse_points, parse_quantity, whole_number
@@ -94,12 +97,37 @@ def run(args: argparse.Namespace) -> int:
             missing = _draw(session, topography, recording, out)
         written = [name for name in FILES if (out / name).exists()]
         args.answer = facts | {"folder": str(out), "files": written}
-        output.say(summary.words(facts) if args.verbose else told.report(session, facts, describe(topography), args))
+        if session.halves.slave.real:
+            output.say(_measured(session, recording))
+        else:
+            output.say(
+                summary.words(facts) if args.verbose else told.report(session, facts, describe(topography), args)
+            )
         print("".join(f"picture left out: {reason}\n" for reason in missing), end="")
         output.say(f"written to {out}/: {', '.join(written)}")
-    if not args.no_window and view.has_display():
+    if not args.no_window and view.has_display() and not session.halves.slave.real:
         view.open_window(topography, recording, session.scene.tip.radius)
     return 0
+
+
+def _measured(session: nt.Session, recording: nt.Recording) -> str:
+    """What the sensors of a real probe said; nobody knows the true force."""
+    states, lost = recording.state, session.progress.dropped
+    seen = [state for number, state in enumerate(STATES) if np.any(states == number)]
+    forces = recording.slave_force
+    most, least, down = (
+        in_words(float(number), unit, 4)
+        for number, unit in (
+            (np.nanmax(forces), "N"),
+            (np.nanmin(forces), "N"),
+            (np.nanmax(recording.stage_position), "m"),
+        )
+    )
+    return (
+        f"measured {most} at most, {least} at least; the stage went to {down}\n"
+        f"states   {', '.join(seen)}; {len(states)} periods are recorded, {lost} were lost by a full ring\n"
+        f"promised {in_words(session.guarantee().force, 'N', 4)} at most, whatever the hand does"
+    )
 
 
 def _say_before(session: nt.Session, args: argparse.Namespace) -> None:
@@ -226,13 +254,19 @@ def _record(session: nt.Session, duration: float | None, out: Path) -> nt.Record
 
 def _draw(session: nt.Session, topography: nt.Topography, recording: nt.Recording, out: Path) -> list[str]:
     """The pictures; what is missing for some of them is told, for the touch itself needs none."""
-    drawn: list[Callable[[], Any]] = [
-        lambda: plots.time(recording, save=out / "time.png"),
+    drawn: list[Callable[[], Any]] = [lambda: plots.time(recording, save=out / "time.png")]
+    if session.halves.slave.real:
+        return [*_drawn(drawn), "force over the gap, line and view need the true gap, which a real probe does not say"]
+    drawn += [
         lambda: plots.force_gap(recording, save=out / "force_gap.png"),
         lambda: view.render_png(topography, recording, out / "view.png", tip_radius=session.scene.tip.radius),
     ]
     if session.mode in MOVING:
         drawn.append(lambda: plots.line(recording, topography, save=out / "line.png"))
+    return _drawn(drawn)
+
+
+def _drawn(drawn: list[Callable[[], Any]]) -> list[str]:
     missing = []
     for draw in drawn:
         try:

@@ -47,7 +47,7 @@ def test_a_script_runs_at_the_pace_of_the_clock(stage: Path) -> None:
     assert done[-1] == 1.0
     assert not session.progress.runs
     assert 1 <= len(recording.time) <= 100  # a busy machine loses periods
-    assert np.all(np.diff(recording.tick) >= 1)
+    assert np.all(np.diff(recording.time) > 0.0)
     assert np.all(np.isnan(recording.gap))  # nobody knows the truth
 
 
