@@ -21,6 +21,10 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
         ("nanotouch scan dots --pixels 32 --out scanned", "quantum dots in tapping mode: scanned/scan.gwy"),
         ("nanotouch touch scanned/surface.gwy --out touched", "touch what was scanned"),
     ),
+    "push": (
+        ("nanotouch push --to 2um,1um --out pushed", "a particle of polystyrene on glass, under drift and noise"),
+    ),
+    "indent": (("nanotouch indent 100nN --out indented", "the dent of a diamond tip in gold, with force and heat"),),
     "margins": (("nanotouch margins scene.toml --no-map", "is the loop of this scene stable? numbers only"),),
     "info": (
         ("nanotouch info scan.gwy", "channels, size and units of an image"),

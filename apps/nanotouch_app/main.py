@@ -25,8 +25,9 @@ from nanotouch_app.guard import REFUSED, guarded, one_line
 from nanotouch_app.output import as_json
 
 COMMANDS = (
-    "touch", "live", "scan", "samples", "margins", "info", "plan", "curve", "image", "fit", "map", "report", "review",
-    "recalibrate", "export", "recover", "workflow", "reproduce", "tradeoff", "bench", "latency", "rig", "doctor",
+    "touch", "live", "scan", "push", "indent", "samples", "margins", "info", "plan", "curve", "image", "fit", "map",
+    "report", "review", "recalibrate", "export", "recover", "workflow", "reproduce", "tradeoff", "bench", "latency",
+    "rig", "doctor",
 )  # fmt: skip
 STUDIES = ("workflow", "reproduce", "tradeoff")
 EPILOG = """exit status:

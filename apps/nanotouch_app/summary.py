@@ -35,6 +35,7 @@ def summarise(session: nt.Session, recording: Recording) -> dict[str, Any]:
         "planned_pull_off_force_N": session.plan.pull_off_force,
         "largest_force_N": float(np.max(recording.tip_force)),
         "largest_sideways_force_N": _sideways(recording),
+        "dents": _dents(session, recording),
         "touched": _touched(session, recording),
         "position_tracking_rms_m": None if session.mode in SERVOED else _rms(_position_error(session, recording)),
         "force_tracking_rms_N": _rms(_force_error(session, recording)),
@@ -102,6 +103,18 @@ def _touched(session: nt.Session, recording: Recording) -> bool:
     """In contact, or pressed by forces before contact with more than a hundredth of the limit, as a soft sample is."""
     pressed = float(np.max(recording.tip_force)) > 0.01 * session.settings.limits.force
     return pressed or bool(np.any(recording.contact_radius > 0.0))
+
+
+def _dents(session: nt.Session, recording: Recording) -> list[dict[str, float]] | None:
+    """What the tip has left in a sample that keeps dents; None for another sample."""
+    if session.scene.sample.dents != "yes":
+        return None
+    return [
+        {"load_N": dent.load, "radius_m": dent.imprint.radius, "depth_m": dent.imprint.depth,
+         "start_x_m": dent.imprint.start_x, "start_y_m": dent.imprint.start_y,
+         "end_x_m": dent.imprint.end_x, "end_y_m": dent.imprint.end_y}
+        for dent in recording.dents
+    ]  # fmt: skip
 
 
 def _sideways(recording: Recording) -> float | None:

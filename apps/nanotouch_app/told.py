@@ -65,8 +65,21 @@ def _felt(session: nt.Session, facts: dict[str, Any]) -> list[str]:
         f"pull-off       {summary.force(facts, 'pull_off')}{expected}",
         f"largest force  {facts['largest_force_N'] * 1e9:.1f} nN",
         *_rubbed(session, facts),
-        f"model error    at most {session.plan.bound * 100.0:.2g} % of the force",
+        *_dents(facts),
+        f"model error    {_bound(session.plan.bound)}",
     ]
+
+
+def _bound(bound: float) -> str:
+    return "not known" if math.isnan(bound) else f"at most {bound * 100.0:.2g} % of the force"
+
+
+def _dents(facts: dict[str, Any]) -> list[str]:
+    """What is left of it in a sample that keeps dents."""
+    depths = [dent["depth_m"] for dent in facts.get("dents") or []]
+    if not depths:
+        return [] if facts.get("dents") is None else ["dents          none: it stayed elastic"]
+    return [f"dents          {len(depths)}, the deepest {1e9 * max(depths):.3g} nm"]
 
 
 def _rubbed(session: nt.Session, facts: dict[str, Any]) -> list[str]:

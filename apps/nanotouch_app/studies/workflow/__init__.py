@@ -10,9 +10,9 @@ from typing import Any
 
 from nanotouch import images, record
 from nanotouch.errors import InvalidValue, require
-from nanotouch.touch.record import write_csv
 
 from nanotouch_app import output
+from nanotouch_app.push import write_track
 from nanotouch_app.quantity import whole_number
 from nanotouch_app.studies.workflow import film, steps
 
@@ -58,11 +58,7 @@ def write(done: steps.Work, out: Path) -> None:
     done.again.image.write(out / "again.gwy", tip)
     images.write(out / "predicted.gwy", done.predicted)
     record.write(out / "touch.mcap", done.touched.recording)
-    track = done.pushed.track
-    columns = {"time [s]": track.time}
-    for name, values, unit in (("tip", track.tip, "m"), ("particle", track.particle, "m"), ("force", track.force, "N")):
-        columns |= {f"{name} {axis} [{unit}]": values[:, k] for k, axis in enumerate("xyz")}
-    write_csv(out / "push.csv", columns, {"what": "tip and particle on the sample; force on the tip"})
+    write_track(done.pushed, out / "push.csv")
 
 
 def words(facts: dict[str, float]) -> str:

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Push a particle over a substrate, under drift and noise: a scripted operator looks by scan lines, pushes, and looks
+again until the particle lies where it shall. What it believes is told beside the truth."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+from nanotouch import manipulation
+from nanotouch.errors import InvalidValue, MissingExtra, require
+from nanotouch.plots import new_figure, saved
+from nanotouch.touch.record import write_csv
+
+from nanotouch_app import output
+from nanotouch_app.quantity import parse_point, parse_quantity, whole_number
+
+FILES = ("push.csv", "push.json", "push.png")
+MODULUS, SHEAR = 3.63e9, 0.85e9  # polystyrene on glass, E* and G* [Pa]
+WORK, TO_TIP = 0.06, 0.01  # of adhesion, to the glass and to the tip [J/m^2]
+STRENGTH, ROLLS = 12e6, 0.0084  # Sumer and Sitti (2008): [Pa], and the rolling distance over the radius
+
+
+def add_parser(subparsers: Any) -> None:
+    """Register the sub-command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "push", help="push a particle to a place, under drift and noise", description=__doc__
+    )
+    parser.add_argument("--to", default="5um,0um", metavar="X,Y", help="from where it lies (default: %(default)s)")
+    parser.add_argument("--radius", default="500nm", metavar="LENGTH",
+                        help="of the particle, polystyrene on glass, 50nm .. 20um (default: %(default)s)")  # fmt: skip
+    parser.add_argument("--drift", default="1nm/s", metavar="SPEED", help="of the sample (default: %(default)s)")
+    parser.add_argument("--tolerance", default="30nm", metavar="LENGTH",
+                        help="distance that the operator is content with (default: %(default)s)")  # fmt: skip
+    parser.add_argument("--seed", type=whole_number(0, 2**32 - 1, "2^32 - 1"), default=1, metavar="N",
+                        help="of noise and drift (default: %(default)s)")  # fmt: skip
+    output.add_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the sub-command. Status 1: it did not come within the tolerance."""
+    target, radius = parse_point(args.to), parse_quantity(args.radius, "m")
+    drift, tolerance = parse_quantity(args.drift, "m/s"), parse_quantity(args.tolerance, "m")
+    if not 50e-9 <= radius <= 20e-6:
+        raise InvalidValue(f"--radius {args.radius}: valid is 50nm .. 20um")
+    if not 0.0 < np.hypot(*target) <= 1e3 * radius:
+        raise InvalidValue(f"--to {args.to}: valid is a way of up to 1000 radii of the particle")
+    with output.folder(args, FILES) as out:
+        with output.busy("pushing"):
+            done = manipulation.push(particle(radius), target, bench=manipulation.Bench(drift=drift),
+                                     tolerance=tolerance, seed=args.seed)  # fmt: skip
+        facts = facts_of(done)
+        write_track(done, out / "push.csv")
+        output.write_json(out / "push.json", facts)
+        try:
+            draw(done, target, out / "push.png")
+        except MissingExtra as missing:
+            print(f"picture left out: {missing}")
+        args.answer = facts | {"folder": str(out), "files": [name for name in FILES if (out / name).exists()]}
+        output.say(words(facts))
+        output.say(f"written to {out}/: {', '.join(args.answer['files'])}")
+    return int(done.believed > tolerance)
+
+
+def particle(radius: float) -> nt.Particle:
+    """Polystyrene on glass, and a coated tip of a tenth of its radius."""
+    tip_radius = 0.1 * radius
+    glass = nt.ParticleContact(MODULUS, SHEAR, WORK, shear_strength=STRENGTH, rolling_distance=ROLLS * radius)
+    tip = nt.ParticleContact(MODULUS, SHEAR, TO_TIP, shear_strength=STRENGTH, rolling_distance=ROLLS * tip_radius)
+    return nt.Particle(radius, glass, tip, tip_radius=tip_radius)
+
+
+def facts_of(done: manipulation.Pushed) -> dict[str, float]:
+    """The numbers, SI."""
+    return {
+        "error_m": done.error,
+        "believed_m": done.believed,
+        "pushes": done.pushes,
+        "lines": done.lines,
+        "bench_time_s": done.duration,
+        "largest_push_N": float(np.abs(done.track.force[:, :2]).max(initial=0.0)),
+        "x_m": float(done.position[0]),
+        "y_m": float(done.position[1]),
+    }
+
+
+def words(facts: dict[str, float]) -> str:
+    """The same in words."""
+    return (
+        f"it lies {1e9 * facts['error_m']:.3g} nm from the target; the last look showed "
+        f"{1e9 * facts['believed_m']:.3g} nm\n{facts['pushes']} pushes of {1e9 * facts['largest_push_N']:.3g} nN at "
+        f"most, {facts['lines']} lines to look, {facts['bench_time_s']:.0f} s"
+    )
+
+
+def write_track(done: manipulation.Pushed, path: Path) -> None:
+    """Tip and particle over time, with the force on the tip."""
+    track = done.track
+    columns = {"time [s]": track.time}
+    for name, values, unit in (("tip", track.tip, "m"), ("particle", track.particle, "m"), ("force", track.force, "N")):
+        columns |= {f"{name} {axis} [{unit}]": values[:, k] for k, axis in enumerate("xyz")}
+    write_csv(path, columns, {"what": "tip and particle on the sample; force on the tip"})
+
+
+def draw(done: manipulation.Pushed, target: tuple[float, float], path: Path) -> None:
+    """The way from above, and what the tip felt."""
+    require("matplotlib", "app")
+    figure = new_figure(9.6, 4.0)
+    way, felt = figure.subplots(1, 2)
+    track, um = done.track, 1e6
+    way.plot(um * track.particle[:, 0], um * track.particle[:, 1], label="particle")
+    way.plot(um * done.looks[:, 0], um * done.looks[:, 1], ".", label="looks")
+    way.plot(um * target[0], um * target[1], "+", markersize=12, label="target")
+    way.set(xlabel="x (µm)", ylabel="y (µm)")
+    way.legend(frameon=False)
+    for axis, name in enumerate("xyz"):
+        felt.plot(track.time, 1e9 * track.force[:, axis], label=f"along {name}")
+    felt.set(xlabel="time (s)", ylabel="force on the tip (nN)")
+    felt.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    saved(figure, path)
