@@ -236,6 +236,8 @@ nt_status nt_force_table_make(nt_force_table *table, nt_force_piece *pieces, int
         m.accuracy = fmax(SHARE * plan->demand.relative_accuracy, FINEST);
     if (plan->surface)
         return refuse(problem, "a plan over a surface has a force of each place, a table that of a flat", NT_E_RANGE);
+    if (plan->dents)
+        return refuse(problem, "a sample that keeps dents has a force of all that was pressed before", NT_E_RANGE);
     measure(&m);
     const float deepest = (float)-plan->largest_indentation;
     const double largest = fabs(truth(&m, (double)deepest).F);

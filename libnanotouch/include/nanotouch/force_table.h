@@ -36,9 +36,9 @@ enum { NT_FORCE_PIECES = 1024 }; /* enough for nt_force_table_make in nearly eve
  * where less force is left than may be missed. The error is looked for at 68 gaps of each piece; it is at most a tenth
  * of the plan's relative accuracy, of a finer plan 4e-6, and by what the plan's own tables jump between their cells,
  * some 1e-6. Of a plan for another quantity than force it is 4e-6. *problem (NULL allowed) says in words what has no
- * table. NT_E_RANGE: a plan over a surface, a force that is too large or too small for single precision, one that is
- * felt beyond 1 mm. NT_E_NO_SOLUTION: the plan has no force at some gap. NT_E_CAPACITY: it needs more pieces. Allocates
- * nothing; some milliseconds. */
+ * table. NT_E_RANGE: a plan over a surface, of a sample that keeps dents, a force that is too large or too small for
+ * single precision, one that is felt beyond 1 mm. NT_E_NO_SOLUTION: the plan has no force at some gap. NT_E_CAPACITY:
+ * it needs more pieces. Allocates nothing; some milliseconds. */
 NT_API nt_status nt_force_table_make(nt_force_table *table, nt_force_piece *pieces, int capacity, const nt_plan *plan,
                                      nt_problem *problem);
 

@@ -48,8 +48,9 @@ def write(
     """The text of a header with the constants ``name_force`` and ``name_touch``.
 
     Its force differs from the plan's by at most what stands in it: a tenth of the plan's relative accuracy or less,
-    and no less than 4e-6. :class:`~nanotouch.errors.InvalidValue` says what cannot be written: a plan over a surface, a
-    force beyond single precision, one that is felt beyond 1 mm, a control law of one's own.
+    and no less than 4e-6. :class:`~nanotouch.errors.InvalidValue` says what cannot be written: a plan over a surface or
+    of a sample that keeps dents, a force beyond single precision, one that is felt beyond 1 mm, a control law of one's
+    own.
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
         raise InvalidValue(f"name = {name!r}: it must be small letters, digits and _, a letter first")
