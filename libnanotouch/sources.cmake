@@ -107,9 +107,12 @@ set(nanotouch_sources_scene
     scene/yielding/adhere.c
     scene/yielding/contact.c
     scene/yielding/follow.c
+    scene/yielding/law.c
     scene/yielding/layer.c
     scene/yielding/mesh.c
     scene/yielding/peak.c
+    scene/yielding/radii.c
+    scene/yielding/relief.c
     scene/yielding/solve.c
     scene/yielding/table.c
     scene/yielding/terms.c

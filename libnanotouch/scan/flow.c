@@ -14,6 +14,7 @@
 #include "core/same_bits.h"
 #include "nanotouch/flow.h"
 #include "nanotouch/material.h"
+#include "scene/parts.h"
 
 #define NEAREST 0.25e-9 /* thickness of the first shell [m] */
 #define GROWTH 4.0
@@ -58,8 +59,9 @@ static int edges_of(const swing *w, double edges[EDGES_MAX + 1])
     const nt_plan *plan = w->over->plan;
     int count = 0;
     add_edge(edges, &count, w, 0.0);
-    if (isfinite(plan->capture_gap))
-        add_edge(edges, &count, w, plan->capture_gap);
+    const double capture = nt_plan_capture_gap(plan, w->over->place);
+    if (isfinite(capture))
+        add_edge(edges, &count, w, capture);
     if (w->after && isfinite(plan->release_gap))
         add_edge(edges, &count, w, plan->release_gap);
     const double start = fmax(w->low, 0.0);
@@ -132,7 +134,7 @@ static double broad(const nt_tapping *lever)
 static int make_cell(const nt_tapping *lever, const nt_tapping_over *over, double amplitude, double low,
                      nt_flow_cell *cell)
 {
-    const double width = broad(lever), capture = over->plan->capture_gap;
+    const double width = broad(lever), capture = nt_plan_capture_gap(over->plan, over->place);
     nt_place blunter = {0};
     if (over->place != NULL)
         blunter = *over->place;

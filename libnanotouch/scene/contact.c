@@ -25,6 +25,7 @@ void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adh
     plan->source = nt_scene_adhesion_source(scene);
     plan->shape = nt_scene_shape(scene);
     plan->contact = nt_scene_contact(scene, work_of_adhesion);
+    plan->contact.radius *= plan->ratio;
     nt_plan_take_properties(plan, scene);
     const double range =
         plan->source == NT_ADHESION_NONE ? 0.0 : plan->contact.work_of_adhesion / plan->contact.cohesive_stress;

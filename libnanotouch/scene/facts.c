@@ -121,7 +121,7 @@ static double energy_of_contact(const nt_plan *plan, double gap)
 {
     const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;
     const double contact = plan->yield.holds ? 0.0 : nt_plan_contact_eval(plan, form, -gap).U;
-    return contact + nt_plan_rise(plan, gap);
+    return contact + nt_plan_rise(plan, NULL, gap);
 }
 
 nt_status nt_plan_facts(nt_plan *plan)
@@ -139,7 +139,7 @@ nt_status nt_plan_facts(nt_plan *plan)
 /* Of effective radius to the tip's own, where the plan follows it. */
 static double largest_ratio(const nt_plan *plan)
 {
-    return nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form) ? nt_plan_largest_ratio(plan) : 1.0;
+    return nt_plan_follows(plan) ? nt_plan_largest_ratio(plan) : 1.0;
 }
 
 #define BULGED 2.5 /* times as much a surface pulls that bulges, at most, before it jumps (docs/yielding.md) */

@@ -9,6 +9,7 @@
 
 #include "nanotouch/interaction.h"
 #include "scene/terms/term.h"
+#include "scene/yielding/yield.h"
 
 static void add(nt_law_value *sum, nt_law_value term)
 {
@@ -20,7 +21,7 @@ static void add(nt_law_value *sum, nt_law_value term)
 
 nt_place nt_interaction_place(const nt_plan *plan, double x, double y)
 {
-    if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form)) {
+    if (nt_plan_follows(plan)) {
         nt_place found = nt_surface_place(plan->surface, plan->followed, plan->properties, x, y);
         if (!plan->followed)
             found.radius.radius = plan->contact.radius;
@@ -41,7 +42,7 @@ double nt_plan_radius_at(const nt_plan *plan, const nt_place *place)
 
 int nt_plan_is_attached(const nt_plan *plan, int attached, const nt_place *place, double gap)
 {
-    if (gap <= plan->capture_gap)
+    if (gap <= nt_plan_capture_gap(plan, place))
         return 1;
     return attached && gap <= nt_plan_release_gap(plan, place);
 }
@@ -103,6 +104,23 @@ static nt_law_value yielding_at(const nt_plan *plan, const nt_interaction_state 
     return sum;
 }
 
+/* And with the radius of each place; what the tail takes of w changes with it. */
+static vertical relief_at(const nt_plan *plan, const nt_interaction_state *state, const nt_place *place, double gap)
+{
+    const int holds = plan->source != NT_ADHESION_NONE && has_contact(plan, state, place, gap);
+    const nt_bank_value around = nt_yield_relief_at(plan, place, holds, gap);
+    vertical sum = {.law = around.law, .dU_dR = around.dU_dR};
+    if (!holds || plan->yield.holds)
+        return sum;
+    const nt_bank_value contact = nt_plan_contact_at(plan, place, gap);
+    const nt_contact here = nt_plan_contact_of_place(plan, place);
+    double taken;
+    (void)nt_yield_relief_share(plan, here.radius, &taken);
+    add(&sum.law, contact.law);
+    sum.dU_dR += contact.dU_dR - taken * (2.0 * here.radius * contact.dU_dR - contact.law.U) / here.work_of_adhesion;
+    return sum;
+}
+
 /* The same contact everywhere. */
 static nt_law_value uniform_at(const nt_plan *plan, const nt_interaction_state *state, double gap)
 {
@@ -135,6 +153,8 @@ static vertical eval_at(const nt_plan *plan, const nt_interaction_state *state, 
 {
     if (isnan(gap))
         return (vertical){{gap, gap, gap, gap}, gap, gap, gap};
+    if (plan->relief.count > 0 && place)
+        return relief_at(plan, state, place, gap);
     if (plan->yield.count > 0)
         return (vertical){.law = yielding_at(plan, state, place, gap)};
     if (nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
@@ -164,7 +184,7 @@ void nt_plan_sides(const nt_plan *plan, const nt_interaction_state *state, const
                    double force, double sides[2])
 {
     vertical here = {.law.F = force};
-    if (plan->yield.count == 0 && nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
+    if (nt_plan_follows(plan))
         here = eval_at(plan, state, place, gap);
     sides_of(plan, place, &here, sides);
 }
@@ -229,8 +249,7 @@ void nt_interaction_run_n(const nt_plan *plan, nt_interaction_state *state, cons
 
 static nt_contact contact_here(const nt_plan *plan, const nt_place *place)
 {
-    const int is_local = nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
-    return is_local ? nt_plan_contact_of_place(plan, place) : plan->contact;
+    return nt_plan_follows(plan) ? nt_plan_contact_of_place(plan, place) : plan->contact;
 }
 
 nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan, const nt_interaction_state *state,
@@ -240,7 +259,7 @@ nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan, const n
         return (nt_friction_contact){0.0, 0.0};
     const nt_contact contact = contact_here(plan, place);
     const nt_law_value law =
-        plan->yield.count > 0 ? yielding_at(plan, state, place, gap) : nt_plan_contact_at(plan, place, gap).law;
+        plan->yield.count > 0 ? eval_at(plan, state, place, gap).law : nt_plan_contact_at(plan, place, gap).law;
     return nt_plan_friction_contact(plan, &contact, law);
 }
 

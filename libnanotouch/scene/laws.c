@@ -19,8 +19,14 @@ nt_form nt_plan_full_form(const nt_plan *plan, int term)
 
 nt_law_value nt_plan_law_eval(const nt_plan *plan, int term, nt_form form, double gap)
 {
-    const nt_law_value none = {0.0, 0.0, 0.0, 0.0};
-    return form == NT_FORM_OFF ? none : nt_term_rows[term]->eval(nt_term_law(plan, term), form, gap);
+    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
+    if (form == NT_FORM_OFF)
+        return value;
+    value = nt_term_rows[term]->eval(nt_term_law(plan, term), form, gap);
+    value.U *= plan->ratio;
+    value.F *= plan->ratio;
+    value.k *= plan->ratio;
+    return value;
 }
 
 nt_law_value nt_plan_beside_at(const nt_plan *plan, double gap)
@@ -51,7 +57,8 @@ double nt_plan_law_limit(const nt_plan *plan, int term, double gap, nt_quantity 
     const double nearest = fmax(gap, nt_plan_hold_gap(plan, term) * (1.0 + 1e-12));
     const nt_law_value value = form != NT_FORM_OFF && row->limit ? row->limit(nt_term_law(plan, term), nearest)
                                                                  : nt_plan_law_eval(plan, term, form, nearest);
-    return fabs(quantity == NT_QUANTITY_FORCE ? value.F : value.k);
+    const double size = fabs(quantity == NT_QUANTITY_FORCE ? value.F : value.k);
+    return form != NT_FORM_OFF && row->limit ? plan->ratio * size : size;
 }
 
 /* What the tail of one term pulls of w [J/m^2]; 0 if it is none. */

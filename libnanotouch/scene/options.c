@@ -95,7 +95,7 @@ static double lost_bits(const nt_plan *plan, double nearest, double beside)
 double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which)
 {
     double cost = plan->surface ? cost_height[which] : 0.0;
-    if (!nt_form_is_local(form))
+    if (!nt_form_is_local(form) && plan->relief.count == 0)
         return cost;
     if (plan->followed)
         cost += cost_radius[which];

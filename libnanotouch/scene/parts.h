@@ -21,6 +21,11 @@ static inline int nt_form_is_local(nt_form form)
 {
     return form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
 }
+/* Whether the force follows what a place is like: its contact, or what the sample yields to. */
+static inline int nt_plan_follows(const nt_plan *plan)
+{
+    return plan->relief.count > 0 || nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form);
+}
 /* {U, F, k, a} and dU/dR of a local form for the contact of a place; all NaN where it refuses. A law that cannot follow
  * the radius says dU/dR = U/(2 R), as Hertz. */
 nt_bank_value nt_plan_local_eval(const nt_plan *plan, nt_form form, const nt_contact *contact, double indentation);
@@ -157,19 +162,16 @@ nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double erro
 int nt_plan_is_surrounded(const nt_plan *plan, const nt_scene *scene);
 /* Of a contact that is in that table: where it lets go, its depth and stiffness at the largest load. */
 void nt_plan_hold_facts(nt_plan *plan, double maximum_load);
-/* All beside contact, with everything on, where contact holds or does not. */
+/* All beside contact, with everything on, where contact holds or does not; at the tip's own radius. */
 nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap);
-/* In contact that the surface does not jump into: there the tail keeps its force. */
-nt_law_value nt_plan_kept_at(const nt_plan *plan, double gap);
 /* What a yielded tail pulls of w in contact [J/m^2]. */
 double nt_plan_yield_share(const nt_plan *plan);
-/* U of that where contact holds less U where it does not [J]. */
-double nt_plan_rise(const nt_plan *plan, double gap);
+/* U of that where contact holds less U where it does not, at a place (NULL: the tip's own radius) [J]. */
+double nt_plan_rise(const nt_plan *plan, const nt_place *place, double gap);
 /* How far from first touch of a table without adhesion the bound of its contact radius begins [m]. */
 double nt_plan_yield_touch(const nt_plan *plan);
-/* {U, F, k, a} of it at a gap; the sum of its terms on the undeformed gap. */
-nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap);
-nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap);
+/* relief.c: where adhesion takes hold at a place (NULL: at the tip's own radius) [m]. */
+double nt_plan_capture_gap(const nt_plan *plan, const nt_place *place);
 
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);

@@ -7,6 +7,7 @@
 
 #include "core/same_bits.h"
 #include "scene/parts.h"
+#include "scene/yielding/yield.h"
 
 static int has(const nt_surface *property)
 {
@@ -72,6 +73,11 @@ nt_contact nt_plan_contact_of_place(const nt_plan *plan, const nt_place *place)
         contact.effective_modulus = nt_plan_effective_modulus(plan, place->youngs_modulus.value);
     if (place->work_of_adhesion.value > 0.0)
         set_work(plan, &contact, place->work_of_adhesion.value - plan->tail);
+    if (plan->relief.count > 0 && !plan->yield.jumps && plan->source != NT_ADHESION_NONE) {
+        double slope;
+        set_work(plan, &contact,
+                 plan->contact.work_of_adhesion + plan->tail - nt_yield_relief_share(plan, contact.radius, &slope));
+    }
     return contact;
 }
 

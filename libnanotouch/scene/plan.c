@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/terms/term.h"
+#include "scene/yielding/yield.h"
 
 #define STIFF 0.1       /* elastic number of samples that may count as rigid */
 #define WORST 0.5       /* an error that is no bound any more: the largest that can be demanded */
@@ -107,6 +108,8 @@ nt_status nt_plan_begin(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem 
     plan->surface = inputs->surface;
     plan->radii = inputs->radii;
     plan->properties = inputs->properties;
+    plan->relief.room = inputs->room;
+    plan->ratio = 1.0;
     plan->probe_noise = inputs->probe ? nt_probe_force_noise(inputs->probe) : 0.0;
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
     status = nt_plan_tabulate(plan, &scene, problem);
@@ -149,6 +152,11 @@ static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int
         return NT_OK;
     plan->bound.force_error += rigid; /* a tail that was left out, too, pulls by so much more */
     return NT_OK;
+}
+
+static int is_spread(const nt_problem *problem)
+{
+    return problem->field && strcmp(problem->field, NT_YIELD_SPREAD) == 0;
 }
 
 /* The law that presses most on a sample that does not keep still. */
@@ -196,6 +204,8 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
     const int finer =
         problem && is_accuracy(problem) && problem->minimum < field->maximum; /* a table of another demand would do */
     if (problem && !finer && !(least < field->maximum)) {
+        if (is_spread(problem))
+            return NT_E_RANGE;
         *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
         return NT_E_RANGE;
     }

@@ -51,7 +51,7 @@ static double cohesive_radius(const nt_session *session, const nt_record *record
         return NAN;
     if (record->contact_radius == 0.0 && !slave->interaction.attached)
         return 0.0;
-    if (!nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form))
+    if (!nt_plan_follows(plan))
         return zone_at(&plan->contact, record->gap, record->contact_radius);
     const nt_place place = nt_interaction_place(plan, slave->x, slave->y);
     const nt_contact here = nt_plan_contact_of_place(plan, &place);

@@ -16,6 +16,7 @@
 #include "nanotouch/preflight.h"
 #include "nanotouch/servo.h"
 #include "nanotouch/supervisor.h"
+#include "scene/parts.h"
 #include "session/grip.h"
 #include "session/well.h"
 
@@ -56,7 +57,7 @@ static double unseen_indentation(const nt_plan *plan, double free_force)
 static double taken_at(const nt_plan *plan, const nt_place *place)
 {
     const nt_interaction_state never = {0};
-    const double inside = plan->capture_gap, outside = nextafter(inside, HUGE_VAL);
+    const double inside = nt_plan_capture_gap(plan, place), outside = nextafter(inside, HUGE_VAL);
     return fmax(0.0, nt_interaction_eval_gap(plan, &never, place, outside).U -
                          nt_interaction_eval_gap(plan, &never, place, inside).U);
 }

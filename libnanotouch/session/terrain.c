@@ -16,6 +16,7 @@ struct nt_terrain {
         nt_maugis_bank bank;
         double *coefficients, *ratios;
         nt_maugis_bank_memory tables;
+        nt_yield_table *room;
     } own; /* what was made here */
 };
 
@@ -144,6 +145,11 @@ static nt_status make_plan(nt_terrain *terrain, const nt_terrain_setup *setup, n
                              .radii = terrain->radii,
                              .properties = setup->properties};
     nt_maugis_bank_options options;
+    if (terrain->radii) {
+        inputs.room = terrain->own.room = calloc(NT_YIELD_RADII, sizeof *inputs.room);
+        if (!inputs.room)
+            return NT_E_NO_MEMORY;
+    }
     nt_status status = nt_plan_begin(&terrain->plan, &inputs, problem);
     if (status == NT_OK && nt_plan_wants_bank(&terrain->plan, &options)) {
         status = make_bank(terrain, &options);
@@ -184,6 +190,7 @@ void nt_terrain_close(nt_terrain *terrain)
     free(terrain->own.ratios);
     free(terrain->own.tables.panels);
     free(terrain->own.tables.cells);
+    free(terrain->own.room);
     free(terrain);
 }
 

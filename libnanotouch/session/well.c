@@ -12,6 +12,7 @@
 #include <math.h>
 
 #include "nanotouch/material.h"
+#include "scene/parts.h"
 
 #define NODES 64 /* of the integral of a swing */
 #define TRIALS 16
@@ -20,7 +21,8 @@ nt_law_value nt_well_law(const nt_well *well, double gap)
 {
     const nt_interaction_state never = {0};
     nt_law_value law = nt_interaction_eval_gap(well->plan, &never, &well->place, gap);
-    if (gap <= well->plan->capture_gap && well->outside > well->plan->capture_gap)
+    const double capture = nt_plan_capture_gap(well->plan, &well->place);
+    if (gap <= capture && well->outside > capture)
         law.U += well->taken;
     return law;
 }
@@ -47,7 +49,7 @@ double nt_well_gap_of_force(const nt_well *well, double force, double shallow)
 /* The gap on approach where the tip is no longer held; 0 where it always is. Sets base and outside. */
 static int find_jump(nt_well *w)
 {
-    const double capture = w->plan->capture_gap;
+    const double capture = nt_plan_capture_gap(w->plan, &w->place);
     const double ratio = pow(NT_WELL_NEAREST / NT_WELL_FARTHEST, 1.0 / NT_WELL_SEARCHES);
     const double origin = fmax(capture, 0.0);
     double held = NT_WELL_FARTHEST;
@@ -117,7 +119,8 @@ double nt_well_freed(const nt_well *well, double speed)
 /* Where the base that presses with `force` holds the tip at rest; sets the base [m]. */
 static double rest_under(nt_well *w, double force)
 {
-    const double rest = nt_well_gap_of_force(w, force, fmin(w->outside, fmax(w->plan->capture_gap, 0.0)));
+    const double capture = nt_plan_capture_gap(w->plan, &w->place);
+    const double rest = nt_well_gap_of_force(w, force, fmin(w->outside, fmax(capture, 0.0)));
     w->base = rest - force / w->spring;
     return rest;
 }

@@ -8,19 +8,20 @@
 
 static double radius_at(const nt_plan *plan, const nt_place *place)
 {
-    return place && nt_form_is_local(plan->terms[NT_PLAN_CONTACT].form) ? place->radius.radius : plan->contact.radius;
+    return place && nt_plan_follows(plan) ? place->radius.radius : plan->contact.radius;
 }
 
 /* Where the way in ends: adhesion takes hold, or the bodies touch. */
-static double inner_end(const nt_plan *plan)
+static double inner_end(const nt_plan *plan, const nt_place *place)
 {
-    return isfinite(plan->capture_gap) ? plan->capture_gap : 0.0;
+    const double capture = nt_plan_capture_gap(plan, place);
+    return isfinite(capture) ? capture : 0.0;
 }
 
 static double outer_end(const nt_plan *plan, const nt_place *place)
 {
     const double release = nt_plan_release_gap(plan, place);
-    return isfinite(release) ? fmax(release, inner_end(plan)) : inner_end(plan);
+    return isfinite(release) ? fmax(release, inner_end(plan, place)) : inner_end(plan, place);
 }
 
 static nt_view_point point_at(const nt_plan *plan, const nt_place *place, int attached, double gap)
@@ -65,7 +66,7 @@ static nt_status eval_unstable(const unstable_law *law, double gap, nt_law_value
 
 static long unstable(const nt_plan *plan, const nt_place *place, nt_view_point points[], long count)
 {
-    const double from = inner_end(plan), to = outer_end(plan, place);
+    const double from = inner_end(plan, place), to = outer_end(plan, place);
     unstable_law law;
     long made = 0;
     if (!(to > from) || !has_unstable(plan, place, &law))
@@ -89,7 +90,7 @@ long nt_view_curve(const nt_plan *plan, const nt_place *place, const nt_view_ran
     if (range->part == NT_VIEW_UNSTABLE)
         return unstable(plan, place, points, count);
     const int attached = range->part == NT_VIEW_ATTACHED;
-    const double wanted = attached ? outer_end(plan, place) : nextafter(inner_end(plan), INFINITY);
+    const double wanted = attached ? outer_end(plan, place) : nextafter(inner_end(plan, place), INFINITY);
     const double fold = fmin(fmax(wanted, range->nearest), range->farthest);
     const double end = attached ? range->nearest : range->farthest;
     if (fold == end)

@@ -19,7 +19,7 @@ double nt_view_tip_share(const nt_scene *scene)
 static int is_attached(const nt_plan *plan, const nt_place *place, const nt_view_pose *pose)
 {
     const nt_interaction_state apart = {0, 0.0, 0.0}, held = {1, 0.0, 0.0};
-    if (pose->gap <= plan->capture_gap || pose->gap <= 0.0)
+    if (pose->gap <= nt_plan_capture_gap(plan, place) || pose->gap <= 0.0)
         return 1;
     if (!nt_plan_is_attached(plan, 1, place, pose->gap))
         return 0;
@@ -60,13 +60,13 @@ nt_view_contact nt_view_contact_at(const nt_plan *plan, const nt_place *place, c
 {
     const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     nt_view_contact contact = {.shape = plan->shape,
-                               .radius = nt_form_is_local(form) && place ? place->radius.radius : plan->contact.radius,
+                               .radius = nt_plan_follows(plan) && place ? place->radius.radius : plan->contact.radius,
                                .modulus = plan->contact.effective_modulus,
                                .gap = pose->gap,
                                .indentation = -pose->gap,
                                .cohesive_stress = has_range(form) ? plan->contact.cohesive_stress : 0.0,
                                .tip_share = pose->tip_share};
-    if (nt_form_is_local(form))
+    if (nt_plan_follows(plan))
         contact.shape.radius = contact.radius;
     if (plan->yield.count > 0)
         return yielding(plan, contact, pose->force);

@@ -91,8 +91,21 @@ typedef struct nt_yield_table {
     double jump_error; /* of the gap of the jump, and of that where contact lets go [m] */
     int holds;         /* 1: the nodes from `apart` on are an adhesive contact and all that acts around it ... */
     double release;    /* ... that lets go at this h [m] */
+    double ratio;      /* of the effective radius it is of to the tip's own [-] */
+    double share;      /* of w, what the tail pulls in contact that the surface does not jump into [J/m^2] */
     nt_yield_node node[NT_YIELD_TABLE];
 } nt_yield_table;
+
+/* The same over a surface: a table for each of some effective radii, evenly over their logarithm. Places between them
+ * have a cubic of four tables, so that U(h, R) is one potential with continuous slopes. */
+enum { NT_YIELD_RADII = 25 };
+typedef struct nt_yield_relief {
+    int count;            /* of tables; 0: one radius is that of all places */
+    double first;         /* the least of those radii [m] */
+    double step;          /* of their logarithm [-] */
+    nt_yield_table *room; /* borrowed, for NT_YIELD_RADII tables; NULL: none */
+    const nt_yield_table *table[NT_YIELD_RADII];
+} nt_yield_relief;
 
 /* Friction: no potential of the gap but a history in the plane (nt_interaction_slide), so that the vertical force has
  * the same bits with it and without. */
@@ -162,7 +175,9 @@ typedef struct nt_plan {
     double sample_factor;            /* 1 - nu_s^2: 1/E* = tip_compliance + sample_factor/E_s [-] */
     double tail;                     /* what the tails pull of w at each place (E5b) [J/m^2] */
     int corner;                      /* while it is made: NT_CORNER_* of the surface at which `contact` is */
-    nt_yield_table yield;            /* of a sample that yields to forces beside contact */
+    double ratio;                    /* while it is made: the effective radius it is made for, over the tip's own [-] */
+    nt_yield_table yield;            /* of a sample that yields to forces beside contact, at the tip's own radius */
+    nt_yield_relief relief;          /* and at the radius of each place */
     double elastic_number;           /* e of the terms beside contact, the largest in the range [-] */
     double rigid_error;              /* of adding them on the undeformed gap, in the norm of the demand [-] */
     double around_error;             /* of the same around an adhesive contact, but for tails [-] */
@@ -179,6 +194,8 @@ typedef struct nt_plan_inputs {
     const nt_maugis_bank *bank; /* for adhesive contact with the radius of each place, borrowed; NULL: exact only */
     const nt_properties *properties; /* of that surface, borrowed; NULL: those of the scene everywhere. They stand in
                                         place of sample.youngs_modulus and of all that gives w */
+    nt_yield_table *room; /* for NT_YIELD_RADII tables of a sample that yields over those radii, borrowed for the life
+                             of the plan; NULL: such a sample has the tip's own radius everywhere, or is refused */
 } nt_plan_inputs;
 
 /* Corners of what a surface goes through; together they are a number. */

@@ -331,8 +331,9 @@ static nt_term_step advance(const void *law, void *state, const nt_place *place,
     if (plan->terms[NT_PLAN_CONTACT].form == NT_FORM_OFF)
         return step;
     if (*attached != before) {
-        const double where = *attached ? plan->capture_gap : nt_plan_last_hold(nt_plan_release_gap(plan, place));
-        const double U = nt_plan_contact_at(plan, place, where).law.U + nt_plan_rise(plan, where);
+        const double where =
+            *attached ? nt_plan_capture_gap(plan, place) : nt_plan_last_hold(nt_plan_release_gap(plan, place));
+        const double U = nt_plan_contact_at(plan, place, where).law.U + nt_plan_rise(plan, place, where);
         step.dissipated = fmax(0.0, *attached ? -U : U);
     }
     return step;

@@ -18,63 +18,9 @@
 #define SOFT 2.0      /* elastic number: a dry contact that is stiffer can seldom be solved with what is around it */
 #define STRONGEST 0.9 /* of w: what a tail may pull of it */
 
-/* What acts beside contact and has nothing to do with w, on the undeformed gap. */
-static nt_law_value others_at(const nt_plan *plan, double gap)
-{
-    nt_law_value sum = {plan->yield.offset, 0.0, 0.0, 0.0};
-    for (int i = 0; i < plan->on_count; ++i) {
-        const int term = plan->on[i];
-        if (nt_term_rows[term]->words.tail)
-            continue;
-        const nt_law_value value = nt_plan_law_eval(plan, term, plan->terms[term].form, gap);
-        sum.U += value.U;
-        sum.F += value.F;
-        sum.k += value.k;
-    }
-    return sum;
-}
-
-nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap)
-{
-    if (plan->yield.count == 0)
-        return nt_plan_beside_at(plan, gap);
-    if (attached && plan->yield.holds) {
-        nt_law_value value = nt_yield_table_held(&plan->yield, gap);
-        value.U += plan->yield.offset;
-        return value;
-    }
-    return attached && plan->yield.jumps ? others_at(plan, gap) : nt_plan_yield_at(plan, gap);
-}
-
-/* Of the tail alone, where adhesion takes hold. */
-static nt_law_value tail_at_touch(const nt_plan *plan)
-{
-    const nt_law_value all = nt_yield_table_eval(&plan->yield, plan->yield.touch);
-    const nt_law_value others = others_at(plan, plan->yield.touch);
-    return (nt_law_value){all.U - others.U, all.F - others.F, all.k - others.k, 0.0};
-}
-
-nt_law_value nt_plan_kept_at(const nt_plan *plan, double gap)
-{
-    const nt_law_value tail = tail_at_touch(plan), others = others_at(plan, gap);
-    return (nt_law_value){tail.U + tail.F * (plan->yield.touch - gap) + others.U, tail.F + others.F, others.k, 0.0};
-}
-
-double nt_plan_yield_share(const nt_plan *plan)
-{
-    return plan->yield.jumps ? 0.0 : -tail_at_touch(plan).F / (2.0 * NT_PI * plan->contact.radius);
-}
-
-double nt_plan_rise(const nt_plan *plan, double gap)
-{
-    if (plan->yield.count == 0 || !plan->yield.jumps)
-        return 0.0;
-    return nt_plan_around(plan, 1, gap).U - nt_plan_around(plan, 0, gap).U;
-}
-
 static double energy_of_contact(const nt_plan *plan, double gap)
 {
-    return nt_plan_contact_at(plan, NULL, gap).law.U + nt_plan_rise(plan, gap);
+    return nt_plan_contact_at(plan, NULL, gap).law.U + nt_plan_rise(plan, NULL, gap);
 }
 
 /* Contact after the jump lies below it, and above what it falls to when it lets go; NT_E_RANGE where it cannot. */
@@ -156,19 +102,28 @@ static void take_contact(const nt_plan *plan, nt_plan_options *options, double e
 /* What the table of all beside it adds to an evaluation in contact [Hertz evaluations] (tests/bench/bench_plan.c). */
 #define BESIDE_COST 0.6
 #define BESIDE_LATENCY 0.7
+#define RELIEF_COST 3.0 /* over relief */
+#define RELIEF_LATENCY 3.0
 
-/* Only forms of contact with the tip's own radius: all else is in the table. */
+/* Only forms of contact with the tip's own radius, or that of each place: all else is in the table. */
+static int is_beside(const nt_plan *plan, nt_form form)
+{
+    if (plan->relief.count > 0)
+        return nt_form_is_local(form);
+    return form == NT_FORM_TABLE || form == NT_FORM_POLISHED || form == NT_FORM_EXACT || form == NT_FORM_OFF;
+}
+
 static void drop_others(const nt_plan *plan, nt_plan_options *options, double error)
 {
     int count = 0;
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
         const nt_form form = options->option[NT_PLAN_CONTACT][i].form;
-        if (form != NT_FORM_TABLE && form != NT_FORM_POLISHED && form != NT_FORM_EXACT && form != NT_FORM_OFF)
+        if (!is_beside(plan, form))
             continue;
         options->option[NT_PLAN_CONTACT][count] = options->option[NT_PLAN_CONTACT][i];
         options->option[NT_PLAN_CONTACT][count].error += error;
-        options->option[NT_PLAN_CONTACT][count].cost += BESIDE_COST;
-        options->option[NT_PLAN_CONTACT][count++].latency += BESIDE_LATENCY;
+        options->option[NT_PLAN_CONTACT][count].cost += plan->relief.count > 0 ? RELIEF_COST : BESIDE_COST;
+        options->option[NT_PLAN_CONTACT][count++].latency += plan->relief.count > 0 ? RELIEF_LATENCY : BESIDE_LATENCY;
     }
     options->count[NT_PLAN_CONTACT] = count;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
@@ -178,10 +133,25 @@ static void drop_others(const nt_plan *plan, nt_plan_options *options, double er
     }
 }
 
+/* A tail that pulls almost all of w leaves no contact. */
+static int is_left(const nt_plan *plan)
+{
+    return nt_plan_yield_share(plan) <= STRONGEST * plan->contact.work_of_adhesion;
+}
+
+nt_status nt_plan_yield_contact(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
+{
+    if (!is_left(plan) || nt_plan_laws_at(plan, scene, work_of_adhesion, NULL) != NT_OK)
+        return NT_E_RANGE;
+    plan->terms[NT_PLAN_CONTACT].form = plan->yield.holds ? NT_FORM_YIELDING : NT_FORM_POLISHED;
+    plan->yield.share = nt_plan_yield_share(plan);
+    return count_from_fold(plan);
+}
+
 nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
 {
     nt_plan_options options;
-    if (nt_plan_yield_share(plan) > STRONGEST * plan->contact.work_of_adhesion)
+    if (!is_left(plan))
         return NT_E_RANGE;
     nt_status status = nt_plan_adhere(plan, scene, problem);
     if (status != NT_OK || plan->source == NT_ADHESION_NONE)

@@ -118,7 +118,8 @@ static nt_status add(maker *m, nt_yield_node node)
 
 static int is_done(const maker *m)
 {
-    return m->last.F >= m->range->load || m->last.h <= m->range->nearest;
+    const int pressed = m->last.F >= m->range->load && !(m->range->touches && m->hold != NT_YIELD_CONTACT);
+    return pressed || m->last.h <= m->range->nearest;
 }
 
 /* Whether a step passes over much of the gap under the apex: a law of short range could hide there. */

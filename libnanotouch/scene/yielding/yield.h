@@ -9,6 +9,7 @@
 #define NANOTOUCH_SCENE_YIELD_H
 
 #include "nanotouch/plan.h"
+#include "scene/parts.h"
 
 /* Two flats at a gap [m] above that of a pole. */
 typedef nt_pressure nt_pressure_law(const void *context, double gap);
@@ -152,6 +153,7 @@ typedef struct nt_yield_range {
     int stiffness;            /* k is held to the tolerance, too, over max(|k|, stiffness_scale); a finer mesh */
     double stiffness_scale;   /* [N/m] */
     double radius_scale;      /* above 0: so is a, over max(a, radius_scale) [m] */
+    int touches;              /* goes on to where the bodies touch, at a larger load, too */
 } nt_yield_range;
 nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *sample, const nt_yield_range *range);
 /* Adds the contact of a sample with adhesion, from where it lets go to the load; it touches over some `radius` [m]. */
@@ -161,6 +163,52 @@ nt_status nt_yield_table_hold(nt_yield_table *table, const nt_yield_sample *samp
  * in it. */
 nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h);
 nt_law_value nt_yield_table_held(const nt_yield_table *table, double h);
+
+/* law.c: all beside contact by a table, at a gap of the plan; where contact holds or does not. */
+nt_law_value nt_yield_apart(const nt_plan *plan, const nt_yield_table *table, double gap);
+nt_law_value nt_yield_around(const nt_plan *plan, const nt_yield_table *table, int attached, double gap);
+/* Force and table meet at the first gap, and U begins there as that of the laws. */
+void nt_yield_join(const nt_plan *plan, nt_yield_table *table);
+
+/* What tables are made for. */
+typedef struct nt_yield_wanted {
+    nt_quantity quantity; /* of the demand; tables themselves are of forces or stiffnesses */
+    double tolerance;     /* a rung of the ladder */
+    double finest;        /* the last rung */
+    double around;        /* error of laws around an adhesive contact that are not in the table */
+    double radius_scale;  /* 0: not demanded [m] */
+    double load;          /* where a table without adhesion ends [N] */
+    int touches;          /* nt_yield_range */
+} nt_yield_wanted;
+/* yielding.c: a table of the plan's own radius, with that tolerance or finer; then, with no force of its own yet, its
+ * laws turned on and contact beside it, which knows the work of adhesion [J/m^2] (0: that of the scene). */
+nt_status nt_plan_yield_table(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of);
+nt_status nt_plan_yield_compose(nt_plan *plan, const nt_scene *scene, double work_of_adhesion);
+/* adhere.c: the contact of that. */
+nt_status nt_plan_yield_contact(nt_plan *plan, const nt_scene *scene, double work_of_adhesion);
+
+/* What a plan says that is refused because no one kind of table spans the effective radii of its surface. */
+#define NT_YIELD_SPREAD                                                                                                \
+    "surface (the soft sample yields otherwise at the effective radius of some of its places than at the tip's own, "   \
+    "and no one plan spans both; a smoother surface or another tip has less spread)"
+
+/* radii.c: what the tables of all effective radii of a surface come to. */
+typedef struct nt_yield_worst {
+    double error;             /* of what lies between them, as a share of the demand */
+    double moved;             /* where the surface jumps or contact lets go [m] */
+    double pull_off_force;    /* the largest of all radii, as the next two [N] */
+    double minimum_spring;    /* [N/m] */
+    double maximum_stiffness; /* [N/m] */
+} nt_yield_worst;
+/* Makes them for a plan that has the table of its own radius; no more than `most` will do of that error. On failure
+ * *problem names the radius that has no table like the others. */
+nt_status nt_plan_yield_over(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of, double most,
+                             nt_yield_worst *worst, nt_problem *problem);
+/* relief.c: of a place {U, F, k, a} and dU/dR of all beside contact; the gap where the surface jumps or touches, or
+ * where contact lets go that is in the tables [m]; what the tail takes of w [J/m^2], and its slope over R. */
+nt_bank_value nt_yield_relief_at(const nt_plan *plan, const nt_place *place, int attached, double gap);
+double nt_yield_relief_fold(const nt_plan *plan, double radius, int attached);
+double nt_yield_relief_share(const nt_plan *plan, double radius, double *slope);
 
 /* yield_peak.c: the largest pressure on the sample [Pa], of an equilibrium; without adhesion at a load, and the load at
  * which it is that [N]: infinite beyond the table. From node to node it is a power of the load. */

@@ -23,6 +23,9 @@
 #define FLAT 10.0    /* tables of a stiffness are coarser by */
 #define STIFF 0.3    /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
 #define DEEPER 1.05  /* than the largest load */
+#define WORST 0.5    /* the largest error that can be demanded */
+#define UNFELT 0.3   /* of the demand: a spread of radii that one table may leave out */
+#define BETWEEN 0.4  /* of what is left over relief: what lies between its tables */
 
 enum { ATTEMPTS = 4, SAMPLES = 1000, HALVINGS = 60 };
 
@@ -63,67 +66,25 @@ static double without_pressure(const nt_plan *plan, double nearest)
     return rest;
 }
 
+/* What one table for all effective radii of the surface leaves out. */
+static double spread_of_radii(const nt_plan *plan)
+{
+    const double R = plan->contact.radius;
+    return nt_plan_is_curved(plan) ? fmax(fabs(plan->radii->minimum / R - 1.0), fabs(plan->radii->maximum / R - 1.0))
+                                   : 0.0;
+}
+
+/* Whether it takes tables of many radii: one would take most of the demand. */
+static int takes_relief(const nt_plan *plan)
+{
+    return plan->relief.room && spread_of_radii(plan) > UNFELT * plan->demand.relative_accuracy;
+}
+
 /* All that a table does not know, as a share of the demand. */
-static double other_errors(const nt_plan *plan, double nearest)
+static double other_errors(const nt_plan *plan, double nearest, int felt)
 {
-    double error = nt_plan_share(plan, without_pressure(plan, nearest));
-    if (nt_plan_is_curved(plan))
-        error += fmax(fabs(plan->radii->minimum / plan->contact.radius - 1.0),
-                      fabs(plan->radii->maximum / plan->contact.radius - 1.0));
-    return error;
-}
-
-/* Force and table meet at the first gap, and U begins there as that of the laws. */
-static void join(nt_plan *plan)
-{
-    nt_yield_table *table = &plan->yield;
-    const double first = table->first + table->hold, F = table->node[0].F;
-    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
-    table->shift = 0.0;
-    for (int i = 0; i < 30; ++i) {
-        value = nt_plan_rigid_at(plan, first + table->shift);
-        if (value.k == 0.0 || F == 0.0)
-            break;
-        table->shift += (value.F - F) / value.k;
-    }
-    value = nt_plan_rigid_at(plan, first + table->shift);
-    for (int i = 0; i < table->count; ++i)
-        table->node[i].U += value.U;
-}
-
-nt_law_value nt_plan_rigid_at(const nt_plan *plan, double gap)
-{
-    nt_law_value all = {0.0, 0.0, 0.0, 0.0};
-    for (int i = 0; i < plan->on_count; ++i) {
-        const int term = plan->on[i];
-        const nt_law_value value = nt_term_rows[term]->eval(nt_term_law(plan, term), plan->terms[term].form, gap);
-        all.U += value.U;
-        all.F += value.F;
-        all.k += value.k;
-    }
-    return all;
-}
-
-nt_law_value nt_plan_yield_at(const nt_plan *plan, double gap)
-{
-    const nt_yield_table *table = &plan->yield;
-    const double from_touch = gap - table->hold;
-    if (from_touch >= table->first)
-        return nt_plan_rigid_at(plan, gap + table->shift);
-    if (!(from_touch < table->touch))
-        return nt_yield_table_eval(table, from_touch);
-    if (adheres(plan))
-        return nt_plan_kept_at(plan, gap);
-    /* the bodies touch at `hold`; the laws keep their force from there to gap 0, as they do without yielding */
-    const nt_law_value touching = nt_yield_table_eval(table, table->touch);
-    const double held = fmin(table->touch - from_touch, table->hold);
-    nt_law_value value = touching;
-    if (held >= table->hold)
-        value = nt_yield_table_eval(table, gap);
-    else
-        value.k = 0.0;
-    value.U += touching.F * held;
-    return value;
+    const double error = felt ? nt_plan_share(plan, without_pressure(plan, nearest)) : 0.0;
+    return error + (takes_relief(plan) ? 0.0 : spread_of_radii(plan));
 }
 
 /* Where a load is reached, which lies between nodes [m]; the table's end where that is less. */
@@ -131,9 +92,9 @@ static double gap_at_load(const nt_plan *plan, double load)
 {
     const nt_yield_table *table = &plan->yield;
     double nearer = table->last, farther = table->first + table->hold;
-    for (int i = 0; i < HALVINGS && nt_plan_yield_at(plan, table->last).F > load; ++i) {
+    for (int i = 0; i < HALVINGS && nt_yield_apart(plan, &plan->yield, table->last).F > load; ++i) {
         const double middle = 0.5 * (nearer + farther);
-        *(nt_plan_yield_at(plan, middle).F > load ? &nearer : &farther) = middle;
+        *(nt_yield_apart(plan, &plan->yield, middle).F > load ? &nearer : &farther) = middle;
     }
     return nearer;
 }
@@ -143,36 +104,24 @@ static void facts_of(nt_plan *plan, double load)
 {
     const nt_yield_table *table = &plan->yield;
     double pull = 0.0, growth = 0.0;
-    plan->maximum_stiffness = fmax(nt_plan_yield_at(plan, gap_at_load(plan, DEEPER * load)).k, 0.0);
+    plan->maximum_stiffness = fmax(nt_yield_apart(plan, &plan->yield, gap_at_load(plan, DEEPER * load)).k, 0.0);
     for (int i = 0; i < table->count; ++i)
         if (table->node[i].F <= DEEPER * load)
             plan->maximum_stiffness = fmax(plan->maximum_stiffness, table->node[i].k);
     const double first = table->first + table->hold;
     for (int i = 0; i <= SAMPLES; ++i) {
-        const nt_law_value value = nt_plan_yield_at(plan, first + (table->last - first) * i / SAMPLES);
+        const nt_law_value value = nt_yield_apart(plan, &plan->yield, first + (table->last - first) * i / SAMPLES);
         pull = fmax(pull, -value.F);
         growth = fmax(growth, -value.k);
     }
     for (double gap = first; gap < FARTHEST; gap *= CLOSER) {
-        const nt_law_value value = nt_plan_rigid_at(plan, gap + table->shift);
+        const nt_law_value value = nt_yield_apart(plan, table, gap);
         pull = fmax(pull, -value.F);
         growth = fmax(growth, -value.k);
     }
     plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
     plan->minimum_spring = growth;
     plan->largest_indentation = -gap_at_load(plan, load);
-}
-
-/* Laws that have a pressure act in full. */
-static void turn_on(nt_plan *plan)
-{
-    plan->on_count = 0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
-        const nt_form form = nt_term_rows[term]->pressure ? nt_plan_full_form(plan, term) : NT_FORM_OFF;
-        plan->terms[term].form = form;
-        if (form != NT_FORM_OFF)
-            plan->on[plan->on_count++] = term;
-    }
 }
 
 /* What the plan says of its terms. */
@@ -227,33 +176,36 @@ static double held_pull(const nt_plan *plan)
     return lost;
 }
 
-/* What a table is made for. */
-typedef struct wanted {
-    nt_quantity quantity; /* of the demand; tables themselves are of forces or stiffnesses */
-    double tolerance;     /* a rung of the ladder */
-    double finest;        /* the last rung */
-    double scale;         /* of that quantity */
-    double around;        /* error of laws around an adhesive contact that are not in the table */
-    double radius_scale;  /* 0: not demanded [m] */
-} wanted;
+/* Laws that have a pressure act in full. */
+static void turn_on(nt_plan *plan)
+{
+    plan->on_count = 0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        const nt_form form = nt_term_rows[term]->pressure ? nt_plan_full_form(plan, term) : NT_FORM_OFF;
+        plan->terms[term].form = form;
+        if (form != NT_FORM_OFF)
+            plan->on[plan->on_count++] = term;
+    }
+}
 
-static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const wanted *of)
+static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const nt_yield_wanted *of)
 {
     const double tolerance = of->tolerance;
     const int sticks = adheres(plan), surrounded = sticks && nt_plan_is_surrounded(plan, scene);
-    const double load = scene->range.maximum_load, least = scene->range.minimum_gap;
+    const double least = scene->range.minimum_gap;
     const double farthest = where_rigid(plan, sticks ? plan->capture_gap : in->hold, SEAM * tolerance);
     const nt_yield_sample sample = nt_yield_sample_of(in, scene, farthest);
     const nt_yield_range range = {.farthest = farthest - in->hold,
                                   .nearest = sticks && !surrounded ? fmax(plan->capture_gap, least) : least - in->hold,
                                   .centre = surrounded ? plan->length : 0.0,
-                                  .load = sticks && !surrounded ? (double)INFINITY : DEEPER * load,
+                                  .load = sticks && !surrounded ? (double)INFINITY : of->load,
                                   .tolerance = tolerance,
-                                  .scale = (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, load),
+                                  .scale = (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, scene->range.maximum_load),
                                   .attracts = sticks,
                                   .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
                                   .stiffness_scale = plan->scale,
-                                  .radius_scale = of->radius_scale};
+                                  .radius_scale = of->radius_scale,
+                                  .touches = of->touches};
     const nt_status status = nt_yield_table_make(&plan->yield, &sample, &range);
     if (status != NT_OK || !surrounded)
         return status;
@@ -272,20 +224,22 @@ static double rung_below(double tolerance, double finest)
 }
 
 /* With a tolerance, or finer, where Newton or the mesh do not come to an end. */
-static nt_status tabulate(nt_plan *plan, const nt_scene *scene, const wanted *of)
+nt_status nt_plan_yield_table(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of)
 {
     const double tolerance = of->tolerance;
     const nt_yield_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
     nt_status status = NT_E_NO_CONVERGENCE;
     if (adheres(plan)) /* inside the range of adhesion, too */
         nt_plan_prepare_laws(plan, scene, 0.0);
-    wanted finer = *of;
+    nt_yield_wanted finer = *of;
     for (int i = 0, last = 0; status == NT_E_NO_CONVERGENCE && !last; ++i) {
         status = table_of(plan, scene, &in, &finer);
         last = finer.tolerance <= of->finest || (adheres(plan) && i + 1 >= ATTEMPTS); /* those take long */
         finer.tolerance = fmax(FINER * finer.tolerance, of->finest);
     }
+    turn_on(plan);
     plan->yield.hold = in.hold;
+    plan->yield.ratio = plan->ratio;
     plan->yield.jump_error = tolerance * fmax(fabs(plan->yield.touch), plan->length);
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
         plan->yield.jump_error *= STIFF;
@@ -294,12 +248,20 @@ static nt_status tabulate(nt_plan *plan, const nt_scene *scene, const wanted *of
     return status;
 }
 
+nt_status nt_plan_yield_compose(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
+{
+    nt_yield_join(plan, &plan->yield);
+    if (adheres(plan))
+        return nt_plan_yield_contact(plan, scene, work_of_adhesion);
+    facts_of(plan, scene->range.maximum_load);
+    return NT_OK;
+}
+
 /* The table is there: contact, facts and words. */
 static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem)
 {
     const double budget = plan->demand.budget;
-    turn_on(plan);
-    join(plan);
+    nt_yield_join(plan, &plan->yield);
     if (adheres(plan))
         return nt_plan_yield_adhere(plan, scene, error, problem);
     describe(plan, error);
@@ -327,22 +289,37 @@ static double finest_of(const nt_plan *plan, const nt_scene *scene)
 }
 
 /* Of the folds: where the surface jumps is known to a distance. */
-static double error_of_folds(const nt_plan *plan, const wanted *of)
+static double error_of_folds(const nt_plan *plan, const nt_yield_wanted *of)
 {
     if (of->quantity != NT_QUANTITY_FOLDS || !plan->yield.jumps)
         return 0.0;
     return plan->yield.jump_error / plan->scale;
 }
 
-/* With one tolerance; `error`: of all that is in no table, as a share of the demand. */
-static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const wanted *of, double error, nt_problem *problem)
+/* Of a plan over relief: its places, too. */
+static void take_worst(nt_plan *plan, const nt_yield_worst *worst)
 {
-    if (tabulate(plan, scene, of) != NT_OK)
-        return refuse_modulus(plan, scene, problem);
-    plan->demand.quantity = of->quantity;
+    plan->yield.jump_error += worst->moved;
+    plan->largest_pull_off_force = fmax(plan->largest_pull_off_force, worst->pull_off_force);
+    plan->minimum_spring = fmax(plan->minimum_spring, worst->minimum_spring);
+    plan->maximum_stiffness = fmax(plan->maximum_stiffness, worst->maximum_stiffness);
+}
+
+/* With one tolerance; `error`: of all that is in no table, as a share of the demand. */
+static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of, double error, nt_problem *problem)
+{
     nt_problem reason = {0};
-    const nt_status status = compose(plan, scene, error + PARTS * of->tolerance, &reason);
+    nt_yield_worst worst = {0};
+    plan->relief.count = 0;
+    if (nt_plan_yield_table(plan, scene, of) != NT_OK)
+        return refuse_modulus(plan, scene, problem);
+    const double most = BETWEEN / (1.0 - BETWEEN) * PARTS * of->tolerance;
+    if (takes_relief(plan) && nt_plan_yield_over(plan, scene, of, most, &worst, problem) != NT_OK)
+        return NT_E_RANGE;
+    plan->demand.quantity = of->quantity;
+    const nt_status status = compose(plan, scene, error + PARTS * of->tolerance + worst.error, &reason);
     if (status == NT_OK) {
+        take_worst(plan, &worst);
         plan->bound.force_error = fmax(plan->bound.force_error, error + error_of_folds(plan, of));
         return NT_OK;
     }
@@ -350,17 +327,23 @@ static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const wanted
 }
 
 /* Tables are of forces, whatever is demanded. */
-static nt_status yield(nt_plan *plan, const nt_scene *scene, wanted *of, nt_problem *problem)
+static nt_status yield(nt_plan *plan, const nt_scene *scene, nt_yield_wanted *of, nt_problem *problem)
 {
     const double nearest = fmax(scene->range.minimum_gap, 0.0), demanded = plan->demand.relative_accuracy;
     const int felt = of->quantity == NT_QUANTITY_FORCE || of->quantity == NT_QUANTITY_STIFFNESS;
     const int surrounded = nt_plan_is_surrounded(plan, scene);
-    const double others = (felt ? other_errors(plan, nearest) : 0.0) + (surrounded ? 0.0 : of->around);
+    const double others = other_errors(plan, nearest, felt) + (surrounded ? 0.0 : of->around);
     const double finest = finest_of(plan, scene);
     const double left = (demanded > 0.0 ? demanded - others : fmin(UNASKED - others, PLENTY * PARTS * finest)) / PARTS;
-    const double share = adheres(plan) && !surrounded ? LEAVES : 1.0;
+    const double alone = takes_relief(plan) ? 1.0 - BETWEEN : 1.0;
+    const double share = alone * (adheres(plan) && !surrounded ? LEAVES : 1.0);
+    const double spread = spread_of_radii(plan);
+    of->load = DEEPER * scene->range.maximum_load;
     of->finest = share * finest;
     of->tolerance = rung_below(share * left, of->finest);
+    if (!(left >= finest) && others >= WORST && others - spread < demanded)
+        return refuse(problem, (nt_problem){NT_YIELD_SPREAD, "m", plan->radii->maximum, plan->contact.radius,
+                                            plan->contact.radius * (1.0 + demanded)});
     if (!(left >= finest))
         return refuse(problem, (nt_problem){"demand.relative_accuracy", "", demanded,
                                             (others + PARTS * finest) * (1.0 + 1e-9), 0.5});
@@ -377,7 +360,7 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, wanted *of, nt_prob
 nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
     const double quantity = plan->demand.quantity, load = scene->range.maximum_load;
-    wanted of = {.quantity = (nt_quantity)(int)quantity, .scale = plan->scale};
+    nt_yield_wanted of = {.quantity = (nt_quantity)(int)quantity};
     nt_status status = check(plan, scene, problem);
     if (status != NT_OK)
         return status;
@@ -391,8 +374,8 @@ nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     status = yield(plan, scene, &of, problem);
     plan->demand.quantity = quantity;
     if (of.quantity == NT_QUANTITY_RADIUS || of.quantity == NT_QUANTITY_FOLDS)
-        plan->scale = of.quantity == NT_QUANTITY_RADIUS ? of.scale : nt_plan_scale_of(plan, load);
+        plan->scale = of.quantity == NT_QUANTITY_RADIUS ? of.radius_scale : nt_plan_scale_of(plan, load);
     if (status != NT_OK)
-        plan->yield.count = plan->yield.holds = 0; /* no table: the facts are those of the laws again */
+        plan->yield.count = plan->yield.holds = plan->relief.count = 0; /* no table: the facts are those of the laws again */
     return status;
 }

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * A table of a sample that yields as a law of the gap: what is apart and what acts around a contact, with what adds on
+ * the undeformed gap farther out and inside. A table of another effective radius has laws that grow with it. */
+#include <math.h>
+
+#include "scene/terms/term.h"
+#include "scene/yielding/yield.h"
+
+static int adheres(const nt_plan *plan)
+{
+    return plan->source != NT_ADHESION_NONE;
+}
+
+/* What is computed beside contact, on the undeformed gap; without tails, which adhesion has in it. */
+static nt_law_value sum_of(const nt_plan *plan, const nt_yield_table *table, int tails, double gap)
+{
+    nt_law_value all = {0.0, 0.0, 0.0, 0.0};
+    for (int i = 0; i < plan->on_count; ++i) {
+        const int term = plan->on[i];
+        if (nt_term_rows[term]->words.tail && !tails)
+            continue;
+        const nt_law_value value = nt_term_rows[term]->eval(nt_term_law(plan, term), plan->terms[term].form, gap);
+        all.U += table->ratio * value.U;
+        all.F += table->ratio * value.F;
+        all.k += table->ratio * value.k;
+    }
+    return all;
+}
+
+static nt_law_value others_at(const nt_plan *plan, const nt_yield_table *table, double gap)
+{
+    nt_law_value sum = sum_of(plan, table, 0, gap);
+    sum.U += table->offset;
+    return sum;
+}
+
+/* Of the tail alone, where adhesion takes hold. */
+static nt_law_value tail_at_touch(const nt_plan *plan, const nt_yield_table *table)
+{
+    const nt_law_value all = nt_yield_table_eval(table, table->touch);
+    const nt_law_value others = others_at(plan, table, table->touch);
+    return (nt_law_value){all.U - others.U, all.F - others.F, all.k - others.k, 0.0};
+}
+
+/* In contact that the surface does not jump into: there the tail keeps its force. */
+static nt_law_value kept_at(const nt_plan *plan, const nt_yield_table *table, double gap)
+{
+    const nt_law_value tail = tail_at_touch(plan, table), others = others_at(plan, table, gap);
+    return (nt_law_value){tail.U + tail.F * (table->touch - gap) + others.U, tail.F + others.F, others.k, 0.0};
+}
+
+/* Without adhesion: the bodies touch at `hold`; the laws keep their force from there to gap 0, as they do without
+ * yielding. */
+static nt_law_value touched_at(const nt_yield_table *table, double gap)
+{
+    const nt_law_value touching = nt_yield_table_eval(table, table->touch);
+    const double held = fmin(table->touch + table->hold - gap, table->hold);
+    nt_law_value value = touching;
+    if (held >= table->hold)
+        value = nt_yield_table_eval(table, gap);
+    else
+        value.k = 0.0;
+    value.U += touching.F * held;
+    return value;
+}
+
+nt_law_value nt_yield_apart(const nt_plan *plan, const nt_yield_table *table, double gap)
+{
+    const double from_touch = gap - table->hold;
+    if (from_touch >= table->first)
+        return sum_of(plan, table, 1, gap + table->shift);
+    if (!(from_touch < table->touch))
+        return nt_yield_table_eval(table, from_touch);
+    return adheres(plan) ? kept_at(plan, table, gap) : touched_at(table, gap);
+}
+
+nt_law_value nt_yield_around(const nt_plan *plan, const nt_yield_table *table, int attached, double gap)
+{
+    if (attached && table->holds) {
+        nt_law_value value = nt_yield_table_held(table, gap);
+        value.U += table->offset;
+        return value;
+    }
+    return attached && table->jumps ? others_at(plan, table, gap) : nt_yield_apart(plan, table, gap);
+}
+
+void nt_yield_join(const nt_plan *plan, nt_yield_table *table)
+{
+    const double first = table->first + table->hold, F = table->node[0].F;
+    nt_law_value value = {0.0, 0.0, 0.0, 0.0};
+    table->shift = 0.0;
+    for (int i = 0; i < 30; ++i) {
+        value = sum_of(plan, table, 1, first + table->shift);
+        if (value.k == 0.0 || F == 0.0)
+            break;
+        table->shift += (value.F - F) / value.k;
+    }
+    value = sum_of(plan, table, 1, first + table->shift);
+    for (int i = 0; i < table->count; ++i)
+        table->node[i].U += value.U;
+}
+
+nt_law_value nt_plan_around(const nt_plan *plan, int attached, double gap)
+{
+    return plan->yield.count == 0 ? nt_plan_beside_at(plan, gap) : nt_yield_around(plan, &plan->yield, attached, gap);
+}
+
+double nt_plan_yield_share(const nt_plan *plan)
+{
+    const double radius = plan->contact.radius;
+    return plan->yield.jumps ? 0.0 : -tail_at_touch(plan, &plan->yield).F / (2.0 * NT_PI * radius);
+}
+
+double nt_plan_rise(const nt_plan *plan, const nt_place *place, double gap)
+{
+    if (plan->yield.count == 0 || !plan->yield.jumps)
+        return 0.0;
+    if (place && plan->relief.count > 0)
+        return nt_yield_relief_at(plan, place, 1, gap).law.U - nt_yield_relief_at(plan, place, 0, gap).law.U;
+    return nt_plan_around(plan, 1, gap).U - nt_plan_around(plan, 0, gap).U;
+}
