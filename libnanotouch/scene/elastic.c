@@ -234,6 +234,8 @@ double nt_plan_yield_touch(const nt_plan *plan)
 {
     const nt_yield_table *table = plan->relief.count > 0 ? plan->relief.table[0] : &plan->yield;
     const int touches = table->count > 0 && plan->source == NT_ADHESION_NONE && !isinf(table->touch);
+    if (touches && plan->relief.count > 0 && plan->demand.quantity == NT_QUANTITY_STIFFNESS)
+        return 2.0 * plan->yield.jump_error; /* where the laws are held, k jumps */
     if (!touches || plan->demand.quantity != NT_QUANTITY_RADIUS || !(plan->bound.force_error > 0.0))
         return 0.0;
     const double root = 0.5 * plan->yield.jump_error / plan->bound.force_error;

@@ -28,10 +28,9 @@ const char *nt_form_name(nt_form form)
     return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
 }
 
-/* Another demand would do. */
-static int is_accuracy(const nt_problem *problem)
+static int names(const nt_problem *problem, const char *field)
 {
-    return problem->field && strcmp(problem->field, DEMANDED) == 0;
+    return problem->field && strcmp(problem->field, field) == 0;
 }
 
 /* What belongs to a surface has its grid. */
@@ -154,11 +153,6 @@ static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int
     return NT_OK;
 }
 
-static int is_spread(const nt_problem *problem)
-{
-    return problem->field && strcmp(problem->field, NT_YIELD_SPREAD) == 0;
-}
-
 /* The law that presses most on a sample that does not keep still. */
 static int strongest(const nt_plan *plan)
 {
@@ -196,17 +190,16 @@ static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_
 {
     double least = fmax(plan->rigid_error, plan->around_error) * (1.0 + 1e-9);
     int count = 0;
-    const nt_field *field = nt_demand_fields(&count);                              /* the first is the accuracy */
-    if (problem && problem->field && strcmp(problem->field, "demand.budget") == 0) /* a dearer table would do */
+    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
+    if (problem && names(problem, "demand.budget"))   /* a dearer table would do */
         return NT_E_RANGE;
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         least += options->option[term][options->count[term] - 1].error;
-    const int finer =
-        problem && is_accuracy(problem) && problem->minimum < field->maximum; /* a table of another demand would do */
+    const int finer = problem && names(problem, DEMANDED) &&
+                      problem->minimum < field->maximum; /* a table of another demand would do */
     if (problem && !finer && !(least < field->maximum)) {
-        if (is_spread(problem))
-            return NT_E_RANGE;
-        *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
+        if (!names(problem, NT_YIELD_SPREAD))
+            *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
         return NT_E_RANGE;
     }
     const int better = problem && (problem->field != field->name || least < problem->minimum);
@@ -243,7 +236,7 @@ static nt_status yield_at_best(nt_plan *plan, const nt_scene *scene)
         return NT_E_RANGE;
     plan->demand.relative_accuracy = STRICTEST;
     nt_status status = nt_plan_yield(plan, scene, &least);
-    double wanted = is_accuracy(&least) ? least.minimum : (double)INFINITY;
+    double wanted = names(&least, DEMANDED) ? least.minimum : (double)INFINITY;
     for (int i = 0; i < TRIES && status != NT_OK && wanted < errs; ++i) {
         plan->demand.relative_accuracy = wanted;
         status = nt_plan_yield(plan, scene, NULL);
@@ -329,7 +322,7 @@ static void keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *p
     nt_problem reason = *problem;
     int found = 0;
     double named = 0.0;
-    for (int i = 0; i < SAID && !found && is_accuracy(&reason) && reason.minimum > named; ++i) {
+    for (int i = 0; i < SAID && !found && names(&reason, DEMANDED) && reason.minimum > named; ++i) {
         named = printed(reason.minimum);
         found = is_planned(plan, inputs, named, &reason);
     }
@@ -369,7 +362,7 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
     nt_status status = decide(plan, inputs, &reason);
     if (status != NT_OK) {
         const int jumps = plan->source == NT_ADHESION_NONE && !plan->properties && isinf(plan->rigid_error);
-        if (problem && is_accuracy(&reason))
+        if (problem && names(&reason, DEMANDED))
             keep_word(plan, inputs, &reason);
         if (problem && jumps && isinf(reason.value))
             stay_away(plan, inputs, &reason);

@@ -41,7 +41,7 @@ static void the_contact_law_follows_from_the_scene(void **state)
     nt_demand demand = nt_demand_defaults();
     const nt_scene silicon = nt_scene_defaults();
     nt_scene none = dry_silicon(), cone = dry_silicon(), far = dry_silicon(), tailless = silicon;
-    none.adhesion.work_of_adhesion = 0.0;
+    none.adhesion.work_of_adhesion = none.adhesion.hamaker_constant = 0.0; /* to a pull the sample would yield */
     cone.tip.shape = NT_SHAPE_CONE;
     far.range.minimum_gap = 10e-9;
     tailless.adhesion.hamaker_constant = 0.0; /* with a tail the sample yields, and its table has no such bound */
@@ -165,7 +165,7 @@ static void stiffness_is_that_of_the_largest_load(void **state)
 {
     (void)state;
     nt_scene scene = dry_silicon();
-    scene.adhesion.work_of_adhesion = 0.0;
+    scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = 0.0;
     assert_int_equal(make(&plan, &scene, NULL), NT_OK);
     const double E = 135e9 / (2.0 * (1.0 - 0.35 * 0.35)), R = 20e-9, F = scene.range.maximum_load;
     assert_true(fabs(plan.maximum_stiffness / cbrt(6.0 * E * E * R * F) - 1.0) < 1e-9);

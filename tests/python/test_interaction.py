@@ -118,6 +118,10 @@ def test_plans_keep_the_bound_over_topography(seed: int) -> None:
         outcome = random_scenes.compare_over(scene, cycles.bumpy(scene, seed * 100 + index), accuracy, rng, quantity)
         if isinstance(outcome, Error):
             continue
+        if outcome.plan.explain()[
+            "yields"
+        ]:  # which the rigid oracle does not know: tests/python/test_yielding_relief.py
+            continue
         forms.append(outcome.plan.terms[0].form)
         assert outcome.error <= outcome.plan.bound, (index, repr(outcome.plan))
         assert random_scenes.keeps(outcome.plan, accuracy), (index, repr(outcome.plan))

@@ -175,3 +175,22 @@ def test_van_der_waals_of_a_sphere_without_adhesion(rings):
     value = plan.run([1e-6] + [s.gap for s in states])
     true = np.array([s.force for s in states])
     assert np.all(np.abs(value.F[1:] - true) <= plan.bound * np.maximum(np.abs(true), plan.scale))
+
+
+def test_a_pull_without_a_jump(rings):
+    """Silicon under van der Waals alone, whose pressure is that of the plan's own sphere: p = k/(2 pi R)."""
+    scene = nt.Scene(medium={"relative_humidity": 0.0}, adhesion={"work_of_adhesion": 0.0})
+    plan, radius, z0 = scene.plan(0.01), scene.tip.radius, scene.adhesion.equilibrium_distance
+    assert plan.explain()["rigid_error"] > 1.0
+
+    def pressure(g):
+        return np.reshape(plan.law("vdw", np.ravel(g)).k, np.shape(g)) / (2 * np.pi * radius)
+
+    def law(g):
+        d = 1e-5 * (g + z0)
+        return pressure(g), (pressure(g + d) - pressure(g - d)) / (2 * d)
+
+    for centre in np.array([3.0, 0.4, 0.1, 0.02, 0.005]) * 1e-9:
+        state = rings.state(law, radius, TIP / 2, max((centre + z0) / 2, 1e-10), centre)
+        found = plan.run([1e-6, state.gap]).F[1]
+        assert abs(found - state.force) <= plan.bound * max(abs(state.force), plan.scale)

@@ -4,7 +4,45 @@
 #include <math.h>
 
 #include "scene/terms/term.h"
-#include "scene/yielding/yield.h"
+#include "scene/yielding/cubic.h"
+
+/* In the part of the nodes low .. high - 1. */
+static nt_law_value eval(const nt_yield_table *table, int low, int high, double h)
+{
+    const nt_yield_node *node = table->node;
+    const int part = part_of(table, low);
+    const double v = v_of(table, part, h), past = v - node[--high].v;
+    if (past >= 0.0) { /* deeper than the table: with its last slope */
+        const double F = node[high].F, k = node[high].k;
+        const double d = high == table->count - 1 ? fmax(table->last - h, 0.0) : 0.0;
+        return (nt_law_value){node[high].U + d * (F + 0.5 * k * d), F + k * d, k, node[high].a};
+    }
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (v < node[middle].v)
+            high = middle;
+        else
+            low = middle;
+    }
+    double c[4];
+    cubic(&node[low], &node[high], c);
+    const double t = v - node[low].v, m = metric(part, v);
+    const double k = m > 0.0 ? slope_at(c, t) / m : node[low].k;
+    const double share = t / (node[high].v - node[low].v);
+    return (nt_law_value){node[low].U + work(c, part, node[low].v, t), force_at(c, t), k,
+                          node[low].a + share * (node[high].a - node[low].a)};
+}
+
+nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h)
+{
+    const int contact = h < table->touch && table->apart < table->count && !table->holds;
+    return contact ? eval(table, table->apart, table->count, h) : eval(table, 0, table->apart, h);
+}
+
+nt_law_value nt_yield_table_held(const nt_yield_table *table, double h)
+{
+    return eval(table, table->apart, table->count, h);
+}
 
 static int adheres(const nt_plan *plan)
 {

@@ -12,9 +12,10 @@
 #define FAR 2.0      /* times how far a fold is from where it should be: nearer to it nothing is compared */
 #define HALVED 0.5   /* of the error, by half the step, at most */
 #define DEEPER 1.02  /* than the largest load */
+#define WORST 10.0   /* times the error that will do: what a looser demand may bring */
 #define STEEPEST 2.0 /* power of the radius with which a force at one gap grows, at most */
 
-enum { CELLS = 2, OF_EACH = 2 }; /* at least so many; samples of each cell of a table */
+enum { CELLS = 2, OF_EACH = 2, NEARER = 5 }; /* at least so many; samples of each cell of a table; bisections */
 
 /* In the making. */
 typedef struct relief_maker {
@@ -22,9 +23,9 @@ typedef struct relief_maker {
     const nt_scene *scene;
     nt_yield_wanted of;
     nt_yield_worst *worst;
-    double work;         /* that a measured pull-off force has [J/m^2]; 0: that of the scene */
-    double low, high;    /* radii between which tables are alike [m] */
-    double missing;      /* a radius that has none like them [m] */
+    double work;      /* that a measured pull-off force has [J/m^2]; 0: that of the scene */
+    double low, high; /* radii between which tables are alike [m] */
+    double missing;   /* a radius that has none like them [m] */
     const nt_yield_table *like;
 } relief_maker;
 
@@ -85,14 +86,15 @@ static nt_status make_first(relief_maker *m)
 }
 
 /* Where the bodies touch anywhere at the largest load, tables of all radii go on to where they do; those of the least
- * touch first. */
-static nt_status find_touch(relief_maker *m)
+ * touch first. With adhesion that of the tip's own radius must have a contact. */
+static nt_status begin(relief_maker *m)
 {
     nt_yield_relief *relief = &m->plan->relief;
-    m->like = m->plan->source == NT_ADHESION_NONE ? NULL : &m->plan->yield;
-    if (m->like)
-        return NT_OK;
-    const nt_status status = make_one(m, relief->first, 0);
+    const int adheres = m->plan->source != NT_ADHESION_NONE;
+    m->like = adheres ? &m->plan->yield : NULL;
+    const nt_status status = make_one(m, adheres ? m->plan->contact.radius : relief->first, 0);
+    if (adheres)
+        return status;
     m->of.touches = status == NT_OK && !isinf(relief->room[0].touch);
     m->like = relief->room;
     return status;
@@ -124,6 +126,13 @@ static double gap_of(const nt_yield_table *table, int part, double v)
     return (table->holds ? table->release : table->touch) - v * v;
 }
 
+/* Without adhesion laws are held over a distance where the bodies touch, at either end of which the stiffness jumps. */
+static int near_fold(const nt_plan *plan, const nt_yield_table *table, double beside, double distance)
+{
+    const double other = plan->source == NT_ADHESION_NONE ? table->hold : 0.0;
+    return fabs(beside) < distance || fabs(beside + other) < distance;
+}
+
 /* Of a table to what the others make of its radius, but nearer to its fold than that is known. */
 static double error_of(const relief_maker *m, const nt_yield_table *table, double moved)
 {
@@ -137,7 +146,8 @@ static double error_of(const relief_maker *m, const nt_yield_table *table, doubl
             const double from = table->node[i - 1].v, share = (double)j / OF_EACH;
             const double gap = gap_of(table, part, from + share * (table->node[i].v - from));
             const nt_law_value truth = nt_yield_around(m->plan, table, attached, gap);
-            if (truth.F > load || ((part < 0 || attached) && fabs(gap - fold) < FAR * moved))
+            const int sharp = part < 0 || attached || m->plan->demand.quantity == NT_QUANTITY_STIFFNESS;
+            if (truth.F > load || (sharp && near_fold(m->plan, table, gap - fold, FAR * moved)))
                 continue;
             const nt_law_value found = nt_yield_relief_at(m->plan, &place, attached, gap).law;
             worst = fmax(worst, difference(m->plan, &m->of, &found, &truth));
@@ -199,10 +209,36 @@ static double work_of(const nt_plan *plan, const nt_scene *scene)
     return nt_plan_adhere(&own, scene, NULL) == NT_OK ? own.contact.work_of_adhesion + own.tail : 0.0;
 }
 
-static nt_status refuse(const relief_maker *m, nt_problem *problem)
+/* Of a dry contact the radii that are alike go on to nearer where they no longer are. */
+static void find_limit(relief_maker *m)
 {
+    double missing = m->missing;
+    for (int i = 0; i < NEARER && m->plan->source != NT_ADHESION_NONE && !m->plan->yield.holds; ++i) {
+        const double good = missing < m->low ? m->low : m->high, middle = sqrt(good * missing);
+        if (make_one(m, middle, 0) != NT_OK)
+            missing = middle;
+    }
+}
+
+/* Where the tip's own radius has no contact either, it is no matter of the surface. */
+static nt_status refuse(relief_maker *m, nt_problem *problem)
+{
+    if (!problem || m->missing == m->plan->contact.radius)
+        return NT_E_RANGE;
+    find_limit(m);
+    *problem = (nt_problem){NT_YIELD_SPREAD, "m", m->missing, m->low, m->high};
+    return NT_E_RANGE;
+}
+
+/* No more tables fit: a looser demand is kept by those there are. */
+static nt_status refuse_error(const relief_maker *m, double most, nt_problem *problem)
+{
+    int count = 0;
+    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
+    const double demanded = m->plan->demand.relative_accuracy;
     if (problem)
-        *problem = (nt_problem){NT_YIELD_SPREAD, "m", m->missing, m->low, m->high};
+        *problem = (nt_problem){field->name, field->unit, demanded,
+                                fmin(demanded * m->worst->error / most, field->maximum), field->maximum};
     return NT_E_RANGE;
 }
 
@@ -212,12 +248,12 @@ nt_status nt_plan_yield_over(nt_plan *plan, const nt_scene *scene, const nt_yiel
     nt_yield_relief *relief = &plan->relief;
     const double R = plan->contact.radius, least = plan->radii->minimum, largest = plan->radii->maximum;
     const double span = fmax(log(largest / least), LEAST);
-    relief_maker m = {plan, scene, *of, worst, work_of(plan, scene), R, R, R, NULL};
+    relief_maker m = {plan, scene, *of, worst, work_of(plan, scene), R, R, 0.0, NULL};
     relief->count = 1 + (int)fmax(ceil(span / APART), CELLS);
     relief->first = least;
     relief->step = span / (relief->count - 1);
     m.of.load *= exp(STEEPEST * relief->step);
-    nt_status status = find_touch(&m);
+    nt_status status = begin(&m);
     if (status == NT_OK)
         status = make_first(&m);
     if (status != NT_OK)
@@ -227,7 +263,8 @@ nt_status nt_plan_yield_over(nt_plan *plan, const nt_scene *scene, const nt_yiel
     } while (status == NT_OK && worst->error > most);
     if (status == NT_OK)
         return NT_OK;
-    if (status == NT_E_NO_CONVERGENCE)
-        m.missing = largest;
-    return refuse(&m, problem);
+    if (status != NT_E_NO_CONVERGENCE)
+        return refuse(&m, problem);
+    m.missing = largest;
+    return worst->error < WORST * most ? refuse_error(&m, most, problem) : refuse(&m, problem);
 }

@@ -33,11 +33,11 @@ static mix mix_of(const nt_yield_relief *relief, double radius)
     const double at = log(radius / relief->first) / relief->step;
     const int last = relief->count - 2, cell = (int)fmin(fmax(at, 0.0), last);
     const double t = at - cell;
-    mix m = {.first = cell - 1,
-             .weight = {t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (1.5 * t - 2.5),
-                        t * (0.5 + t * (2.0 - 1.5 * t)), t * t * (0.5 * t - 0.5)},
-             .slope = {-0.5 + t * (2.0 - 1.5 * t), t * (4.5 * t - 5.0), 0.5 + t * (4.0 - 4.5 * t),
-                       t * (1.5 * t - 1.0)}};
+    mix m = {
+        .first = cell - 1,
+        .weight = {t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (1.5 * t - 2.5), t * (0.5 + t * (2.0 - 1.5 * t)),
+                   t * t * (0.5 * t - 0.5)},
+        .slope = {-0.5 + t * (2.0 - 1.5 * t), t * (4.5 * t - 5.0), 0.5 + t * (4.0 - 4.5 * t), t * (1.5 * t - 1.0)}};
     if (cell == 0) {
         fold_back(m.weight, 0, 1);
         fold_back(m.slope, 0, 1);

@@ -19,49 +19,11 @@
 #define HIGHEST 1e-3     /* of ln a: where that is */
 #define RESOLVED 2.0     /* times the tolerance: energy that the force does not tell */
 #define JUMPS 3.0        /* times the pull at the jump: what a panel resolves, a tolerance of */
+#define NEARER 0.3       /* of a step that is too long for the solver: the next */
+#define WIDER 4.0        /* of the first radius of contact: the next */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
-enum { CLIMB = 60, PARABOLAS = 12 };
-
-/* In the part of the nodes low .. high - 1. */
-static nt_law_value eval(const nt_yield_table *table, int low, int high, double h)
-{
-    const nt_yield_node *node = table->node;
-    const int part = part_of(table, low);
-    const double v = v_of(table, part, h), past = v - node[--high].v;
-    if (past >= 0.0) { /* deeper than the table: with its last slope */
-        const double F = node[high].F, k = node[high].k;
-        const double d = high == table->count - 1 ? fmax(table->last - h, 0.0) : 0.0;
-        return (nt_law_value){node[high].U + d * (F + 0.5 * k * d), F + k * d, k, node[high].a};
-    }
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (v < node[middle].v)
-            high = middle;
-        else
-            low = middle;
-    }
-    double c[4];
-    cubic(&node[low], &node[high], c);
-    const double t = v - node[low].v, m = metric(part, v);
-    const double k = m > 0.0 ? slope_at(c, t) / m : node[low].k;
-    const double share = t / (node[high].v - node[low].v);
-    return (nt_law_value){node[low].U + work(c, part, node[low].v, t), force_at(c, t), k,
-                          node[low].a + share * (node[high].a - node[low].a)};
-}
-
-nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h)
-{
-    const int contact = h < table->touch && table->apart < table->count && !table->holds;
-    return contact ? eval(table, table->apart, table->count, h) : eval(table, 0, table->apart, h);
-}
-
-nt_law_value nt_yield_table_held(const nt_yield_table *table, double h)
-{
-    return eval(table, table->apart, table->count, h);
-}
-
-/* --- Making it --- */
+enum { CLIMB = 60, PARABOLAS = 12, FAILURES = 5, WIDENINGS = 2 };
 
 typedef struct maker {
     nt_yield_table *table;
@@ -134,6 +96,7 @@ static nt_status march(maker *m, int part, double step)
 {
     const double direction = m->hold == NT_YIELD_CONTACT ? 1.0 : -1.0, least = SMALLEST * step;
     nt_status status = add(m, node_of(m, part, &m->last));
+    int failed = 0;
     while (status == NT_OK && !is_done(m)) {
         const double from = held(m, &m->last), left = direction * (m->end - from);
         if (left < least)
@@ -144,8 +107,14 @@ static nt_status march(maker *m, int part, double step)
         status = nt_yield_go(&m->solver, m->hold, 0.5 * (from + to), &between);
         if (status == NT_OK)
             status = nt_yield_go(&m->solver, m->hold, to, &next);
-        if (status != NT_OK)
-            return status;
+        if (status != NT_OK) { /* too far, as through where the bodies touch; a rim that no mesh resolves */
+            const int narrow = m->hold == NT_YIELD_CONTACT && from == 0.0 && failed < WIDENINGS;
+            step = (narrow ? WIDER : NEARER) * fabs(to - from);
+            if (step < least || ++failed > FAILURES)
+                return status;
+            status = NT_OK;
+            continue;
+        }
         if (leaps(m, &next)) {
             step = 0.5 * fabs(to - from);
             if (step < least)
@@ -161,6 +130,8 @@ static nt_status march(maker *m, int part, double step)
             return march(m, part, step);
         }
         const nt_yield_node ends[2] = {m->table->node[m->table->count - 1], node_of(m, part, &next)};
+        if (!(ends[1].v > ends[0].v)) /* back through a fold */
+            return NT_E_NO_CONVERGENCE;
         const double error = distance(m, ends, part, &between) / m->range->tolerance;
         const double factor = fmin(fmax(0.9 * pow(fmax(error, 1e-9), -0.25), 0.25), 2.5);
         step = fabs(to - from) * factor;
@@ -169,6 +140,7 @@ static nt_status march(maker *m, int part, double step)
         if (error > 1.0)
             continue;
         m->last = next;
+        failed = 0;
         status = add(m, ends[1]);
     }
     return status;

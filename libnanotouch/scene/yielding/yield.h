@@ -189,7 +189,7 @@ nt_status nt_plan_yield_contact(nt_plan *plan, const nt_scene *scene, double wor
 
 /* What a plan says that is refused because no one kind of table spans the effective radii of its surface. */
 #define NT_YIELD_SPREAD                                                                                                \
-    "surface (the soft sample yields otherwise at the effective radius of some of its places than at the tip's own, "   \
+    "surface (the soft sample yields otherwise at the effective radius of some of its places than at the tip's own, "  \
     "and no one plan spans both; a smoother surface or another tip has less spread)"
 
 /* radii.c: what the tables of all effective radii of a surface come to. */

@@ -27,7 +27,7 @@
 #define UNFELT 0.3   /* of the demand: a spread of radii that one table may leave out */
 #define BETWEEN 0.4  /* of what is left over relief: what lies between its tables */
 
-enum { ATTEMPTS = 4, SAMPLES = 1000, HALVINGS = 60 };
+enum { ATTEMPTS = 4, OF_EACH_RADIUS = 2, RUNGS = 100, SAMPLES = 1000, HALVINGS = 60 };
 
 static int adheres(const nt_plan *plan)
 {
@@ -200,7 +200,8 @@ static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_t
                                   .centre = surrounded ? plan->length : 0.0,
                                   .load = sticks && !surrounded ? (double)INFINITY : of->load,
                                   .tolerance = tolerance,
-                                  .scale = (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, scene->range.maximum_load),
+                                  .scale =
+                                      (sticks ? WEAKER : 1.0) * nt_plan_force_scale(plan, scene->range.maximum_load),
                                   .attracts = sticks,
                                   .stiffness = plan->demand.quantity == NT_QUANTITY_STIFFNESS,
                                   .stiffness_scale = plan->scale,
@@ -234,13 +235,16 @@ nt_status nt_plan_yield_table(nt_plan *plan, const nt_scene *scene, const nt_yie
     nt_yield_wanted finer = *of;
     for (int i = 0, last = 0; status == NT_E_NO_CONVERGENCE && !last; ++i) {
         status = table_of(plan, scene, &in, &finer);
-        last = finer.tolerance <= of->finest || (adheres(plan) && i + 1 >= ATTEMPTS); /* those take long */
+        const int attempts = plan->ratio != 1.0 ? OF_EACH_RADIUS
+                             : adheres(plan)    ? ATTEMPTS
+                                                : RUNGS; /* some take long */
+        last = finer.tolerance <= of->finest || i + 1 >= attempts;
         finer.tolerance = fmax(FINER * finer.tolerance, of->finest);
     }
     turn_on(plan);
     plan->yield.hold = in.hold;
     plan->yield.ratio = plan->ratio;
-    plan->yield.jump_error = tolerance * fmax(fabs(plan->yield.touch), plan->length);
+    plan->yield.jump_error = tolerance * fmax(isinf(plan->yield.touch) ? 0.0 : fabs(plan->yield.touch), plan->length);
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
         plan->yield.jump_error *= STIFF;
     if (status == NT_OK && held_pull(plan) > fmax(plan->demand.relative_accuracy, tolerance) * plan->scale)
@@ -306,7 +310,8 @@ static void take_worst(nt_plan *plan, const nt_yield_worst *worst)
 }
 
 /* With one tolerance; `error`: of all that is in no table, as a share of the demand. */
-static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of, double error, nt_problem *problem)
+static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const nt_yield_wanted *of, double error,
+                              nt_problem *problem)
 {
     nt_problem reason = {0};
     nt_yield_worst worst = {0};
@@ -314,8 +319,8 @@ static nt_status yield_within(nt_plan *plan, const nt_scene *scene, const nt_yie
     if (nt_plan_yield_table(plan, scene, of) != NT_OK)
         return refuse_modulus(plan, scene, problem);
     const double most = BETWEEN / (1.0 - BETWEEN) * PARTS * of->tolerance;
-    if (takes_relief(plan) && nt_plan_yield_over(plan, scene, of, most, &worst, problem) != NT_OK)
-        return NT_E_RANGE;
+    if (takes_relief(plan) && nt_plan_yield_over(plan, scene, of, most, &worst, &reason) != NT_OK)
+        return reason.field ? refuse(problem, reason) : refuse_modulus(plan, scene, problem);
     plan->demand.quantity = of->quantity;
     const nt_status status = compose(plan, scene, error + PARTS * of->tolerance + worst.error, &reason);
     if (status == NT_OK) {
@@ -376,6 +381,7 @@ nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     if (of.quantity == NT_QUANTITY_RADIUS || of.quantity == NT_QUANTITY_FOLDS)
         plan->scale = of.quantity == NT_QUANTITY_RADIUS ? of.radius_scale : nt_plan_scale_of(plan, load);
     if (status != NT_OK)
-        plan->yield.count = plan->yield.holds = plan->relief.count = 0; /* no table: the facts are those of the laws again */
+        plan->yield.count = plan->yield.holds = plan->relief.count =
+            0; /* no table: the facts are those of the laws again */
     return status;
 }
