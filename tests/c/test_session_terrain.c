@@ -62,6 +62,19 @@ static nt_terrain *made(const nt_terrain_setup *setup)
     return terrain;
 }
 
+/* A rigid sample as it was composed; one that yields has a table for each of some radii. */
+static void assert_planned(const nt_plan *plan, double accuracy, double lambda, double bound)
+{
+    const double rigid = larger(plan->rigid_error, plan->around_error), found = plan->bound.force_error;
+    if (plan->relief.count > 0) {
+        assert_true(rigid > accuracy && found <= accuracy);
+        assert_within(plan->lambda, lambda, rigid * lambda);
+        return;
+    }
+    assert_within(plan->lambda, lambda, 1e-12 * lambda);
+    assert_true(found >= bound * (1.0 - 1e-9) && found <= (bound + rigid) * (1.0 + 1e-9));
+}
+
 /* What Python's composition gave for these scenes before it was C, and since hollows are kept to 3 R: bounds of the
  * radii, pixels at their limits, range and fineness of the bank, and what the plan made of it. */
 static void is_what_python_composed(void **state)
@@ -106,16 +119,9 @@ static void is_what_python_composed(void **state)
         assert_within(bank->largest_indentation, cases[i].deepest, 1e-12);
         assert_int_equal(bank->panels_per_octave, cases[i].fineness);
         assert_int_equal(bank->cells_per_octave, cases[i].fineness);
-        const double rigid = larger(plan->rigid_error, plan->around_error);
-        if (plan->relief.count > 0) { /* yields, with a table for each of some radii */
-            assert_true(rigid > cases[i].accuracy && plan->bound.force_error <= cases[i].accuracy);
-            assert_within(plan->lambda, cases[i].lambda, rigid * cases[i].lambda);
-        } else {
-            assert_within(plan->lambda, cases[i].lambda, 1e-12 * cases[i].lambda);
-            assert_true(plan->bound.force_error >= cases[i].bound * (1.0 - 1e-9));
-            assert_true(plan->bound.force_error <= (cases[i].bound + rigid) * (1.0 + 1e-9));
+        assert_planned(plan, cases[i].accuracy, cases[i].lambda, cases[i].bound);
+        if (plan->relief.count == 0)
             assert_within(plan->largest_indentation, cases[i].indentation, 1e-12 * cases[i].indentation);
-        }
         nt_terrain_close(terrain);
     }
 }

@@ -3,6 +3,8 @@
 ever farther from the self-consistent half-space or layer than the plan says, whether its sample yields or adds on the
 undeformed gap? Where the surface jumps and where contact lets go is compared, too.
 
+``--relief``: over random bumps, each place against a flat of its effective radius.
+
 Resumable: ``--first SEED``; with OPENBLAS_NUM_THREADS=1 the truth is many times faster.
 
 A violation prints the seed that makes the scene again; what is refused is counted by its reason.
@@ -15,7 +17,11 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
+
+import cycles
 import nanotouch as nt
 import numpy as np
 from nanotouch import reference
@@ -194,6 +200,52 @@ def compare(seed: int, count: int = 6) -> tuple[str, float, float]:
     return f"{kind}, {quantity}", worst, plan.bound
 
 
+def compare_over(seed: int) -> tuple[str, float, float]:
+    """The force over relief, of a dry scene or one of laws that push: at two places, beside their own flats."""
+    rng = np.random.default_rng(seed)
+    sticks = seed % 2 == 0
+    scene, demand = (sticky_scene_of if sticks else scene_of)(rng), 10.0 ** rng.uniform(-3.0, -1.0)
+    scene.sample.thickness = 0.0
+    body = cycles.bumpy(scene, seed)
+    try:
+        plan = scene.plan(demand, surface=body)
+    except Error as refusal:
+        try:
+            flat = "flat, too" if scene.plan(demand).bound > demand else "over relief alone"
+        except Error:
+            flat = "flat, too"
+        return f"refused {flat}: {str(refusal).split(' = ')[0][:60]}", 0.0, 0.0
+    if not plan.explain()["yields"]:
+        return "rigid over relief: refused no more", 0.0, plan.bound
+    error, kind = 0.0, "dry relief" if sticks else "relief"
+    for _ in range(2):
+        x, y = rng.uniform(0.1, 0.8, 2) * body.size[0]
+        flat_scene = scene.copy()
+        flat_scene.tip.radius = float(body.radius_map.radius(x, y).radius)
+        try:
+            there = error_at(plan, flat_scene, rng, (x, y, float(body.height(x, y))))
+        except (SolverError, np.linalg.LinAlgError):
+            return f"{kind}: reference failed", 0.0, plan.bound
+        error = max(error, there)
+    return kind, error, plan.bound
+
+
+def error_at(plan: nt.Plan, scene: nt.Scene, rng: np.random.Generator, place: tuple[float, float, float]) -> float:
+    """Of the force at a place (x, y, height), whose flat is `scene`."""
+    x, y, z = place
+    if scene.adhesion.work_of_adhesion > 0.0:
+        capture = reference.yielded_scene(scene, 1e-5).capture_gap
+        gaps = capture * np.array([8.0, 3.0, 1.5, 1.1, 0.9, 0.0])
+        true = reference.yielded_scene(scene, 1e-5).force(gaps, "approach")
+    else:
+        gaps = gaps_of(scene.plan(0.1), scene, rng, 4)
+        true = np.array([here.force for here in reference.yielded(scene, gaps)[0]])
+        true[true > scene.range.maximum_load] = np.nan  # beyond what is planned
+    found = nt.Interaction(plan, "approach").eval(np.column_stack([0.0 * gaps + x, 0.0 * gaps + y, z + gaps])).Fz
+    error = np.abs(found - true) / np.maximum(np.abs(true), plan.scale)
+    return float(np.nanmax(error, initial=0.0))
+
+
 def gaps_of(plan: nt.Plan, scene: nt.Scene, rng: np.random.Generator, count: int) -> np.ndarray:
     """Gaps in falling order at which the force is between a hundredth of the scale and the largest load."""
     load = scene.range.maximum_load
@@ -212,11 +264,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--relief", action="store_true")
     wanted = parser.parse_args()
     kinds: Counter[str] = Counter()
     shares, broken, start = [], 0, time.monotonic()
     for seed in range(wanted.first, wanted.first + wanted.count):
-        kind, error, bound = compare(seed)
+        kind, error, bound = compare_over(seed) if wanted.relief else compare(seed)
         kinds[kind] += 1
         if not any(word in kind for word in ("refused", "failed", "too hard", "not know")):
             shares.append(error / bound)
