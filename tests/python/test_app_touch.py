@@ -29,7 +29,8 @@ KEYS = {  # of the interface, and beyond
     "models", "snap_in_force_N", "pull_off_force_N", "hand_pull_off_force_N", "position_tracking_rms_m",
     "force_tracking_rms_N", "loop_rate_Hz", "steps", "stability_margin", "force_limit_N", "force_overshoot_N",
     "surface", "mode", "hand_snap_in_force_N", "planned_pull_off_force_N", "largest_force_N", "alpha_p", "alpha_f",
-    "dents", "largest_sideways_force_N", "touched", "duration_s", "incomplete", "stability", "calm", "states", "reasons", "seed", "version",
+    "dents", "largest_sideways_force_N", "touched", "duration_s", "incomplete", "stability", "calm", "states",
+    "reasons", "seed", "version",
 }  # fmt: skip
 ALWAYS = {"recording.mcap", "summary.json", "time.png", "force_gap.png", "view.png"}
 

@@ -71,3 +71,32 @@ def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.C
     assert dent["depth_m"] == record.read(out / "recording.mcap").dents[0].imprint.depth
     assert f"1, the deepest {1e9 * dent['depth_m']:.3g} nm" in said
     assert "model error    not known" in said
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("push --radius 1nm", ["--radius 1nm", "50nm .. 20um"]),
+        ("push --to 0um,0um", ["--to 0um,0um", "up to 1000 radii"]),
+        ("push --to 5um", ["1 lengths instead of 2"]),
+        ("push --tolerance 0nm", ["tolerance"]),
+        ("push --seed -1", ["'-1'", "0 .. 2^32 - 1"]),
+        ("indent 0nN", ["LOAD 0nN", "above 0 N"]),
+        ("indent 10uN", ["range.maximum_load"]),
+        ("indent 5", ["'5' has no unit"]),
+        ("indent 10nN --scene silicon_on_gold", ["--yield-strength"]),
+        ("indent 10nN --piled-up 2", ["piled_up"]),
+    ],
+)
+def test_wrong_input_is_named(
+    line: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    try:
+        status = main(line.split())
+    except SystemExit as end:
+        status = int(str(end.code))
+    assert status == 2
+    said = capsys.readouterr().err
+    assert all(word in said for word in words), said
+    assert "Traceback" not in said

@@ -321,16 +321,6 @@ map                                 | required: FILE
 reproduce --figure 7                | --figure 7 | 5, 6, 9, 10, 11, 16, 17, 18, 19
 reproduce --figure -5               | --figure -5 | 5, 6, 9
 reproduce --figure x                | 'x' | int
-push --radius 1nm                   | --radius 1nm | 50nm .. 20um
-push --to 0um,0um                   | --to 0um,0um | up to 1000 radii
-push --to 5um                       | 1 lengths instead of 2
-push --tolerance 0nm                | tolerance
-push --seed -1                      | '-1' | 0 .. 2^32 - 1
-indent 0nN                          | LOAD 0nN | above 0 N
-indent 10uN                         | range.maximum_load
-indent 5                            | '5' has no unit
-indent 10nN --scene silicon_on_gold | --yield-strength
-indent 10nN --piled-up 2            | piled_up
 workflow --pixels 0                 | --pixels 0 | 48 .. 512
 workflow --seed -1                  | '-1' | 0 .. 2^32 - 2
 workflow --out file                 | cannot write into file
