@@ -217,6 +217,7 @@ nt_status ContactModel::tear(Tear *tear) const
     const double s = goes_on ? where_steep(1e12 / compliance_) : branch_.load_fold;
     const nt_fit_state state = row_.at(&branch_, s);
     tear->position = value_[NT_FIT_CONTACT_POINT] + state.indentation + compliance_ * state.F;
+    tear->steep = std::max(end_base_ - (state.indentation + compliance_ * state.F), 0.0);
     tear->gradient.fill(0.0);
     row_.derive(&state, goes_on ? -1.0 / compliance_ : 0.0, tear->gradient.data());
     for (int i = 0; i < NT_FIT_OWN; i++)

@@ -69,8 +69,8 @@ nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const 
 // A force that never changes is none that a model could be fitted to.
 nt_status check_span(const nt_curve_segment &segment, nt_problem *problem)
 {
-    const auto [lowest, highest] = std::minmax_element(segment.force, segment.force + segment.count);
-    if (segment.count < NT_CURVE_FEWEST || *highest > *lowest || std::isnan(*lowest))
+    const auto changes = [&](double force) { return force != segment.force[0]; };
+    if (segment.count < NT_CURVE_FEWEST || std::any_of(segment.force, segment.force + segment.count, changes))
         return NT_OK;
     *problem = {"force (span)", "N", 0.0, 1e-18, 1.0};
     return NT_E_RANGE;

@@ -29,6 +29,7 @@ struct Point {
 struct Tear {
     double position;
     Parameters gradient;
+    double steep; // how far before it the model is only a straight continuation [m]
 };
 
 class Model

@@ -215,7 +215,7 @@ void write_points(const nt_fit_options &options, const double *value, const std:
     for (std::size_t i = 0; i < points.size(); i++) {
         written[i] = {points[i].force, points[i].indentation, {}, points[i].held};
         for (std::size_t p = 0; p < NT_FIT_PARAMETERS; p++)
-            written[i].gradient[p] = points[i].gradient[p] == 0.0 ? 0.0 : points[i].gradient[p] * per[p];
+            written[i].gradient[p] = points[i].gradient[p] * per[p];
     }
 }
 
@@ -331,20 +331,36 @@ nt_status nt_fit_model_n(const nt_fit_options *options, const double value[NT_FI
     }
 }
 
-nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double *position)
+nt_status nanotouch::tear_of(const nt_fit_options &options, const double *value, Tear *tear)
 {
-    if (!options || !value || !position)
+    std::unique_ptr<Model> model;
+    const nt_status status = prepare(&options, value, &model);
+    return status == NT_OK ? model->tear(tear) : status;
+}
+
+// One number of a tear.
+static nt_status of_tear(const nt_fit_options *options, const double *value, double nanotouch::Tear::*number,
+                         double *found)
+{
+    if (!options || !value || !found)
         return NT_E_ARGUMENT;
     try {
-        std::unique_ptr<nanotouch::Model> model;
         nanotouch::Tear tear;
-        nt_status status = prepare(options, value, &model);
+        const nt_status status = nanotouch::tear_of(*options, value, &tear);
         if (status == NT_OK)
-            status = model->tear(&tear);
-        if (status == NT_OK)
-            *position = tear.position;
+            *found = tear.*number;
         return status;
     } catch (...) {
         return NT_E_NO_MEMORY;
     }
+}
+
+nt_status nt_fit_tear_position(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double *position)
+{
+    return of_tear(options, value, &nanotouch::Tear::position, position);
+}
+
+nt_status nt_fit_steep_width(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double *width)
+{
+    return of_tear(options, value, &nanotouch::Tear::steep, width);
 }

@@ -55,6 +55,8 @@ nt_status run_with_points(const nt_fit_options &options, const nt_fit_data &data
                           std::vector<nt_fit_point> *points, nt_problem *problem);
 // Values near the solution, for checked options and data that have one start.
 nt_status start_near(const nt_fit_options &options, const nt_fit_data &data, Parameters *value);
+// Where a contact of these values lets go; NT_E_UNSUPPORTED where it cannot.
+nt_status tear_of(const nt_fit_options &options, const double *value, Tear *tear);
 // What a fit found, as it is told.
 void write(const nt_fit_options &options, const Found &found, nt_fit_result *result, std::vector<nt_fit_point> *points);
 

@@ -29,11 +29,9 @@ constexpr double started = 1.5;        // scatter over noise below which a start
 constexpr int weighings = 3;           // of the points at most
 constexpr double torn_elsewhere = 2.5; // standard deviations of the place of the tear
 constexpr double contradiction = 4.0;  // standard deviations of the sensitivity
-constexpr int steep_places = 100;      // where the model is asked how close to the tear it is only continued
-constexpr double nearest = 1e-13, farthest = 1e-7; // m, from the tear
-constexpr double much_better = 0.7;                // ratio of residuals
-constexpr double moved = 0.5;                      // of ln E*
-constexpr double computed = 1e-9;                  // noise over force of points in which nothing is to be weighed
+constexpr double much_better = 0.7;    // ratio of residuals
+constexpr double moved = 0.5;          // of ln E*
+constexpr double computed = 1e-9;      // noise over force of points in which nothing is to be weighed
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 bool asks(const nt_fit_options &options, nt_fit_parameter place, const char *name)
@@ -115,16 +113,15 @@ void Solving::look_at(const std::vector<double> &rest)
 }
 
 // Whether the tip was torn off elsewhere than where such a contact lets go: by a shock, or it is another contact.
-nt_status Solving::contradicts_tear(bool *contradicts) const
+nt_status Solving::contradicts_tear(bool *contradicts)
 {
     *contradicts = false;
     const nt_fit_options &options = solution_.options;
     if (options.tear_sigma == 0.0)
         return NT_OK;
-    double position;
-    const nt_status status = nt_fit_tear_position(&options, solution_.fit.value, &position);
+    const nt_status status = tear_of(options, solution_.fit.value, &tear_);
     if (status == NT_OK)
-        *contradicts = std::fabs(position - options.tear_position) > torn_elsewhere * options.tear_sigma;
+        *contradicts = std::fabs(tear_.position - options.tear_position) > torn_elsewhere * options.tear_sigma;
     return status;
 }
 
@@ -219,14 +216,12 @@ nt_status Solving::leave_steep_part()
 {
     if (solution_.options.tear_sigma == 0.0)
         return NT_OK;
-    double width;
-    const nt_status status = nt_fit_steep_width(&solution_.options, solution_.fit.value, &width);
     const long before = data_.count;
     while (data_.count > 0 &&
-           !(data_.position[(data_.count - 1) * data_.position_stride] - known_.tear_position > width))
+           !(data_.position[(data_.count - 1) * data_.position_stride] - known_.tear_position > tear_.steep))
         data_.count--;
-    if (status != NT_OK || data_.count == before)
-        return status;
+    if (data_.count == before)
+        return NT_OK;
     if (data_.count >= NT_CURVE_FEWEST)
         return fit_without_false_tear();
     if (problem_)
@@ -357,26 +352,4 @@ nt_status nt_fit_solve(const nt_fit_options *options, const nt_fit_known *known,
     } catch (...) {
         return NT_E_NO_CONVERGENCE;
     }
-}
-
-nt_status nt_fit_steep_width(const nt_fit_options *options, const double value[NT_FIT_PARAMETERS], double *width)
-{
-    double tear, distance[nanotouch::steep_places], position[nanotouch::steep_places];
-    nt_status status = width ? nt_fit_tear_position(options, value, &tear) : NT_E_ARGUMENT;
-    if (status != NT_OK)
-        return status;
-    for (int i = 0; i < nanotouch::steep_places; i++) {
-        distance[i] = nanotouch::nearest *
-                      std::pow(nanotouch::farthest / nanotouch::nearest, double(i) / (nanotouch::steep_places - 1));
-        position[i] = tear + distance[i];
-    }
-    nt_fit_point points[nanotouch::steep_places];
-    const nt_fit_data data{position, nullptr, nanotouch::steep_places, 1, 1};
-    status = nt_fit_model_n(options, value, &data, points);
-    if (status != NT_OK)
-        return status;
-    const auto held =
-        std::find_if(points, points + nanotouch::steep_places, [](const nt_fit_point &p) { return p.held != 0; });
-    *width = distance[held == points + nanotouch::steep_places ? 0 : held - points];
-    return NT_OK;
 }

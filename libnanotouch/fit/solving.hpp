@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "model.hpp"
 #include "nanotouch/fit.h"
 
 namespace nanotouch
@@ -29,7 +30,7 @@ class Solving
     void look();
     void look_at(const std::vector<double> &rest);
     nt_status fit_without_false_tear();
-    nt_status contradicts_tear(bool *contradicts) const;
+    nt_status contradicts_tear(bool *contradicts);
     nt_status leave_steep_part();
     nt_status doubt_calibration();
     nt_status fit_any_sensitivity(bool *doubtful);
@@ -46,6 +47,7 @@ class Solving
     nt_fit_data data_;
     nt_problem *const problem_;
     double largest_ = 0.0, scatter_ = 0.0; // [N]
+    Tear tear_{};                          // of the fit, where it is a datum
     std::vector<nt_fit_point> points_;
     nt_fit_solution solution_{};
 };
