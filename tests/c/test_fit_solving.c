@@ -80,6 +80,53 @@ static void a_false_tear_is_left(void **state)
     assert_true(found.options.tear_sigma == 0.0);
 }
 
+/* A fit that ends early from means of neighbours, against one to the last digits from the guess: within a twentieth of
+ * sigma, which adds 0.1 % to a variance; sigma itself within 1 %. */
+static void ends_where_the_exact_fit_does(void **state)
+{
+    (void)state;
+    const nt_fit_model models[] = {NT_FIT_HERTZ, NT_FIT_CONE, NT_FIT_JKR, NT_FIT_MAUGIS};
+    for (int i = 0; i < 4; i++)
+        for (uint64_t seed = 1; seed <= 25; seed++) {
+            const nt_fit_options options = options_of(models[i], 0.5);
+            const nt_fit_known known = known_of();
+            curve made;
+            synthesise(&options, noise * (double)(1 + seed % 3), seed, &made); /* known, and up to 3 times of that */
+            const nt_fit_solution found = solve(&options, &known, &made);
+            nt_fit_data data = data_of(&made);
+            data.count = found.count;
+            nt_fit_result exact;
+            assert_int_equal(nt_fit_run(&found.options, &data, &exact, NULL), NT_OK);
+            for (int p = 0; p < NT_FIT_PARAMETERS; p++)
+                if (exact.identifiable[p]) {
+                    assert_true(fabs(found.fit.value[p] - exact.value[p]) < 0.05 * exact.sigma[p]);
+                    if (!(found.flags & NT_FIT_UNEVEN)) /* that widens it */
+                        assert_true(fabs(found.fit.sigma[p] / exact.sigma[p] - 1.0) < 0.01);
+                }
+        }
+}
+
+/* The model is held by its law from there on. */
+static void steep_width_is_where_the_law_begins(void **state)
+{
+    (void)state;
+    const double springs[] = {0.1, 0.5, 5.0};
+    for (int i = 0; i < 3; i++)
+        for (int model = NT_FIT_JKR; model <= NT_FIT_MAUGIS; model++) {
+            const nt_fit_options options = options_of((nt_fit_model)model, springs[i]);
+            double tear, width;
+            assert_int_equal(nt_fit_tear_position(&options, truth, &tear), NT_OK);
+            assert_int_equal(nt_fit_steep_width(&options, truth, &width), NT_OK);
+            assert_true(width > 0.0);
+            const double position[] = {tear + 0.999 * width, tear + 1.001 * width};
+            const nt_fit_data data = {position, NULL, 2, 1, 1};
+            nt_fit_point point[2];
+            assert_int_equal(nt_fit_model_n(&options, truth, &data, point), NT_OK);
+            assert_false(point[0].held);
+            assert_true(point[1].held);
+        }
+}
+
 static void nothing_is_refused(void **state)
 {
     (void)state;
@@ -96,6 +143,8 @@ int main(void)
         cmocka_unit_test(a_right_law_is_not_doubted),
         cmocka_unit_test(a_false_sensitivity_is_told),
         cmocka_unit_test(a_false_tear_is_left),
+        cmocka_unit_test(ends_where_the_exact_fit_does),
+        cmocka_unit_test(steep_width_is_where_the_law_begins),
         cmocka_unit_test(nothing_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
