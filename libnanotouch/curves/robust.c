@@ -9,7 +9,7 @@
 
 enum { SAMPLE = 63, MIDDLE = 10, MANY = 256 }; /* MIDDLE: 2.5 standard deviations of the rank of a sample's median */
 
-/* Those below the pivot, or equal to it, come first; returns how many. Without a branch that noise would make a processor
+/* Those below the pivot, or equal to it, come first; returns how many. Without a branch, which noise makes a processor
  * mistake half of the time. */
 static long part(double values[], long count, double pivot, int equal)
 {
