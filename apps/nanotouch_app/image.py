@@ -19,7 +19,10 @@ from numpy.typing import NDArray
 from nanotouch_app import image_many, output
 from nanotouch_app.quantity import parse_quantity
 
-FILES = ("image.json", "image.png", "image.gwy", "grains.csv", "tip.csv", "spectrum.csv", "spectrum.png")
+FILES = (
+    "image.json", "image.png", "image.gwy", "grains.csv", "tip.csv", "spectrum.csv", "spectrum.png", "line.csv",
+    "line.png", "histogram.csv", "histogram.png",
+)  # fmt: skip
 LISTED = 10  # particles printed; the table holds all
 
 
@@ -62,6 +65,11 @@ def add_parser(subparsers: Any) -> None:
     steps.add_argument(
         "--spectrum", action="store_true", help="also the power spectral density and the autocorrelation"
     )
+    steps.add_argument("--histogram", action="store_true", help="also how often each height occurs")
+    steps.add_argument(
+        "--line", metavar="X,Y,X,Y[,WIDTH]",
+        help="also the heights along a line, counted from the lower left, as 1um,2um,8um,2um; mean over a width",
+    )  # fmt: skip
     output.add_options(parser)
 
 
@@ -71,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     args.level = args.level or "auto"
     if args.pits and args.grains is None:
         raise InvalidValue("--pits goes with --grains")
-    _tip(args.tip), _smooth(args), _threshold(args)  # refused before anything is read
+    _tip(args.tip), _smooth(args), _threshold(args), _line(args)  # refused before anything is read
     if image_many.is_meant(args.image):
         return image_many.run(args, _one)
     with output.folder(args, FILES) as out:
@@ -110,10 +118,7 @@ def _one(args: argparse.Namespace, file: Path, out: Path) -> dict[str, Any]:
         facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
         print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
         _tell_parameters(images.parameters(clean, mask), facts)
-        if args.spectrum:
-            found = images.spectrum(clean)
-            found.to_csv(out / "spectrum.csv")
-            found.draw(save=out / "spectrum.png")
+        _curves(args, clean, out)
         table = None if threshold is None else _grains(clean, threshold, args.pits)
         if table is not None:
             _tell(table, out, facts)
@@ -122,6 +127,31 @@ def _one(args: argparse.Namespace, file: Path, out: Path) -> dict[str, Any]:
         images.draw({"as read": raw, "processed": clean}, grains=table, save=out / "image.png")
         print(f"written to {out}/: {', '.join(name for name in FILES if (out / name).exists())}")
     return facts
+
+
+def _curves(args: argparse.Namespace, image: images.Topography, out: Path) -> None:
+    """What was asked for beside the numbers, as table and picture each."""
+    wanted: dict[str, images.Spectrum | images.Section] = {}
+    if args.spectrum:
+        wanted["spectrum"] = images.spectrum(image)
+    if args.histogram:
+        wanted["histogram"] = images.histogram(image)
+    line = _line(args)
+    if line is not None:
+        wanted["line"] = images.section(image, (line[0], line[1]), (line[2], line[3]), line[4])
+    for name, found in wanted.items():
+        found.to_csv(out / f"{name}.csv")
+        found.draw(save=out / f"{name}.png")
+
+
+def _line(args: argparse.Namespace) -> tuple[float, ...] | None:
+    """Both ends and the width that ``--line`` names [m]."""
+    if args.line is None:
+        return None
+    parts = args.line.split(",")
+    if len(parts) not in (4, 5):
+        raise InvalidValue(f"--line {args.line}: write it like 1um,2um,8um,2um, and with a width 1um,2um,8um,2um,50nm")
+    return tuple(parse_quantity(part, "m") for part in (*parts, "0nm")[:5])
 
 
 def _tell_parameters(found: dict[str, images.Parameter], facts: dict[str, Any]) -> None:

@@ -19,8 +19,8 @@ from nanotouch.touch.record import replacing
 from nanotouch_app import output
 
 TABLE = "images.csv"
-FLAGS = ("scars", "despeckle", "pits", "spectrum")
-TEXTS = ("channel", "pixel_size", "z_unit", "level", "mask", "smooth", "tip", "grains")
+FLAGS = ("scars", "despeckle", "pits", "spectrum", "histogram")
+TEXTS = ("channel", "pixel_size", "z_unit", "level", "mask", "smooth", "tip", "grains", "line")
 
 One = Callable[[argparse.Namespace, Path, Path], dict[str, Any]]  # options, file, folder
 

@@ -112,7 +112,6 @@ def test_a_force_volume_is_a_list_of_curves_with_their_places(tmp_path: Path) ->
         (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 0.000000 nm/V", "sensitivity 0 m/V, expected"),
         (b"Zsens: V 12.18000 nm/V", b"Zsens: V 12180000 um/V", "the base travels"),
         (b"Spring Constant: 0.999", b"Spring Constant: -0.99", "expected a positive number"),
-        (b"Spring Constant: 0.999", b"Spring Konstant: 0.999", "lacks 'Spring Constant'"),
         (b"Forward vel.: 9", b"Forward vel.: x", "expected a positive number"),
         (b":Ramp size: V", b":Ramp siez: V", "lacks ':Ramp size'"),
         (b"DeflSens: V 40.00000 nm/V", b"DeflSens: V 1.000000     ", "no sensitivity 'DeflSens'"),
@@ -127,6 +126,22 @@ def test_a_damaged_file_is_refused_in_one_sentence(tmp_path: Path, old: bytes, n
     with pytest.raises(ReadError, match=message) as caught:
         curves.read(path)
     assert "\n" not in str(caught.value)
+
+
+def test_without_a_spring_constant_it_has_deflections_and_says_so(tmp_path: Path) -> None:
+    path = ramp(tmp_path / "ramp.000", spring_constant=0.5)
+    (whole,) = curves.read(path)
+    path.write_bytes(path.read_bytes().replace(b"Spring Constant", b"Spring Konstant"))
+    (curve,) = curves.read(path)
+    assert curve.spring_constant is None
+    assert "states no spring constant: deflections alone; give it for forces" in curve.meta["notes"]
+    for one, other in zip(curve.segments, whole.segments, strict=True):
+        assert one.force is None
+        np.testing.assert_array_equal(one.deflection, other.deflection)
+    (bent,) = curves.read(path, sensitivity=2.0 * whole.meta["sensitivity"])
+    np.testing.assert_allclose(bent.segments[0].deflection, 2.0 * whole.segments[0].deflection)
+    (given,) = curves.read(path, spring_constant=0.5)
+    np.testing.assert_allclose(given.segments[0].force, whole.segments[0].force, rtol=1e-12)
 
 
 def rewritten(path: Path, *changes: tuple[str, str]) -> Path:

@@ -304,6 +304,27 @@ def test_bounds_where_a_stiff_contact_does_not_determine_the_modulus() -> None:
     assert np.isnan(exact["effective_modulus_least"].values).all()
 
 
+@pytest.mark.parametrize("modulus", [20.0, 50.0, 100.0])
+def test_bounds_where_a_soft_contact_hides_in_the_noise(modulus: float) -> None:
+    """Hertz by hand, a bead of 2.5 um at 0.05 N/m: an upper bound wherever the interval is one, and above the truth."""
+    z, stiffness, radius = np.linspace(1.5e-6, -0.4e-6, 700), 0.05, 2.5e-6
+    depth = np.linspace(0.0, 2e-6, 4000)
+    law = 4.0 / 3.0 * modulus * np.sqrt(radius) * depth**1.5
+    pressed = np.interp(np.maximum(-z, 0.0), depth + law / stiffness, law)
+    rng = np.random.default_rng(1)
+    force = np.concatenate([pressed, pressed[::-1]]) + 15e-12 * rng.standard_normal((150, 1, 1400))
+    heights = np.concatenate([z, z[::-1]])
+    data = maps.fit(force, "hertz", z=heights, spring_constant=stiffness, radius=radius)
+    most, unknown = data["effective_modulus_most"].values, ~maps.determined(data, "effective_modulus")
+    bounded = np.isfinite(most)
+    assert (bounded <= unknown).all()
+    assert bounded.sum() > 20
+    assert np.mean(most[bounded] >= modulus) > 0.9
+    assert data["effective_modulus_most"].attrs["units"] == "Pa"
+    stiff = maps.synthesise(np.full((1, 2), 77e9), 0.03, radius=20e-9, spring_constant=0.5, noise=30e-12, points=800)
+    assert np.isnan(maps.fit(stiff, "dmt", radius=20e-9)["effective_modulus_most"].values).all()
+
+
 def test_a_map_holds_the_interval_of_the_pull_off() -> None:
     source = volume(3)
     data = maps.fit(source, "maugis", **SETTINGS)

@@ -136,7 +136,7 @@ def _row_values(file: Path, number: int, row: Mapping[str, str | None]) -> Calib
 def calibrated(curve: ForceCurve, calibration: Calibration, file: Path) -> ForceCurve:
     """The curve with what is given in place of what its file says, and a note of placeholders that remain."""
     meta = dict(curve.meta)
-    scale = 1.0
+    scale = bend = 1.0  # of force, and of deflection
     for key, value in calibration.given.items():
         if value is None:
             continue
@@ -144,6 +144,7 @@ def calibrated(curve: ForceCurve, calibration: Calibration, file: Path) -> Force
             raise ReadError(f"{file}: states no {key}, so its forces cannot be corrected for it")
         if meta.get(key):
             scale *= value / meta[key]
+            bend *= value / meta[key] if key == "sensitivity" else 1.0
         meta[key] = value
     left = tuple(k for k, known in PLACEHOLDERS.items() if calibration.given[k] is None and meta.get(k) in known)
     if left:
@@ -157,6 +158,10 @@ def calibrated(curve: ForceCurve, calibration: Calibration, file: Path) -> Force
     segments = []
     for segment in curve.segments:
         force = segment.force if segment.force is None or scale == 1.0 else segment.force * scale
-        deflection = segment.deflection if force is None or stiffness is None else force / stiffness
+        deflection = segment.deflection
+        if force is not None and stiffness is not None:
+            deflection = force / stiffness
+        elif deflection is not None and bend != 1.0:
+            deflection = deflection * bend
         segments.append(replace(segment, force=force, deflection=deflection))
     return ForceCurve(tuple(segments), meta, curve.name)

@@ -66,7 +66,7 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     line = _line(found) if len(raw) > 1 else 1
     return [
         ForceCurve(
-            _segments(way, way.z[min(n, len(way.z) - 1)], deflection[n], known[n], meta["spring constant"]),
+            _segments(way, way.z[min(n, len(way.z) - 1)], deflection[n], known[n], meta.get("spring constant")),
             meta | _place(n, line, len(raw)),
             printable(file.name),
         )
@@ -74,13 +74,14 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
     ]
 
 
-def _segments(way: _Way, z: Floats, deflection: Floats, known: Bools, stiffness: float) -> tuple[Segment, ...]:
+def _segments(way: _Way, z: Floats, deflection: Floats, known: Bools, stiffness: float | None) -> tuple[Segment, ...]:
     parts: tuple[tuple[Role, slice], ...] = (("approach", slice(0, way.near)), ("retract", slice(way.near, z.size)))
     found = []
     for role, part in parts:
         keep = known[part]
         bent = deflection[part][keep]
-        found.append(Segment(role, way.time[part][keep], z[part][keep], way.channel, bent * stiffness, bent))
+        force = None if stiffness is None else bent * stiffness
+        found.append(Segment(role, way.time[part][keep], z[part][keep], way.channel, force, bent))
     return tuple(found)
 
 
@@ -104,20 +105,19 @@ def _meta(found: list[Section], image: Section, given: Calibration) -> tuple[dic
     if known is None and given.sensitivity is None:
         raise ReadError(f"{first.file}: its header states no sensitivity {name!r} in metres per volt; give it")
     sensitivity, note = (given.sensitivity, "") if known is None else known
-    if "spring constant" not in image and given.spring_constant is not None:
-        stiffness = given.spring_constant
-    else:
-        stiffness = image.positive("Spring Constant")
+    stiffness = image.positive("Spring Constant") if "spring constant" in image else given.spring_constant
     meta = {
         "format": "Bruker NanoScope",
-        "spring constant": stiffness,
         "sensitivity": sensitivity,
         "instrument": "Bruker NanoScope",
         "software version": first.get("version", ""),
         "date": first.get("date", ""),
         "path": first.file,
     }
-    return meta, (note,) if note and given.sensitivity is None else ()
+    notes = (note,) if note and given.sensitivity is None else ()
+    if stiffness is None:
+        return meta, (*notes, "states no spring constant: deflections alone; give it for forces")
+    return meta | {"spring constant": stiffness}, notes
 
 
 def _is_capture(found: list[Section]) -> bool:

@@ -22,6 +22,7 @@ from .pictures import draw
 from .pyramid import MipLevel, mip_levels
 from .reading import channels, read
 from .scars import ScarReport, repair_scars
+from .section import Section, histogram, section
 from .spectrum import Spectrum, spectrum
 from .statistics import Roughness, roughness
 from .terraces import Terrace
@@ -45,6 +46,7 @@ __all__ = [
     "Roughness",
     "RoundedCone",
     "ScarReport",
+    "Section",
     "Spectrum",
     "Terrace",
     "TipEstimate",
@@ -60,6 +62,7 @@ __all__ = [
     "fill",
     "gaussian",
     "grains",
+    "histogram",
     "level",
     "mask_above",
     "mask_grains",
@@ -74,6 +77,7 @@ __all__ = [
     "read_values",
     "repair_scars",
     "roughness",
+    "section",
     "spectrum",
     "write",
     "write_planes",

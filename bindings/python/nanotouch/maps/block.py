@@ -34,6 +34,7 @@ PLAIN = {
     "contact_stiffness": ("N/m", "stiffness of the fitted contact at the deepest point"),
 }
 _GAUSSIAN = 1.959963984540054
+_TELLS_NOTHING = 1e3  # a bound this many times the value
 EXCLUDED = "EXCLUDED"  # status of a curve that a person left out
 LOST = "LOST"  # status of a curve whose block killed the workers it was given to
 
@@ -73,6 +74,7 @@ def fit_block(stored: Mapping[str, Any], block: Block, threads: int = 1) -> Colu
         columns |= _sample_modulus(settings, columns)
     if find(settings.model).exponent == 1.5:
         columns["effective_modulus_least"] = _least_modulus(settings, columns, found, block)
+    columns["effective_modulus_most"] = _most_modulus(columns)
     for name in MEASURED:
         columns[name], columns[f"{name}_sigma"] = found[name], found[f"{name}_sigma"]
     return columns | {name: found[name] for name in PLAIN}
@@ -96,6 +98,20 @@ def _least_modulus(settings: Settings, columns: Columns, found: dict[str, Any], 
         least = columns["effective_modulus"] * (1.0 / (compliance * stiffness)) ** 1.5
         least *= np.exp(-_GAUSSIAN * np.hypot(known.spring_constant, 0.5 * known.radius))
         return np.where(unknown & (slope > 0.0) & (compliance > 0.0), least, np.nan)
+
+
+def _most_modulus(columns: Columns) -> Floats:
+    """The 95 % upper bound of E* [Pa] where a soft contact does not determine it; NaN elsewhere.
+
+    The upper end of its interval, symmetric in the logarithm; none where that is a thousand times the value.
+    """
+    flags = extension().flags
+    against = flags["calibration"] | flags["wrong_model"] | flags["misfit"] | flags["stiff"] | flags["not_converged"]
+    unknown = (columns["flags"] & undetermined_flag(0) != 0) & (columns["flags"] & against == 0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        factor = _GAUSSIAN * columns["effective_modulus_sigma"] / columns["effective_modulus"]
+        tells = unknown & (factor < np.log(_TELLS_NOTHING))
+        return np.where(tells, columns["effective_modulus"] * np.exp(np.where(tells, factor, 0.0)), np.nan)
 
 
 def undetermined_flag(place: int) -> int:

@@ -23,10 +23,11 @@ _MEANINGS = {
     "youngs_modulus": "E of the sample",
     "work_of_adhesion": "w",
     "effective_modulus_least": "95 % lower bound of E* where a stiff contact does not determine it",
+    "effective_modulus_most": "95 % upper bound of E* where a soft contact does not determine it",
     "cohesive_range": "h0 = w/sigma0",
     "contact_point": "height of the base where the undeformed bodies touch: the sample's topography at no force",
 }
-_LEAST = "effective_modulus_least"
+_BOUNDS = ("effective_modulus_least", "effective_modulus_most")
 _KINDS = {"": ", all together", "_statistical": ", of noise and sampling", "_calibration": ", of the calibration"}
 
 
@@ -109,7 +110,9 @@ def _bits(data: Any) -> dict[str, int]:
 
 
 def _units(settings: Settings) -> dict[str, str]:
-    known = {name: unit for name, (_, unit) in settings.parameters().items()} | {"youngs_modulus": "Pa", _LEAST: "Pa"}
+    known = {name: unit for name, (_, unit) in settings.parameters().items()} | dict.fromkeys(
+        ("youngs_modulus", *_BOUNDS), "Pa"
+    )
     return known | {name: unit for name, (unit, _) in (MEASURED | PLAIN).items()}
 
 
