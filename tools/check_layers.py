@@ -48,7 +48,7 @@ HEADERS = {
     **dict.fromkeys(["guarantee", "margins", "passivity", "preflight", "scaling", "servo"], "control"),
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     **dict.fromkeys(["plan", "interaction", "terms", "force_table"], "scene"),
-    **dict.fromkeys(["flow", "tapping"], "scan"),
+    **dict.fromkeys(["balance", "flow", "steady", "tapping"], "scan"),
     "particle": "manipulation",
     "dents": "plasticity",
     "terrain": "session",

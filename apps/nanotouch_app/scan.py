@@ -91,6 +91,8 @@ def run(args: argparse.Namespace) -> int:
             f"image: heights over {facts['height_range'] * 1e9:.4g} nm, largest force "
             f"{facts['peak_force'] * 1e9:.3g} nN, trace and retrace differ by {facts['difference'] * 1e9:.3g} nm rms"
         )
+        if plan.friction.form != "off" and image.mode == "contact":
+            output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
         print(f"written to {out}/: {', '.join(written)}\ngo on: nanotouch touch {out}/surface.gwy")
     return 0
 
@@ -219,6 +221,7 @@ def _facts(image: scan.Image) -> dict[str, Any]:
         "peak_force": float(max(there.peak_force.max(), back.peak_force.max())),
         "largest_error": float(np.abs(there.error).max()),
         "difference": float(np.sqrt(np.mean((difference - difference.mean()) ** 2))),
+        "friction": float(0.5 * np.mean(there.lateral - back.lateral)),
     }
 
 
@@ -242,7 +245,9 @@ def draw(image: scan.Image, path: Any) -> None:
         ("Height, retrace (nm)", image.retrace.height * 1e9),
         ("Error (nm)", image.trace.error * 1e9),
         ("Phase (degrees)", np.degrees(image.trace.phase)) if taps else ("Deflection (nm)", image.trace.signal * 1e9),
-        ("Largest force (nN)", image.trace.peak_force * 1e9),
+        ("Lateral force (nN)", image.trace.lateral * 1e9)
+        if image.trace.lateral.any()
+        else ("Largest force (nN)", image.trace.peak_force * 1e9),
     ]
     for panel, (title, values) in zip(panels, shown, strict=False):
         low, high = np.percentile(values, (0.5, 99.5))

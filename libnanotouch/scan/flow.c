@@ -12,23 +12,17 @@
 #include <stddef.h>
 
 #include "core/same_bits.h"
+#include "edges.h"
 #include "nanotouch/flow.h"
 #include "nanotouch/material.h"
 #include "scene/parts.h"
 
-#define NEAREST 0.25e-9 /* thickness of the first shell [m] */
-#define GROWTH 4.0
 #define SETTLED 1e-9  /* change per radian over A0 and 1/Q */
 #define NARROW 20e-12 /* width of a cell in the gap [m] */
 #define CELLS 50.0    /* of the free amplitude */
 #define ALIKE 0.03    /* radii of places in a cell, relative */
 #define TURN 0.05     /* of the lag by the force in one step [rad] */
-enum { POINTS = 5, EDGES_MAX = 12, PATIENCE = 60, HALVINGS = 8 };
-
-static const double points[POINTS] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
-                                      0.95308992296933200};
-static const double weights[POINTS] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                                       0.23931433524968324, 0.11846344252809454};
+enum { PATIENCE = 60, HALVINGS = 8 };
 
 typedef struct swing {
     const nt_tapping *lever;
@@ -41,34 +35,6 @@ static double angle_at(const swing *w, double gap)
 {
     const double c = 1.0 - (gap - w->low) / (0.5 * (w->top - w->low));
     return acos(fmax(-1.0, fmin(1.0, c)));
-}
-
-static void add_edge(double *edges, int *count, const swing *w, double gap)
-{
-    if (gap <= w->low || gap >= w->top || *count == EDGES_MAX)
-        return;
-    int i = (*count)++;
-    for (; i > 0 && edges[i - 1] > gap; i--)
-        edges[i] = edges[i - 1];
-    edges[i] = gap;
-}
-
-/* Gaps between which the force is smooth, the top last. */
-static int edges_of(const swing *w, double edges[EDGES_MAX + 1])
-{
-    const nt_plan *plan = w->over->plan;
-    int count = 0;
-    add_edge(edges, &count, w, 0.0);
-    const double capture = nt_plan_capture_gap(plan, w->over->place);
-    if (isfinite(capture))
-        add_edge(edges, &count, w, capture);
-    if (w->after && isfinite(plan->release_gap))
-        add_edge(edges, &count, w, plan->release_gap);
-    const double start = fmax(w->low, 0.0);
-    for (double shell = NEAREST; count < EDGES_MAX && start + shell < 0.7 * w->top; shell *= GROWTH)
-        add_edge(edges, &count, w, start + shell);
-    edges[count++] = w->top;
-    return count;
 }
 
 static nt_law_value law_at(const swing *w, int attached, double gap)
@@ -111,10 +77,10 @@ static nt_flow_average average_at(const nt_tapping *lever, const nt_tapping_over
     w.after = history.attached;
     nt_interaction_advance_gap(over->plan, &history, over->place, w.top);
     nt_flow_average sum = {.low = w.low, .attached = history.attached};
-    double edges[EDGES_MAX + 1], from = 0.0;
-    const int count = edges_of(&w, edges);
-    for (int i = 0; i < count; i++) {
-        const double to = i == count - 1 ? NT_PI : angle_at(&w, edges[i]);
+    const nt_edges edges = nt_edges_of(over, w.low, w.top, w.after);
+    double from = 0.0;
+    for (int i = 0; i < edges.count; i++) {
+        const double to = i == edges.count - 1 ? NT_PI : angle_at(&w, edges.at[i]);
         add_segment(&w, from, to, &sum);
         from = to;
     }
@@ -257,9 +223,13 @@ static int step_by(const nt_tapping *lever, nt_flow_state *state, const nt_tappi
         return 0;
     next.mean -= expm1(-0.5 * t / lever->quality) * (sum.mean - next.mean); /* rings down as Z does */
     next.attached = sum.attached;
-    *value = value_of(lever, &next, &sum);
     const double shrunk = fmax(0.0, 1.0 - 0.5 * sum.sine / (r * amplitude) * t);
     const double x = next.real, y = next.imaginary;
+    nt_flow_state middle = next; /* of the kick: a value before it would be of first order in t */
+    const double mean = 0.5 * (1.0 + shrunk), half = sqrt(0.5 * (1.0 + c)), other = 0.5 * s / half;
+    middle.real = mean * (half * x - other * y);
+    middle.imaginary = mean * (other * x + half * y);
+    *value = value_of(lever, &middle, &sum);
     next.real = shrunk * (c * x - s * y);
     next.imaginary = shrunk * (s * x + c * y);
     swing_freely(lever, &next, 0.5 * t);

@@ -92,7 +92,7 @@ static void grip_advance(void *context, double z)
 
 /* What a tick shows. */
 typedef struct reading {
-    double signal, error, phase, peak; /* [m], [m], [rad], [N] */
+    double signal, error, phase, peak, lateral; /* [m], [m], [rad], [N], [N] */
 } reading;
 
 /* On the way up a stroke lags by this much: half the opening in the middle. */
@@ -143,13 +143,15 @@ static nt_status read_tapping(const nt_scanner *s, nt_scanner_state *state, cons
     out->signal = state->measured;
     out->phase = state->lag;
     out->peak = peak;
+    out->lateral = 0.0;
     out->error = s->scan.zloop.mode == NT_ZLOOP_PHASE
                      ? lag_as_amplitude(s, s->scan.zloop.set_phase) - lag_as_amplitude(s, state->lag)
                      : s->scan.zloop.set_amplitude * s->lever.free_amplitude - state->measured;
     return isfinite(now.amplitude) ? NT_OK : NT_E_NOT_FINITE;
 }
 
-static nt_status read_contact(const nt_scanner *s, nt_scanner_state *state, const nt_place *place, reading *out)
+static nt_status read_contact(const nt_scanner *s, nt_scanner_state *state, const nt_place *place, const nt_pose *at,
+                              reading *out)
 {
     grip g = {s->plan, place, &state->contact};
     const nt_force_field field = {grip_eval, grip_advance, &g, s->plan->length};
@@ -159,13 +161,19 @@ static nt_status read_contact(const nt_scanner *s, nt_scanner_state *state, cons
     out->phase = 0.0;
     out->peak = s->probe.spring_constant * state->measured;
     out->error = s->scan.zloop.set_force / s->probe.spring_constant - state->measured;
-    return status;
+    if (status != NT_OK)
+        return status;
+    const nt_pose slid = {at->x, at->y, state->lever.tip_height - place->surface.z};
+    nt_interaction_slide_gap(s->plan, &state->contact, &state->slide, place, &slid);
+    out->lateral = out->peak * (place->surface.zx + s->scan.raster.tilt_x) - state->slide.friction.force[0];
+    return NT_OK;
 }
 
 static nt_status tick(const nt_scanner *s, nt_scanner_state *state, const nt_pose *at, reading *out)
 {
     const nt_place place = place_at(s, at);
-    const nt_status status = is_tapping(s) ? read_tapping(s, state, &place, out) : read_contact(s, state, &place, out);
+    const nt_status status =
+        is_tapping(s) ? read_tapping(s, state, &place, out) : read_contact(s, state, &place, at, out);
     if (status != NT_OK)
         return status;
     if (s->scan.zloop.noise > 0.0) {
@@ -228,7 +236,7 @@ static nt_status half_line(const nt_scanner *s, nt_scanner_state *state, long li
     for (long pixel = 0; pixel < pixels; pixel++) {
         const long until = (pixel + 1) * s->ticks / pixels, count = until - done,
                    at = back ? pixels - 1 - pixel : pixel;
-        double height = 0.0, error = 0.0, signal = 0.0, phase = 0.0, peak = -HUGE_VAL;
+        double height = 0.0, error = 0.0, signal = 0.0, phase = 0.0, lateral = 0.0, peak = -HUGE_VAL;
         for (; done < until; done++) {
             const nt_pose way = nt_scanner_at(s, line, ((double)done + 0.5) / (double)s->ticks, back, state->time);
             reading now;
@@ -239,6 +247,7 @@ static nt_status half_line(const nt_scanner *s, nt_scanner_state *state, long li
             error += now.error / (double)count;
             signal += now.signal / (double)count;
             phase += now.phase / (double)count;
+            lateral += now.lateral / (double)count;
             peak = fmax(peak, now.peak);
         }
         put(row->height, at, height);
@@ -246,6 +255,7 @@ static nt_status half_line(const nt_scanner *s, nt_scanner_state *state, long li
         put(row->signal, at, signal);
         put(row->phase, at, phase);
         put(row->peak_force, at, peak);
+        put(row->lateral, at, lateral);
     }
     return NT_OK;
 }

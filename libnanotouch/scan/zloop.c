@@ -65,15 +65,23 @@ nt_status nt_scan_check(const nt_scan *scan, nt_problem *problem)
     return nt_field_check(scan_fields, SCAN_FIELDS, scan, problem);
 }
 
-/* Size and lag of the open loop with K_I = 1, at a frequency [rad/s]. */
-static double open_loop(const nt_scanner *s, double w, double *lag)
+/* The amplitude follows the base at once where a hard sample holds it, and as slowly as 2 Q/w0 where nothing does: the
+ * loop has to bear both. Contact mode has the first alone. */
+static int answers(const nt_scanner *s)
+{
+    return s->scan.zloop.mode == NT_ZLOOP_CONTACT ? 1 : 2;
+}
+
+/* Size and lag of the open loop with K_I = 1, at a frequency [rad/s]; slow: 1 with the free lever's answer. */
+static double open_loop(const nt_scanner *s, double w, int slow, double *lag)
 {
     const nt_stage *stage = &s->stage.stage;
     const double r = w / (2.0 * NT_PI * stage->resonance), real = 1.0 - r * r, imaginary = r / stage->quality;
     double size = 1.0 / w / hypotenuse(real, imaginary);
     *lag = 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
     if (s->scan.zloop.mode != NT_ZLOOP_CONTACT) {
-        const double amplifier = w * s->scan.zloop.lock_in, lever = 2.0 * w * s->lever.quality / s->lever.rate;
+        const double amplifier = w * s->scan.zloop.lock_in;
+        const double lever = slow ? 2.0 * w * s->lever.quality / s->lever.rate : 0.0;
         size /= hypotenuse(1.0, amplifier) * hypotenuse(1.0, lever);
         *lag += atan(amplifier) + atan(lever);
     }
@@ -90,9 +98,9 @@ static double frequency_at(const nt_scanner *s, int i)
 static double largest_beyond(const nt_scanner *s, double least_lag)
 {
     double most = 0.0;
-    for (int i = 0; i < FREQUENCIES; i++) {
+    for (int i = 0; i < FREQUENCIES * answers(s); i++) {
         double lag;
-        const double size = open_loop(s, frequency_at(s, i), &lag);
+        const double size = open_loop(s, frequency_at(s, i % FREQUENCIES), i / FREQUENCIES, &lag);
         if (lag >= least_lag)
             most = fmax(most, size);
     }
@@ -109,13 +117,13 @@ double nt_scanner_gain(const nt_scanner *scanner)
 nt_zloop_margins nt_scanner_margins(const nt_scanner *scanner)
 {
     nt_zloop_margins found = {1.0 / (scanner->integral * largest_beyond(scanner, NT_PI)), NT_PI, 0.0};
-    for (int i = 0; i < FREQUENCIES; i++) {
+    for (int i = 0; i < FREQUENCIES * answers(scanner); i++) {
         double lag;
-        const double w = frequency_at(scanner, i);
-        if (scanner->integral * open_loop(scanner, w, &lag) < 1.0)
+        const double w = frequency_at(scanner, i % FREQUENCIES);
+        if (scanner->integral * open_loop(scanner, w, i / FREQUENCIES, &lag) < 1.0)
             continue;
         found.phase = fmin(found.phase, NT_PI - lag);
-        found.speed = w;
+        found.speed = fmax(found.speed, w);
     }
     return found;
 }
@@ -133,4 +141,25 @@ double nt_scanner_parachute(const nt_scanner *scanner, double height, double spe
                          : loop->mode == NT_ZLOOP_PHASE ? (1.0 - sin(loop->set_phase)) * A0
                                                         : (1.0 - loop->set_amplitude) * A0;
     return speed * height / (scanner->integral * error);
+}
+
+/* |K_I/(i w)/(1 + L)|^2, with the mean over a pixel. */
+static double noise_gain(const nt_scanner *s, double w)
+{
+    double lag;
+    const double size = s->integral * open_loop(s, w, 0, &lag), stage_free = s->integral / w;
+    const double real = 1.0 + size * cos(lag), imaginary = size * sin(lag);
+    const double half = 0.5 * w * s->period * (double)s->ticks / s->scan.raster.pixels;
+    const double mean = half > 1e-6 ? sin(half) / half : 1.0;
+    return stage_free * stage_free / (real * real + imaginary * imaginary) * mean * mean;
+}
+
+double nt_scanner_noise(const nt_scanner *scanner)
+{
+    double sum = 0.0;
+    for (int i = 1; i < FREQUENCIES; i++) { /* white up to half the rate: sigma^2 T/pi per rad/s */
+        const double from = frequency_at(scanner, i - 1), to = frequency_at(scanner, i);
+        sum += 0.5 * (noise_gain(scanner, from) + noise_gain(scanner, to)) * (to - from);
+    }
+    return scanner->scan.zloop.noise * sqrt(sum * scanner->period / NT_PI);
 }

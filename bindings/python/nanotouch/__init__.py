@@ -33,6 +33,7 @@ _HOMES = {
     "Settings": "scene",
     "Session": "touch.session",
     "SlowFlow": "scan.flow",
+    "Steady": "scan.steady",
     "Supervisor": "touch.supervisor",
     "Surface": "scene.surface",
     "SurfaceFile": "scene.surface_file",
@@ -43,9 +44,9 @@ _ROOMS = {
     "": "batch contact curves errors fit forces friction images lateral "
     "manipulation maps plasticity plots reference scan scene touch units",
     "contact.": "geometry",
-    "scan.": "flow scanner tapping",
+    "scan.": "flow scanner steady tapping",
     "scene.": "interaction materials plan presets surface surface_file view",
-    "touch.": "c_header commands faults frames hal mailbox margins operator record rig_file session",
+    "touch.": "c_header commands faults frames hal mailbox margins operator raster record rig_file session",
 }
 _MODULES = {name: room + name for room, names in _ROOMS.items() for name in names.split()}
 

@@ -31,10 +31,12 @@ from nanotouch.manipulation import Particle as Particle
 from nanotouch.manipulation import ParticleContact as ParticleContact
 from nanotouch.scan import flow as flow
 from nanotouch.scan import scanner as scanner
+from nanotouch.scan import steady as steady
 from nanotouch.scan import tapping as tapping
 from nanotouch.scan.flow import SlowFlow as SlowFlow
 from nanotouch.scan.scanner import Scan as Scan
 from nanotouch.scan.scanner import Scanner as Scanner
+from nanotouch.scan.steady import Steady as Steady
 from nanotouch.scan.tapping import Drive as Drive
 from nanotouch.scan.tapping import Tapping as Tapping
 from nanotouch.scene import Demand as Demand
@@ -60,6 +62,7 @@ from nanotouch.touch import hal as hal
 from nanotouch.touch import mailbox as mailbox
 from nanotouch.touch import margins as margins
 from nanotouch.touch import operator as operator
+from nanotouch.touch import raster as raster
 from nanotouch.touch import record as record
 from nanotouch.touch import rig_file as rig_file
 from nanotouch.touch import session as session
@@ -93,6 +96,7 @@ __all__ = [
     "Session",
     "Settings",
     "SlowFlow",
+    "Steady",
     "Supervisor",
     "Surface",
     "SurfaceFile",
@@ -126,6 +130,7 @@ __all__ = [
     "plasticity",
     "plots",
     "presets",
+    "raster",
     "record",
     "reference",
     "rig_file",
@@ -133,6 +138,7 @@ __all__ = [
     "scanner",
     "scene",
     "session",
+    "steady",
     "surface",
     "surface_file",
     "tapping",

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What _core has of tapping.h, flow.h and scan.h. For type checkers: no module at run time."""
+"""What _core has of tapping.h, flow.h, steady.h and scan.h. For type checkers: no module at run time."""
 
 from typing import Any
 
 Tapping: Any
 Flow: Any
 Scanner: Any
+Steady: Any
+steady_line: Any

@@ -26,6 +26,7 @@ void bind_particle(py::module_ &module);
 void bind_plan(py::module_ &module);
 void bind_plasticity(py::module_ &module);
 void bind_scan(py::module_ &module);
+void bind_steady(py::module_ &module);
 void bind_tapping(py::module_ &module);
 void bind_terrain(py::module_ &module);
 void bind_interaction(py::module_ &module);

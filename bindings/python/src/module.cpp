@@ -24,6 +24,7 @@ PYBIND11_MODULE(_core, module)
     bind_terrain(module);
     bind_interaction(module);
     bind_scan(module);
+    bind_steady(module);
     bind_tapping(module);
     bind_view(module);
     bind_curves(module);

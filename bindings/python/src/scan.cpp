@@ -14,7 +14,7 @@ struct Flow {
 // real, imaginary, mean, attached
 using FlowState = std::tuple<double, double, double, bool>;
 
-constexpr py::ssize_t channels = 5; // of nt_scan_row
+constexpr py::ssize_t channels = 6; // of nt_scan_row
 
 } // namespace
 
@@ -77,7 +77,7 @@ static std::unique_ptr<nt_scanner> make_scanner(const Described<nt_scan> &scan, 
 
 static nt_scan_row row_of(double *at, long pixels)
 {
-    return {at, at + pixels, at + 2 * pixels, at + 3 * pixels, at + 4 * pixels};
+    return {at, at + pixels, at + 2 * pixels, at + 3 * pixels, at + 4 * pixels, at + 5 * pixels};
 }
 
 // Lines from one engagement: (lines, 2, channels, pixels), there and back, in the order of nt_scan_row. It begins a
@@ -127,6 +127,7 @@ void bind_scan(py::module_ &module)
                                    const nt_zloop_margins found = nt_scanner_margins(&self);
                                    return py::make_tuple(found.gain, found.phase, found.speed);
                                })
+        .def_property_readonly("noise", [](const nt_scanner &self) { return nt_scanner_noise(&self); })
         .def_property_readonly("advised", [](const nt_scanner &self) { return nt_scanner_gain(&self); })
         .def_property_readonly("integral", [](const nt_scanner &self) { return self.integral; });
 }

@@ -3,6 +3,7 @@
 #ifndef NANOTOUCH_NANOTOUCH_H
 #define NANOTOUCH_NANOTOUCH_H
 
+#include "nanotouch/balance.h"
 #include "nanotouch/commands.h"
 #include "nanotouch/contact.h"
 #include "nanotouch/contact_equilibrium.h"
@@ -33,6 +34,7 @@
 #include "nanotouch/session.h"
 #include "nanotouch/sim.h"
 #include "nanotouch/status.h"
+#include "nanotouch/steady.h"
 #include "nanotouch/surface.h"
 #include "nanotouch/tapping.h"
 #include "nanotouch/terrain.h"

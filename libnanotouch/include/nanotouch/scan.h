@@ -82,8 +82,9 @@ typedef struct nt_scanner_inputs {
  * pixels; "zloop.integral" where the loop would not be stable (gain margin below 1); "drive.frequency" where phase
  * feedback is driven off the free resonance. */
 NT_API nt_status nt_scanner_init(nt_scanner *scanner, const nt_scanner_inputs *inputs, nt_problem *problem);
-/* Open loop K_I/(i w) x stage x a tick of delay x lock-in, in tapping mode x lever 1/(1 + i w 2 Q/w0).
- * Of a hard sample, which the deflection or the amplitude follows one to one; a soft one leaves more. */
+/* Open loop K_I/(i w) x stage x a tick of delay x lock-in. Of a hard sample, which the deflection or the amplitude
+ * follows one to one; a soft one leaves more. In tapping mode the smaller margins of two: the amplitude follows at
+ * once, and as a free lever does, 1/(1 + i w 2 Q/w0). */
 NT_API nt_zloop_margins nt_scanner_margins(const nt_scanner *scanner);
 /* The largest K_I with a gain margin of 2 and a phase margin of 45 degrees [1/s]. */
 NT_API double nt_scanner_gain(const nt_scanner *scanner);
@@ -93,12 +94,17 @@ NT_API double nt_scanner_speed(const nt_scanner *scanner, double slope, double e
  * surface the error is all of A0 - set point, or the set force over k_c, so z falls at K_I times that. */
 NT_API double nt_scanner_parachute(const nt_scanner *scanner, double height, double speed);
 
+/* Standard deviation of the heights of an image of a hard flat [m]: the noise of the reading goes round the closed
+ * loop, and a pixel is the mean of its ticks. For a stage that is slower than half the ticks' rate. */
+NT_API double nt_scanner_noise(const nt_scanner *scanner);
+
 /* Copyable. */
 typedef struct nt_scanner_state {
     nt_flow_state flow;
     nt_flow_table table;
     nt_cantilever_state lever;
     nt_interaction_state contact;
+    nt_slide slide; /* of contact mode */
     nt_stage_state stage;
     double command;  /* z of the base that the loop asks for [m] */
     double measured; /* amplitude behind the lock-in, or deflection [m] */
@@ -120,6 +126,8 @@ typedef struct nt_scan_row {
     double *signal;     /* amplitude, or deflection [m] */
     double *phase;      /* of tapping mode [rad] */
     double *peak_force; /* largest in the pixel [N] */
+    double *
+        lateral; /* force of the lever on the tip along x: against friction (friction.h) and up slopes; 0 tapping [N] */
 } nt_scan_row;
 /* There and back. NT_E_NOT_FINITE, or what nt_cantilever_settle says. */
 NT_API nt_status nt_scanner_line(const nt_scanner *scanner, nt_scanner_state *state, long line, nt_scan_row *trace,

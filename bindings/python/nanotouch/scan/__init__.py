@@ -6,10 +6,13 @@ from __future__ import annotations
 from .flow import FlowState, FlowValue, SlowFlow
 from .forecast import Forecast, forecast, steepest
 from .scanner import UNDONE, Channels, Image, LoopMargins, Scan, Scanner
+from .steady import TIERS, AmplitudeCurve, Steady, SteadyMotion
 from .tapping import Drive, Settled, Tapping, TappingState, TappingValue
 
 __all__ = [
+    "TIERS",
     "UNDONE",
+    "AmplitudeCurve",
     "Channels",
     "Drive",
     "FlowState",
@@ -21,6 +24,8 @@ __all__ = [
     "Scanner",
     "Settled",
     "SlowFlow",
+    "Steady",
+    "SteadyMotion",
     "Tapping",
     "TappingState",
     "TappingValue",

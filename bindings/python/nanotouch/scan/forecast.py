@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from nanotouch.units import in_words
 
 _HEIGHTS = 40
 _HALVINGS = 12
+_SIGMAS = 5.0  # of the noise of a reading that may not lift the tip
 _ELECTRONVOLT = 1.602176634e-19
 
 
@@ -65,6 +67,13 @@ class Forecast(NamedTuple):
     """way that the tip flies after a step down by that height, at the speed [m]"""
     mode: str
     """``"contact"``, ``"tapping"`` or ``"phase"``"""
+    flank_force: float
+    """peak force where the tip climbs the steepest slope at the speed of the scan [N]; inf: it no longer taps there"""
+    largest_set_point: float
+    """tapping: the largest A/A0 with which the tip follows that slope down, and noise does not lift it; contact: the
+    least force for the same [N]; NaN where none does"""
+    noise: float
+    """standard deviation of the heights by the noise of the reading [m]"""
 
     def __str__(self) -> str:
         return "\n".join([*map(self._motion, self.motions), self._safe(), *self._loop()])
@@ -104,11 +113,28 @@ class Forecast(NamedTuple):
                 f"1 nm up to {in_words(self.speed_limit, 'm', 3)}/s, at this speed within "
                 f"{in_words(1e-9 * self.speed / self.speed_limit, 'm', 2)}"
             )
+            lines.append(self._flank())
             lines.append(
                 f"parachuting: after a step down by {in_words(self.height, 'm', 3)} the tip flies "
                 f"{in_words(self.parachute, 'm', 3)} far"
             )
+        lines.append(f"noise: {in_words(self.noise, 'm', 2)} rms in the heights of a flat; it grows as the root of K_I")
         return lines
+
+    def _flank(self) -> str:
+        climbs = (
+            f"peak force {in_words(self.flank_force, 'N', 3)} up that slope"
+            if math.isfinite(self.flank_force)
+            else "up that slope the tip no longer taps at this speed"
+        )
+        if math.isnan(self.largest_set_point):
+            return f"flanks: {climbs}; down it no set point keeps the tip at the surface"
+        point = (
+            f"a set point of {in_words(self.largest_set_point, 'N', 3)} and more"
+            if self.mode == "contact"
+            else f"a set point up to {self.largest_set_point:.2g} A0"
+        )
+        return f"flanks: {climbs}; down it {point} keeps the tip at the surface"
 
 
 def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> Forecast:
@@ -116,13 +142,25 @@ def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> 
     its loop over a surface."""
     mode = str(scanner.scan.zloop.mode)
     limit, reason = _limit(scene)
-    motions, safe = _contact(scanner, limit) if mode == "contact" else _tapping(scanner, scene, limit)
     slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
+    lag = scanner.speed * slope / scanner.integral
+    motions, safe, flank = _contact(scanner, limit, lag) if mode == "contact" else _tapping(scanner, scene, limit, lag)
     return Forecast(
         motions, limit, reason, safe, scanner.margins, scanner.integral, scanner.advised_integral, scanner.speed, slope,
         scanner.speed_limit(slope, 1e-9) if slope > 0.0 else math.inf, height,
-        scanner.parachute(height) if height > 0.0 else 0.0, mode,
+        scanner.parachute(height) if height > 0.0 else 0.0, mode, flank, _largest_set_point(scanner, lag),
+        scanner.noise,
     )  # fmt: skip
+
+
+def _largest_set_point(scanner: Scanner, lag: float) -> float:
+    """On the way down a slope the reading is off by the lag [m] for good; beyond the surface it can be off by no more
+    than A0 - A, or by the set force over k_c."""
+    needed = max(lag, _SIGMAS * scanner.scan["zloop.noise"])
+    if scanner.scan.zloop.mode == "contact":
+        return float(needed * scanner.rig["probe.spring_constant"])
+    share = 1.0 - needed / float(scanner.drive["drive.free_amplitude"])
+    return share if share > 0.0 else math.nan
 
 
 def steepest(scanner: Scanner, surface: Surface) -> tuple[float, float]:
@@ -146,12 +184,12 @@ def _limit(scene: Scene) -> tuple[float, str]:
     return most, reason
 
 
-def _contact(scanner: Scanner, limit: float) -> tuple[tuple[Motion, ...], float]:
+def _contact(scanner: Scanner, limit: float, lag: float) -> tuple[tuple[Motion, ...], float, float]:
     force = float(scanner.scan["zloop.set_force"])
-    return (Motion(force, math.nan, 1.0, 0.0, 0.0),), limit
+    return (Motion(force, math.nan, 1.0, 0.0, 0.0),), limit, force + lag * scanner.rig["probe.spring_constant"]
 
 
-def _tapping(scanner: Scanner, scene: Scene, limit: float) -> tuple[tuple[Motion, ...], float]:
+def _tapping(scanner: Scanner, scene: Scene, limit: float, lag: float) -> tuple[tuple[Motion, ...], float, float]:
     """Curves of the slow flow, down and up again; the motions at the set point by the time domain."""
     plan = scene.plan()
     flow = SlowFlow(plan, scanner.rig, scanner.drive)
@@ -183,7 +221,24 @@ def _tapping(scanner: Scanner, scene: Scene, limit: float) -> tuple[tuple[Motion
         )
     loud = [value.amplitude / A0 for way in ways for _, value in way if value.peak_force > limit]
     safe = max(loud, default=0.0)
-    return tuple(motions), math.nan if safe >= 0.99 else safe
+    climbs = _force_at(scanner, ways[0], lag / A0)
+    return tuple(motions), math.nan if safe >= 0.99 else safe, max(climbs, motions[0].peak_force)
+
+
+def _force_at(scanner: Scanner, way: list[tuple[FlowState, FlowValue]], below: float) -> float:
+    """The peak force at a reading below the set point, over A0, where the way down meets it."""
+    wanted = _wanted(scanner) - below
+    for (_, above), (_, under) in pairwise(way):
+        high, low = _reading(scanner, above), _reading(scanner, under)
+        if low < wanted <= high:
+            return float(np.interp(wanted, (low, high), (under.peak_force, above.peak_force)))
+    return math.inf
+
+
+def _wanted(scanner: Scanner) -> float:
+    """The set point, as an amplitude over A0."""
+    zloop = scanner.scan.zloop
+    return math.sin(zloop.set_phase) if zloop.mode == "phase" else float(zloop.set_amplitude)
 
 
 def _reading(scanner: Scanner, value: FlowValue) -> float:
@@ -198,8 +253,7 @@ def _at_set_point(
     scanner: Scanner, flow: SlowFlow, heights: list[float], way: list[tuple[FlowState, FlowValue]]
 ) -> tuple[float, FlowState] | None:
     """Where a curve first falls below the set point from above; halved from there."""
-    zloop = scanner.scan.zloop
-    wanted = math.sin(zloop.set_phase) if zloop.mode == "phase" else zloop.set_amplitude
+    wanted = _wanted(scanner)
     for i in range(1, len(way)):
         if _reading(scanner, way[i][1]) < wanted <= _reading(scanner, way[i - 1][1]):
             high, low, state = heights[i - 1], heights[i], way[i][0]

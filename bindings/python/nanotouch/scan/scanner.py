@@ -15,7 +15,8 @@ import numpy as np
 
 from nanotouch import _core
 from nanotouch._arrays import Floats
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import InvalidValue, SolverError
+from nanotouch.scan.steady import check_accuracy
 from nanotouch.scan.tapping import Drive
 from nanotouch.scene import Rig
 from nanotouch.scene.plan import Plan
@@ -64,6 +65,8 @@ class Channels(NamedTuple):
     """lag behind the drive, 0 in contact mode [rad]"""
     peak_force: Floats
     """largest in the pixel [N]"""
+    lateral: Floats
+    """force of the lever on the tip along x [N]: against friction and up slopes; 0 in tapping mode"""
 
 
 class Image(NamedTuple):
@@ -99,6 +102,7 @@ class Image(NamedTuple):
         names = {"height": ("Height", "m"), "signal": ("Amplitude" if taps else "Deflection", "m")}
         names |= {"phase": ("Phase", "rad")} if taps else {}
         names |= {"error": ("Error", "m"), "peak_force": ("Peak force", "N")}
+        names |= {} if taps else {"lateral": ("Lateral force", "N")}
         planes = [
             Plane(f"{name}{direction}", getattr(channels, key), unit, self.pixel_size, "nanotouch/scan")
             for key, (name, unit) in names.items()
@@ -146,6 +150,11 @@ class Scanner:
         return float(self._core.advised)
 
     @property
+    def noise(self) -> float:
+        """Standard deviation of the heights that the noise of the reading leaves on a hard flat [m]."""
+        return float(self._core.noise)
+
+    @property
     def margins(self) -> LoopMargins:
         """Of the z loop."""
         return LoopMargins(*self._core.margins)
@@ -184,7 +193,7 @@ class Scanner:
             By default one for each core. The image is the same on any number.
         """
         lines, pixels = (int(self.scan[f"raster.{name}"]) for name in ("lines", "pixels"))
-        out = np.empty((2, 5, lines, pixels))
+        out = np.empty((2, 6, lines, pixels))
         starts = range(0, lines, STRIP)
 
         def strip(first: int) -> None:
@@ -199,5 +208,49 @@ class Scanner:
             except BaseException:
                 pool.shutdown(cancel_futures=True)
                 raise
+        return self._image(out)
+
+    def steady(self, accuracy: float = 0.05, threads: int | None = None) -> Image:
+        """The image that an infinitely slow scan would give: tapping, at each pixel the motion of the set point.
+
+        Speed, gain, noise, drift and stage do not count; trace and retrace are one. Along a line each pixel's motion
+        follows from the one before; on the first one the tip comes down.
+
+        Parameters
+        ----------
+        accuracy : float, optional
+            Of the amplitude over A0 and of the peak force over the larger of itself and the pull-off, 1e-6 .. 0.5.
+        threads : int, optional
+            By default one for each core. The image is the same on any number.
+
+        Raises
+        ------
+        SolverError
+            With the first place where no motion of the set point repeats each period, or 24 harmonics are not enough;
+            :meth:`run` scans it in time.
+        """
+        check_accuracy(accuracy)
+        if self.scan.zloop.mode == "contact":
+            raise InvalidValue("zloop.mode = contact: a steady image is of tapping or phase")
+        lines, pixels = (int(self.scan[f"raster.{name}"]) for name in ("lines", "pixels"))
+        out = np.empty((6, lines, pixels))
+
+        def take(line: int) -> int:
+            found, pixel = _core.steady_line(self._core, accuracy, line)
+            out[:, line] = found
+            return int(pixel)
+
+        with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+            for line, pixel in enumerate(pool.map(take, range(lines))):
+                if pixel >= 0:
+                    pool.shutdown(cancel_futures=True)
+                    raise SolverError(
+                        f"line {line}, pixel {pixel}: no motion of the set point repeats each period there to this "
+                        "accuracy; run() scans it in time"
+                    )
+        return self._image(np.stack([out, out]))
+
+    def _image(self, out: Floats) -> Image:
+        lines, pixels = out.shape[2:]
         size = self.scan["raster.height"] / lines, self.scan["raster.width"] / pixels
         return Image(Channels(*out[0]), Channels(*out[1]), size, str(self.scan.zloop.mode))

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Harmonic balance beside the time domain: random levers, drives, set points, samples and humidities; both branches. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "larger.h"
+#include "nanotouch/balance.h"
+#include "nanotouch/random.h"
+
+enum { CASES = 16 };
+static nt_plan plan;
+static nt_balance_curve curve;
+
+static double between(nt_random *random, double low, double high)
+{
+    return low * pow(high / low, nt_random_uniform(random));
+}
+
+static nt_status make_plan(double radius, double modulus, double humidity)
+{
+    nt_scene scene = nt_scene_defaults();
+    scene.tip.radius = radius;
+    scene.sample.youngs_modulus = modulus;
+    scene.medium.relative_humidity = humidity;
+    const nt_plan_inputs inputs = {.scene = &scene};
+    return nt_plan_make(&plan, &inputs, NULL);
+}
+
+static nt_tapping lever_of(double stiffness, double quality, const nt_drive *drive)
+{
+    nt_probe probe = nt_rig_defaults().probe;
+    probe.spring_constant = stiffness;
+    probe.quality = quality;
+    probe.resonance = 300e3;
+    nt_tapping t;
+    assert_int_equal(nt_tapping_init(&t, &probe, drive, 1e-8, NULL), NT_OK);
+    return t;
+}
+
+/* Errors of amplitude and peak force over what is told; 0 where one of the two finds no motion. */
+static int compare(nt_random *random, int n, double *amplitude, double *force)
+{
+    const double radius = between(random, 2e-9, 30e-9), modulus = between(random, 1e8, 3e10);
+    const double humidity = n % 4 ? 0.0 : 0.3 + 0.4 * nt_random_uniform(random);
+    const double k = between(random, 2.0, 60.0), Q = between(random, 20.0, 800.0);
+    const double A0 = between(random, 5e-9, 60e-9), share = 0.3 + 0.65 * nt_random_uniform(random);
+    const nt_drive drive = {n / 2 % 2, 0.0, A0};
+    const nt_tapping t = lever_of(k, Q, &drive);
+    if (make_plan(radius, modulus, humidity) != NT_OK)
+        return 0;
+    const nt_balance balance = {&t, &plan, NULL, 1 + n % NT_HARMONICS_MAX, 0.0};
+    const nt_balance_target target = {NT_AIM_AMPLITUDE, share * A0, n / 4 % 2};
+    nt_balance_state state;
+    nt_balance_value found;
+    if (nt_balance_trace(&balance, &curve) != NT_OK ||
+        nt_balance_find(&balance, &curve, &target, &state, &found) != NT_OK)
+        return 0;
+    assert_true(fabs(found.amplitude / (share * A0) - 1.0) < 1e-6);
+    nt_tapping_state moment = nt_balance_moment(&balance, &state, &found);
+    const nt_tapping_over over = {&plan, NULL, found.base_height};
+    nt_tapping_value truth;
+    if (nt_tapping_settle(&t, &moment, &over, &truth, NULL) != NT_OK)
+        return 0;
+    *amplitude = fabs(truth.amplitude - found.amplitude) / found.amplitude_bound;
+    *force = fabs(truth.peak_force - found.peak_force) / found.force_bound;
+    return 1;
+}
+
+static void within_what_is_told(void **state)
+{
+    (void)state;
+    nt_random random = nt_random_seed(20);
+    int compared = 0;
+    double most = 0.0;
+    for (int n = 0; n < CASES; n++) {
+        double amplitude = 0.0, force = 0.0;
+        compared += compare(&random, n, &amplitude, &force);
+        most = larger(most, larger(amplitude, force));
+    }
+    print_message("%d of %d compared, errors up to %.3g of what is told\n", compared, CASES, most);
+    assert_true(most < 1.0 && compared > CASES / 2);
+}
+
+/* A dry hard sample: an attractive motion and a repulsive one at the same heights, and an unstable one between. The
+ * time domain stays in each of the two from where it is told to begin. */
+static void both_motions_and_one_between(void **state)
+{
+    (void)state;
+    assert_int_equal(make_plan(10e-9, 10e9, 0.0), NT_OK);
+    const nt_drive drive = {NT_DRIVE_TIP, 0.0, 10e-9};
+    const nt_tapping t = lever_of(40.0, 400.0, &drive);
+    const nt_balance balance = {&t, &plan, NULL, 8, 0.0};
+    assert_int_equal(nt_balance_trace(&balance, &curve), NT_OK);
+    double low = 0.0, high = 1.0; /* heights of the unstable part */
+    for (int i = 0; i < curve.count; i++)
+        if (!curve.at[i].stable && curve.at[i].swing > 0.5 * 10e-9) {
+            high = high == 1.0 ? curve.at[i].base_height : smaller(high, curve.at[i].base_height);
+            low = larger(low, curve.at[i].base_height);
+        }
+    assert_true(low > high); /* it ends above where it begins */
+    nt_balance_target target = {NT_AIM_HEIGHT, 0.5 * (low + high), 0};
+    const nt_tapping_over over = {&plan, NULL, target.value};
+    double phase[2];
+    for (int lifted = 0; lifted < 2; lifted++) {
+        nt_balance_state at;
+        nt_balance_value found;
+        nt_tapping_value truth;
+        target.lifted = lifted;
+        assert_int_equal(nt_balance_find(&balance, &curve, &target, &at, &found), NT_OK);
+        nt_tapping_state moment = nt_balance_moment(&balance, &at, &found);
+        assert_int_equal(nt_tapping_settle(&t, &moment, &over, &truth, NULL), NT_OK);
+        assert_true(fabs(truth.phase - found.phase) < 1e-3);
+        assert_true(fabs(truth.tip_loss - found.tip_loss) < 1e-3 * truth.drive_work);
+        phase[lifted] = found.phase;
+    }
+    assert_true(phase[0] > 1.58 && phase[1] < 1.56);
+}
+
+/* Too few harmonics, too many, and more than the free lever has. */
+static void wrong_inputs(void **state)
+{
+    (void)state;
+    assert_int_equal(make_plan(10e-9, 10e9, 0.0), NT_OK);
+    const nt_drive drive = nt_drive_defaults();
+    const nt_tapping t = lever_of(40.0, 400.0, &drive);
+    nt_balance balance = {&t, &plan, NULL, 0, 0.0};
+    assert_int_equal(nt_balance_trace(&balance, &curve), NT_E_ARGUMENT);
+    balance.harmonics = NT_HARMONICS_MAX + 1;
+    assert_int_equal(nt_balance_trace(&balance, &curve), NT_E_ARGUMENT);
+    balance.harmonics = 1;
+    assert_int_equal(nt_balance_trace(&balance, &curve), NT_OK);
+    const nt_balance_target beyond = {NT_AIM_AMPLITUDE, 30e-9, 0};
+    nt_balance_state at;
+    nt_balance_value found;
+    assert_int_equal(nt_balance_find(&balance, &curve, &beyond, &at, &found), NT_E_NO_CONVERGENCE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(within_what_is_told),
+        cmocka_unit_test(both_motions_and_one_between),
+        cmocka_unit_test(wrong_inputs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

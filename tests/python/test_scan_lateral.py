@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a scan shows beside heights: friction there and back, noise, forces on flanks; and a scan through the hal."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch import images, lateral, scan
+from nanotouch.errors import DeviceError, InvalidValue
+
+
+def rubbed() -> nt.Scene:
+    return nt.Scene(
+        tip={"radius": 20e-9}, sample={"youngs_modulus": 10e9}, medium={"relative_humidity": 0.0},
+        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0},
+        friction={"coefficient": 0.2, "shear_strength": 0.0},
+    )  # fmt: skip
+
+
+def rig(**probe: Any) -> nt.Rig:
+    lever: Any = {"spring_constant": 8.0, "quality": 200.0, "resonance": 300e3} | probe
+    return nt.Rig(probe=lever, stage={"resonance": 20e3, "quality": 5.0})
+
+
+def contact(**raster: Any) -> nt.Scan:
+    return nt.Scan(
+        zloop={"mode": "contact", "set_force": 50e-9, "rate": 20e3, "noise": 0.0},
+        raster={"width": 1e-6, "height": 1e-6, "pixels": 64, "lines": 2, "line_rate": 1.0} | raster,
+    )
+
+
+def test_friction_turns_with_the_direction_on_a_tilted_sample() -> None:
+    """There mu F + F slope, back -mu F + F slope: the friction loop, mu back from it within 2 %."""
+    scene = rubbed()
+    image = nt.Scanner(scene.plan(), contact(tilt_x=0.02), rig()).run()
+    there, back = image.trace.lateral[:, 8:-8], image.retrace.lateral[:, 8:-8]
+    assert 0.5 * (there - back) == pytest.approx(0.2 * 50e-9, rel=0.02)
+    assert 0.5 * (there + back) == pytest.approx(0.02 * 50e-9, rel=0.1)
+    found = lateral.image(there, back, 50e-9)
+    assert found.coefficient == pytest.approx(0.2, rel=0.02)
+
+
+def test_shear_strength_shows_the_area() -> None:
+    """tau pi a^2 with Hertz' a at the set force."""
+    scene = rubbed()
+    scene.friction.coefficient, scene.friction.shear_strength = 0.0, 50e6
+    plan = scene.plan()
+    image = nt.Scanner(plan, contact(), rig()).run()
+    radius = (0.75 * 50e-9 * 20e-9 / plan.explain()["effective_modulus"]) ** (1.0 / 3.0)
+    half = 0.5 * (image.trace.lateral - image.retrace.lateral)[:, 8:-8]
+    assert half == pytest.approx(50e6 * math.pi * radius**2, rel=0.02)
+
+
+def test_lateral_channels_are_in_the_file(tmp_path: Path) -> None:
+    pytest.importorskip("gwyfile")
+    image = nt.Scanner(rubbed().plan(), contact(lines=4), rig()).run()
+    image.write(tmp_path / "scan.gwy")
+    names = {channel.name for channel in images.channels(tmp_path / "scan.gwy")}
+    assert {"Lateral force", "Lateral force retrace"} <= names
+    taps = nt.Scanner(rubbed().plan(), nt.Scan(raster={"pixels": 4, "lines": 1, "line_rate": 50.0}), rig()).run()
+    assert not taps.trace.lateral.any()
+
+
+@pytest.mark.parametrize("mode", ["contact", "tapping"])
+def test_the_noise_of_the_heights(mode: Any) -> None:
+    """Standard deviation on a flat as told, within 15 %."""
+    settings = nt.Scan(
+        zloop={"mode": mode, "set_force": 50e-9, "rate": 50e3, "noise": 0.1e-9},
+        raster={"width": 1e-6, "height": 1e-6, "pixels": 512, "lines": 4, "line_rate": 1.0},
+    )
+    scene = rubbed()
+    scene.sample.youngs_modulus = 100e9
+    scanner = nt.Scanner(scene.plan(), settings, rig(spring_constant=40.0 if mode == "tapping" else 0.5))
+    heights = scanner.run().trace.height[:, 32:]
+    assert float(heights.std()) == pytest.approx(scanner.noise, rel=0.15)
+
+
+@pytest.mark.parametrize("mode", ["contact", "tapping"])
+def test_the_force_up_a_flank_is_forecast(mode: Any) -> None:
+    """A ramp up and down of slope 0.1 at a speed that lags by a nanometre: largest force of the scan within 15 %."""
+    x = np.arange(128) / 128 * 1e-6
+    ramp = images.Topography(np.tile(0.1 * np.minimum(x, 1e-6 - x), (8, 1)), (x[1], x[1]))
+    scene = rubbed()
+    surface = nt.Surface.touched_by(scene, ramp)
+    settings = nt.Scan(
+        zloop={"mode": mode, "set_force": 50e-9, "rate": 50e3, "noise": 0.0},
+        raster={"x": 0.1e-6, "width": 0.35e-6, "height": 10e-9, "pixels": 32, "lines": 1, "line_rate": 1.0},
+    )
+    plan, lever = scene.plan(0.1, surface=surface), rig(spring_constant=8.0 if mode == "contact" else 40.0)
+    slow = nt.Scanner(plan, settings, lever)
+    settings["raster.line_rate"] = slow.integral * 1e-9 / 0.1 / 0.7e-6
+    scanner = nt.Scanner(plan, settings, lever)
+    told = scan.forecast(scanner, scene, surface)
+    force = scanner.run().trace.peak_force[0, 16:].max()
+    assert told.flank_force == pytest.approx(force, rel=0.15)
+    assert told.flank_force > (1.05 if mode == "contact" else 1.0) * told.motions[0].peak_force
+    assert "up that slope" in str(told)
+    assert "keeps the tip at the surface" in str(told)
+
+
+def test_a_scan_through_the_hal() -> None:
+    """Contact mode by a session on the simulated rig, with its noise, stage and supervisor: what the tip sees."""
+    x = np.arange(64) / 64 * 2e-6
+    wave = images.Topography(np.tile(20e-9 * np.cos(1e6 * np.pi * x), (64, 1)), (x[1], x[1]))
+    scene = rubbed()
+    surface = nt.Surface.touched_by(scene, wave)
+    session = nt.Session(scene, surface=surface, mode="topography", path=[(0.5e-6, 0.5e-6), (1.5e-6, 0.5e-6)])
+    settings = nt.Scan(
+        zloop={"mode": "contact", "set_force": 50e-9},
+        raster={"x": 0.5e-6, "y": 0.5e-6, "width": 1e-6, "height": 0.2e-6, "pixels": 32, "lines": 2, "line_rate": 0.5},
+    )
+    image = nt.raster.image(session, settings)
+    expected = np.asarray(surface.height(0.5e-6 + np.arange(32) / 32 * 1e-6, 0.5e-6))
+    for channels in image[:2]:
+        found = channels.height - channels.height.mean(axis=1, keepdims=True) - (expected - expected.mean())
+        assert np.abs(found[:, 2:-2]).max() < 2e-9
+        assert channels.peak_force.max() < 75e-9
+    settings["raster.line_rate"] = 1000.0
+    with pytest.raises(InvalidValue, match="valid is up to"):
+        nt.raster.image(session, settings)
+
+
+class Bench(nt.hal.Slave):
+    """A device of one's own: a stage with x and y, and a lever of 8 N/m that a hard staircase pushes up."""
+
+    fails_at = math.inf
+
+    def open(self, host: Any) -> None:
+        self.at, self.reads = np.zeros(3), 0
+
+    def read(self) -> nt.hal.Reading:
+        self.reads += 1
+        ground = 10e-9 if self.at[0] > 1e-6 else 0.0
+        deflection = max(0.0, float(self.at[2]) - 0.1e-6 + ground) + 1e-11 * math.sin(1.7 * self.reads)
+        felt = math.nan if self.reads > self.fails_at else deflection
+        return nt.hal.Reading(position=self.at, felt=(math.nan, math.nan, felt))
+
+    def write(self, action: nt.hal.Action) -> None:
+        self.at = np.array(action.target)
+
+
+def test_a_scan_on_a_device_of_ones_own() -> None:
+    """The same call with another slave half finds its step of 10 nm; where its sensor fails, it is told."""
+    settings = nt.Scan(
+        zloop={"mode": "contact", "set_force": 50e-9},
+        raster={"x": 0.6e-6, "y": 0.5e-6, "width": 0.8e-6, "height": 1e-7, "pixels": 16, "lines": 1, "line_rate": 0.5},
+    )
+    for fails_at in (math.inf, 40_000):
+        slave = Bench()
+        slave.fails_at = fails_at
+        session = nt.Session(rubbed(), mode="topography", path=[(0.5e-6, 0.5e-6), (1.5e-6, 0.5e-6)], slave=slave)
+        if math.isinf(fails_at):
+            image = nt.raster.image(session, settings)
+            for channels in image[:2]:
+                assert channels.height[0, 12] - channels.height[0, 3] == pytest.approx(10e-9, abs=0.2e-9)
+                assert channels.signal[0, 12] == pytest.approx(50e-9 / 8.0, rel=0.05)
+        else:
+            with pytest.raises(DeviceError, match="the supervisor went to"):
+                nt.raster.image(session, settings)
