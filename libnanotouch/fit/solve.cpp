@@ -19,7 +19,7 @@ namespace
 // Changes of the sum of squares, relative, at which a fit ends: the last step was the root of so many points times
 // that, in standard uncertainties, and leaves a tenth of itself or less.
 constexpr double exactly = 1e-10; // for differences of fits
-constexpr double closely = 1e-6;
+constexpr double closely = 1e-8;
 constexpr double roughly = 1e-4;
 constexpr double near = 0.5; // of the sum of squares that a fit began with, at its end
 

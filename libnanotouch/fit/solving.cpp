@@ -179,7 +179,7 @@ nt_status Solving::fit_by_scatter(double *used)
         look_at(fit.rest());
     const bool is_there = scatter_ < started * noise();
     if (status == NT_OK && !is_there) {
-        status = fit.approach(&value);
+        status = fit.run(&found, true);
         look_at(fit.rest());
     }
     for (int i = 0; status == NT_OK && (i == 0 || (i < weighings && is_there && !is_near(wanted_noise(), *used)));
