@@ -26,8 +26,7 @@ def test_plan_of_the_default_scene() -> None:
     assert facts["adhesion_source"] == "meniscus"
     # w = 2 gamma_L less what the tail pulls where the films touch (E5b), 0.3936 nN over 2 pi R
     assert facts["work_of_adhesion"] == pytest.approx(2 * 0.072 - 0.3936e-9 / (2 * math.pi * 20e-9), rel=1e-5)
-    # lambda = 0.04: nearly DMT, 2 pi w R with all of w
-    assert plan.pull_off_force == pytest.approx(2 * math.pi * 0.144 * 20e-9, rel=0.01)
+    assert plan.pull_off_force == pytest.approx(2 * math.pi * 0.144 * 20e-9, rel=0.01)  # lambda = 0.04: nearly DMT
     assert [(term.name, term.form) for term in plan.terms] == [("contact", "table"), ("vdw", "derjaguin")]
     assert plan.omitted == []  # there is nothing else in this scene
     assert 0.0 < plan.bound < 0.01
