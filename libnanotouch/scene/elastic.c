@@ -255,11 +255,6 @@ static nt_law_value contact_with(const nt_plan *plan, double more, double indent
     return value;
 }
 
-static double radius_with(const nt_plan *plan, double more, double indentation)
-{
-    return contact_with(plan, more, indentation).a;
-}
-
 /* The force of the contact with w less by what some force at hold takes of it, and without [N]; NaN: nothing holds. */
 static double force_taken(const nt_plan *plan, double taken, double indentation, double alone)
 {
@@ -304,39 +299,32 @@ static double depth_at(const nt_plan *plan, double inside, double beside, int i)
     return i < DEPTHS ? fold + s * s * s * (before - fold) : touch + t * t * t * (deepest - touch);
 }
 
-/* What the pressure around an adhesive contact and a w that is not quite right do to its radius, from where the bound
- * begins: beside fold and first touch. */
-static double error_of_radius(const nt_plan *plan, int tails)
+/* What the pressure around an adhesive contact and a w that is not quite right do to it, from where the bound begins:
+ * beside fold and first touch. Of stiffness the former nearer to the fold is told by what is lost over that range; of
+ * force the latter is what the tail pulls more. */
+static double error_of_contact(const nt_plan *plan, int tails)
 {
-    const double u = under_all(plan, 0), more = tails ? more_of_w(plan) : 0.0;
-    const double moved = shift_of(plan, tails), beside = 2.0 * moved + nt_plan_away_from_folds(plan);
+    const nt_quantity quantity = plan->demand.quantity;
+    const int is_force = quantity == NT_QUANTITY_FORCE, is_radius = quantity == NT_QUANTITY_RADIUS;
+    const double u = under_all(plan, 0), more = tails && !is_force ? more_of_w(plan) : 0.0;
+    const double moved = shift_of(plan, tails), beside = NT_ELASTIC_BESIDE * moved + nt_plan_away_from_folds(plan);
+    const double inside = quantity == NT_QUANTITY_STIFFNESS ? INSIDE_FOLD * plan->length : 0.0;
+    double worst = 0.0;
     if (u == 0.0 && more == 0.0)
         return 0.0;
     if (nt_plan_contact_form(plan) != NT_FORM_EXACT || isinf(moved))
-        return INFINITY;
-    double worst = 0.0;
+        return is_radius || (isinf(moved) && !is_force) ? (double)INFINITY : 0.0;
     for (int i = 0; i <= 2 * DEPTHS; ++i) {
-        const double d = depth_at(plan, beside, beside, i), a = radius_with(plan, 0.0, d);
-        const double wider = radius_with(plan, more, d + u) - a, narrower = a - radius_with(plan, -more, d - u);
-        worst = fmax(worst, fmax(fabs(wider), fabs(narrower)) / fmax(a, plan->scale));
+        const double d = depth_at(plan, beside, beside, i), at = d + plan->release_gap < inside ? 0.0 : u;
+        const nt_law_value contact = contact_with(plan, 0.0, d);
+        const double value = nt_plan_pick(contact, quantity);
+        if (is_force && contact.k > 0.0) /* it gives way, and the force is not more than half lost */
+            continue;
+        const double wider = nt_plan_pick(contact_with(plan, more, d + at), quantity) - value;
+        const double narrower = value - nt_plan_pick(contact_with(plan, -more, d - at), quantity);
+        worst = fmax(worst, fmax(fabs(wider), fabs(narrower)) / fmax(fabs(value), plan->scale));
     }
-    return NT_SAMPLED * worst * nt_plan_largest_unit(plan, NT_QUANTITY_RADIUS);
-}
-
-/* Of its stiffness: what an indentation more or less by the displacement under it does, but near where it lets go. */
-static double error_of_stiffness(const nt_plan *plan)
-{
-    const double u = under_all(plan, 0), beside = shift_of(plan, 0) + nt_plan_away_from_folds(plan);
-    const double inside = INSIDE_FOLD * plan->length;
-    double worst = 0.0;
-    if (u == 0.0 || isinf(beside) || nt_plan_contact_form(plan) != NT_FORM_EXACT)
-        return 0.0;
-    for (int i = 0; i <= 2 * DEPTHS; ++i) {
-        const double d = depth_at(plan, fmax(inside, beside), beside, i), k = contact_with(plan, 0.0, d).k;
-        const double more = contact_with(plan, 0.0, d + u).k - k, less = k - contact_with(plan, 0.0, d - u).k;
-        worst = fmax(worst, fmax(fabs(more), fabs(less)) / fmax(fabs(k), plan->scale));
-    }
-    return NT_SAMPLED * worst * bluntest(plan);
+    return NT_SAMPLED * worst * (is_radius ? nt_plan_largest_unit(plan, quantity) : bluntest(plan));
 }
 
 double nt_plan_around_error(const nt_plan *plan, int tails)
@@ -344,13 +332,14 @@ double nt_plan_around_error(const nt_plan *plan, int tails)
     const nt_quantity quantity = plan->demand.quantity;
     if (quantity == NT_QUANTITY_FOLDS)
         return shift_of(plan, tails) / plan->scale;
+    const double moved = error_of_contact(plan, tails);
     if (quantity == NT_QUANTITY_RADIUS)
-        return error_of_radius(plan, tails);
+        return moved;
     const double pressed = fmin(plan->maximum_stiffness * under_all(plan, 0), HALF * others_at_hold(plan).all_F);
     const double lost = fmax(pressed, error_of_neck(plan)) * bluntest(plan);
     if (quantity == NT_QUANTITY_STIFFNESS)
-        return fmax(SLOPE * lost / plan->length / plan->scale, error_of_stiffness(plan));
-    return lost / plan->scale;
+        return fmax(SLOPE * lost / plan->length / plan->scale, moved);
+    return fmax(lost / plan->scale, moved);
 }
 
 /* Beside contact there is no radius and, but for a jump, no fold. */

@@ -107,6 +107,8 @@ double nt_plan_contact_distance(const nt_plan *plan, nt_form form);
 double nt_plan_curvature_distance(const nt_plan *plan);
 /* From which distance to a fold or to first touch on the bound holds where the folds are in place [m]. */
 double nt_plan_away_from_folds(const nt_plan *plan);
+/* And so many shifts of a fold by what the sample yields to. */
+#define NT_ELASTIC_BESIDE 3.0
 /* What Hertz, DMT and JKR would err by, on what load control can hold, away from its fold; Hertz and DMT know contact
  * only from first touch on. */
 void nt_plan_rivals_of(nt_plan *plan);

@@ -72,6 +72,7 @@ static void finish(nt_plan *plan, double maximum_load)
         plan->bound.fold_shift += plan->yield.jump_error;
     plan->bound.fold_shift += nt_plan_rigid_shift(plan);
     plan->fold_distance = nt_plan_away_from_folds(plan) + plan->bound.fold_shift + nt_plan_yield_touch(plan);
+    plan->fold_distance += (NT_ELASTIC_BESIDE - 1.0) * nt_plan_rigid_shift(plan);
     if (plan->yield.count > 0 && plan->yield.jumps && plan->demand.quantity == NT_QUANTITY_STIFFNESS) /* k ~ 1/sqrt */
         plan->fold_distance += plan->yield.jump_error / plan->bound.force_error;
     if (form == NT_FORM_SHAPE && plan->source != NT_ADHESION_NONE) { /* adhesion that cannot be felt: no folds */

@@ -12,6 +12,7 @@ enum { N = NT_YIELD_ORDER, OUTER = NT_YIELD_PANELS - 3, MOST_MESHES = 800 };
 enum { NEWTONS = 40, EDGES = 60, KINKS = 8, SECANTS = 8 };
 
 #define FADED 1e-7    /* of the energy where adhesion ends: the mesh goes so far */
+#define CUT 20.0      /* tip radii: a law that fades slower is cut there; at half a radius its far part was felt */
 #define FIRST 0.1     /* of the width of adhesion: the first panel outside, where the gap rises most steeply */
 #define OCTAVES 1.7   /* from panel to panel, if there is room */
 #define WIDEST 4.0    /* coarser is not resolved */
@@ -30,7 +31,7 @@ static double reach_of(const nt_yield_sample *sample)
 {
     const double W = fabs(sample->law(sample->context, sample->range).energy);
     double rise = fmax(sample->length, sample->range);
-    while (fabs(sample->law(sample->context, sample->range + rise).energy) > FADED * W && rise < 0.5 * sample->radius)
+    while (fabs(sample->law(sample->context, sample->range + rise).energy) > FADED * W && rise < CUT * sample->radius)
         rise *= 1.3;
     return rise;
 }

@@ -154,6 +154,7 @@ static nt_status end_at(maker *m, double centre)
     const nt_status status = nt_yield_go(&m->solver, NT_YIELD_CENTRE, centre, &point);
     m->table->jumps = 1;
     m->table->touch = point.h;
+    m->pull = fmax(fabs(point.F), fabs(point.k) * (centre - pole)); /* of laws that cancel, too */
     m->hold = NT_YIELD_CENTRE;
     m->end = centre + BEFORE_JUMP * (centre - pole);
     return status;
