@@ -226,7 +226,7 @@ def compare_over(seed: int) -> tuple[str, float, float]:
             there = error_at(plan, flat_scene, rng, (x, y, float(body.height(x, y))))
         except (SolverError, np.linalg.LinAlgError):
             return f"{kind}: reference failed", 0.0, plan.bound
-        error = max(error, there)
+        error = float(np.maximum(error, there))
     return kind, error, plan.bound
 
 
