@@ -374,9 +374,8 @@ nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem
     status = nt_plan_dents_of(plan, &scene, problem);
     if (status == NT_OK)
         status = nt_plan_check_plastic(plan, &scene, problem);
-    if (status != NT_OK)
-        return status;
-    status = nt_plan_friction_of(plan, inputs, problem);
+    if (status == NT_OK)
+        status = nt_plan_friction_of(plan, inputs, problem);
     if (status != NT_OK)
         return status;
     finish(plan, scene.range.maximum_load);

@@ -158,8 +158,7 @@ def test_what_is_left_out_is_named_with_its_bound() -> None:
     scene, _ = presets.silicon_on_gold()
     scene.tip.radius, scene.range.maximum_load = 30e-9, 0.11e-6
     omitted = next(term for term in scene.plan(relative_accuracy=0.02).omitted if term.name == "electrostatic")
-    # Hudlet at a0: pi eps0 U^2 R^2/(a0 (a0 + R))
-    pull = math.pi * 8.8541878128e-12 * 0.25**2 * (30e-9) ** 2 / (1.98e-10 * (1.98e-10 + 30e-9))
+    pull = math.pi * 8.8541878128e-12 * 0.25**2 * (30e-9) ** 2 / (1.98e-10 * (1.98e-10 + 30e-9))  # Hudlet at a0
     assert omitted.force == pytest.approx(pull, rel=1e-9)
     assert omitted.bound == pytest.approx(pull / scene.plan().pull_off_force, rel=1e-9)
 
