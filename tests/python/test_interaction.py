@@ -139,9 +139,11 @@ def test_any_accuracy_over_topography(name: str) -> None:
         assert isinstance(outcome, random_scenes.Outcome)
         plan = outcome.plan
         assert plan.terms[0].form == form
-        assert outcome.error <= plan.bound
+        facts = plan.explain()
+        # the reference is rigid: a plan that yields is off from it by what the rigid sum errs by (test_yielding_relief)
+        assert outcome.error <= plan.bound + facts["yields"] * facts["rigid_error"]
         assert random_scenes.keeps(plan, accuracy)
-        facts = plan.explain()  # what the rigid sum errs by is no error against it
+        # what the rigid sum errs by is no error against it
         rest = plan.bound - max(facts["rigid_error"], facts["around_error"])
         assert form == "local exact" or outcome.error > 0.01 * rest
         costs.append(plan.cost)

@@ -150,7 +150,7 @@ def test_a_scan_on_a_device_of_ones_own() -> None:
         zloop={"mode": "contact", "set_force": 50e-9},
         raster={"x": 0.6e-6, "y": 0.5e-6, "width": 0.8e-6, "height": 1e-7, "pixels": 16, "lines": 1, "line_rate": 0.5},
     )
-    for fails_at in (math.inf, 40_000):
+    for fails_at in (math.inf, 15_000):
         slave = Bench()
         slave.fails_at = fails_at
         session = nt.Session(rubbed(), mode="topography", path=[(0.5e-6, 0.5e-6), (1.5e-6, 0.5e-6)], slave=slave)

@@ -86,7 +86,7 @@ def test_maps_that_do_not_fit_are_refused() -> None:
 
 
 def test_all_the_way(tmp_path: Path) -> None:
-    """Maps show a sphere within twice the way v/K_I = 9 nm that the loop lags, the target is met within the operator's
+    """Maps show a sphere within twice the way v/K_I < 9 nm that the loop lags, the target is met within the operator's
     30 nm and what it cannot see, and the map follows as well as it looks. ``test_examples`` runs the command."""
     done = steps.work(48, 1)
     facts = done.facts()

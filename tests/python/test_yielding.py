@@ -269,7 +269,8 @@ def test_folds_in_a_liquid_are_those_of_all_of_w() -> None:
 
 
 def test_beside_a_neck_a_law_acts_in_full() -> None:
-    """A contact that is pulled out: there the sum errs by 1.2 % of the pull-off, more than in deep contact."""
+    """A contact that is pulled out: there the sum errs by 0.7 % of the pull-off, more than in deep contact. The bound also
+    counts what a shift does where the contact pulls."""
     scene = Scene(
         tip={"radius": 623e-9, "surface_potential": -0.0168},
         sample={"youngs_modulus": 2.63e6, "poisson_ratio": 0.3, "surface_potential": -0.0168},
@@ -282,11 +283,11 @@ def test_beside_a_neck_a_law_acts_in_full() -> None:
     around = reference.yielded_scene(scene, 1e-4).surrounded
     assert around is not None
     assert around.release is not None
-    pulled = around.touching(1.4 * around.release.contact_radius)
+    pulled = around.touching(1.45 * around.release.contact_radius)
     assert pulled.gap < plan.explain()["release_gap"] - plan.fold_distance_m
     value = Interaction(plan, "retract").eval([0.0, 0.0, pulled.gap])
     error = abs(float(value.Fz) - pulled.force) / plan.scale
-    assert 0.3 * plan.bound < error <= plan.bound
+    assert 0.1 * plan.bound < error <= plan.bound
 
 
 def watery(modulus: float, radius: float, load: float, work: float = 0.0, **medium: float) -> Scene:

@@ -17,7 +17,7 @@ TARGET = (3.5e-6, 2.5e-6)  # where the first of them shall go: between the other
 SIZE = 4.8e-6  # of the image [m]
 SILICA = {"youngs_modulus": 72e9, "poisson_ratio": 0.17}
 GLASS = {"youngs_modulus": 70e9, "poisson_ratio": 0.22}
-PIXEL_RATE = 4.8  # of the scan, there and back [1/s]
+PIXEL_RATE = 2.0  # of the scan, there and back [1/s]
 WORK = 0.01  # of adhesion between tip and sphere [J/m^2]: a coated tip; with more it drags them back
 
 HAMAKER = 1e-20  # through that coating [J]
