@@ -122,7 +122,7 @@ class Steady:
         if found is None:
             return None
         *values, state, evaluations = found[1:]
-        return SteadyMotion(TIERS[found[0]], *values, TappingState(*state), evaluations)
+        return SteadyMotion._make((TIERS[found[0]], *values, TappingState(*state), evaluations))
 
 
 def check_accuracy(accuracy: float) -> None:
