@@ -91,7 +91,8 @@ def oracle_of(scene: Scene, plan: Plan) -> Oracle:
         planned = plan.explain()["work_of_adhesion"]
         truth = Oracle(scene, planned)
         truth = Oracle(scene, planned + truth.tail)
-        np.testing.assert_allclose(truth.pull_off(), scene.adhesion.pull_off_force, rtol=1e-8)
+        if not plan.explain()["yields"]:  # else it is that of the yielding sample
+            np.testing.assert_allclose(truth.pull_off(), scene.adhesion.pull_off_force, rtol=1e-8)
     return truth
 
 
