@@ -174,5 +174,11 @@ nt_tapping_state nt_balance_moment(const nt_balance *balance, const nt_balance_s
         at.position += state->real[n] * c - state->imaginary[n] * s;
         at.speed -= t->ratio * n * (state->real[n] * s + state->imaginary[n] * c);
     }
+    const double ground = balance->place != NULL ? balance->place->surface.z : 0.0;
+    if (at.speed > 0.0) /* on the way up what has taken hold may hold */
+        nt_interaction_advance_gap(balance->plan, &at.contact, balance->place, value->lowest_gap);
+    nt_interaction_advance_gap(balance->plan, &at.contact, balance->place,
+                               value->base_height - ground + t->cosine * at.position);
+    at.contact.dissipated = 0.0;
     return at;
 }

@@ -14,6 +14,7 @@
 
 #define STILL 1e-11 /* of the harmonics, over A0 */
 #define ASIDE 1e-15 /* on either side of a jump [m] */
+#define WAVES 6.0   /* longest piece of a quadrature, over the order of the highest harmonic [rad] */
 enum { NEWTON_MAX = 25, HALVINGS = 6, SIZE = 2 * (NT_HARMONICS_MAX - 1), BISECTIONS = 60, GRID = 64 };
 
 /* The gap at an angle, and its derivative. */
@@ -106,9 +107,51 @@ static int products_of(const orbit *o)
     return o->balance->harmonics > 1 ? 2 * o->balance->harmonics : 0;
 }
 
-/* One Gauss point; `weight` over pi. Returns the force. */
-static void add_point(orbit *o, int attached, double angle, double weight)
+enum { DOWN = 1, UP = 2 };
+
+/* Of 2 x 2, row by row. */
+static void multiply(const double a[4], const double b[4], double product[4])
 {
+    const double c[4] = {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
+                         a[2] * b[1] + a[3] * b[3]};
+    memcpy(product, c, sizeof c);
+}
+
+/* Deviations over a piece of the way; pieces come from the lowest point on, on either side. */
+static void add_passage(orbit *o, int sides, const double passage[4])
+{
+    if (sides & DOWN)
+        multiply(o->down, passage, o->down);
+    if (sides & UP)
+        multiply(passage, o->up, o->up);
+}
+
+/* r^2 y'' + (r/Q + d) y' + (1 + stiffness) y = 0 over a width [rad], stiffness and d over k_c. */
+static void add_drift(orbit *o, int sides, double stiffness, double damper, double width)
+{
+    const nt_tapping *lever = o->balance->lever;
+    const double r = lever->ratio, g = 0.5 * (1.0 / (r * lever->quality) + damper / (r * r));
+    const double square = (1.0 + stiffness) / (r * r) - g * g, w = sqrt(fabs(square));
+    const double c = square > 0.0 ? cos(w * width) : cosh(w * width);
+    const double s = w * width < 1e-9 ? width : (square > 0.0 ? sin(w * width) : sinh(w * width)) / w;
+    const double drift[4] = {c + g * s, s, -(square + g * g) * s, c - g * s};
+    add_passage(o, sides, drift);
+    o->decay += 2.0 * g * width * (sides == (DOWN | UP) ? 2.0 : 1.0);
+}
+
+int nt_orbit_returns(const orbit *o)
+{
+    double period[4];
+    multiply(o->up, o->down, period);
+    const double shrunk = exp(-0.5 * o->decay);
+    return shrunk < 1.0 && fabs(period[0] + period[3]) * shrunk < 1.0 + shrunk * shrunk;
+}
+
+/* One Gauss point of a width [rad] on the way down, up, or both. */
+static void add_point(orbit *o, int sides, double angle, double width)
+{
+    const int attached = sides == UP && o->captured;
+    const double weight = (sides == (DOWN | UP) ? 2.0 : 1.0) * width / NT_PI;
     const nt_tapping *lever = o->balance->lever;
     double derivative;
     const double gap = way_at(o, angle, &derivative), k = lever->spring_constant;
@@ -120,6 +163,8 @@ static void add_point(orbit *o, int attached, double angle, double weight)
     o->loss += weight * damper * v * v / k;
     o->peak = fmax(o->peak, force);
     o->contact_time += law.a > 0.0 ? 0.5 * weight : 0.0;
+    if (o->is_complete)
+        add_drift(o, sides, law.k * lever->cosine / k, damper / k, width);
     if (products_of(o) > 0) {
         add_wave(o->slope, products_of(o), angle, -weight * law.k / k);
         if (damper > 0.0)
@@ -128,29 +173,37 @@ static void add_point(orbit *o, int attached, double angle, double weight)
 }
 
 /* A jump of the force, as a slope of no width. */
-static void add_jump(orbit *o, double angle, double gap, double weight)
+static void add_jump(orbit *o, int sides, double angle, double gap)
 {
     double derivative;
     way_at(o, angle, &derivative);
+    const nt_tapping *lever = o->balance->lever;
     const double rise = law_at(o, 0, gap + ASIDE).F - law_at(o, 1, gap).F;
-    add_wave(o->slope, products_of(o), angle, weight * rise / (fabs(derivative) * o->balance->lever->spring_constant));
+    const double slope = rise / (fabs(derivative) * lever->spring_constant);
+    if (products_of(o) > 0)
+        add_wave(o->slope, products_of(o), angle, slope / NT_PI);
+    const double kick[4] = {1.0, 0.0, slope * lever->cosine / (lever->ratio * lever->ratio), 1.0};
+    if (o->is_complete)
+        add_passage(o, sides, kick);
 }
 
-/* From the lowest point to the top, down (backwards) or up. */
-static void add_side(orbit *o, const nt_edges *edges, int up, double weight)
+/* From the lowest point to the top, down (backwards), up, or both where they are alike. */
+static void add_side(orbit *o, const nt_edges *edges, int sides)
 {
     const nt_plan *plan = o->balance->plan;
+    const int up = sides == UP;
     const double end = up ? 2.0 * NT_PI : 0.0,
                  jump = up ? plan->release_gap : nt_plan_capture_gap(plan, o->balance->place);
-    const int attached = up && o->captured;
     double from = o->low_angle;
     for (int i = 0; i < edges->count; i++) {
         const int last = i == edges->count - 1;
         const double to = last ? end : angle_of(o, o->low_angle, end, edges->at[i]);
-        for (int p = 0; p < POINTS; p++)
-            add_point(o, attached, from + points[p] * (to - from), weight * weights[p] * fabs(to - from) / NT_PI);
-        if (!last && o->captured && edges->at[i] == jump && products_of(o) > 0)
-            add_jump(o, to, jump, weight / NT_PI);
+        const int pieces = 1 + (int)(fabs(to - from) * o->orders / WAVES);
+        const double step = (to - from) / pieces;
+        for (int p = 0; p < pieces * POINTS; p++)
+            add_point(o, sides, from + (p / POINTS + points[p % POINTS]) * step, weights[p % POINTS] * fabs(step));
+        if (!last && o->captured && edges->at[i] == jump)
+            add_jump(o, sides, to, jump);
         from = to;
     }
 }
@@ -179,9 +232,9 @@ static int integrate(orbit *o)
     const nt_tapping_over over = {plan, o->balance->place, 0.0};
     const nt_edges edges = nt_edges_of(&over, o->lowest, top, o->captured);
     const int alike = o->balance->harmonics == 1 && !o->captured && lever->viscosity == 0.0;
-    add_side(o, &edges, 0, alike ? 2.0 : 1.0);
+    add_side(o, &edges, alike ? DOWN | UP : DOWN);
     if (!alike)
-        add_side(o, &edges, 1, 1.0);
+        add_side(o, &edges, UP);
     return isfinite(o->force[0][0]);
 }
 
@@ -311,6 +364,11 @@ int nt_orbit_find(orbit *o)
 
 void nt_orbit_complete(orbit *o)
 {
+    static const double none[4] = {1.0, 0.0, 0.0, 1.0};
     o->orders = o->balance->harmonics + NEGLECTED;
+    o->is_complete = 1;
+    o->decay = 0.0;
+    memcpy(o->down, none, sizeof none);
+    memcpy(o->up, none, sizeof none);
     integrate(o);
 }

@@ -18,12 +18,18 @@ typedef struct orbit {
     double damper[PRODUCTS + 1][2]; /* the same of the contact's damping over w t */
     double loss;                    /* of the contact, over pi k_c [m^2] */
     double peak, contact_time;      /* [N], [-] */
+    double down[4], up[4];          /* of the complete one: what small deviations of q and dq/d(w t) become, top to
+                                       lowest point and on to the top; without their decay */
+    double decay;                   /* exponent by which their area falls in a period */
+    int is_complete;
     long evaluations;
 } orbit;
 
 /* From o->balance and o->at, whose harmonics are where it begins. 0 where there is no such period. */
 int nt_orbit_find(orbit *o);
-/* F_n up to NEGLECTED harmonics more than the balance has. */
+/* F_n up to NEGLECTED harmonics more than the balance has, and what small deviations become. */
 void nt_orbit_complete(orbit *o);
+/* Of a complete one: small deviations die out, from period to period (Floquet). */
+int nt_orbit_returns(const orbit *o);
 
 #endif

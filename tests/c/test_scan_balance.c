@@ -90,6 +90,49 @@ static void within_what_is_told(void **state)
     assert_true(most < 1.0 && compared > cases / 2);
 }
 
+/* A soft sticky sample that the tip leaves for a fifth of the period alone: all harmonics are resolved, and no motion
+ * is promised within reach of the fold where it ends. */
+static void soft_sample_near_a_fold(void **state)
+{
+    (void)state;
+    assert_int_equal(make_plan(28.6e-9, 126e6, 0.0), NT_OK);
+    const nt_drive drive = {NT_DRIVE_BASE, 0.0, 15.85e-9};
+    const nt_tapping t = lever_of(53.17, 31.46, &drive);
+    nt_balance balance = {&t, &plan, NULL, 1, 0.0};
+    const nt_balance_target target = {NT_AIM_AMPLITUDE, 0.5116 * 15.85e-9, 1};
+    nt_balance_state at;
+    nt_balance_value found;
+    nt_tapping_value truth;
+    assert_int_equal(nt_balance_trace(&balance, &curve), NT_OK);
+    assert_int_equal(nt_balance_find(&balance, &curve, &target, &at, &found), NT_OK);
+    assert_true(isinf(found.amplitude_bound) && isinf(found.force_bound));
+    balance.harmonics = NT_HARMONICS_MAX;
+    assert_int_equal(nt_balance_find(&balance, &curve, &target, &at, &found), NT_OK);
+    nt_tapping_state moment = nt_balance_moment(&balance, &at, &found);
+    const nt_tapping_over over = {&plan, NULL, found.base_height};
+    assert_int_equal(nt_tapping_settle(&t, &moment, &over, &truth, NULL), NT_OK);
+    assert_true(found.harmonics == NT_HARMONICS_MAX && found.force_bound < 1e-3 * truth.peak_force);
+    assert_true(fabs(found.peak_force - truth.peak_force) < 2e-4 * truth.peak_force);
+    assert_true(fabs(found.amplitude - truth.amplitude) < found.amplitude_bound);
+}
+
+/* A jump on each tap, some 15 pm deep: deviations change sign and grow fivefold from period to period, faster than
+ * averages over a period can tell. The lever does not stay, and no motion is told. */
+static void deviations_that_alternate(void **state)
+{
+    (void)state;
+    assert_int_equal(make_plan(6.4666e-9, 2.6345e9, 0.0), NT_OK);
+    const nt_drive drive = {NT_DRIVE_BASE, 0.0, 6.9145e-9};
+    const nt_tapping t = lever_of(2.6354, 23.4695, &drive);
+    const nt_balance balance = {&t, &plan, NULL, 16, 0.0};
+    const nt_balance_target target = {NT_AIM_AMPLITUDE, 0.3272 * 6.9145e-9, 0};
+    nt_balance_state at;
+    nt_balance_value found;
+    assert_int_equal(nt_balance_trace(&balance, &curve), NT_OK);
+    if (nt_balance_find(&balance, &curve, &target, &at, &found) == NT_OK)
+        assert_true(isinf(found.amplitude_bound));
+}
+
 /* A dry hard sample: an attractive motion and a repulsive one at the same heights, and an unstable one between. The
  * time domain stays in each of the two from where it is told to begin. */
 static void both_motions_and_one_between(void **state)
@@ -148,6 +191,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(within_what_is_told),
+        cmocka_unit_test(soft_sample_near_a_fold),
+        cmocka_unit_test(deviations_that_alternate),
         cmocka_unit_test(both_motions_and_one_between),
         cmocka_unit_test(wrong_inputs),
     };

@@ -2,6 +2,8 @@
 // balance.h, steady.h: steady tapping to a demanded accuracy
 #include "nanotouch/steady.h"
 
+#include <algorithm>
+
 #include "descriptions.h"
 
 namespace
@@ -23,7 +25,8 @@ static std::unique_ptr<Steady> make(const Described<nt_rig> &rig, const Describe
     made->plan = &plan;
     made->accuracy = accuracy;
     nt_problem problem{};
-    raise_on(nt_tapping_init(&made->lever, &rig.value.probe, &drive.value, 1e-8, &problem), problem, "tapping");
+    const double tolerance = std::min(1e-8, 1e-4 * accuracy); // a motion has settled within 30 of them
+    raise_on(nt_tapping_init(&made->lever, &rig.value.probe, &drive.value, tolerance, &problem), problem, "tapping");
     return made;
 }
 
