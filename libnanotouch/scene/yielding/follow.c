@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The mesh of a sample that yields follows the pressure: panels are cut where pressure or gap are not resolved, edges
  * are put where a law has a kink, and what is finer than it need be is joined. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,6 +15,10 @@ enum { N = NT_YIELD_ORDER };
 #define FURTHER 3.0    /* the mesh grows by */
 #define WIDEST 4.0     /* of R^2: the mesh ends there */
 #define FINE 2e-3      /* of what a panel must resolve: it can be twice as wide */
+#define UNFELT 1.0     /* of what a panel must resolve: what the place of a kink may do to the force */
+#define PLACED 2e-4    /* of x: nearer to a kink no edge has to be */
+#define GRADED 4.0     /* times x: the edge after a kink */
+#define BEFORE 1e-9    /* of the gap of a kink: where the law is still that before it */
 
 /* The length over which the law falls at a gap [m]. */
 static double length_at(const nt_yield_solver *s, double gap)
@@ -89,23 +94,47 @@ static double crossing(const nt_yield_solver *s, int panel, double end)
     return high;
 }
 
+/* A list that is full is longer than any mesh, and refused as such. */
 static void insert(nt_yield_edges *list, double x)
 {
+    if (list->count == (int)(sizeof list->at / sizeof *list->at))
+        return;
     int i = list->count++;
     for (; i > 0 && list->at[i - 1] > x; --i)
         list->at[i] = list->at[i - 1];
     list->at[i] = x;
 }
 
+/* How near to a kink at x its edge has to be: an edge off by dx has the law's change of slope over dx/(2 R) of gap, on
+ * the ring pi dx. Neighbours far wider than x do not know it nearer where a pressure only begins. */
+static double near_kink(const nt_yield_solver *s, double end, double x, double all)
+{
+    const double unfelt = UNFELT * s->tolerance * all / NT_PI, R = s->sample->radius;
+    const nt_pressure before = nt_yield_law(s, end * (1.0 - BEFORE)), after = nt_yield_law(s, end * (1.0 + BEFORE));
+    const double bend = fabs(before.slope - after.slope), jump = fabs(before.pressure - after.pressure);
+    const double by_slope = sqrt(4.0 * R * unfelt / fmax(bend, DBL_MIN)), by_jump = unfelt / fmax(jump, DBL_MIN);
+    return fmax(PLACED * x, fmin(x, fmin(by_slope, by_jump)));
+}
+
+/* Beside an edge at x that does not stay a panel far wider than x takes no notice of it: the next edge comes nearer. */
+static void grade(const nt_yield_solver *s, nt_yield_edges *list, double x)
+{
+    int next = 1;
+    while (next < list->count && !(list->at[next] > x))
+        ++next;
+    if (s->graded && next < list->count && list->at[next] > GRADED * GRADED * x)
+        insert(list, GRADED * x);
+}
+
 /* An edge at a kink of the law: the one that was there for it before is moved, else there is one more. */
-static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel, double x)
+static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel, double x, double near)
 {
     const double width = s->mesh.edges[panel + 1] - s->mesh.edges[panel];
     int nearest = 1;
     for (int i = 1; i < list->count; ++i)
         if (fabs(list->at[i] - x) < fabs(list->at[nearest] - x))
             nearest = i;
-    if (fabs(list->at[nearest] - x) < s->placed * x)
+    if (fabs(list->at[nearest] - x) < near)
         return 0;
     if (fabs(list->at[nearest] - x) < CLOSE * width) {
         --list->count;
@@ -113,6 +142,7 @@ static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel,
             list->at[i] = list->at[i + 1];
     }
     insert(list, x);
+    grade(s, list, x);
     return 1;
 }
 
@@ -129,9 +159,9 @@ int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
     for (int panel = 0; panel < m->panels && all > 0.0; ++panel) {
         int kinked = 0;
         for (int i = 0; i < s->sample->end_count; ++i) {
-            const double x = crossing(s, panel, s->sample->ends[i]);
+            const double end = s->sample->ends[i], x = crossing(s, panel, end);
             if (!isnan(x))
-                kinked |= place_kink(s, list, panel, x);
+                kinked |= place_kink(s, list, panel, x, near_kink(s, end, x, all));
         }
         const double rough = roughness(s, panel, p, all);
         changed |= kinked;

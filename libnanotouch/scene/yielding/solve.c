@@ -7,13 +7,12 @@
 
 #include "scene/yielding/yield.h"
 
-enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, STRICT = 5, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
+enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, TWICE = 2, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
+enum { FULL = HALVINGS / 4 }; /* what a step counts that no mesh resolves, which a shorter one may not cure */
 
-#define CONVERGED 1e-11     /* of the largest gap */
-#define AHEAD 0.7           /* of the way to where a law diverges */
-#define PLACED 2e-4         /* of x: where a kink of the law is */
-#define ROUGHLY_PLACED 4e-3 /* the same after some meshes; the force errs by its square */
-#define TOLERABLE 10.0      /* times what a panel must resolve */
+#define CONVERGED 1e-11 /* of the largest gap */
+#define AHEAD 0.7       /* of the way to where a law diverges */
+#define TOLERABLE 10.0  /* times what a panel must resolve */
 
 double nt_yield_rim(const nt_yield_solver *s, double h, double x, double *slope)
 {
@@ -138,7 +137,7 @@ static nt_status settle(nt_yield_solver *s, nt_yield_hold hold, double value)
 {
     nt_yield_edges list;
     for (int i = 0; i < MESHES; ++i) {
-        s->placed = i < STRICT ? PLACED : ROUGHLY_PLACED;
+        s->graded = i >= TWICE;
         const nt_status status = newton(s, hold, value);
         if (status != NT_OK)
             return status;
@@ -149,7 +148,7 @@ static nt_status settle(nt_yield_solver *s, nt_yield_hold hold, double value)
             continue;
         }
         if (!nt_yield_coarsen(s))
-            return s->rough < TOLERABLE ? NT_OK : NT_E_NO_CONVERGENCE;
+            return s->rough < TOLERABLE ? NT_OK : NT_E_CAPACITY;
     }
     return NT_E_NO_CONVERGENCE;
 }
@@ -263,9 +262,10 @@ nt_status nt_yield_go(nt_yield_solver *s, nt_yield_hold hold, double value, nt_y
     if (!sticks(s))
         (void)nt_yield_coarsen(s);
     for (int halvings = 0; halvings < (sticks(s) ? HALVINGS_IN_CONTACT : HALVINGS);) {
-        if (step_to(s, hold, target) != NT_OK) {
+        const nt_status status = step_to(s, hold, target);
+        if (status != NT_OK) {
             target = 0.5 * (here + target);
-            ++halvings;
+            halvings += status == NT_E_CAPACITY ? FULL : 1;
             continue;
         }
         if (target == value)

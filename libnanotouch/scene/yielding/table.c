@@ -91,6 +91,12 @@ static int leaps(const maker *m, const nt_yield_point *next)
     return m->hold != NT_YIELD_CONTACT && centre > -m->solver.sample->pole && next->centre < KEPT * centre;
 }
 
+/* Where the solver comes to no end, a pull that grows is a jump: no finer table passes it. */
+static int is_pulled(const maker *m)
+{
+    return m->hold == NT_YIELD_GAP && m->last.F < 0.0 && m->last.k < 0.0;
+}
+
 /* Point after point until what is held is at its end, or the range is. */
 static nt_status march(maker *m, int part, double step)
 {
@@ -111,7 +117,7 @@ static nt_status march(maker *m, int part, double step)
             const int narrow = m->hold == NT_YIELD_CONTACT && from == 0.0 && failed < WIDENINGS;
             step = (narrow ? WIDER : NEARER) * fabs(to - from);
             if (step < least || ++failed > FAILURES)
-                return status;
+                return is_pulled(m) ? NT_E_NO_SOLUTION : status;
             status = NT_OK;
             continue;
         }

@@ -83,7 +83,7 @@ typedef struct nt_yield_solver {
     const nt_yield_sample *sample;
     double tolerance;           /* of the force, of the mesh, over max(|F|, scale) [-] */
     double scale;               /* [N] */
-    double placed;              /* how near to a kink an edge is, over x [-] */
+    int graded;                 /* the panel after such an edge is no wider than some times x */
     double rough;               /* the worst panel, in what it must resolve [-] */
     double h;                   /* [m] */
     double reach;               /* of the law outside an adhesive contact [m] */
