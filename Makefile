@@ -88,11 +88,11 @@ macos:  ## the C library and the programs in apps/c for macOS (arm64), compiled 
 	  -DNANOTOUCH_TESTS=OFF -DNANOTOUCH_FIT=OFF
 	@cmake --build build/macos -j $(JOBS)
 
-kernel:  ## the SPI and GPIO drivers on a Linux kernel that runs as a program; builds that kernel once, some minutes; then seconds
+kernel:  ## the SPI and GPIO drivers, and `nanotouch touch`, on a Linux kernel that runs as a program; builds that kernel once, some minutes; then seconds
 	@tools/setup.sh kernel
 	@cmake --preset release --log-level WARNING >/dev/null
 	@cmake --build --preset release --target test_kernel
-	@tests/kernel/run.sh build/release/tests/kernel/test_kernel
+	@tests/kernel/run.sh build/release/tests/kernel/test_kernel $(VENV)/python
 
 IIO_TEST = $(if $(shell pkg-config --exists libiio && echo here),test_hal_iio)
 conformance:  ## what each backend keeps of the rules in docs/hal.md, as a table
@@ -108,7 +108,7 @@ bench:  ## what one call costs on this machine; JSON in build/release/tests/benc
 	@$(VENV)/python tests/bench/bench_session.py
 
 # generated tables keep the generator's lines, a part of a kernel the kernel's style
-C_FILES = $(filter-out tests/reference/%_table.h apps/mcu/plan.h tests/kernel/spi_bus.c, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
+C_FILES = $(filter-out tests/reference/%_table.h apps/mcu/plan.h tests/kernel/spi_bus.c tests/kernel/nanotouch_bus.h, $(shell git ls-files '*.c' '*.h' '*.cpp' '*.hpp'))
 
 lint:  ## format, style and types, without changing anything
 	@tools/setup.sh lint

@@ -139,11 +139,10 @@ case $profile in fuzz | wheels | windows) exit 0 ;; esac # no .venv of ours
 make_venv
 mkdir -p build
 fetch_libgpiod
-[ "$profile" != kernel ] || exit 0 # C alone
 
-# lint's packages include test's, and test's include demo's.
+# lint's packages include test's, and test's include demo's, which are those of page and kernel.
 key=$(hash_of pyproject.toml)
-case $profile in demo | page) stamps="demo page test lint" ;; test) stamps="test lint" ;; *) stamps=$profile ;; esac
+case $profile in demo | page | kernel) stamps="demo page kernel test lint" ;; test) stamps="test lint" ;; *) stamps=$profile ;; esac
 if ! has_stamp "$key" $stamps; then
   install_dependencies
   echo "$key" >".venv/stamp-$profile"

@@ -66,6 +66,8 @@ def run(args: argparse.Namespace) -> int:
         if args.out.suffix.lower() not in {".png", ".svg", ".pdf"}:
             raise InvalidValue(f"--out {args.out}: the ending must be .png, .svg or .pdf")
         output.check_free(args.out, args)
+        if not args.out.absolute().parent.is_dir():  # before the trial, which may take hours
+            raise InvalidValue(f"--out {args.out}: there is no folder {args.out.parent}")
     found = measured(args)
     args.answer = found._asdict()
     tell(found, args.priority)

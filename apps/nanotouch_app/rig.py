@@ -40,7 +40,9 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     found = rig_file.read(args.file)
-    nt.Rig.from_tables(found.rig)
+    nt.Scene.from_tables(found.rig)
+    settings = nt.Settings.for_rig(nt.Rig.from_tables(found.rig))
+    settings.update_from_tables(found.rig)
     halves = {"master": found.master, "slave": found.slave}
     args.answer = {name: _told(half) for name, half in halves.items()}
     for name, half in halves.items():
@@ -50,9 +52,7 @@ def run(args: argparse.Namespace) -> int:
     if args.job == "check":
         return 0
     if args.rate is None:
-        settings = nt.Settings.for_rig(nt.Rig.from_tables(found.rig))
-        settings.update_from_tables(found.rig)
-        args.rate = f"{settings.gains.rate:g}Hz"
+        args.rate = f"{settings.gains.rate:.17g}Hz"
     return _probe(args, halves)
 
 
@@ -88,5 +88,5 @@ def _probe(args: argparse.Namespace, halves: dict[str, rig_file.RealHalf | None]
         *(["wake-up and frames do not fit into a period"] if late + frames > met.period else []),
     ]
     args.answer |= {"rate": args.rate, "kept": kept, "reasons": reasons, "latency": met._asdict()}
-    print(f"{args.rate}: " + ("kept" if kept else "not kept: " + "; ".join(reasons)))
+    print(f"{in_words(1.0 / met.period, 'Hz')}: " + ("kept" if kept else "not kept: " + "; ".join(reasons)))
     return 0 if kept else 1

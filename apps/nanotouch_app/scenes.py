@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import difflib
 import os
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import nanotouch as nt
@@ -35,8 +36,8 @@ def read(name: str | None) -> Described:
         scene, rig = getattr(presets, name)()
         return Described(scene, rig, {})
     tables = {} if name is None else read_tables(_checked(name))
-    if name is not None and rig_file.is_real(tables):  # what it says of scene, rig and loop
-        tables = rig_file.read(name).rig
+    if name is not None:  # what it says of scene, rig and loop
+        tables = rig_file.from_tables(tables, Path(name).parent).rig
     return Described(nt.Scene.from_tables(tables), nt.Rig.from_tables(tables), tables)
 
 

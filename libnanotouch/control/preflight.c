@@ -161,15 +161,32 @@ nt_preflight_verdict nt_preflight_step(const nt_preflight *preflight, nt_preflig
     return state->verdict;
 }
 
+/* What the flags of a sample say, the gravest first. */
+static nt_problem bad_sample(uint32_t flags)
+{
+    static const struct {
+        uint32_t flag;
+        const char *field;
+    } named[] = {
+        {NT_SAMPLE_EMERGENCY_STOP, "emergency stop before arming"},
+        {NT_SAMPLE_DEVICE_LOST, "device lost before arming"},
+        {NT_SAMPLE_LIMIT_SWITCH, "limit switch before arming"},
+        {NT_SAMPLE_SATURATED, "deflection at the end of its range before arming"},
+        {NT_SAMPLE_INVALID, "invalid sample before arming"},
+    };
+    for (size_t i = 0; i < sizeof named / sizeof *named; ++i)
+        if (flags & named[i].flag)
+            return (nt_problem){named[i].field, "no|yes", 1.0, 0.0, 0.0};
+    return (nt_problem){"a sample before arming", "", NAN, -INFINITY, INFINITY};
+}
+
 nt_problem nt_preflight_problem(const nt_preflight *preflight, const nt_preflight_state *state)
 {
     const nt_limits *limits = &preflight->limits;
     const double value = state->measure;
     switch (state->verdict) {
     case NT_PREFLIGHT_BAD_SAMPLE:
-        if ((uint32_t)value & NT_SAMPLE_EMERGENCY_STOP)
-            return (nt_problem){"emergency stop before arming", "no|yes", 1.0, 0.0, 0.0};
-        return (nt_problem){"a sample before arming", "", NAN, -INFINITY, INFINITY};
+        return bad_sample((uint32_t)value);
     case NT_PREFLIGHT_DEFLECTION_BIAS:
         return (nt_problem){"deflection bias", "m", value, -limits->deflection_bias, limits->deflection_bias};
     case NT_PREFLIGHT_DEFLECTION_DRIFT:

@@ -59,6 +59,22 @@ static void every_trouble_is_refused_by_name(void **state)
          .flags = NT_SAMPLE_EMERGENCY_STOP,
          .verdict = NT_PREFLIGHT_BAD_SAMPLE,
          .field = "emergency stop before arming"},
+        {.gain = 1.0,
+         .flags = NT_SAMPLE_SATURATED | NT_SAMPLE_DEVICE_LOST,
+         .verdict = NT_PREFLIGHT_BAD_SAMPLE,
+         .field = "device lost before arming"},
+        {.gain = 1.0,
+         .flags = NT_SAMPLE_LIMIT_SWITCH | NT_SAMPLE_INVALID,
+         .verdict = NT_PREFLIGHT_BAD_SAMPLE,
+         .field = "limit switch before arming"},
+        {.gain = 1.0,
+         .flags = NT_SAMPLE_SATURATED | NT_SAMPLE_INVALID,
+         .verdict = NT_PREFLIGHT_BAD_SAMPLE,
+         .field = "deflection at the end of its range before arming"},
+        {.gain = 1.0,
+         .flags = NT_SAMPLE_INVALID,
+         .verdict = NT_PREFLIGHT_BAD_SAMPLE,
+         .field = "invalid sample before arming"},
     };
     const nt_rig rig = nt_rig_defaults();
     for (double rate = 300.0; rate < 200e3; rate *= 5.0) {

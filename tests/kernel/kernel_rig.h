@@ -12,7 +12,7 @@
 #include "nanotouch/hal_linux.h"
 #include "nanotouch/hal_spi.h"
 
-enum { UNDER_WAY = 200, APPROACH = 3000, AFTER = 50 }; /* ticks: before a fault, to the set-point, after a fault */
+enum { UNDER_WAY = 50, APPROACH = 3000, AFTER = 20 }; /* ticks: before a fault, to the set-point, after a fault */
 
 static kernel_bus chips;
 static struct {

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import datetime
 import random
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import nanotouch as nt
 import pytest
 from nanotouch import rig_file
 from nanotouch.errors import DeviceError, Error, InvalidValue
+from nanotouch_app.live import files
 from nanotouch_app.main import main
 
 FILE = Path(__file__).parents[2] / "docs/examples/rig/rig.toml"
@@ -154,6 +156,9 @@ def test_the_commands(capsys: pytest.CaptureFixture[str], tmp_path: Path):
     assert picture.stat().st_size > 1000
     assert main(["latency", "--rate", "0.5Hz"]) == 2
     assert main(["latency", "--out", str(picture)]) == 2
+    capsys.readouterr()
+    assert main(["latency", "--out", str(tmp_path / "none/wake.png"), "--seconds", "600"]) == 2
+    assert "there is no folder" in capsys.readouterr().err
 
 
 def test_probe_of_simulated_halves_is_that_of_the_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path):
@@ -163,6 +168,24 @@ def test_probe_of_simulated_halves_is_that_of_the_machine(capsys: pytest.Capture
     told = capsys.readouterr().out
     assert status in (0, 1)
     assert ("kept" if status == 0 else "not kept: ") in told
+
+
+def test_check_reads_scene_and_loop_too(capsys: pytest.CaptureFixture[str], tmp_path: Path):
+    file = tmp_path / "rig.toml"
+    for wrong in ("[gains]\nrat_kHz = 1\n", "[tip]\nradius_nm = -1\n", "[gains]\nrate_kHz = 1e9\n"):
+        file.write_text(FILE.read_text() + wrong)
+        assert main(["rig", "check", str(file)]) == 2
+        assert re.search("rat_kHz|radius|rate", capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("command", ["plan {}", "margins {} --no-map", "touch --scene {} --mode curve --surface flat",
+                                     "curve --scene {}"])  # fmt: skip
+def test_a_rehearsal_needs_one_word(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """backend = "simulated" in a file of a real half: all commands take it."""
+    monkeypatch.chdir(tmp_path)
+    Path("rig.toml").write_text(FILE.read_text().replace('"spidev"', '"simulated"'))
+    assert main(command.format("rig.toml").split()) == 0
+    assert files.of_scene(Path("rig.toml")).rig.probe.spring_constant == 8.0  # nanotouch live
 
 
 STRANGE: list[Any] = [

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import nanotouch as nt
-from nanotouch import curves, record
+from nanotouch import curves, record, rig_file
 from nanotouch import fit as fitting
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.scene import read_tables
@@ -83,7 +83,7 @@ def _reason(error: Error, path: Path) -> str:
 
 def of_scene(path: Path) -> Subject:
     """The scene and rig of a TOML file, over a gentle relief."""
-    tables = read_tables(path)
+    tables = rig_file.from_tables(read_tables(path), path.parent).rig  # what it says of simulated halves, too
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
     named = nt.SurfaceFile.from_tables(tables, path.parent)
     if named is not None:

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstring>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hal.h"
@@ -124,13 +126,18 @@ static void open_iio(nt_iio &iio, const py::dict &setup)
     }
     char reason[NT_IIO_REASON] = "";
     const auto uri = setup["context"].cast<std::string>();
-    const nt_status status = nt_iio_open(&iio, uri.c_str(), devices.data(), static_cast<int>(chips.size()), reason);
+    nt_status status = NT_OK;
+    {
+        const py::gil_scoped_release release; // a network may take seconds
+        status = nt_iio_open(&iio, uri.c_str(), devices.data(), static_cast<int>(chips.size()), reason);
+    }
     if (status == NT_E_UNSUPPORTED)
-        raise(status, "built without libiio (libiio-dev): backend \"iio\" cannot be used");
+        raise(status, "built without libiio (libiio-dev, 0.23 or newer, below 1.0): backend \"iio\" cannot be used");
     if (status != NT_OK)
         raise(status, reason[0] ? reason : nt_status_message(status));
 }
 const nt_exchange iio_exchange = nt_iio_exchange;
+const auto scan_iio = nt_iio_scan;
 static void close_iio(nt_iio &iio)
 {
     nt_iio_close(&iio);
@@ -138,9 +145,14 @@ static void close_iio(nt_iio &iio)
 #else // its functions are in nanotouch::linux
 static void open_iio(nt_iio &, const py::dict &)
 {
-    raise(NT_E_UNSUPPORTED, "built without libiio (libiio-dev): backend \"iio\" cannot be used");
+    raise(NT_E_UNSUPPORTED,
+          "built without libiio (libiio-dev, 0.23 or newer, below 1.0): backend \"iio\" cannot be used");
 }
 const nt_exchange iio_exchange = nullptr;
+static nt_status scan_iio(nt_iio *, int, const char *, double *, long)
+{
+    return NT_E_UNSUPPORTED;
+}
 static void close_iio(nt_iio &)
 {
 }
@@ -279,6 +291,28 @@ static std::vector<std::vector<double>> time_frames(const py::dict &given, int c
     return found;
 }
 
+// Scans of a chip's channels at a trigger; an array of count rows [V].
+static py::array_t<double> iio_scan(const py::dict &given, int converter, long count,
+                                    const std::optional<std::string> &trigger)
+{
+    const auto table = given["chips"].cast<py::list>()[static_cast<size_t>(converter)].cast<py::dict>();
+    py::array_t<double> volts({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(py::len(table["channels"]))});
+    double *to = volts.mutable_data();
+    Buses buses(given);
+    nt_status status = NT_OK;
+    {
+        const py::gil_scoped_release release;
+        status = scan_iio(&buses.iio, converter, trigger ? trigger->c_str() : nullptr, to, count);
+    }
+    const auto device = table["device"].cast<std::string>();
+    if (status == NT_E_ARGUMENT)
+        raise(NT_E_UNSUPPORTED, device + ": its driver has no buffer for scans");
+    if (status != NT_OK)
+        raise(NT_E_DEVICE, device + ": no scans at " + (trigger ? "trigger '" + *trigger + "'" : "its trigger") + ": " +
+                               std::strerror(buses.error()));
+    return volts;
+}
+
 // --- what this machine keeps ---
 
 static py::dict histogram_of(const nt_histogram &histogram)
@@ -345,6 +379,7 @@ void bind_converters(py::module_ &core)
     bind_drive(module);
     module.def("check_converters", check_converters);
     module.def("time_frames", time_frames);
+    module.def("iio_scan", iio_scan);
     module.def("latency", latency);
     module.def("chips", [] {
         std::vector<std::string> names;

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <iio.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -196,12 +197,42 @@ nt_status nt_iio_exchange(void *iio, int converter, const nt_transfer *transfers
 
 /* --- scans --- */
 
-static nt_status set_trigger(nt_iio *iio, const struct iio_device *device, const char *name)
+/* Sets the trigger of that name, if there is one; `trigger` is the one that the device has then, or NULL. */
+static nt_status set_trigger(nt_iio *iio, const struct iio_device *device, const char *name,
+                             const struct iio_device **trigger)
 {
-    if (!name)
+    if (!name) {
+        if (iio_device_get_trigger(device, trigger) < 0)
+            *trigger = NULL;
         return NT_OK;
-    const struct iio_device *trigger = iio_context_find_device(iio->context, name);
-    return trigger ? judge(iio, iio_device_set_trigger(device, trigger)) : NT_E_DEVICE;
+    }
+    *trigger = iio_context_find_device(iio->context, name);
+    if (!*trigger)
+        iio->error = ENODEV;
+    return *trigger ? judge(iio, iio_device_set_trigger(device, *trigger)) : NT_E_DEVICE;
+}
+
+/* libiio's timeout is that of all scans together, and it tells a server half of it: twice their time is waited, where
+ * somebody says how fast they come. */
+static void wait_for(const nt_iio *iio, const struct iio_device *device, const struct iio_device *trigger, long count)
+{
+    double frequency = 0.0, longest = TIMEOUT_MS;
+    if (trigger && iio_device_attr_read_double(trigger, "sampling_frequency", &frequency) < 0)
+        frequency = 0.0;
+    if (!(frequency > 0.0) && iio_device_attr_read_double(device, "sampling_frequency", &frequency) < 0)
+        frequency = 0.0;
+    if (frequency > 0.0)
+        longest += fmin(2e3 * (double)count / frequency, (double)INT_MAX - TIMEOUT_MS);
+    (void)iio_context_set_timeout(iio->context, (unsigned)longest);
+}
+
+/* All scans, or an error: fewer of them are none. */
+static int refill(struct iio_buffer *buffer, long count)
+{
+    const ssize_t bytes = iio_buffer_refill(buffer);
+    if (bytes < 0)
+        return (int)bytes;
+    return bytes == (ssize_t)count * iio_buffer_step(buffer) ? 0 : -EIO;
 }
 
 /* One channel of all scans that the buffer holds. */
@@ -230,12 +261,17 @@ nt_status nt_iio_scan(nt_iio *iio, int converter, const char *trigger, double *v
     const struct iio_device *device = iio_channel_get_device(iio->converter[converter].channels[0]);
     if (chip->is_dac || !iio_channel_is_scan_element(iio->converter[converter].channels[0]))
         return NT_E_ARGUMENT;
-    nt_status status = set_trigger(iio, device, trigger);
+    const struct iio_device *at = NULL;
+    nt_status status = set_trigger(iio, device, trigger, &at);
     for (int i = 0; i < chip->channels; ++i)
         iio_channel_enable(iio->converter[converter].channels[i]);
-    struct iio_buffer *buffer = status == NT_OK ? iio_device_create_buffer(device, (size_t)count, false) : NULL;
-    if (status == NT_OK)
-        status = judge(iio, buffer ? (int)iio_buffer_refill(buffer) : -errno);
+    struct iio_buffer *buffer = NULL;
+    if (status == NT_OK) {
+        wait_for(iio, device, at, count);
+        buffer = iio_device_create_buffer(device, (size_t)count, false);
+        status = judge(iio, buffer ? refill(buffer, count) : -errno);
+        (void)iio_context_set_timeout(iio->context, TIMEOUT_MS);
+    }
     for (int i = 0; i < chip->channels && status == NT_OK; ++i)
         take(iio, converter, i, buffer, volts + i);
     if (buffer)

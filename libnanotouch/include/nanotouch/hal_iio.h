@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Converters that a driver of the kernel's Industrial I/O runs, as the exchange of a half on converters (converters.h).
  * Each number is a file of sysfs, or a message over a network: for slow channels. Built into nanotouch::linux with
- * libiio 0.23 or newer; else NT_E_UNSUPPORTED. One thread per handle; nothing here is real-time safe. */
+ * libiio 0.23 or newer, below 1.0; else NT_E_UNSUPPORTED. One thread per handle; nothing here is real-time safe. */
 #ifndef NANOTOUCH_HAL_IIO_H
 #define NANOTOUCH_HAL_IIO_H
 
@@ -52,7 +52,8 @@ NT_API nt_status nt_iio_open(nt_iio *iio, const char *uri, const nt_iio_device *
  * NT_E_DEVICE; what else is refused, and a number beyond the span, NT_E_STATE. */
 NT_API nt_status nt_iio_exchange(void *iio, int converter, const nt_transfer *transfers, int count);
 /* `count` scans of a device's channels at its trigger (NULL: the one that it has), into volts[count * channels], scan
- * by scan [V]. Waits for them. Fails as nt_iio_exchange; NT_E_ARGUMENT for a device that drives, or without a buffer.
+ * by scan [V]. Waits for all: 1 s, and twice their time where trigger or device has a sampling_frequency. None is
+ * written on failure. Fails as nt_iio_exchange; NT_E_ARGUMENT for a device that drives, or without a buffer.
  */
 NT_API nt_status nt_iio_scan(nt_iio *iio, int converter, const char *trigger, double *volts, long count);
 /* Accepts NULL and one that is closed. */

@@ -24,6 +24,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
 from nanotouch.errors import InvalidValue
@@ -183,7 +186,7 @@ def _half(half: str, table: _Table, backend: str) -> Converters:
     read_chip = _iio_chip if backend == "iio" else _chip
     axes = table.word("axes", int, "1")
     named = table.table("chips", "a table for each chip")
-    chips = {name: read_chip(named.table(name, "a chip")) for name in list(named.left)}
+    chips = {name: {"name": name} | read_chip(named.table(name, "a chip")) for name in list(named.left)}
     if not chips:
         raise InvalidValue(f"[{half}.chips] is empty: it needs a table for each chip")
     calibrated: dict[str, datetime.date] = {}
@@ -336,3 +339,42 @@ def frame_times(half: Converters, count: int = 2000) -> list[FrameTimes]:
         ordered = sorted(times)
         found.append(FrameTimes(ordered[(count - 1) // 2], ordered[min(count - 1, math.ceil(0.999 * count) - 1)]))
     return found
+
+
+def iio_scan(half: Converters, chip: str, count: int, *, trigger: str | None = None) -> NDArray[np.float64]:
+    """Scans of a chip behind IIO, by the buffer of its driver: evenly spaced in time, as a spectrum needs them.
+
+    Parameters
+    ----------
+    half : Converters
+        Of a rig file with ``backend = "iio"``; no session has it open.
+    chip : str
+        Its table in the rig file, ``[slave.chips.adc]``: ``"adc"``. It measures.
+    count : int
+        Number of scans. All are waited for: 1 s, and twice their time where trigger or device has a
+        ``sampling_frequency``.
+    trigger : str, optional
+        Name of a trigger of the kernel's; by default the one that the device has.
+
+    Returns
+    -------
+    array, shape (count, channels)
+        A column for each of the chip's ``inputs`` [V].
+
+    Raises
+    ------
+    DeviceError
+        There is no such trigger, or not all scans have come.
+    """
+    chips = [one["name"] for one in half.setup["chips"]]
+    if "context" not in half.setup:
+        raise InvalidValue('scans need backend = "iio": a converter on spidev is asked frame by frame')
+    if chip not in chips:
+        raise InvalidValue(f"chip = {chip!r}: this half has {', '.join(chips)}")
+    at = chips.index(chip)
+    if half.setup["chips"][at]["is_output"]:
+        raise InvalidValue(f"chip = {chip!r} drives: scans are of one that measures")
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 10**7:
+        raise InvalidValue(f"count = {count!r}: valid is 1 .. 10000000")
+    scans: NDArray[np.float64] = _core.rigs.iio_scan(half.setup, at, count, trigger)
+    return scans
