@@ -99,13 +99,12 @@ double Residuals::sum_of_squares() const
     return sum;
 }
 
-// From the start again; no step may then lead out of the bounds.
+// No step may then lead out of the bounds.
 void Residuals::make_bounds_walls(bool walls)
 {
     walls_ = walls;
     met_bound_ = false;
-    std::fill(x_.begin(), x_.end(), 0.0);
-    is_seen_ = is_seen_ && valid_ && x_ == seen_;
+    is_seen_ = is_seen_ && valid_;
 }
 
 bool Residuals::is_outside() const

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <new>
 
 #include "data.hpp"
@@ -62,6 +63,33 @@ constexpr double as_good = 9.0; // difference in chi^2, three standard deviation
 
 // A fit of means of neighbours costs little and leaves a step or two for all points.
 constexpr long some = 50; // means at least
+// Laws with adhesion have several minima. Where what is left shows that a fit may have ended in a wrong one, it is
+// begun again from other moduli.
+constexpr double other_moduli[] = {1e4, 1e7, 1e10, 1e13}; // [Pa]
+constexpr double near_enough = 3.0;                       // residuals of the means over their noise
+
+bool may_end_elsewhere(const nt_fit_options &options)
+{
+    return options.model != NT_FIT_CUSTOM && is_free(options, NT_FIT_WORK_OF_ADHESION) && options.force_noise > 0.0 &&
+           std::isnan(options.parameter[NT_FIT_EFFECTIVE_MODULUS].initial) && !has_several_minima(options);
+}
+
+// The start whose means come closest to their law.
+void try_moduli(const nt_fit_options &options, const nt_fit_data &data, double misfit, Parameters *start)
+{
+    nt_fit_options tried = options;
+    nt_fit_start &modulus = tried.parameter[NT_FIT_EFFECTIVE_MODULUS];
+    for (const double initial : other_moduli) {
+        Parameters value;
+        double left;
+        modulus.initial = std::clamp(initial, modulus.minimum, modulus.maximum);
+        if (misfit < near_enough || guess(tried, data, std::nan(""), &value) != NT_OK ||
+            Fit(options, data, value).approach(&value, &left) != NT_OK || !(left < misfit))
+            continue;
+        misfit = left;
+        *start = value;
+    }
+}
 
 nt_status start_from(const nt_fit_options &options, const nt_fit_data &data, double lambda, Parameters *start)
 {
@@ -70,9 +98,13 @@ nt_status start_from(const nt_fit_options &options, const nt_fit_data &data, dou
     if (status != NT_OK || size < 2)
         return status;
     const Means means(data, size);
+    const nt_fit_data some_data = means.data();
     nt_fit_options weighed = options;
     weighed.force_noise /= std::sqrt(double(size));
-    (void)Fit(weighed, means.data(), *start).approach(start);
+    double misfit = std::numeric_limits<double>::infinity();
+    (void)Fit(weighed, some_data, *start).approach(start, &misfit);
+    if (may_end_elsewhere(options))
+        try_moduli(weighed, some_data, misfit, start);
     return NT_OK;
 }
 

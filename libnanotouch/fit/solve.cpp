@@ -81,7 +81,7 @@ bool Fit::descend_freely(double tolerance)
     solver.options.gradient_tolerance = 1e-14;
     solver.options.parameter_tolerance = 1e-12;
     solver.options.cost_threshold = 0.0;
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(coordinates_.size());
+    Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(residuals_.x(), coordinates_.size());
     iterations_ = 0;
     double before, after = residuals_.sum_of_squares();
     do {
@@ -130,8 +130,11 @@ nt_status Fit::descend(double tolerance)
 {
     if (begin() != NT_OK)
         return NT_E_NO_CONVERGENCE;
-    const bool done = (!loss_ && descend_freely(tolerance)) || descend_within_bounds(tolerance);
-    return done ? NT_OK : NT_E_NO_CONVERGENCE;
+    const std::vector<double> start(residuals_.x(), residuals_.x() + coordinates_.size());
+    if (!loss_ && descend_freely(tolerance))
+        return NT_OK;
+    std::copy(start.begin(), start.end(), residuals_.x());
+    return descend_within_bounds(tolerance) ? NT_OK : NT_E_NO_CONVERGENCE;
 }
 
 void Fit::fill_values(nt_fit_result *result) const
@@ -194,12 +197,14 @@ std::vector<double> Fit::rest() const
     return found;
 }
 
-nt_status Fit::approach(Parameters *value)
+nt_status Fit::approach(Parameters *value, double *misfit)
 {
     const nt_status status = descend(roughly);
-    if (status == NT_OK)
-        *value = residuals_.values();
-    return status;
+    if (status != NT_OK)
+        return status;
+    *value = residuals_.values();
+    *misfit = std::sqrt(residuals_.sum_of_squares() / double(data_.count));
+    return NT_OK;
 }
 
 nt_status Fit::run(Found *found, bool exact)

@@ -19,11 +19,12 @@ class Fit
   public:
     Fit(const nt_fit_options &options, const nt_fit_data &data, const Parameters &start);
     nt_status run(Found *found, bool exact); // to the last digits that differences of fits need, or as sigma needs
-    nt_status approach(Parameters *value);   // only the values, for another fit to start from
-    nt_status finish(Found *found);          // the start is known to be the solution
-    nt_status begin();                       // only what is left at the start
-    void weigh();                            // by the noise that the options have now
-    std::vector<double> rest() const;        // model less data, where it stands [N]
+    // Only the values, for another fit to start from, and the residuals over the noise, RMS.
+    nt_status approach(Parameters *value, double *misfit);
+    nt_status finish(Found *found);   // the start is known to be the solution
+    nt_status begin();                // only what is left at the start
+    void weigh();                     // by the noise that the options have now
+    std::vector<double> rest() const; // model less data, where it stands [N]
 
   private:
     void build(ceres::Problem *problem);
