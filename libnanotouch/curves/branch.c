@@ -133,11 +133,33 @@ static nt_curve_measured contact_slope(const nt_curve_branch *branch)
     return (nt_curve_measured){-slope, sqrt(squares / (count - 2.0) / spread)};
 }
 
+/* 1: z grows, -1: it falls, 0: neither. */
+static int order_of(const double z[], long count)
+{
+    int grows = 1, falls = 1;
+    for (long i = 1; i < count; i++) {
+        grows &= z[i - 1] <= z[i];
+        falls &= z[i] < z[i - 1];
+    }
+    return grows - falls;
+}
+
+/* z and force over the baseline into the first 2 count doubles of work, z growing. */
 static void order_outwards(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work)
 {
     const long n = segment->count;
-    nt_curve_point *points = (nt_curve_point *)(void *)(work + 2 * n);
-    nt_curve_baseline_of(baseline, segment->z, n, work);
+    double *level = work + 2 * n;
+    const int order = order_of(segment->z, n);
+    nt_curve_baseline_of(baseline, segment->z, n, order ? level : work);
+    if (order) {
+        for (long i = 0; i < n; i++) {
+            const long from = order > 0 ? i : n - 1 - i;
+            work[i] = segment->z[from];
+            work[n + i] = segment->force[from] - level[from];
+        }
+        return;
+    }
+    nt_curve_point *points = (nt_curve_point *)(void *)level;
     for (long i = 0; i < n; i++)
         points[i] = (nt_curve_point){segment->z[i], segment->force[i] - work[i]};
     nt_curve_sort(points, n, points + n);

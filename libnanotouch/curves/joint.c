@@ -305,8 +305,7 @@ static nt_curve_baseline bound(const nt_curve *curve, double most, const nt_curv
     return beside(approach, approach->z_mean, -middle, approach->force_variance + width * width / 12.0);
 }
 
-/* By how much the force grew from sample to sample where the lowest point was torn off: no sample shows the last of it.
- */
+/* How much the force grew between samples where the lowest point was torn off: no sample shows the last of it. */
 static double growth(const outside *out, const nt_curve_reading *reading)
 {
     const long lowest = reading->retract.lowest - (reading->retract.count - out->count);
@@ -340,10 +339,11 @@ static void widen(const nt_curve *curve, double most, double unseen, nt_curve_re
 /* What a squeeze film adds to the depth: taken off where the free retraction shows it too, else left open. */
 static void take_off_film(const outside *out, long free, nt_curve_reading *reading)
 {
-    const nt_curve_film film = nt_curve_find_film(&reading->approach);
     nt_curve_branch *retract = &reading->retract;
     nt_curve_measured *dip = &retract->dip;
-    if (!(film.strength > 0.0) || !(dip->value > 0.0))
+    const nt_curve_film none = {0.0, 0.0, 0.0, 0.0},
+                        film = dip->value > 0.0 ? nt_curve_find_film(&reading->approach) : none;
+    if (!(film.strength > 0.0))
         return;
     const double z = retract->z[retract->lowest], there = fmin(nt_curve_film_at(&film, z), dip->value);
     const double doubt = there * film.sigma / film.strength;
@@ -393,7 +393,8 @@ void nt_curve_join(const nt_curve *curve, double *room, nt_curve_reading *readin
         rupture->force +=
             nt_curve_baseline_at(&baseline, rupture->z) - nt_curve_baseline_at(&reading->approach.baseline, rupture->z);
     }
-    nt_curve_read_events(&curve->retract, &baseline, retract->noise, room - 2 * n, retract);
+    if (!own || reading->support == NT_CURVE_BOUND) /* another baseline than it was read with */
+        nt_curve_read_events(&curve->retract, &baseline, retract->noise, room - 2 * n, retract);
     refine_dip(&out, reading);
     widen(curve, most, growth(&out, reading), reading);
     take_off_film(&out, free, reading);

@@ -11,7 +11,9 @@ enum {
     SAMPLE = 128, /* points that the line is first sought by */
     BLOCKS = 10   /* whose means show the correlation of the residuals */
 };
-static const double settled = 0.05; /* of its standard deviation, by which the slope may still move */
+static const double settled = 0.05;                  /* of its standard deviation, by which the slope may still move */
+static const double of_sample = 0.25, of_all = 0.05; /* of the scatter: 2.5 of a sample's standard deviations; how far
+                                                        the last round moves it */
 static const double smallest_spread = 1e-300;
 
 /* Weighted least squares over every step-th point, by Tukey's weights of what the line leaves; scatter 0: all weigh the
@@ -36,15 +38,15 @@ static void move_line(const nt_curve_free *free, long step, double scatter, nt_c
     line->force += (rest - slope * x) / total;
 }
 
-/* Residuals of every step-th point, and their robust standard deviation. */
-static double look(nt_curve_free *free, long step, const nt_curve_baseline *line)
+/* Residuals of every step-th point, and their robust standard deviation, which is the line's within a share of it. */
+static double look(nt_curve_free *free, long step, const nt_curve_baseline *line, double doubt)
 {
     long found = 0;
     for (long i = 0; i < free->count; i += step) {
         free->rest[i] = free->force[i] - line->force - line->slope * free->x[i];
         free->scratch[found++] = fabs(free->rest[i]);
     }
-    return NT_MAD_SIGMA * nt_curve_median(free->scratch, found);
+    return NT_MAD_SIGMA * nt_curve_median_near(free->scratch, found, line->scatter / NT_MAD_SIGMA, doubt);
 }
 
 static long step_of(const nt_curve_free *free)
@@ -65,11 +67,11 @@ nt_curve_baseline nt_curve_rough_line(nt_curve_free *free)
     nt_curve_baseline line = {.z_mean = free->z_mean};
     free->travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
     move_line(free, step, 0.0, &line);
-    line.scatter = look(free, step, &line);
+    line.scatter = look(free, step, &line, of_sample);
     for (int round = 0; round < ROUNDS && line.scatter > 0.0; round++) {
         const double before = line.slope;
         move_line(free, step, line.scatter, &line);
-        line.scatter = look(free, step, &line);
+        line.scatter = look(free, step, &line, of_sample);
         if (has_settled(free, step, before, &line))
             break;
     }
@@ -78,14 +80,15 @@ nt_curve_baseline nt_curve_rough_line(nt_curve_free *free)
 
 void nt_curve_refine_line(nt_curve_free *free, nt_curve_baseline *line)
 {
-    line->scatter = look(free, 1, line); /* a sample's would do for white noise, not for residuals that hang together */
+    line->scatter =
+        look(free, 1, line, of_sample); /* a sample's would do for white noise, not for residuals that hang together */
     for (int round = 0; round < ROUNDS && step_of(free) > 1 && line->scatter > 0.0; round++) {
         const double before = line->slope;
         move_line(free, 1, line->scatter, line);
         if (has_settled(free, 1, before, line))
             break;
     }
-    line->scatter = look(free, 1, line);
+    line->scatter = look(free, 1, line, of_all);
 }
 
 nt_curve_baseline nt_curve_line(nt_curve_free *free)

@@ -75,38 +75,64 @@ double nt_curve_lowest(const double values[], long count)
     return lowest[0];
 }
 
-/* Of many values: those between two of a sample's ranks come first, and the median is looked for among them. */
-static long gather_middle(double values[], long count, long *below)
+/* Those from low to high come first; returns how many, and how many lie below. Without a branch. */
+static long gather(double values[], long count, const double ends[2], long *below)
 {
-    double sample[SAMPLE];
-    for (long i = 0; i < SAMPLE; i++)
-        sample[i] = values[i * (count / SAMPLE)];
-    const double high = select(sample, SAMPLE, SAMPLE / 2 + MIDDLE);
-    const double low = select(sample, SAMPLE / 2 + MIDDLE, SAMPLE / 2 - MIDDLE);
-    long inside = 0;
-    *below = 0;
-    for (long i = 0; i < count; i++) { /* without a branch */
+    const double low = ends[0], high = ends[1];
+    long inside = 0, lower = 0;
+    for (long i = 0; i < count; i++) {
         const double value = values[i];
         values[i] = values[inside];
         values[inside] = value;
         inside += (value >= low) & (value <= high);
-        *below += value < low;
+        lower += value < low;
     }
+    *below = lower;
     return inside;
+}
+
+/* Two of a sample's ranks, between which the median of many values lies nearly always. */
+static void sample_ends(const double values[], long count, double ends[2])
+{
+    double sample[SAMPLE];
+    for (long i = 0; i < SAMPLE; i++)
+        sample[i] = values[i * (count / SAMPLE)];
+    ends[1] = select(sample, SAMPLE, SAMPLE / 2 + MIDDLE);
+    ends[0] = select(sample, SAMPLE / 2 + MIDDLE, SAMPLE / 2 - MIDDLE);
+}
+
+static double median_of(double values[], long count)
+{
+    const double upper = select(values, count, count / 2);
+    return count % 2 ? upper : 0.5 * (nt_curve_highest(values, count / 2) + upper);
+}
+
+/* Of those between two ends, or of all where it does not lie there. */
+static double median_between(double values[], long count, const double ends[2])
+{
+    long below;
+    const long inside = gather(values, count, ends, &below), rank = count / 2 - below;
+    if (rank < 1 || rank >= inside)
+        return median_of(values, count);
+    const double upper = select(values, inside, rank);
+    return count % 2 ? upper : 0.5 * (nt_curve_highest(values, rank) + upper);
 }
 
 double nt_curve_median(double values[], long count)
 {
-    if (count >= MANY) {
-        long below;
-        const long inside = gather_middle(values, count, &below), rank = count / 2 - below;
-        if (rank >= 1 && rank < inside) {
-            const double upper = select(values, inside, rank);
-            return count % 2 ? upper : 0.5 * (nt_curve_highest(values, rank) + upper);
-        }
-    }
-    const double upper = select(values, count, count / 2);
-    return count % 2 ? upper : 0.5 * (nt_curve_highest(values, count / 2) + upper);
+    double ends[2];
+    if (count < MANY)
+        return median_of(values, count);
+    sample_ends(values, count, ends);
+    return median_between(values, count, ends);
+}
+
+double nt_curve_median_near(double values[], long count, double expected, double doubt)
+{
+    if (count < MANY || !(expected > 0.0))
+        return nt_curve_median(values, count);
+    const double ends[2] = {expected * (1.0 - doubt), expected * (1.0 + doubt)};
+    return median_between(values, count, ends);
 }
 
 double nt_curve_median_size(const double values[], long count, double scratch[])

@@ -12,6 +12,8 @@ typedef struct nt_curve_point {
 
 /* Of count >= 1 finite values, which it reorders. */
 double nt_curve_median(double values[], long count);
+/* The same, sooner where it is about what is expected, > 0: within a share of that. */
+double nt_curve_median_near(double values[], long count, double expected, double doubt);
 /* Median of |values|, through scratch of count. */
 double nt_curve_median_size(const double values[], long count, double scratch[]);
 /* Stable, z growing; scratch of count points. Fast where they are in order or in the opposite one. */

@@ -93,10 +93,7 @@ bool Residuals::move_to(const double *x)
 
 double Residuals::sum_of_squares() const
 {
-    double sum = 0.0;
-    for (const double residual : residual_)
-        sum += residual * residual;
-    return sum;
+    return Eigen::Map<const Eigen::VectorXd>(residual_.data(), count_).squaredNorm();
 }
 
 // No step may then lead out of the bounds.
@@ -123,27 +120,29 @@ bool Residuals::evaluate()
     }
     if (model_->prepare(values()) != NT_OK || model_->points_at(data_, &points_) != NT_OK)
         return false;
-    for (long i = 0; i < data_.count; i++) {
-        const Point &point = points_[static_cast<std::size_t>(i)];
-        store(i, point.force - data_.force[i * data_.force_stride], point.gradient);
-    }
+    store_points();
     long i = data_.count;
     if (has_tear() && !store_tear(i++))
         return false;
     for (const int known : known_)
         store_known(i++, known);
-    const auto finite = [](double number) { return std::isfinite(number); };
-    return std::all_of(residual_.begin(), residual_.end(), finite) &&
-           std::all_of(gradient_.begin(), gradient_.end(), finite);
+    // 0 of finite numbers, NaN of others
+    return 0.0 * Eigen::Map<const Eigen::VectorXd>(residual_.data(), count_).array().abs().sum() == 0.0 &&
+           0.0 * jacobian().array().abs().sum() == 0.0;
 }
 
-void Residuals::store(long i, double residual, const Parameters &gradient)
+void Residuals::store_points()
 {
-    const int size = coordinates_.size();
-    residual_[static_cast<std::size_t>(i)] = residual / unit_;
-    double *row = &gradient_[static_cast<std::size_t>(i * size)];
-    for (int j = 0; j < size; j++)
-        row[j] = gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * factor_[static_cast<std::size_t>(j)];
+    const std::size_t count = points_.size();
+    for (std::size_t i = 0; i < count; i++)
+        residual_[i] = (points_[i].force - data_.force[static_cast<long>(i) * data_.force_stride]) / unit_;
+    for (int j = 0; j < coordinates_.size(); j++) {
+        const auto p = static_cast<std::size_t>(coordinates_.parameter(j));
+        const double factor = factor_[static_cast<std::size_t>(j)];
+        double *slope = column(j);
+        for (std::size_t i = 0; i < count; i++)
+            slope[i] = points_[i].gradient[p] * factor;
+    }
 }
 
 bool Residuals::store_tear(long i)
@@ -152,10 +151,9 @@ bool Residuals::store_tear(long i)
     if (model_->tear(&tear) != NT_OK)
         return false;
     residual_[static_cast<std::size_t>(i)] = (tear.position - options_.tear_position) / options_.tear_sigma;
-    double *row = &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
     for (int j = 0; j < coordinates_.size(); j++)
-        row[j] = tear.gradient[static_cast<std::size_t>(coordinates_.parameter(j))] * coordinates_.gradient_scale(j) /
-                 options_.tear_sigma;
+        column(j)[i] = tear.gradient[static_cast<std::size_t>(coordinates_.parameter(j))] *
+                       coordinates_.gradient_scale(j) / options_.tear_sigma;
     return true;
 }
 
@@ -166,7 +164,8 @@ void Residuals::weigh(double unit)
     for (double &factor : factor_)
         factor *= change;
     std::for_each_n(residual_.begin(), data_.count, [&](double &residual) { residual *= change; });
-    std::for_each_n(gradient_.begin(), data_.count * coordinates_.size(), [&](double &slope) { slope *= change; });
+    for (int j = 0; j < coordinates_.size(); j++)
+        std::for_each_n(column(j), data_.count, [&](double &slope) { slope *= change; });
 }
 
 // The datum "initial +- sigma" of a free parameter; of its logarithm where that is fitted.
@@ -176,26 +175,44 @@ void Residuals::store_known(long i, int coordinate)
     const double sigma = coordinates_.is_logarithmic(coordinate)
                              ? start.sigma / start.initial
                              : start.sigma / coordinates_.gradient_scale(coordinate);
-    double *row = &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
-    std::fill_n(row, coordinates_.size(), 0.0);
-    row[coordinate] = 1.0 / sigma;
+    for (int j = 0; j < coordinates_.size(); j++)
+        column(j)[i] = j == coordinate ? 1.0 / sigma : 0.0;
     residual_[static_cast<std::size_t>(i)] =
         (x_[static_cast<std::size_t>(coordinate)] - coordinates_.inverse(coordinate, start.initial)) / sigma;
+}
+
+// J^T J = L L^T by Cholesky, and L^-1 J^T r: a triangle that has the normal equations of J and r. A pivot that is but
+// rounding is a direction in which nothing changes.
+static void reduce(const Residuals::Columns &J, const Eigen::Ref<const Eigen::VectorXd> &r,
+                   Eigen::Ref<Eigen::MatrixXd> R, Eigen::Ref<Eigen::VectorXd> y)
+{
+    constexpr double rounding = 1e-15;
+    R.setZero();
+    for (Eigen::Index j = 0; j < J.cols(); j++) {
+        const double square = J.col(j).squaredNorm(), left = square - R.col(j).head(j).squaredNorm();
+        if (!(left > rounding * square))
+            continue;
+        R(j, j) = std::sqrt(left);
+        for (Eigen::Index k = j + 1; k < J.cols(); k++)
+            R(j, k) = (J.col(j).dot(J.col(k)) - R.col(j).head(j).dot(R.col(k).head(j))) / R(j, j);
+        y(j) = (J.col(j).dot(r) - R.col(j).head(j).dot(y.head(j))) / R(j, j);
+    }
 }
 
 // The solver turns back from where the squares are infinite.
 bool Squares::operator()(const double *x, double *residuals, double *jacobian) const
 {
+    Eigen::Map<Eigen::VectorXd> y(residuals, NumResiduals());
     if (!all.move_to(x)) {
-        std::fill_n(residuals, all.count(), std::numeric_limits<double>::infinity());
+        y.setConstant(std::numeric_limits<double>::infinity());
         return false;
     }
-    std::copy_n(all.residuals(0), all.count(), residuals);
+    y.setZero();
     if (jacobian) {
-        using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-        Eigen::Map<Eigen::MatrixXd>(jacobian, all.count(), all.size()) =
-            Eigen::Map<const Rows>(all.gradient(0), all.count(), all.size());
+        const Eigen::Map<const Eigen::VectorXd> r(all.residuals(0), all.count());
+        reduce(all.jacobian(), r, Eigen::Map<Eigen::MatrixXd>(jacobian, NumResiduals(), all.size()), y);
     }
+    y(all.size()) = std::sqrt(std::max(all.sum_of_squares() - y.squaredNorm(), 0.0));
     return true;
 }
 
@@ -211,7 +228,9 @@ bool Residual::Evaluate(double const *const *, double *residuals, double **jacob
         return false;
     std::copy_n(all_.residuals(first_), num_residuals(), residuals);
     if (jacobians && jacobians[0])
-        std::copy_n(all_.gradient(first_), num_residuals() * parameter_block_sizes()[0], jacobians[0]);
+        Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+            jacobians[0], num_residuals(), parameter_block_sizes()[0]) =
+            all_.jacobian().middleRows(first_, num_residuals());
     return true;
 }
 

@@ -84,10 +84,11 @@ class Residuals : public ceres::EvaluationCallback
         return *residuals(i);
     }
     double sum_of_squares() const;
-    const double *gradient(long i) const
+    using Columns = Eigen::Map<const Eigen::MatrixXd>;
+    Columns jacobian() const
     {
-        return &gradient_[static_cast<std::size_t>(i * coordinates_.size())];
-    }
+        return {gradient_.data(), count_, size()};
+    } // a row for each residual
     bool met_bound() const
     {
         return met_bound_;
@@ -113,9 +114,13 @@ class Residuals : public ceres::EvaluationCallback
   private:
     bool evaluate();
     bool is_outside() const;
-    void store(long i, double residual, const Parameters &gradient);
+    void store_points();
     bool store_tear(long i);
     void store_known(long i, int coordinate);
+    double *column(int coordinate)
+    {
+        return &gradient_[static_cast<std::size_t>(coordinate * count_)];
+    }
 
     const nt_fit_options &options_;
     const nt_fit_data &data_;
@@ -131,14 +136,15 @@ class Residuals : public ceres::EvaluationCallback
     bool valid_ = false, is_seen_ = false, walls_ = false, met_bound_ = false;
 };
 
-// All of Residuals as Ceres' small solver sees them.
+// All of Residuals as Ceres' small solver sees them: as few as there are parameters, and one, which have the same
+// normal equations and the same sum of squares.
 struct Squares {
     using Scalar = double;
     enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
     Residuals &all;
     int NumResiduals() const
     {
-        return static_cast<int>(all.count());
+        return all.size() + 1;
     }
     int NumParameters() const
     {

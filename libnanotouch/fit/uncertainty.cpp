@@ -15,7 +15,6 @@ namespace
 {
 
 using Matrix = Eigen::MatrixXd;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -29,7 +28,7 @@ struct Covariance {
 };
 
 // J = Q R, R = U S V^T: the SVD is that of a small matrix.
-Covariance covariance_of(const Eigen::Map<const Rows> &jacobian)
+Covariance covariance_of(const Residuals::Columns &jacobian)
 {
     const Eigen::Index size = jacobian.cols();
     const Matrix R = Eigen::HouseholderQR<Matrix>(jacobian).matrixQR().topRows(size).triangularView<Eigen::Upper>();
@@ -82,7 +81,7 @@ void fill_uncertainties(const nt_fit_options &options, const Residuals &residual
     result->misfit = noise_known ? variance : not_a_number;
     const Parameters value = residuals.values();
     const int size = coordinates.size();
-    const Eigen::Map<const Rows> jacobian(residuals.gradient(0), residuals.count(), size);
+    const Residuals::Columns jacobian = residuals.jacobian();
     const Covariance covariance = covariance_of(jacobian);
     Eigen::VectorXd by_tear = Eigen::VectorXd::Zero(size);
     if (residuals.has_tear())

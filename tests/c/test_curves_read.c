@@ -161,6 +161,25 @@ static void medians_and_orders(void **state)
     }
 }
 
+/* Whatever was expected, and however wrong. */
+static void medians_of_many(void **state)
+{
+    (void)state;
+    enum { MANY = 700 };
+    const double expected[] = {0.0, 0.67, 0.3, 5.0, 1e9};
+    nt_random random = nt_random_seed(2);
+    for (int count = 250; count <= MANY; count += 45)
+        for (int i = 0; i < 5; i++) {
+            double values[MANY], sorted[MANY];
+            for (int k = 0; k < count; k++)
+                values[k] = sorted[k] = i < 4 ? fabs(nt_random_normal(&random)) : floor(nt_random_normal(&random));
+            qsort(sorted, (size_t)count, sizeof *sorted, by_value);
+            const double middle = 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
+            assert_true(nt_curve_median_near(values, count, expected[i], 0.25) == middle);
+            assert_true(nt_curve_median(values, count) == middle);
+        }
+}
+
 static void linear_systems(void **state)
 {
     (void)state;
@@ -178,7 +197,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stiff_contact_is_read), cmocka_unit_test(tethers_are_found_to_their_end),
         cmocka_unit_test(bad_curves_are_refused),  cmocka_unit_test(medians_and_orders),
-        cmocka_unit_test(linear_systems),
+        cmocka_unit_test(medians_of_many),         cmocka_unit_test(linear_systems),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
