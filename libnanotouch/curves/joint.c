@@ -341,8 +341,7 @@ static void take_off_film(const outside *out, long free, nt_curve_reading *readi
 {
     nt_curve_branch *retract = &reading->retract;
     nt_curve_measured *dip = &retract->dip;
-    const nt_curve_film none = {0.0, 0.0, 0.0, 0.0},
-                        film = dip->value > 0.0 ? nt_curve_find_film(&reading->approach) : none;
+    const nt_curve_film none = {0}, film = dip->value > 0.0 ? nt_curve_find_film(&reading->approach) : none;
     if (!(film.strength > 0.0))
         return;
     const double z = retract->z[retract->lowest], there = fmin(nt_curve_film_at(&film, z), dip->value);
