@@ -8,7 +8,6 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-import nanotouch as nt
 import numpy as np
 from nanotouch import manipulation
 from nanotouch.errors import InvalidValue, MissingExtra, require
@@ -19,9 +18,6 @@ from nanotouch_app import output
 from nanotouch_app.quantity import parse_point, parse_quantity, whole_number
 
 FILES = ("push.csv", "push.json", "push.png")
-MODULUS, SHEAR = 3.63e9, 0.85e9  # polystyrene on glass, E* and G* [Pa]
-WORK, TO_TIP = 0.06, 0.01  # of adhesion, to the glass and to the tip [J/m^2]
-STRENGTH, ROLLS = 12e6, 0.0084  # Sumer and Sitti (2008): [Pa], and the rolling distance over the radius
 
 
 def add_parser(subparsers: Any) -> None:
@@ -50,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValue(f"--to {args.to}: valid is a way of up to 1000 radii of the particle")
     with output.folder(args, FILES) as out:
         with output.busy("pushing"):
-            done = manipulation.push(particle(radius), target, bench=manipulation.Bench(drift=drift),
+            done = manipulation.push(manipulation.latex(radius), target, bench=manipulation.Bench(drift=drift),
                                      tolerance=tolerance, seed=args.seed)  # fmt: skip
         facts = facts_of(done)
         write_track(done, out / "push.csv")
@@ -63,14 +59,6 @@ def run(args: argparse.Namespace) -> int:
         output.say(words(facts))
         output.say(f"written to {out}/: {', '.join(args.answer['files'])}")
     return int(done.believed > tolerance)
-
-
-def particle(radius: float) -> nt.Particle:
-    """Polystyrene on glass, and a coated tip of a tenth of its radius."""
-    tip_radius = 0.1 * radius
-    glass = nt.ParticleContact(MODULUS, SHEAR, WORK, shear_strength=STRENGTH, rolling_distance=ROLLS * radius)
-    tip = nt.ParticleContact(MODULUS, SHEAR, TO_TIP, shear_strength=STRENGTH, rolling_distance=ROLLS * tip_radius)
-    return nt.Particle(radius, glass, tip, tip_radius=tip_radius)
 
 
 def facts_of(done: manipulation.Pushed) -> dict[str, float]:

@@ -71,7 +71,7 @@ def tasks() -> dict[str, Any]:
     listed = [{"name": name, "title": task.title, "preset": task.preset, "asked": task.asked,
                "hides": sorted(task.hides),
                **{key: getattr(numbers[name][0], key) for key in numbers[name][1].split()}}
-              for name, task in TASKS.items()]  # fmt: skip
+              for name, task in TASKS.items() if name in numbers]  # fmt: skip
     pages = [{"name": lesson.name, "follows": lesson.follows, "key": page.key, "preset": page.preset, "then": page.then,
               "changes": page.changes} for lesson, page in zip(LESSON, PAGES, strict=True)]  # fmt: skip
     return {"tasks": listed, "lesson": pages, "right": staircase.RIGHT, "period": trace.Trace.period}
@@ -82,7 +82,8 @@ def everything() -> dict[str, Any]:
     palettes = {name: dataclasses.asdict(palette)
                 for name, palette in (("light", look.LIGHT), ("dark", look.DARK))}  # fmt: skip
     return {
-        "presets": [preset(name) for name in PRESETS], "offered": sliders.OFFERED, "given": sliders.GIVEN,
+        "presets": [preset(name) for name, one in PRESETS.items() if one.made is None],
+        "offered": sliders.OFFERED, "given": sliders.GIVEN,
         "constants": constants(), "help": readings.HELP, "states": list(STATES), "reasons": list(REASONS),
         "palettes": palettes, "units": units.UNITS, "texts": {**TASK_TEXTS, **LESSON_TEXTS}, **tasks(),
     }  # fmt: skip

@@ -185,15 +185,22 @@ typedef struct trace {
     int before; /* the dent that has grown; -1: none */
 } trace;
 
+/* In the list: at its end, or, where it has grown from the last one there, in the place of that. */
+
 static int keep(const nt_indentation *indentation, nt_dents *dents, const trace *of)
 {
+    const nt_first_loading made = nt_indentation_first(indentation, of->radius);
+    const nt_imprint imprint = {{of->from[0], of->from[1]}, {of->to[0], of->to[1]}, of->radius, made.residual_depth};
+    if (of->before >= 0 && of->before == dents->count - 1) {
+        nt_dent *last = &dents->made[of->before];
+        *last = (nt_dent){imprint, made.force, last->before, last->grown + 1};
+        return 1;
+    }
     if (dents->count == NT_DENTS) {
         dents->full = 1;
         return 0;
     }
-    const nt_first_loading made = nt_indentation_first(indentation, of->radius);
-    const nt_imprint imprint = {{of->from[0], of->from[1]}, {of->to[0], of->to[1]}, of->radius, made.residual_depth};
-    dents->made[dents->count++] = (nt_dent){imprint, made.force, of->before};
+    dents->made[dents->count++] = (nt_dent){imprint, made.force, of->before, 0};
     return 1;
 }
 
@@ -211,7 +218,8 @@ static int leave(const nt_indentation *indentation, nt_dents *dents)
     if (dents->contact.dent_radius > (1.0 + GROWN) * fmax(dents->began, groove)) {
         const nt_imprint *old = dents->inside < 0 ? NULL : &dents->made[dents->inside].imprint;
         const int grows = old && !ploughs && old->start[0] == old->end[0] && old->start[1] == old->end[1];
-        const trace dent = {dents->pressed, dents->pressed, dents->contact.dent_radius, grows ? dents->inside : -1};
+        const double *middle = grows ? old->start : dents->pressed;
+        const trace dent = {middle, middle, dents->contact.dent_radius, grows ? dents->inside : -1};
         left += keep(indentation, dents, &dent);
     }
     return left;
@@ -224,11 +232,14 @@ int nt_dents_place(const nt_indentation *indentation, nt_dents *dents, double x,
     const int left = leave(indentation, dents);
     double lowered;
     const int there = deepest_at(indentation, dents, x, y, &lowered);
+    const double known = there < 0 ? 0.0 : dents->made[there].imprint.radius;
+    const double grown = left == 0 && there >= 0 && there == dents->inside ? dents->contact.dent_radius : 0.0;
     dents->inside = there;
-    dents->began = there < 0 ? 0.0 : dents->made[there].imprint.radius;
-    dents->contact = (nt_indentation_state){.dent_radius = dents->began};
-    dents->bottom = nt_indentation_first(indentation, dents->began).residual_depth;
-    dents->contact.dissipated = nt_indentation_first(indentation, dents->began).dissipated;
+    dents->began = known;
+    dents->contact =
+        (nt_indentation_state){.dent_radius = fmax(known, grown)}; /* what is too little to be kept adds up */
+    dents->bottom = nt_indentation_first(indentation, known).residual_depth;
+    dents->contact.dissipated = nt_indentation_first(indentation, dents->contact.dent_radius).dissipated;
     dents->start[0] = dents->at[0] = dents->pressed[0] = x;
     dents->start[1] = dents->at[1] = dents->pressed[1] = y;
     dents->ploughed = dents->slid = 0.0;

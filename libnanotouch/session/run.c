@@ -165,9 +165,10 @@ static nt_status keep_dents(nt_session *session)
     for (int i = dents->count - session->sim.slave.left; i < dents->count && status == NT_OK; ++i) {
         const nt_dent *dent = &dents->made[i];
         const nt_imprint *of = &dent->imprint;
+        const int before = dent->grown > 0 ? i : dent->before;
         const nt_event events[] = {
             {.kind = NT_EVENT_DENT, .value = {of->start[NT_X], of->start[NT_Y], of->end[NT_X], of->end[NT_Y]}},
-            {.kind = NT_EVENT_DENT, .field = 1, .value = {of->radius, of->depth, dent->load, dent->before}}};
+            {.kind = NT_EVENT_DENT, .field = 1, .value = {of->radius, of->depth, dent->load, before}}};
         for (int k = 0; k < 2 && status == NT_OK; ++k)
             status = nt_session_keep_event(session, &events[k]);
     }

@@ -149,24 +149,70 @@ static void a_dent_remembers_its_load(void **state)
     assert_true(dents.dissipated == heat && dents.count == 1);
     press(&gold, &dents, 80e-9);
     let_go(&gold, &dents, 0.0, 0.0);
-    assert_true(dents.dissipated > heat && dents.count == 2 && dents.made[1].before == 0);
+    assert_true(dents.dissipated > heat && dents.count == 1 && dents.made[0].grown == 1);
     nt_dents once = {0};
     nt_dents_place(&gold, &once, 0.0, 0.0);
     press(&gold, &once, 80e-9);
     assert_within(once.dissipated, dents.dissipated, 1e-12 * heat); /* at once or in two steps */
     assert_int_equal(nt_dents_undo(&dents), 1);
-    nt_dents_place(&gold, &dents, 0.0, 0.0);
-    assert_within(dents.began, dents.made[0].imprint.radius, 0.0);
-    assert_int_equal(nt_dents_undo(&dents), 1);
     assert_int_equal(nt_dents_undo(&dents), 0);
-    for (int i = 0; i <= NT_DENTS; ++i) {
-        nt_dents_place(&gold, &dents, 1e-6 * i, 0.0);
-        assert_false(dents.full);
-        press(&gold, &dents, 50e-9);
+    nt_dents_place(&gold, &dents, 0.0, 0.0);
+    assert_true(dents.began == 0.0 && dents.inside == -1);
+}
+
+static void leave_at(nt_dents *dents, double x, double load)
+{
+    nt_dents_place(&gold, dents, x, 0.0);
+    press(&gold, dents, load);
+    let_go(&gold, dents, x, 1e-3);
+}
+
+/* Only the last of the list grows in its place: what an older one has become is taken back alone. */
+static void an_older_dent_grows_as_a_new_one(void **state)
+{
+    (void)state;
+    nt_dents dents = {0};
+    leave_at(&dents, 0.0, 50e-9);
+    leave_at(&dents, 1e-6, 50e-9);
+    leave_at(&dents, 0.0, 60e-9);
+    assert_true(dents.count == 3 && dents.made[2].before == 0 && dents.made[2].grown == 0);
+    leave_at(&dents, 2e-9, 70e-9); /* inside it, but not in its middle */
+    assert_true(dents.count == 3 && dents.made[2].before == 0 && dents.made[2].grown == 1);
+    assert_true(dents.made[2].imprint.start[0] == 0.0 && dents.made[2].imprint.end[0] == 0.0);
+    assert_int_equal(nt_dents_undo(&dents), 1);
+    nt_dents_place(&gold, &dents, 0.0, 0.0);
+    assert_true(dents.count == 2 && dents.began == dents.made[0].imprint.radius);
+}
+
+/* A lever that rings: a thousand contacts in one place, each a little harder, make one dent and the heat of one press.
+ */
+static void taps_add_up_to_one_dent(void **state)
+{
+    (void)state;
+    nt_dents dents = {0}, once = {0};
+    for (int i = 0; i < NT_DENTS; ++i)
+        leave_at(&dents, 1e-6 * i, 5e-9);
+    assert_true(dents.count == NT_DENTS && !dents.full);
+    const double before = dents.dissipated;
+    const double last = 1e-6 * (NT_DENTS - 1);
+    for (int i = 1; i <= 1000; ++i) {
+        nt_dents_place(&gold, &dents, last, 0.0);
+        press(&gold, &dents, 5e-9 + 95e-9 * i / 1000.0);
         nt_dents_advance(&gold, &dents, 1e-9);
     }
-    nt_dents_place(&gold, &dents, 0.0, 1e-6);
+    nt_dents_place(&gold, &dents, last, 1e-3);
+    assert_true(dents.count == NT_DENTS && !dents.full && dents.made[NT_DENTS - 1].grown > 300);
+    leave_at(&once, 0.0, 5e-9);
+    const double first = once.dissipated;
+    leave_at(&once, 0.0, 100e-9);
+    const double heat = once.dissipated - first;
+    assert_within(dents.dissipated - before, heat, 1e-9 * heat);
+    assert_within(dents.made[NT_DENTS - 1].imprint.radius, once.made[0].imprint.radius,
+                  2e-3 * once.made[0].imprint.radius);
+    leave_at(&dents, 1.0, 5e-9);
     assert_true(dents.full && dents.count == NT_DENTS);
+    assert_int_equal(nt_dents_undo(&dents), 1);
+    assert_false(dents.full);
 }
 
 /* Work of a way in depth, by Gauss' sums between kinks that are not known: many pieces. */
@@ -224,6 +270,8 @@ int main(void)
         cmocka_unit_test(a_light_tip_leaves_nothing),
         cmocka_unit_test(a_dent_lowers_the_apex_as_a_rolling_tip_says),
         cmocka_unit_test(a_dent_remembers_its_load),
+        cmocka_unit_test(an_older_dent_grows_as_a_new_one),
+        cmocka_unit_test(taps_add_up_to_one_dent),
         cmocka_unit_test(energy_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -64,11 +64,13 @@ def test_pressed_again_it_bears_what_it_bore_and_undo_takes_it_back() -> None:
     assert len(session.dents) == 1
     pressed(session, 20e-9)
     assert len(session.dents) == 1
+    (first,) = session.dents
+    before = session.snapshot()
     pressed(session, 80e-9)
-    first, second = session.dents
-    assert (first.before, second.before) == (None, 0)
+    (second,) = session.dents  # the same dent, grown
+    assert second.before is None
     assert second.load > 1.5 * first.load
-    session.undent()
+    session.restore(before)
     assert session.dents == (first,)
     session.undent()
     with pytest.raises(nt.errors.Error, match="no dent"):
@@ -89,6 +91,42 @@ def test_the_same_seed_the_same_dents_and_a_replay_has_the_same_bits(tmp_path: P
     assert read.dents == one.dents
     again = read.replay()
     np.testing.assert_array_equal(again.columns["motor_force"], one.columns["motor_force"])
+
+
+def test_a_lever_that_rings_makes_one_dent_of_its_taps() -> None:
+    """It bounces while it lands, and all along the touch: without merging the list of 128 is full before the end."""
+    scene = soft_scene(9e-9)
+    scene.sample.yield_strength = 0.045e9
+    rig = nt.Rig(probe={"spring_constant": 1.0, "resonance": 20e3, "quality": 300.0})
+    session = nt.Session(scene=scene, rig=rig, mode="scan", path=[(0.0, 0.0), (200e-9, 0.0)], seed=3)
+    recording = session.run(1.4)
+    events = recording.metadata["events"]
+    taps = [numbers for _, name, numbers in events if name == "dent_size"]
+    assert len(taps) > 10
+    assert not (recording.columns["state"] > 0).any()
+    *others, dent = recording.dents
+    assert len(others) < 3
+    assert recording.dents == session.dents
+    assert [dent.imprint.radius, dent.imprint.depth, dent.load] == taps[-1][:3]
+    assert dent.before is None
+    np.testing.assert_array_equal(recording.replay().columns["motor_force"], recording.columns["motor_force"])
+    session.set_mode("point")
+    session.advance(0.5, Input(-5e-9 * float(session.settings.gains.alpha_f), 0.0, 0.0, 0.1))
+    session.undent()
+    assert session.dents == plasticity.dents_of(session.metadata()["events"])
+    assert len(session.dents) <= len(others) + 1
+
+
+def test_dents_of_events_go_back_with_a_rewind() -> None:
+    session = nt.Session(scene=soft_scene(), seed=1)
+    pressed(session, 40e-9)
+    one, moment = session.dents, session.snapshot()
+    pressed(session, 80e-9)
+    assert plasticity.dents_of(session.metadata()["events"]) == session.dents != one
+    session.restore(moment)
+    assert plasticity.dents_of(session.metadata()["events"]) == session.dents == one
+    pressed(session, 60e-9)
+    assert plasticity.dents_of(session.metadata()["events"]) == session.dents != one
 
 
 def test_a_snapshot_goes_back_before_the_dent() -> None:
@@ -124,7 +162,9 @@ def test_a_tip_that_is_dragged_leaves_a_groove() -> None:
 def test_a_specimen_takes_what_a_session_left() -> None:
     session = nt.Session(scene=soft_scene(), seed=1)
     pressed(session, 60e-9)
+    first = session.dents
     pressed(session, 120e-9)
+    grown = session.dents[-1]._replace(before=0)
     specimen = plasticity.Specimen(np.zeros((128, 128)), 0.4e-9)
     shift = 25e-9
     events = [
@@ -138,7 +178,7 @@ def test_a_specimen_takes_what_a_session_left() -> None:
                 )
             )
         )
-        for dent in session.dents
+        for dent in (*first, grown)
     ]
     last = session.dents[-1].imprint
     assert specimen.heights.min() == pytest.approx(-last.depth, rel=0.02)
@@ -149,7 +189,7 @@ def test_a_specimen_takes_what_a_session_left() -> None:
     specimen.undo()
     assert not specimen.heights.any()
     with pytest.raises(InvalidValue, match="take all of them"):
-        specimen.take(session.dents[-1])
+        specimen.take(grown)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from pathlib import Path
 import nanotouch as nt
 import pytest
 from nanotouch import manipulation, plasticity, record
-from nanotouch_app import push
 from nanotouch_app.main import main
 
 
@@ -18,7 +17,7 @@ def test_push_tells_what_the_library_does(tmp_path: Path, capsys: pytest.Capture
     out = tmp_path / "pushed"
     assert main(["push", "--to", "1um,0.5um", "--seed", "3", "--out", str(out)]) == 0
     facts = json.loads((out / "push.json").read_text())
-    done = manipulation.push(push.particle(500e-9), (1e-6, 0.5e-6), seed=3)
+    done = manipulation.push(manipulation.latex(500e-9), (1e-6, 0.5e-6), seed=3)
     assert facts["error_m"] == done.error
     assert facts["lines"] == done.lines
     assert f"{done.pushes} pushes" in capsys.readouterr().out

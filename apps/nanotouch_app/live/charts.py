@@ -124,6 +124,9 @@ def _energies(seen: Seen) -> str:
     if seen.balance is None:
         return ""
     hand, stored, tip, heat = seen.balance.energies
+    if seen.dented is not None:  # what has yielded gives nothing back
+        elastic = seen.dented.stored(float(seen.frame["contact_radius"]))
+        tip, heat = elastic, heat + tip - elastic
     unit, factor = ("fJ", 1e15) if max(abs(hand), abs(stored)) > 1e-15 else ("aJ", 1e18)
     hand, stored, tip, heat = _alike([factor * value for value in (hand, stored, tip, heat)])
     told = [f"{name} {value:.3g}" for name, value in (("spring", stored), ("tip", tip), ("heat", heat))]

@@ -178,6 +178,8 @@ def _haze(painter: Painter, palette: Palette, view: _View, section: Section, thi
 
 def _like(seen: Seen) -> str:
     """Which law it is like: Maugis' lambda in words."""
+    if seen.dented is not None:
+        return seen.dented.words
     number = seen.plan.maugis_lambda
     if not math.isfinite(number) or seen.plan.pull_off_force < 1e-3 * seen.load:
         return "no adhesion: like Hertz"

@@ -51,6 +51,7 @@ class Studio:
             self.picture.turn_light()
         self.host = Host(subject, self.picture.hear, stepped=True)
         self.picture.hear(self.host.world())
+        self.host.left.report()
         self.picture.stage.give(self.host.properties())
         self.look()
 

@@ -22,10 +22,10 @@ from nanotouch.touch.session import settings_for_path
 
 from nanotouch_app.live import files, places, refusals
 from nanotouch_app.live.hand import Hand, felt_scale, rig_of, settings_of
+from nanotouch_app.live.left import Left, keeps
 from nanotouch_app.live.remote import Lease
 from nanotouch_app.live.subject import Subject, of_preset
-from nanotouch_app.live.trainer import Trainer
-from nanotouch_app.training import named
+from nanotouch_app.live.tasks import Tasks
 
 SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 REWIND, PATIENCE = 5.0, 0.2  # [s]; until it shows
@@ -36,7 +36,7 @@ Message = dict[str, Any]
 _NUMBERS = itertools.count(1)  # of the sessions of this process
 
 
-class Host:
+class Host(Tasks):
     """One session, its hand, its history of changes."""
 
     def __init__(
@@ -53,7 +53,6 @@ class Host:
         self.out, self.stepped = out, stepped
         self.writer: Any = None
         self.lease: Lease | None = None
-        self.trainer: Trainer | None = None
         self.folder: Path | None = None  # of the results of tasks; None: they are not kept
         self.seen = time.monotonic()
         self._open()
@@ -76,7 +75,7 @@ class Host:
         self.session = nt.Session(
             self.scene, rig_of(self.rig, settings, extent, way_down), surface=surface, settings=settings, mode="scan",
             path=[middle, (0.6 * width, 0.5 * height)], clearance=self.subject.clearance(),
-            recorded=self.out is not None, relative_accuracy=self.subject.accuracy,
+            recorded=self.out is not None or keeps(self.scene), relative_accuracy=self.subject.accuracy,
         )  # fmt: skip
         self.name = f"live-{os.getpid()}-{next(_NUMBERS)}"
         self.session.publish(self.name)
@@ -86,6 +85,7 @@ class Host:
         self.lease = Lease(self.name)
         self.known = (self.session.scene, self.session.settings)
         self.hand = Hand(self.session)
+        self.left = Left(self.session, self.tell)
         if self.out is not None and self.writer is None:
             self.writer = record.Writer(self.out, self.session.metadata())
         if not self.stepped:
@@ -107,11 +107,12 @@ class Host:
         self.files.close()
 
     def _drain(self) -> None:
-        while self.writer is not None:
+        while self.writer is not None or keeps(self.session.scene):
             block = self.session.read(5000)
             if not len(block["time"]):
                 return
-            self.writer.append(block)
+            if self.writer is not None:
+                self.writer.append(block)
 
     # --- what happens by itself ---
 
@@ -122,8 +123,7 @@ class Host:
         if frame is not None and not self.paused and self._drives(frame):
             self.hand.follow(frame, min(now - self.seen, 0.1) * self.speed)
         self.seen = now
-        if self.trainer is not None:
-            self.trainer.look()
+        self._look_on()
         self._drain()
 
     def _drives(self, frame: Any) -> bool:
@@ -144,8 +144,8 @@ class Host:
             frame = self.observer.newest()
             if frame is not None:
                 self.hand.follow(frame, 0.01)
-            if self.trainer is not None:
-                self.trainer.look()
+            self.left.looked = 0.0
+            self._look_on()
             self._drain()
 
     def world(self) -> Message:
@@ -157,8 +157,8 @@ class Host:
             "scene": session.scene.to_dict(), "rig": session.rig.to_dict(), "settings": session.settings.to_dict(),
             "stiffness": self.hand.stiffness, "bound": plan.bound, "law": plan.contact_law,
             "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
-            "force": session.guarantee().force, "undo": len(self.done), "redo": len(self.undone),
-            "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
+            "force": session.guarantee().force, "undo": len(self.done) or len(self.left.dents),
+            "redo": len(self.undone), "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
             "relative_accuracy": session.relative_accuracy, "zero": self.hand.zero,
             "size": list(map(float, self.subject.topography.size)),
         }  # fmt: skip
@@ -274,45 +274,6 @@ class Host:
             self.hand.height = float(frame["tip_position"][2]) - float(frame["tip_force"][2]) / self.hand.stiffness
             self.hand.move((0.0, 0.0, 0.0), frame)
 
-    # --- tasks ---
-
-    def _do_task(self, message: Message) -> None:
-        """Begin a task, on the sample that it is meant for if "lay" says so; name "": end it."""
-        self._end_task()
-        if not message["name"]:
-            return
-        task = named(message["name"])
-        if message.get("lay") and (task.preset != self.subject.name or self.session.scene != self.subject.scene):
-            self._do_preset({"name": task.preset})
-        self.trainer = Trainer(
-            message["name"], self.world(), self._change_for_task, self.tell, self.folder, message.get("seed")
-        )
-
-    def _change_for_task(self, what: str, field: str, value: float) -> None:
-        """A task changes the world; that is no entry of the person's history."""
-        if what == "scaled":
-            what, value = "settings", value * float(self.session.settings[field])
-        self._change(what, field, value)
-        self.tell(self.world())
-
-    def _end_task(self) -> None:
-        if self.trainer is not None:
-            self.trainer.close()
-            self.trainer = None
-
-    def _do_choose(self, message: Message) -> None:
-        if self.trainer is None:
-            return
-        follows = self.trainer.exercise.follows
-        if self.trainer.result is not None and follows:
-            self._do_task({"name": follows, "lay": True})
-        else:
-            self.trainer.choose(message["number"])
-
-    def _do_say(self, message: Message) -> None:
-        if self.trainer is not None:
-            self.trainer.say(message["text"])
-
     def _do_preset(self, message: Message) -> None:
         """Another sample is laid under another tip: a session of its own."""
         self._lay(of_preset(message["name"]))
@@ -331,6 +292,7 @@ class Host:
         before.halt()
         self.tell({"tell": "laid", "path": self._stored()})
         self.tell(self.world())
+        self.left.report()
 
     def _stored(self) -> str:
         """What a picture needs of the surface, in a file."""
@@ -358,6 +320,8 @@ class Host:
             what, field, old, new = self.done.pop()
             self._change(what, field, old)
             self.undone.append((what, field, old, new))
+        elif self.left.dents:
+            self.left.undo()
         self.tell(self.world())
 
     def _do_redo(self, message: Message) -> None:

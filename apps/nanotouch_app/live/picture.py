@@ -83,7 +83,8 @@ class Picture:
     def lay(self, heights: Any, pixel_size: Any) -> None:
         """Another surface, before :meth:`dress`."""
         self.scene.RemoveAllViewProps()
-        self.stage = Stage(self.vtk, self.scene, np.asarray(heights, dtype=float), np.asarray(pixel_size, dtype=float))
+        self.heights, self.pixel_size = np.asarray(heights, dtype=float), np.asarray(pixel_size, dtype=float)
+        self.stage = Stage(self.vtk, self.scene, self.heights, self.pixel_size)
         self.sliders = Sliders()
 
     def _paint_on(self, renderer: Any, paint: Any) -> None:
@@ -112,6 +113,11 @@ class Picture:
                 self.stage.give({name: stored[name] for name in stored.files if name in PROPERTY_NAMES})
             self.contact, self.law, self.history = ContactPanel(), ForceGap(), History()
             self.dress(self.palette)
+        if message["tell"] == "dents" and self.seen.dented is not None:
+            dented = self.seen.dented
+            self.stage.reshape(dented.heights(self.heights, self.pixel_size), dented.relief)
+        if message["tell"] == "particles":
+            self.stage.balls.show(message)
         if message["tell"] == "properties":
             with np.load(message["path"]) as stored:
                 self.stage.give({name: stored[name] for name in stored.files})

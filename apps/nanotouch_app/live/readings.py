@@ -165,12 +165,11 @@ def _facts(seen: Seen) -> str:
         touch = f"contact of {digits(radius, 'm')} radius"
     else:
         touch = f"apart by {digits(gap, 'm')}" if gap > 0.0 else f"pressed in by {digits(-gap, 'm')}"
-    bound = max(100.0 * float(seen.world["bound"]), 0.01)
+    bound = 100.0 * float(seen.world["bound"])
+    within = f"within {max(bound, 0.01):.2g} % (plan)" if math.isfinite(bound) else "no bound (plan)"
     margin = float(seen.world["margin"])
     told = "no loop closes through this hand" if not math.isfinite(margin) else f"margin {margin:.3g}"
-    return (
-        f"{touch}  ·  within {bound:.2g} % (plan)  ·  {told}  ·  never above {digits(float(seen.world['force']), 'N')}"
-    )
+    return f"{touch}  ·  {within}  ·  {told}  ·  never above {digits(float(seen.world['force']), 'N')}"
 
 
 def _stopped(state: int, bits: int) -> str:

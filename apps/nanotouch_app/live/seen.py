@@ -12,8 +12,10 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import view
 from nanotouch.errors import Error
+from nanotouch.plasticity import Dent
 from numpy.typing import NDArray
 
+from nanotouch_app.live import dented
 from nanotouch_app.live.energy import Balance
 from nanotouch_app.live.hands.device import Feel
 from nanotouch_app.live.reel import Reel
@@ -54,6 +56,8 @@ class Seen:
         self.waiting: set[str] = set()
         self.task: dict[str, Any] = {}
         self.balance: Balance | None = None
+        self.dented: dented.Dented | None = None
+        self.drawn_dent = (-1.0, -1.0)
         self.place: dict[str, float] = {}
         self.placed_at = 0.0
         self.frame: Any = None
@@ -77,10 +81,15 @@ class Seen:
                 self.forget()
                 self.frame = self.reading = None
                 self.world = {}
+                self.dented = None
                 self.notes.clear()
             case "clock":
                 self.clock = message
                 self._stand(message.get("here", {}))
+            case "dents" if self.dented is not None:
+                self.dented.dents = tuple(Dent.from_numbers(numbers) for numbers in message["dents"])
+            case "particles":
+                self.snaps += [(self.arrived, event) for event in message["events"]]
             case "task":
                 self.task = message if message["name"] else {}
             case "refused":
@@ -142,6 +151,13 @@ class Seen:
         if self.plan.pull_off_force < 1e-3 * self.load:  # nothing holds: what repels from far away is what is felt
             self.reach = max(self.reach, min(self.plan.cutoff_gap(0.01 * self.load), 5.0 * self.depth))
         self.curve = view.curve(self.plan, -1.5 * self.depth, 11.0 * self.reach)
+        law = dented.law_of(scene, self.plan)
+        kept = () if self.dented is None else self.dented.dents
+        self.dented = None if law is None else dented.Dented(law, self.load)
+        if self.dented is not None:
+            self.dented.dents = kept
+            self.depth = self.dented.relief
+        self.drawn_dent = (-1.0, -1.0)
 
     def _weigh(self) -> None:
         """Where the work goes, of a hand whose place is known; anew when its spring has changed."""
@@ -166,11 +182,20 @@ class Seen:
         if self.frame is not None and frames["time"][0] < float(self.frame["time"]):  # rewound
             self.forget()
         self._keep(frames)
+        self._yield(frames)
         if self.balance is not None:
             self.balance.add(frames)
         self.frame = frames[-1]
         if now - self.read_at > READINGS:
             self.read_at, self.reading = now, self.frame
+
+    def _yield(self, frames: Any) -> None:
+        """The law of a sample that yields is another one with each dent."""
+        if self.dented is None:
+            return
+        self.dented.follow(frames)
+        if (now := (self.dented.began, self.dented.reached)) != self.drawn_dent:
+            self.drawn_dent, self.curve = now, self.dented.curve(11.0 * self.reach)
 
     def _measured(self, frames: Any) -> Any:
         """What a real slave does not say is what its lever and stage measure; gap and contact stay unknown."""
@@ -260,6 +285,8 @@ class Seen:
         """The section through the contact as it is now."""
         if self.frame is None or not np.isfinite(self.frame["gap"]):
             return None
+        if self.dented is not None:
+            return self.dented.section(float(self.frame["gap"]), r)
         return view.section(self.plan, self.scene, float(self.frame["gap"]), float(self.frame["tip_force"][2]), r)
 
     @property

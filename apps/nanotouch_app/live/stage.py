@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nanotouch_app.live.arrays import points, quads, to_vtk
+from nanotouch_app.live.balls import Balls
 from nanotouch_app.live.look import LIGHT, PROPERTY_COLOURS, Colour, Palette, unit
-from nanotouch_app.live.relief import coarse, exaggeration, stepped
+from nanotouch_app.live.relief import RELIEF, coarse, exaggeration, step_below, stepped
 from nanotouch_app.live.seen import TRACE, Seen
 from nanotouch_app.live.tiles import MOST_FINE, Tiles
 
@@ -37,36 +38,54 @@ class Stage:
 
     def __init__(self, vtk: Any, renderer: Any, heights: Floats, pixel_size: Floats) -> None:
         self.vtk, self.renderer = vtk, renderer
-        self.heights, merged = coarse(heights, MOST_FINE)
-        dy, dx = pixel_size * merged
-        seen, more = coarse(self.heights)
-        self.unit = float(max(heights.shape * np.asarray(pixel_size)))
-        self.dx, self.dy = dx / self.unit, dy / self.unit
-        self.factor = self.built = exaggeration(seen, (dy * more, dx * more), self.unit)
-        self.scale = np.array([1.0, 1.0, self.factor]) / self.unit
-        self.lowest = float(self.heights.min())
-        self.centre = np.array([0.5 * self.dx * self.heights.shape[1], 0.5 * self.dy * self.heights.shape[0], 0.0])
-        self.maps: dict[str, Floats] = {"height": self.heights}
-        self.shown = "height"
-        self.tiles = Tiles(vtk, self.heights - self.lowest, (self.dy, self.dx), float(self.scale[2]))
-        self.tiles.colour(self.heights)
+        self.pixel_size = pixel_size
+        self.maps: dict[str, Floats] = {}
+        self.shown, self.dark = "height", False
         self.colours = vtk.vtkColorTransferFunction()
-        self.coarse = {tile: self._tile(mesh) for tile, mesh in self.tiles.coarse.data.items()}
-        self.fine = {tile: self._tile(mesh) for tile, mesh in self.tiles.fine.data.items()}
-        self.near: set[tuple[int, int]] | None = None  # what is shown fine; None: nothing is drawn yet
+        self.coarse: dict[tuple[int, int], Any] = {}
+        self.fine: dict[tuple[int, int], Any] = {}
+        self._spread(heights)
         self.tip: Any = None
         self.lever: Any = None
         self.ribbon: Any = None
         self.palette = LIGHT
         self.shape: tuple[Any, ...] = ()
         self.shades: list[Any] = []
-        self.dark = False
         self.shadows = [self._shadow(share) for share in (1.0, 0.7, 0.4)]
         self.trace, self.trace_data = self._line()
         self.origin = np.zeros(2)  # of the surface in the frame of the tip [m]
+        self.balls = Balls(vtk, renderer, self.unit, -self.lowest * float(self.scale[2]))
         self.camera("0")
 
-    # --- made once ---
+    # --- made once, and anew where the surface has changed ---
+
+    def _spread(self, heights: Floats, relief: float = 0.0) -> None:
+        """The surface in tiles."""
+        self.heights, merged = coarse(heights, MOST_FINE)
+        dy, dx = self.pixel_size * merged
+        seen, more = coarse(self.heights)
+        self.unit = float(max(heights.shape * np.asarray(self.pixel_size)))
+        self.dx, self.dy = dx / self.unit, dy / self.unit
+        self.factor = self.built = exaggeration(seen, (dy * more, dx * more), self.unit)
+        if relief > 0.0:
+            self.factor = self.built = step_below(RELIEF * self.unit / max(relief, float(np.ptp(seen))))
+        self.scale = np.array([1.0, 1.0, self.factor]) / self.unit
+        self.lowest = float(self.heights.min())
+        self.centre = np.array([0.5 * self.dx * self.heights.shape[1], 0.5 * self.dy * self.heights.shape[0], 0.0])
+        self.maps["height"] = self.heights
+        self.tiles = Tiles(self.vtk, self.heights - self.lowest, (self.dy, self.dx), float(self.scale[2]))
+        self.tiles.colour(self.maps[self.shown])
+        self.coarse = {tile: self._tile(mesh) for tile, mesh in self.tiles.coarse.data.items()}
+        self.fine = {tile: self._tile(mesh) for tile, mesh in self.tiles.fine.data.items()}
+        self.near: set[tuple[int, int]] | None = None  # what is shown fine; None: nothing is drawn yet
+
+    def reshape(self, heights: Floats, relief: float) -> None:
+        """The tip has changed the surface, or may change it by a relief [m]."""
+        for actor in self.surface:
+            self.renderer.RemoveActor(actor)
+        self._spread(heights, relief)
+        self.paint(self.palette)
+        self._show(set())
 
     def _tile(self, mesh: Any) -> Any:
         actor = self._actor(mesh)

@@ -56,8 +56,46 @@ class Preset:
     hint: str
     scene: str = ""
     """of :mod:`nanotouch.scene.presets`; "": that of its own name"""
+    made: Callable[[], tuple[nt.Scene, nt.Rig]] | None = None
+    """a scene and rig of its own; None: a preset"""
+    felt: str = ""
+    """what the hand feels, of a scene of its own"""
     accuracy: float = 0.01
     """of its forces: where a slider leads to what is less well known, a little less is asked"""
+
+
+def soft_gold() -> tuple[nt.Scene, nt.Rig]:
+    """A diamond tip on annealed gold, which yields and keeps dents; contact alone."""
+    scene = nt.Scene(
+        tip={"material": "diamond", "radius": 30e-9},
+        sample={"material": "gold", "yield_strength": 0.35e9, "dents": "yes"},
+        medium={"relative_humidity": 0.0},
+        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0, "contact_potential": 0.0},
+        range={"maximum_load": 300e-9},
+    )
+    return scene, nt.Rig(probe={"spring_constant": 40.0, "resonance": 300e3})
+
+
+def latex_on_glass() -> tuple[nt.Scene, nt.Rig]:
+    """A coated tip on dry glass, for the balls of polystyrene that a task lays there."""
+    scene = nt.Scene(
+        tip={"radius": 50e-9, "half_angle": 0.26},
+        sample={"youngs_modulus": 70e9, "poisson_ratio": 0.22},
+        medium={"relative_humidity": 0.0},
+        adhesion={"work_of_adhesion": 0.01, "hamaker_constant": 3e-20},
+        range={"maximum_load": 200e-9},
+    )
+    return scene, nt.Rig(probe={"spring_constant": 10.0})
+
+
+def glass() -> nt.Topography:
+    """10 um of it, flat."""
+    return nt.Topography(heights=np.zeros((128, 128)), pixel_size=2 * (10e-6 / 128,), name="glass")
+
+
+def polished() -> nt.Topography:
+    """200 nm of it, flat."""
+    return nt.Topography(heights=np.zeros((512, 512)), pixel_size=2 * (200e-9 / 512,), name="polished gold")
 
 
 PRESETS: dict[str, Preset] = {
@@ -105,6 +143,15 @@ PRESETS: dict[str, Preset] = {
     "rough": Preset(
         "Rough film", samples.rough, "Pull off on a hill and in a hollow: the pull differs.", "silicon_in_air",
     ),
+    "soft_gold": Preset(
+        "Soft gold", polished,
+        "Press hard, then let go: a dent stays. Press and draw the tip sideways: a groove. Z takes it back.",
+        made=soft_gold, felt="It gives way for good: the way out is steeper than the way in.",
+    ),
+    "latex_on_glass": Preset(
+        "Glass for latex balls", glass, "T: push a ball into its ring, or five into a pattern.", made=latex_on_glass,
+        felt="Smooth and hard; a ball that is pushed rolls, and clicks when the tip touches or loses it.",
+    ),
     "cell_in_liquid": Preset(
         "A living cell", surfaces.OF_SCENE["cell_in_liquid"],
         "Nothing snaps: feel the fur first, then the cell. Press on the nucleus, then on the rim.",
@@ -116,6 +163,6 @@ def of_preset(name: str) -> Subject:
     """A preset, its surface made."""
     known = PRESETS[name]
     of = known.scene or name
-    scene, rig = getattr(presets, of)()
-    return Subject(name, known.title, scene, rig, known.surface(), presets.FELT[of], known.hint,
+    scene, rig = (known.made or getattr(presets, of))()
+    return Subject(name, known.title, scene, rig, known.surface(), known.felt or presets.FELT[of], known.hint,
                    accuracy=known.accuracy)  # fmt: skip

@@ -30,6 +30,7 @@ class Trainer:
         self.exercise: Exercise = named(name)(Facts.of(world), time.time_ns() % 2**32 if seed is None else seed)
         self.observer = nt.frames.attach(world["name"])
         self.told, self.saved = 0.0, ""
+        self.shown: Message | None = None
         self.look()
         self.report()
 
@@ -42,9 +43,16 @@ class Trainer:
         """The frames since the last look; what the task then asks for is done."""
         done = self.result
         self.exercise.see(self.observer.read())
+        self._show()
         self._change()
         if self.result is not done or time.monotonic() - self.told > TOLD:
             self.report()
+
+    def _show(self) -> None:
+        shown = self.exercise.shown
+        if shown is not None and shown != self.shown:
+            self.shown = shown
+            self.tell({"tell": "particles", **shown})
 
     def _change(self) -> None:
         while self.exercise.changes:
@@ -103,4 +111,6 @@ class Trainer:
     def close(self) -> None:
         """End it; the session goes on."""
         self.observer.close()
+        if self.shown is not None:
+            self.tell({"tell": "particles", "radius": 0.0, "places": [], "targets": [], "events": []})
         self.tell({"tell": "task", "name": ""})

@@ -5,17 +5,21 @@ from __future__ import annotations
 
 from nanotouch.errors import InvalidValue
 
+from nanotouch_app.training.dent import Dent, Scratch
 from nanotouch_app.training.exercise import Exercise as Exercise
 from nanotouch_app.training.exercise import Result as Result
 from nanotouch_app.training.facts import Facts as Facts
 from nanotouch_app.training.find import Find
 from nanotouch_app.training.lesson import LESSON
 from nanotouch_app.training.pull_off import PullOff
+from nanotouch_app.training.push import Pattern, Push
 from nanotouch_app.training.steady import Steady
 from nanotouch_app.training.stiffer import Stiffer
 from nanotouch_app.training.trace import Trace
 
-TASKS: dict[str, type[Exercise]] = {task.name: task for task in (Find, PullOff, Trace, Steady, Stiffer)}
+TASKS: dict[str, type[Exercise]] = {
+    task.name: task for task in (Find, PullOff, Trace, Steady, Stiffer, Dent, Scratch, Push, Pattern)
+}
 
 
 def named(name: str) -> type[Exercise]:

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from nanotouch.errors import InvalidValue
+from nanotouch.plasticity import Dent
 from nanotouch.touch.record import replacing
 from nanotouch.units import parse_quantity
 
@@ -84,6 +85,7 @@ class Exercise:
         self.result: Result | None = None
         self.began = math.nan
         self.touches = False
+        self.dents: tuple[Dent, ...] = ()
         self._slice: list[Any] = []
 
     # --- what a task fills in ---
@@ -102,6 +104,11 @@ class Exercise:
     def choices(self) -> Sequence[str]:
         """What can be chosen now."""
         return ()
+
+    @property
+    def shown(self) -> dict[str, Any] | None:
+        """Particles and their targets, for the picture; None for none."""
+        return None
 
     @property
     def locked(self) -> bool:

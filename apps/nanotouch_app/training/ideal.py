@@ -5,11 +5,14 @@ and asks as a person asks: by the wheel, by moves, by choices. They know nothing
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import permutations
 from typing import Any, Protocol
 
 import numpy as np
 
+from nanotouch_app.training.dent import Dent, Scratch
 from nanotouch_app.training.exercise import Exercise, touching
+from nanotouch_app.training.push import ALLOWED, Push
 from nanotouch_app.training.steady import TARGET
 from nanotouch_app.training.stiffer import LOAD, Stiffer
 
@@ -140,6 +143,79 @@ def stiffer(operator: Operator) -> None:
         operator.rig.answer({"do": "choose", "number": 2 if depth[0] < depth[1] else 3})
 
 
+def dent(operator: Operator) -> None:
+    """Press a little harder each time, in the same place, until what stays is deep enough."""
+    exercise = operator.exercise
+    assert isinstance(exercise, Dent)
+    force = 0.1 * operator.load
+    while exercise.imprint is None or exercise.imprint.depth < 0.95 * exercise.asked_depth:
+        operator.down_to(force)
+        operator.up()
+        force *= 1.05
+    operator.rig.answer({"do": "choose", "number": 0})
+
+
+def scratch(operator: Operator) -> None:
+    """Grooves beside each other, each under a larger force, until one is deep enough."""
+    exercise = operator.exercise
+    assert isinstance(exercise, Scratch)
+    force, pieces = 0.08 * operator.load, 60
+    while exercise.imprint is None or exercise.imprint.depth < 0.93 * exercise.asked_depth:
+        operator.down_to(force)
+        for _ in range(pieces):
+            operator.rig.answer({"do": "move", "way": (exercise.length / pieces, 0.0, 0.0)})
+            operator.wait()
+        operator.up()
+        operator.rig.answer({"do": "move", "way": (-exercise.length, 0.12 * operator.width, 0.0)})
+        operator.wait(0.3)
+        force *= 1.1
+    operator.rig.answer({"do": "choose", "number": 0})
+
+
+def push(operator: Operator) -> None:
+    """Around a ball to its far side, against its middle, back, and look again; each ball to a ring that is near."""
+    exercise = operator.exercise
+    assert isinstance(exercise, Push)
+    goals, balls = exercise.goals, exercise.particles
+    far = np.array([[np.linalg.norm(goal - ball.place[:2]) for goal in goals] for ball in balls])
+    _, best = min((sum(far[range(len(balls)), order]), order) for order in permutations(range(len(goals))))
+    for ball, goal in zip(balls, goals[list(best)], strict=True):
+        while np.linalg.norm(way := goal - ball.place[:2]) > 0.5 * ALLOWED:
+            length = float(np.linalg.norm(way))
+            reach = ball.reach(float(operator.seen[-1]["tip_position"][2]) if operator.seen else 0.0)
+            behind = ball.place[:2] - 1.5 * reach * way / length
+            _go_around(operator, behind, [other.place[:2] for other in balls], 1.4 * reach)
+            _go(operator, ball.place[:2] + way - reach * way / length, 10e-9)
+            _go(operator, behind)
+    operator.rig.answer({"do": "choose", "number": 0})
+
+
+def _go(operator: Operator, to: Any, step: float = 100e-9) -> None:
+    """In a straight line by steps, until the tip is there."""
+    frame = operator.wait()
+    while np.linalg.norm(way := to - frame["tip_position"][:2]) > 2e-9:
+        way = way * min(1.0, step / float(np.linalg.norm(way)))
+        operator.rig.answer({"do": "move", "way": (float(way[0]), float(way[1]), 0.0)})
+        frame = operator.wait()
+
+
+def _go_around(operator: Operator, to: Any, balls: list[Any], room: float) -> None:
+    """Away from each ball that is near, then on."""
+    frame = operator.wait()
+    while np.linalg.norm(way := to - frame["tip_position"][:2]) > 20e-9:
+        here = frame["tip_position"][:2]
+        step = way * min(1.0, 60e-9 / float(np.linalg.norm(way)))
+        for ball in balls:
+            away = here + step - ball
+            if (near := float(np.linalg.norm(away))) < room and float(step @ away) < 0.0:
+                out = away / near
+                along = np.array([-out[1], out[0]])
+                step = 60e-9 * np.sign(along @ way + 1e-30) * along + max(0.0, room - near) * out
+        operator.rig.answer({"do": "move", "way": (float(step[0]), float(step[1]), 0.0)})
+        frame = operator.wait()
+
+
 SOLVERS: dict[str, Callable[[Operator], None]] = {
-    "find": find, "pull_off": pull_off, "trace": trace, "steady": steady, "stiffer": stiffer
+    "find": find, "pull_off": pull_off, "trace": trace, "steady": steady, "stiffer": stiffer,
+    "dent": dent, "scratch": scratch, "push": push, "pattern": push,
 }  # fmt: skip

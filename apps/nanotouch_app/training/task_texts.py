@@ -42,4 +42,30 @@ TEXTS: dict[str, str] = {
     "stiffer.said":
         "told apart ({right} % right) at {modulus} % of the modulus, {stiffness} % of the felt stiffness; "
         "people have 9 to 15 % of stiffness",
+    "dent.title": "Leave a dent of a depth",
+    "dent.words":
+        "Press, let go, and leave a dent that is {depth} deep when the tip is away. It is less deep than you press. "
+        "You may press again in the same dent, or elsewhere; the newest one counts.",
+    "dent.none": "nothing is left yet",
+    "dent.now": "the newest one is {depth} deep",
+    "dent.choice": "measure it",
+    "dent.touches": "lift the tip first",
+    "dent.said": "it is {depth} deep, asked were {asked}; the tip went down by {reached}",
+    "push.title": "Push a particle",
+    "push.words":
+        "Push the ball (radius {radius}) into the ring, within {allowed}. Stay low, push against its middle, go around "
+        "it for another direction. A push beside the middle turns it away.",
+    "push.now": "{off} off; the ball pushes back with {force}",
+    "push.choice": "it lies there",
+    "push.touches": "take the tip away first",
+    "push.said": "{off} off, allowed were {allowed}; contact lost {losses} times on the way",
+    "pattern.title": "Push five into a pattern",
+    "pattern.words":
+        "Push each ball (radius {radius}) into a ring, within {allowed}. Any ball for any ring; they pass through each "
+        "other, so keep them apart.",
+    "scratch.title": "Scratch a groove",
+    "scratch.words":
+        "Press and draw the tip in a straight line of {length}, so that a groove of {depth} stays. "
+        "The newest groove counts.",
+    "scratch.said": "; {length} long, asked were {asked}",
 }  # fmt: skip

@@ -22,6 +22,7 @@ typedef struct nt_dent {
     nt_imprint imprint; /* a dent, or a groove: end is not start */
     double load;        /* that makes it at rest [N] */
     int before;         /* the dent of the list that it has grown from; -1: a new one */
+    int grown;          /* so often it has grown in its place, as the last of the list */
 } nt_dent;
 
 /* Copyable. Zero is a sample that nothing has touched; nt_dents_place comes first. */
@@ -45,8 +46,9 @@ typedef struct nt_dents {
  * the middle of one. The tip rests on the rim, or in the bottom of the paraboloid. */
 NT_API NT_REALTIME double nt_dents_lowered(const nt_indentation *indentation, const nt_dents *dents, double x,
                                            double y);
-/* A tip that touches nothing goes to (x, y) [m]; what the last contact has left is added to the list. Returns how many
- * dents that were, 0 .. 2. While it touches: nothing. */
+/* A tip that touches nothing goes to (x, y) [m]; what the last contact has left is added to the list. A dent that grows
+ * keeps its middle; the last of the list grows in its place, so that a lever that rings makes one dent. Returns how
+ * many dents were added or have grown, 0 .. 2: the last of the list. While it touches: nothing. */
 NT_API NT_REALTIME int nt_dents_place(const nt_indentation *indentation, nt_dents *dents, double x, double y);
 /* The law at a gap [m] over the surface with its dents, as nt_dents_lowered had it when the contact began. U is the
  * work of getting there, with the heat of what yields. Pure. NaN in, NaN out. */

@@ -106,7 +106,7 @@ typedef enum nt_event_kind {
                         opening, a start or a pause; the stage did not follow it there. x_m [m] */
     NT_EVENT_DENT,   /* nobody asks for it: what a contact that has ended left in a sample that keeps dents, as two
                         events. Field 0: x, y of its start, x, y of its end [m]; field 1: radius, depth [m], load [N], the
-                        number of the dent that it has grown from or -1 */
+                        number of the dent that it has grown from or -1; of the last one: it takes its place */
     NT_EVENT_UNDENT, /* the last dent is taken back; no value */
     NT_EVENT_KINDS
 } nt_event_kind;

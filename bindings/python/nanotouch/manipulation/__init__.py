@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from .particle import Particle, ParticleContact, ParticlePath, ParticleState
+from .particle import Particle, ParticleContact, ParticlePath, ParticleState, latex
 from .pushing import Bench, Lost, Pushed, Track, arrange, push
 
 __all__ = [
@@ -16,5 +16,6 @@ __all__ = [
     "Pushed",
     "Track",
     "arrange",
+    "latex",
     "push",
 ]

@@ -206,6 +206,28 @@ class Particle:
         return ParticlePath(position, turned, force, stored, dissipated, work, *ends)
 
 
+def latex(radius: float, tip_radius: float | None = None, tip_half_angle: float = 0.26) -> Particle:
+    """A sphere of polystyrene on glass, and a coated tip that holds it little.
+
+    Parameters
+    ----------
+    radius, tip_radius : float
+        [m]; without one the tip has a tenth of the particle's.
+    tip_half_angle : float
+        [rad].
+
+    Notes
+    -----
+    Shear strength 12 MPa and rolling distances of 0.0084 radii are those of Sumer and Sitti (2008). Assumed are
+    w = 60 mJ/m^2 to the glass and 10 mJ/m^2 to the tip.
+    """
+    tip_radius = 0.1 * radius if tip_radius is None else tip_radius
+    modulus, shear = 3.63e9, 0.85e9  # E* and G* of polystyrene on glass [Pa]
+    glass = ParticleContact(modulus, shear, 0.06, shear_strength=12e6, rolling_distance=0.0084 * radius)
+    tip = ParticleContact(modulus, shear, 0.01, shear_strength=12e6, rolling_distance=0.0084 * tip_radius)
+    return Particle(radius, glass, tip, tip_radius=tip_radius, tip_half_angle=tip_half_angle)
+
+
 def _index(names: tuple[str, ...], name: str, what: str) -> int:
     if name not in names:
         raise InvalidValue(f"{what} {name!r}: valid are {', '.join(names)}")

@@ -28,20 +28,27 @@ class Dent(NamedTuple):
 
 
 def dents_of(events: Sequence[Sequence[Any]]) -> tuple[Dent, ...]:
-    """Those that a recording's events leave, the oldest first; ``undent`` takes one back.
+    """Those that a session's events leave, the oldest first.
 
-    Of a session that went back in time: of its events without rewinds.
+    ``undent`` takes one back, ``rewind`` all that came since.
     """
-    found: list[Dent] = []
+    moments: list[tuple[Dent, ...]] = [()]  # after so many events
     begun: Sequence[float] | None = None
     for _, name, numbers in events:
+        found = moments[-1]
         if name == "dent":
             begun = numbers
         elif name == "dent_size":
             if begun is None:
                 raise InvalidValue("events: a dent_size without its dent")
-            found.append(Dent.from_numbers([*begun, *numbers]))
-            begun = None
-        elif name == "undent" and found:
-            found.pop()
-    return tuple(found)
+            dent, begun = Dent.from_numbers([*begun, *numbers]), None
+            if dent.before is not None and dent.before == len(found) - 1:  # the last one has grown in its place
+                dent, found = dent._replace(before=found[-1].before), found[:-1]
+            found = (*found, dent)
+        elif name == "undent":
+            found = found[:-1]
+        elif name == "rewind":
+            kept = int(numbers[1])
+            found = moments[kept] if 0 <= kept < len(moments) else ()
+        moments.append(found)
+    return moments[-1]

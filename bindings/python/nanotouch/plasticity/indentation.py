@@ -124,6 +124,12 @@ class Indentation:
         """There [N]."""
         return float(self._first(np.array([_LARGEST * self.radius])).force[0])
 
+    def at_radius(self, contact_radius: ArrayLike) -> FirstLoading:
+        """The first loading at contact radii [m], 0 .. R/2."""
+        radii = as_floats(contact_radius, "contact_radius")
+        _check("contact_radius", radii, "m", _LARGEST * self.radius, least=0.0)
+        return self._shaped(radii.ravel(), radii.shape)
+
     def at_load(self, load: ArrayLike) -> FirstLoading:
         """The first loading at loads [N], 0 and above."""
         loads = as_floats(load, "load")
