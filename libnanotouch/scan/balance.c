@@ -99,11 +99,16 @@ static int approach(const nt_balance *b, const nt_balance_target *target, const 
     return 0;
 }
 
-int nt_motion_is_stable(const motion *f, const slopes *s)
+int nt_motion_keeps(const nt_balance *b, const nt_balance_value *value)
 {
-    const double fold = s->strength[0] * s->height[1] - s->strength[1] * s->height[0];
-    const double damping = s->taken[0] - s->taken[1] * s->height[0] / s->height[1] + f->drive[1] / f->o.at.swing;
-    return fold > 0.0 && damping > 0.0;
+    return value->amplitude_bound <= b->accuracy * b->lever->free_amplitude &&
+           value->force_bound <= b->accuracy * fmax(fabs(value->peak_force), b->plan->pull_off_force);
+}
+
+/* Its sign changes where the height turns along the curve. */
+static double fold_of(const slopes *s)
+{
+    return s->strength[0] * s->height[1] - s->strength[1] * s->height[0];
 }
 
 static nt_status meet(const nt_balance *b, const nt_balance_target *target, motion *f, slopes *s)
@@ -118,14 +123,14 @@ static nt_status meet(const nt_balance *b, const nt_balance_target *target, moti
 }
 
 /* How far the amplitude goes if the base is higher or lower by this; infinite where no such motion is left there. */
-static double answer_to(const nt_balance *b, const motion *f, double moved)
+static double answer_to(const nt_balance *b, const motion *f, double fold, double moved)
 {
     double most = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         const nt_balance_target target = {NT_AIM_HEIGHT, f->height + side * moved, 0};
         motion there = *f;
         slopes s;
-        if (meet(b, &target, &there, &s) != NT_OK || !nt_motion_is_stable(&there, &s))
+        if (meet(b, &target, &there, &s) != NT_OK || fold_of(&s) * fold <= 0.0)
             return HUGE_VAL;
         most = fmax(most, fabs(there.amplitude - f->amplitude));
     }
@@ -133,7 +138,7 @@ static double answer_to(const nt_balance *b, const motion *f, double moved)
 }
 
 /* What the harmonics left out would change at the lowest point, and how the amplitude answers. Completes the orbit. */
-static void add_bounds(const nt_balance *b, motion *f, nt_balance_value *value)
+static void add_bounds(const nt_balance *b, motion *f, double fold, nt_balance_value *value)
 {
     const nt_tapping *t = b->lever;
     const nt_interaction_state history = {f->o.captured, 0.0, 0.0};
@@ -147,7 +152,7 @@ static void add_bounds(const nt_balance *b, motion *f, nt_balance_value *value)
     const double down = nt_interaction_eval_gap(b->plan, &history, b->place, f->o.lowest - moved).F;
     const double up = nt_interaction_eval_gap(b->plan, &history, b->place, f->o.lowest + moved).F;
     value->force_bound = fmax(fabs(down - here), fabs(up - here));
-    const double answer = fabs(value->gain) < STEEP ? fabs(value->gain) * moved : answer_to(b, &begun, moved);
+    const double answer = fabs(value->gain) < STEEP ? fabs(value->gain) * moved : answer_to(b, &begun, fold, moved);
     value->amplitude_bound = fmax(moved, answer) + GRAIN * t->free_amplitude;
     if (fabs(f->o.lowest - nt_plan_capture_gap(b->plan, b->place)) <= moved || !(answer < HUGE_VAL))
         value->amplitude_bound = value->force_bound = HUGE_VAL; /* it may take hold, or not; or end */
@@ -168,8 +173,8 @@ static nt_balance_value value_of(const nt_balance *b, motion *f, const slopes *s
                               .tip_loss = NT_PI * t->spring_constant * f->o.loss,
                               .gain = height != 0.0 ? way[0] / height : (double)NAN,
                               .harmonics = b->harmonics};
-    add_bounds(b, f, &value);
-    value.stable = nt_motion_is_stable(f, s) && nt_orbit_returns(&f->o);
+    add_bounds(b, f, fold_of(s), &value);
+    value.stable = nt_orbit_returns(&f->o);
     value.evaluations = f->o.evaluations;
     return value;
 }
@@ -195,5 +200,10 @@ nt_status nt_balance_solve(const nt_balance *balance, const nt_balance_target *t
     *value = value_of(balance, &f, &s);
     *state = f.o.at;
     state->lag = atan2(f.drive[1], f.drive[0]);
+    for (int n = balance->harmonics + 1; n <= NT_HARMONICS_MAX; n++) { /* as the force would drive them */
+        const double stiffness = 1.0 - n * n * balance->lever->ratio * balance->lever->ratio;
+        state->real[n] = n <= f.o.orders ? f.o.force[n][0] / stiffness : 0.0;
+        state->imaginary[n] = n <= f.o.orders ? f.o.force[n][1] / stiffness : 0.0;
+    }
     return NT_OK;
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "nanotouch/balance.h"
+#include "motion.h"
 
 #define SAME 0.2 /* phases of one motion by more and by fewer harmonics [rad] */
 enum { BRANCHES_MAX = 16 };
@@ -108,14 +108,6 @@ static int meet(const search *s, int *above, int *below)
     return 0;
 }
 
-static int is_enough(const nt_balance *balance, const nt_balance_value *met)
-{
-    const double force = fmax(fabs(met->peak_force), balance->plan->pull_off_force);
-    return met->harmonics == balance->harmonics ||
-           (met->amplitude_bound <= balance->accuracy * balance->lever->free_amplitude &&
-            met->force_bound <= balance->accuracy * force);
-}
-
 /* From one harmonic to more: all at once do not find together. Where more of them find none, or only the motion on the
  * other side of the resonance, what fewer have found stays. */
 static nt_status refine(const nt_balance *balance, const nt_balance_target *target, nt_balance_state *state,
@@ -125,13 +117,13 @@ static nt_status refine(const nt_balance *balance, const nt_balance_target *targ
     some.harmonics = 1;
     const nt_status status = nt_balance_solve(&some, target, state, met);
     long evaluations = met->evaluations;
-    while (status == NT_OK && !is_enough(balance, met)) {
+    while (status == NT_OK && !nt_motion_keeps(balance, met) && some.harmonics < balance->harmonics) {
+        some.harmonics = some.harmonics * 2 < balance->harmonics ? some.harmonics * 2 : balance->harmonics;
         nt_balance_state next = *state;
         nt_balance_value more;
-        some.harmonics = some.harmonics * 2 < balance->harmonics ? some.harmonics * 2 : balance->harmonics;
         if (nt_balance_solve(&some, target, &next, &more) != NT_OK || fabs(more.phase - met->phase) > SAME ||
             !more.stable)
-            break;
+            continue;
         evaluations += more.evaluations;
         *state = next;
         *met = more;

@@ -82,6 +82,14 @@ static int step_on(walk *w, double share)
     return 0;
 }
 
+/* Of small changes at one height (Krylov, Bogoliubov): they neither grow steadily, beyond a fold, nor swing up. */
+static int is_stable(const motion *f, const slopes *s)
+{
+    const double fold = s->strength[0] * s->height[1] - s->strength[1] * s->height[0];
+    const double damping = s->taken[0] - s->taken[1] * s->height[0] / s->height[1] + f->drive[1] / f->o.at.swing;
+    return fold > 0.0 && damping > 0.0;
+}
+
 static void keep(const walk *w, nt_balance_curve *curve, int piece)
 {
     const motion *f = &w->f;
@@ -94,7 +102,7 @@ static void keep(const walk *w, nt_balance_curve *curve, int piece)
                                 .phase = f->phase,
                                 .peak_force = f->o.peak,
                                 .piece = piece,
-                                .stable = nt_motion_is_stable(f, s)};
+                                .stable = is_stable(f, s)};
 }
 
 /* From the walk's place to an end of its piece of the curve, or round to where it began: 1. */

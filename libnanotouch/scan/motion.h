@@ -26,7 +26,7 @@ typedef struct slopes {
 /* 0 where no orbit has this swing and depth. m->o.evaluations are counted on. */
 int nt_motion_find(const nt_balance *b, const nt_balance_state *at, motion *m);
 int nt_motion_slopes(const nt_balance *b, const motion *m, nt_balance_aim aim, slopes *s);
-/* Of small changes at one height (Krylov, Bogoliubov): they neither grow steadily, beyond a fold, nor swing up. */
-int nt_motion_is_stable(const motion *m, const slopes *s);
+/* Whether the bounds of a motion keep the balance's accuracy. */
+int nt_motion_keeps(const nt_balance *b, const nt_balance_value *value);
 
 #endif

@@ -213,6 +213,10 @@ static int integrate(orbit *o)
 {
     const nt_plan *plan = o->balance->plan;
     const nt_tapping *lever = o->balance->lever;
+    double turned = -o->at.swing; /* the way where the first harmonic is lowest */
+    for (int n = 2; n <= o->balance->harmonics; n++)
+        turned += (n % 2 ? -1.0 : 1.0) * o->at.real[n];
+    o->middle = o->at.depth - lever->cosine * turned;
     const double top = o->middle + lever->cosine * o->at.swing;
     memset(o->force, 0, sizeof o->force);
     if (products_of(o) > 0) {
@@ -263,7 +267,8 @@ static double rest_of(const orbit *o, double rest[SIZE])
     return sqrt(sum);
 }
 
-/* Derivatives of the rests by the harmonics: F_n changes by 1/2 sum (K_(n-m) du_m + K_(n+m) du_m*). */
+/* Derivatives of the rests by the harmonics: F_n changes by 1/2 sum (K_(n-m) du_m + K_(n+m) du_m*), and by K_n where
+ * the middle follows them, as the depth stays. */
 static void jacobian_of(const orbit *o, double j[SIZE][SIZE + 1])
 {
     const int N = o->balance->harmonics;
@@ -279,9 +284,10 @@ static void jacobian_of(const orbit *o, double j[SIZE][SIZE + 1])
             double *x = &j[2 * (n - 2)][2 * (m - 2)], *y = &j[2 * (n - 2) + 1][2 * (m - 2)], c[2] = {0.0, 0.0};
             if (n == m)
                 stiffness_of(o->balance->lever, n, c);
-            x[0] = c[0] - px - qx;
+            const double follows = m % 2 ? -cosine : cosine;
+            x[0] = c[0] - px - qx + follows * o->slope[n][0];
             x[1] = -c[1] + py - qy;
-            y[0] = c[1] - py - qy;
+            y[0] = c[1] - py - qy + follows * o->slope[n][1];
             y[1] = c[0] - px + qx;
         }
 }
@@ -350,7 +356,6 @@ int nt_orbit_find(orbit *o)
     const nt_tapping *lever = o->balance->lever;
     const int N = o->balance->harmonics;
     double rests[SIZE];
-    o->middle = o->at.depth + lever->cosine * o->at.swing;
     o->orders = N;
     if (!(o->at.swing > 0.0) || !integrate(o))
         return 0;

@@ -12,6 +12,8 @@
 #define REACH 0.1    /* what it may move the state by, over A0 */
 #define PROBE 3e-5   /* of the finite differences, over A0 */
 #define SETTLED 30.0 /* change in one period, in tolerances */
+#define FINER 0.1    /* of the tolerance, after Newton's method has failed: a stiff contact amplifies errors */
+#define FINEST 1e-4  /* of the tolerance that is asked for, at least */
 enum { NEWTON_MAX = 8, PATIENCE = 30 };
 
 typedef struct search {
@@ -58,9 +60,9 @@ static int newton_step(const search *s, nt_tapping_state *x, const nt_tapping_st
 }
 
 /* From *state to the fixed point near it; NT_E_NO_CONVERGENCE leaves it. The contact is that of the period's end. */
-static nt_status refine(search *s, nt_tapping_state *state, nt_tapping_value *value)
+static nt_status refine(search *s, double tolerance, nt_tapping_state *state, nt_tapping_value *value)
 {
-    const double wanted = SETTLED * s->tapping->tolerance;
+    const double wanted = SETTLED * tolerance;
     nt_tapping_state x = *state;
     double best = HUGE_VAL;
     for (int i = 0; i < NEWTON_MAX; i++) {
@@ -95,7 +97,8 @@ nt_status nt_tapping_settle(const nt_tapping *tapping, nt_tapping_state *state, 
 {
     if (tapping == NULL || state == NULL || over == NULL || value == NULL)
         return NT_E_ARGUMENT;
-    search s = {tapping, over, 0};
+    nt_tapping finer = *tapping;
+    search s = {&finer, over, 0};
     const double most = PATIENCE * tapping->quality;
     const long block = (long)ceil(0.25 * tapping->quality);
     double near = NEAR;
@@ -111,8 +114,9 @@ nt_status nt_tapping_settle(const nt_tapping *tapping, nt_tapping_state *state, 
             break;
         status = NT_E_NO_CONVERGENCE;
         if (value->change <= near) {
-            status = refine(&s, state, value);
+            status = refine(&s, tapping->tolerance, state, value);
             near *= 0.3;
+            finer.tolerance = fmax(FINER * finer.tolerance, FINEST * tapping->tolerance);
         }
     }
     if (info != NULL)

@@ -5,16 +5,11 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "motion.h"
+
 #define ACCURACY_MIN 1e-6
 #define ACCURACY_MAX 0.5
 enum { SECANTS = 8 };
-
-static int keeps(const nt_steady *steady, const nt_steady_value *value)
-{
-    const double force = fmax(fabs(value->peak_force), steady->plan->pull_off_force);
-    return value->amplitude_bound <= steady->accuracy * steady->lever->free_amplitude &&
-           value->force_bound <= steady->accuracy * force;
-}
 
 static nt_steady_value of_balance(const nt_balance_value *met)
 {
@@ -84,24 +79,19 @@ static nt_status in_time(const nt_steady *steady, const nt_balance_target *targe
     return NT_E_NO_CONVERGENCE;
 }
 
-nt_status nt_steady_find(const nt_steady *steady, const nt_balance_curve *curve, const nt_balance_target *target,
-                         nt_steady_value *value)
+/* As nt_steady_find; *state is that of harmonic balance, where value->tier is not NT_STEADY_TIME. */
+static nt_status find(const nt_steady *steady, const nt_balance_curve *curve, const nt_balance_target *target,
+                      nt_balance_state *state, nt_steady_value *value)
 {
-    if (steady == NULL || steady->lever == NULL || steady->plan == NULL || curve == NULL || target == NULL ||
-        value == NULL)
-        return NT_E_ARGUMENT;
-    if (!(steady->accuracy >= ACCURACY_MIN && steady->accuracy <= ACCURACY_MAX))
-        return NT_E_RANGE;
     const nt_balance balance = {steady->lever, steady->plan, steady->place, NT_HARMONICS_MAX, steady->accuracy};
-    nt_balance_state state;
     nt_balance_value met;
     nt_steady_value found = {0};
     found.state = nt_tapping_free(steady->lever);
-    const nt_status status = nt_balance_find(&balance, curve, target, &state, &met);
+    const nt_status status = nt_balance_find(&balance, curve, target, state, &met);
     if (status == NT_OK) {
         found = of_balance(&met);
-        found.state = nt_balance_moment(&balance, &state, &met);
-        if (keeps(steady, &found)) {
+        found.state = nt_balance_moment(&balance, state, &met);
+        if (nt_motion_keeps(&balance, &met)) {
             *value = found;
             return NT_OK;
         }
@@ -113,6 +103,18 @@ nt_status nt_steady_find(const nt_steady *steady, const nt_balance_curve *curve,
     if (timed == NT_OK)
         *value = found;
     return timed;
+}
+
+nt_status nt_steady_find(const nt_steady *steady, const nt_balance_curve *curve, const nt_balance_target *target,
+                         nt_steady_value *value)
+{
+    if (steady == NULL || steady->lever == NULL || steady->plan == NULL || curve == NULL || target == NULL ||
+        value == NULL)
+        return NT_E_ARGUMENT;
+    if (!(steady->accuracy >= ACCURACY_MIN && steady->accuracy <= ACCURACY_MAX))
+        return NT_E_RANGE;
+    nt_balance_state state;
+    return find(steady, curve, target, &state, value);
 }
 
 /* --- Lines of an image --- */
@@ -127,17 +129,9 @@ static void put(double *channel, long pixel, double value)
 typedef struct course {
     nt_balance balance;
     nt_balance_state state;
-    nt_balance_value value;
-    int is_known; /* 1: of the pixel before */
+    nt_steady_value value;
+    int is_known; /* 1: of the pixel before, by harmonic balance */
 } course;
-
-static int is_kept(const course *c)
-{
-    const nt_balance *balance = &c->balance;
-    const double force = fmax(fabs(c->value.peak_force), balance->plan->pull_off_force);
-    return c->value.stable && c->value.amplitude_bound <= balance->accuracy * balance->lever->free_amplitude &&
-           c->value.force_bound <= balance->accuracy * force;
-}
 
 /* The motion at the next pixel: from that of the last one, or from above. */
 static nt_status next(course *c, const nt_balance_target *target, nt_balance_curve *curve)
@@ -145,18 +139,20 @@ static nt_status next(course *c, const nt_balance_target *target, nt_balance_cur
     if (c->is_known) {
         nt_balance near = c->balance;
         nt_balance_state state = c->state;
+        nt_balance_value met;
         near.harmonics = c->value.harmonics;
-        if (nt_balance_solve(&near, target, &state, &c->value) == NT_OK && c->value.gain > 0.0 && is_kept(c)) {
+        if (nt_balance_solve(&near, target, &state, &met) == NT_OK && met.gain > 0.0 && met.stable &&
+            nt_motion_keeps(&near, &met)) {
             c->state = state;
+            c->value = of_balance(&met);
             return NT_OK;
         }
     }
+    const nt_steady steady = {c->balance.lever, c->balance.plan, c->balance.place, c->balance.accuracy};
     nt_status status = nt_balance_trace(&c->balance, curve);
     if (status == NT_OK)
-        status = nt_balance_find(&c->balance, curve, target, &c->state, &c->value);
-    if (status == NT_OK && !is_kept(c))
-        status = NT_E_NO_CONVERGENCE;
-    c->is_known = status == NT_OK;
+        status = find(&steady, curve, target, &c->state, &c->value);
+    c->is_known = status == NT_OK && c->value.tier != NT_STEADY_TIME;
     return status;
 }
 

@@ -3,8 +3,8 @@
  * balance with that harmonic of the force (Hayashi 1964). With q = q0 + Re(sum u_n e^(i n psi)), psi = w t - theta,
  * u_1 = A > 0, r = w/w0:
  *     (1 - n^2 r^2 + i n r/Q) u_n = F_n/k_c   (n = 0, 2 .. N),     |(1 - r^2 + i r/Q) A - F_1/k_c| = D.
- * One harmonic is where the slow flow (flow.h) rests. Motions lie on one curve of swing A and depth, the gap that the
- * first harmonic alone would leave at the lowest point; one height may have three of them, one of which is unstable. */
+ * One harmonic is where the slow flow (flow.h) rests. Motions lie on one curve of swing A and depth, the gap at psi =
+ * pi, where the first harmonic is lowest; one height may have three of them, one of which is unstable. */
 #ifndef NANOTOUCH_BALANCE_H
 #define NANOTOUCH_BALANCE_H
 
@@ -29,9 +29,10 @@ typedef struct nt_balance {
 /* A motion, enough to go on from to another one nearby. Copyable. */
 typedef struct nt_balance_state {
     double swing;                                                       /* A of the tip's way [m] */
-    double depth;                                                       /* of the first harmonic [m] */
+    double depth;                                                       /* gap at psi = pi [m] */
     double lag;                                                         /* psi = w t - lag [rad] */
-    double real[NT_HARMONICS_MAX + 1], imaginary[NT_HARMONICS_MAX + 1]; /* u_n at [n], n >= 2 [m] */
+    double real[NT_HARMONICS_MAX + 1], imaginary[NT_HARMONICS_MAX + 1]; /* u_n at [n], n >= 2; beyond those in balance
+                                                                           a guess [m] */
 } nt_balance_state;
 
 typedef struct nt_balance_value {

@@ -44,7 +44,8 @@ NT_API nt_status nt_steady_find(const nt_steady *steady, const nt_balance_curve 
 
 /* One line of an image in which the loop has settled at each pixel: no lag, no noise, no scanner. Rows as of
  * nt_scanner_line, with error and lateral force 0. Pixels follow one another along the line from where the tip has come
- * down on its first one. NT_E_NO_CONVERGENCE: at `*pixel` (NULL allowed) no motion of the set point repeats. Tapping
+ * down on its first one; where harmonic balance does not keep the accuracy it comes down anew, as by nt_steady_find.
+ * NT_E_NO_CONVERGENCE: at `*pixel` (NULL allowed) no motion of the set point repeats. Tapping
  * modes only: NT_E_ARGUMENT in contact mode. */
 NT_API nt_status nt_steady_line(const nt_scanner *scanner, double accuracy, long line, nt_scan_row *row, long *pixel);
 
