@@ -47,6 +47,8 @@ def add_parser(subparsers: Any) -> None:
     how.add_argument("--line-rate", metavar="RATE", help="lines per second, as 0.5Hz (default: so slow that the tip "
                      "flies no more than 3 %% of the width after a step down)")  # fmt: skip
     how.add_argument("--gain", metavar="RATE", help="K_I of the z loop, as 50Hz (default: as advised)")
+    how.add_argument("--steady", metavar="ACCURACY", nargs="?", const="5%", help="the image of an infinitely slow "
+                     "scan: the loop has settled at each pixel; forces within 5%%, or as told")  # fmt: skip
     how.add_argument("--seed", type=int, default=1, metavar="N", help="of the noise (default: %(default)s)")
     how.add_argument("--forecast", action="store_true", help="tell what the scan would do, and end")
     output.add_options(parser)
@@ -61,6 +63,7 @@ def run(args: argparse.Namespace) -> int:
     scanner = _scanner(args, plan, rig, tables, surface)
     with output.busy("forecasting"):
         told = scan.forecast(scanner, scene, surface)
+    accuracy = _accuracy(args.steady, scanner)
     duration = scanner.scan["raster.lines"] / scanner.scan["raster.line_rate"]
     output.say(told)
     if plan.bound > ACCURACIES[0]:
@@ -72,9 +75,10 @@ def run(args: argparse.Namespace) -> int:
                    "duration": duration}  # fmt: skip
     if args.forecast:
         return 0
-    _check(scanner, duration)
+    if accuracy is None:
+        _check(scanner, duration)
     with output.folder(args, FILES) as out:
-        image = _taken(scanner, args.seed)
+        image = _taken(scanner, args.seed, accuracy)
         facts = args.answer | _facts(image)
         with output.busy("undoing the tip"):
             tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
@@ -95,6 +99,17 @@ def run(args: argparse.Namespace) -> int:
             output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
         print(f"written to {out}/: {', '.join(written)}\ngo on: nanotouch touch {out}/surface.gwy")
     return 0
+
+
+def _accuracy(steady: str | None, scanner: nt.Scanner) -> float | None:
+    if steady is None:
+        return None
+    if scanner.scan.zloop.mode == "contact":
+        raise InvalidValue("--steady: an image of tapping or phase; in contact mode a slow scan is one")
+    accuracy = parse_quantity(steady, "")
+    if not 1e-6 <= accuracy <= 0.5:
+        raise InvalidValue(f"--steady {steady}: valid is 0.0001% .. 50%")
+    return accuracy
 
 
 def _preset(what: str | None) -> str | None:
@@ -201,8 +216,8 @@ def _check(scanner: nt.Scanner, duration: float) -> None:
         )
 
 
-def _taken(scanner: nt.Scanner, seed: int) -> scan.Image:
-    """The image; Ctrl-C ends it, and nothing is written."""
+def _taken(scanner: nt.Scanner, seed: int, accuracy: float | None) -> scan.Image:
+    """The image, steady to an accuracy or in time; Ctrl-C ends it, and nothing is written."""
     with stop.between_blocks() as check, output.progress_bar("scanning") as progress:
 
         def after_strip(done: float) -> None:
@@ -210,7 +225,7 @@ def _taken(scanner: nt.Scanner, seed: int) -> scan.Image:
             if done < 1.0:
                 check()
 
-        return scanner.run(seed, after_strip)
+        return scanner.run(seed, after_strip) if accuracy is None else scanner.steady(accuracy, progress=after_strip)
 
 
 def _facts(image: scan.Image) -> dict[str, Any]:

@@ -183,7 +183,7 @@ nt_status nt_steady_line(const nt_scanner *scanner, double accuracy, long line, 
         }
         put(row->height, i, c.value.base_height);
         put(row->error, i, 0.0);
-        put(row->signal, i, c.value.amplitude);
+        put(row->signal, i, target.aim == NT_AIM_AMPLITUDE ? target.value : c.value.amplitude);
         put(row->phase, i, c.value.phase);
         put(row->peak_force, i, c.value.peak_force);
         put(row->lateral, i, 0.0);

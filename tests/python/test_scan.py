@@ -13,7 +13,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import images, scan
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import InvalidValue, SolverError
 
 LEVER: Any = {"spring_constant": 40.0, "quality": 200.0, "resonance": 300e3}
 FAST: Any = {"resonance": 20e3, "quality": 5.0}
@@ -202,6 +202,53 @@ def test_the_forecast_in_words() -> None:
     heights = [one.value for one in tapping.sweep(np.linspace(16e-9, 13e-9, 13))]
     truth = np.interp(0.7, [v.amplitude / 20e-9 for v in heights[::-1]], [v.peak_force for v in heights[::-1]])
     assert told.motions[0].peak_force == pytest.approx(truth, rel=0.05)
+
+
+def test_the_forecast_is_of_the_motion_that_the_lever_comes_to() -> None:
+    """In humid air: lowered it is attracted, lifted it taps. Beside a sweep of the time domain, each force within what
+    is told."""
+    scene, rig = nt.Scene(), nt.Rig()
+    scanner = nt.Scanner(scene.plan(), None, rig)
+    lowered, lifted = scan.forecast(scanner, scene).motions
+    tapping = nt.Tapping(scene.plan(), rig, tolerance=1e-7)
+    swept = tapping.sweep(np.arange(19e-9, 14e-9, -0.5e-9))  # above, it is caught now and then, and does not settle
+    reached = min(swept, key=lambda one: abs(one.value.amplitude - 14e-9)).value
+    assert lowered.phase == pytest.approx(reached.phase, abs=0.02)
+    assert lowered.phase > math.pi / 2 > lifted.phase
+    up = tapping.sweep(np.linspace(10e-9, 14e-9, 5))[-1]
+    assert up.settled
+    assert up.value.amplitude == pytest.approx(14e-9, abs=0.1e-9)
+    assert abs(lifted.peak_force - up.value.peak_force) < lifted.force_bound + 0.005 * lifted.peak_force
+    assert 0.0 < lifted.force_bound < 0.02 * lifted.peak_force
+
+
+def test_a_set_point_without_a_steady_motion_is_forecast() -> None:
+    scene, rig = nt.presets.silicon_on_gold()
+    told = scan.forecast(nt.Scanner(scene.plan(), None, rig), scene)
+    assert "no steady motion: from tap to tap the tip is caught or not" in str(told)
+    held, rig = nt.presets.polyester()
+    with pytest.raises(SolverError, match="holds the tip"):
+        scan.forecast(nt.Scanner(held.plan(), None, rig), held)
+
+
+def test_a_steady_image_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The amplitude is that of the set point everywhere; trace and retrace are one."""
+    for module in ("gwyfile", "SurfaceTopography", "matplotlib"):
+        pytest.importorskip(module)
+    from nanotouch_app.main import main
+
+    line = ["scan", "inas_dots", "--pixels", "16", "--lines", "6", "--out", str(tmp_path / "out"), "--steady"]
+    assert main([*line, "10%"]) == 0
+    assert "differ by 0 nm" in capsys.readouterr().out
+    held = images.read(tmp_path / "out" / "scan.gwy", "Amplitude")
+    assert np.all(held.heights == 14e-9)
+    for wrong, word in (
+        (["60%"], "valid is"),
+        (["x"], "not a number"),
+        (["5%", "--mode", "contact"], "in contact mode"),
+    ):
+        assert main([*line, *wrong, "--overwrite"]) == 2
+        assert word in capsys.readouterr().err
 
 
 def test_phase_feedback_wants_the_resonance() -> None:

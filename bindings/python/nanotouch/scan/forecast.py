@@ -10,15 +10,16 @@ from typing import NamedTuple
 import numpy as np
 
 from nanotouch.errors import SolverError
-from nanotouch.scan.flow import FlowState, FlowValue, SlowFlow
 from nanotouch.scan.scanner import LoopMargins, Scanner
-from nanotouch.scan.tapping import Tapping, TappingState, TappingValue
+from nanotouch.scan.steady import Steady, SteadyMotion
+from nanotouch.scan.tapping import Tapping
 from nanotouch.scene import Scene
 from nanotouch.scene.surface import Surface
 from nanotouch.units import in_words
 
-_HEIGHTS = 40
-_HALVINGS = 12
+_ACCURACY = 0.02  # of amplitude and peak force
+_LARGEST, _SMALLEST, _SHARES = 0.98, 0.06, 24  # set points over A0 that are tried
+_HALVINGS = 6
 _SIGMAS = 5.0  # of the noise of a reading that may not lift the tip
 _ELECTRONVOLT = 1.602176634e-19
 
@@ -28,6 +29,9 @@ class Motion(NamedTuple):
 
     peak_force: float
     """[N]"""
+    force_bound: float
+    """by how much the peak force may be wrong [N]; 0 by the time domain, and in contact mode; NaN where no motion of
+    the set point repeats, and the other values are those of Q periods"""
     indentation: float
     """[m]; below 0: the tip turns back before contact"""
     contact_time: float
@@ -87,8 +91,14 @@ class Forecast(NamedTuple):
             if motion.contact_time > 0.0
             else f"the tip turns back {in_words(-motion.indentation, 'm', 3)} before contact"
         )
+        if math.isnan(motion.force_bound):
+            return (
+                "no steady motion: from tap to tap the tip is caught or not; in Q periods the peak force is "
+                f"{in_words(motion.peak_force, 'N', 3)}"
+            )
+        within = f" within {in_words(motion.force_bound, 'N', 3)}" if motion.force_bound > 0.0 else ""
         return (
-            f"{side} motion: peak force {in_words(motion.peak_force, 'N', 3)}, phase "
+            f"{side} motion: peak force {in_words(motion.peak_force, 'N', 3)}{within}, phase "
             f"{math.degrees(motion.phase):.3g} degrees, {motion.loss / _ELECTRONVOLT:.3g} eV lost in a tap; {depth}"
         )
 
@@ -138,8 +148,8 @@ class Forecast(NamedTuple):
 
 
 def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> Forecast:
-    """What a scanner will do to the sample of a scene: forces by the time domain over a flat, speeds by the rules of
-    its loop over a surface."""
+    """What a scanner will do to the sample of a scene: forces over a flat, to 2 % by the cheapest tier that keeps that
+    (:class:`Steady`); speeds by the rules of its loop over a surface."""
     mode = str(scanner.scan.zloop.mode)
     limit, reason = _limit(scene)
     slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
@@ -186,87 +196,84 @@ def _limit(scene: Scene) -> tuple[float, str]:
 
 def _contact(scanner: Scanner, limit: float, lag: float) -> tuple[tuple[Motion, ...], float, float]:
     force = float(scanner.scan["zloop.set_force"])
-    return (Motion(force, math.nan, 1.0, 0.0, 0.0),), limit, force + lag * scanner.rig["probe.spring_constant"]
+    flank = force + lag * scanner.rig["probe.spring_constant"]
+    return (Motion(force, 0.0, math.nan, 1.0, 0.0, 0.0),), limit, flank
 
 
 def _tapping(scanner: Scanner, scene: Scene, limit: float, lag: float) -> tuple[tuple[Motion, ...], float, float]:
-    """Curves of the slow flow, down and up again; the motions at the set point by the time domain."""
-    plan = scene.plan()
-    flow = SlowFlow(plan, scanner.rig, scanner.drive)
-    tapping = Tapping(plan, scanner.rig, scanner.drive, tolerance=1e-7)
+    """Steady motions, to an accuracy: at the set point, those that are too loud, and one where the tip climbs."""
     A0 = float(scanner.drive["drive.free_amplitude"])
-    heights = [float(h) for h in np.linspace(1.3 * A0, -0.1 * A0, _HEIGHTS)]
-    ways: list[list[tuple[FlowState, FlowValue]]] = []
-    state: FlowState | None = None
-    for order in (heights, heights[::-1]):
-        way = []
-        for height in order:
-            state, value, _ = flow.settle(height, state)
-            way.append((state, value))
-        ways.append(way)
-    ways[1].reverse()
-    found = [one for one in (_at_set_point(scanner, flow, heights, way) for way in ways) if one is not None]
-    if not found:
-        raise SolverError("no height gives the set point: the lever is held, or the set point is out of its reach")
+    steady = Steady(scene.plan(), scanner.rig, scanner.drive, accuracy=_ACCURACY)
+    wanted = _wanted(scanner)
     motions: list[Motion] = []
-    for height, state in found:
-        begun = TappingState(state.real + state.mean, -state.imaginary * scanner.ratio)
-        motion = _motion(tapping.settle(height, begun).value)
-        if motion.contact_time < 1.0 and all(abs(motion.phase - other.phase) > 0.05 for other in motions):
-            motions.append(motion)
+    for lifted in (False, True):
+        found = _of_reading(scanner, steady, wanted, lifted)
+        if found is not None and all(abs(found.phase - other.phase) > 0.05 for other in motions):
+            motions.append(
+                Motion(found.peak_force, found.force_bound, -found.lowest_gap, found.contact_time, found.phase,
+                       found.tip_loss)
+            )  # fmt: skip
     if not motions:
+        motions.append(_to_and_fro(scanner, steady, wanted * A0))
+    reading = wanted - lag / A0
+    climbing = [_of_reading(scanner, steady, reading, lifted) for lifted in (False, True)] if reading > 0.0 else []
+    climbs = max((_most(one) for one in climbing if one is not None), default=math.inf)
+    return tuple(motions), _safe(steady, A0, limit), max(climbs, *(one.peak_force for one in motions))
+
+
+def _to_and_fro(scanner: Scanner, steady: Steady, height: float) -> Motion:
+    """Where no motion of the set point repeats: what happens in Q periods near the height that a hard sample would
+    have."""
+    tapping = Tapping(steady.plan, scanner.rig, scanner.drive, tolerance=1e-7)
+    settled = tapping.settle(height)
+    if settled.value.contact_time > 0.999:
         raise SolverError(
             "at this set point the sample holds the tip, which no longer taps: a stiffer lever or a larger free "
             "amplitude frees it"
         )
-    loud = [value.amplitude / A0 for way in ways for _, value in way if value.peak_force > limit]
-    safe = max(loud, default=0.0)
-    climbs = _force_at(scanner, ways[0], lag / A0)
-    return tuple(motions), math.nan if safe >= 0.99 else safe, max(climbs, motions[0].peak_force)
+    if settled.settled:
+        raise SolverError("no height gives the set point: it is out of the lever's reach")
+    value = tapping.run(settled.state, height, math.ceil(scanner.rig["probe.quality"]))[1]
+    return Motion(value.peak_force, math.nan, -value.lowest_gap, value.contact_time, value.phase, value.tip_loss)
 
 
-def _force_at(scanner: Scanner, way: list[tuple[FlowState, FlowValue]], below: float) -> float:
-    """The peak force at a reading below the set point, over A0, where the way down meets it."""
-    wanted = _wanted(scanner) - below
-    for (_, above), (_, under) in pairwise(way):
-        high, low = _reading(scanner, above), _reading(scanner, under)
-        if low < wanted <= high:
-            return float(np.interp(wanted, (low, high), (under.peak_force, above.peak_force)))
-    return math.inf
+def _most(motion: SteadyMotion) -> float:
+    """The peak force that a motion may have [N]."""
+    return motion.peak_force + motion.force_bound
+
+
+def _safe(steady: Steady, A0: float, limit: float) -> float:
+    """The least A/A0 from which on no motion exceeds the limit [N]; NaN where even the largest one does."""
+
+    def is_loud(share: float) -> bool:
+        found = (steady.at_amplitude(share * A0, lifted) for lifted in (False, True))
+        return any(one is not None and _most(one) > limit for one in found)
+
+    shares = np.linspace(_LARGEST, _SMALLEST, _SHARES)
+    for above, share in pairwise((math.nan, *map(float, shares))):
+        if is_loud(share):
+            low, high = share, above
+            for _ in range(_HALVINGS if math.isfinite(above) else 0):
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if is_loud(middle) else (low, middle)
+            return high
+    return 0.0
 
 
 def _wanted(scanner: Scanner) -> float:
     """The set point, as an amplitude over A0."""
     zloop = scanner.scan.zloop
-    return math.sin(zloop.set_phase) if zloop.mode == "phase" else float(zloop.set_amplitude)
+    if zloop.mode == "phase":
+        sine = math.sin(zloop.set_phase)
+        return sine if zloop.set_phase <= math.pi / 2 else 2.0 - sine
+    return float(zloop.set_amplitude)
 
 
-def _reading(scanner: Scanner, value: FlowValue) -> float:
-    """What the z loop compares: an amplitude over A0."""
+def _of_reading(scanner: Scanner, steady: Steady, reading: float, lifted: bool) -> SteadyMotion | None:
+    """The motion of what the z loop compares, an amplitude over A0: of phase feedback A0 sin phi, beyond 90 degrees
+    A0 (2 - sin phi)."""
     if scanner.scan.zloop.mode == "phase":
-        sine = math.sin(value.phase)
-        return sine if value.phase <= math.pi / 2 else 2.0 - sine
-    return value.amplitude / float(scanner.drive["drive.free_amplitude"])
-
-
-def _at_set_point(
-    scanner: Scanner, flow: SlowFlow, heights: list[float], way: list[tuple[FlowState, FlowValue]]
-) -> tuple[float, FlowState] | None:
-    """Where a curve first falls below the set point from above; halved from there."""
-    wanted = _wanted(scanner)
-    for i in range(1, len(way)):
-        if _reading(scanner, way[i][1]) < wanted <= _reading(scanner, way[i - 1][1]):
-            high, low, state = heights[i - 1], heights[i], way[i][0]
-            for _ in range(_HALVINGS):
-                middle = 0.5 * (high + low)
-                after, value, _ = flow.settle(middle, state)
-                if _reading(scanner, value) < wanted:
-                    low, state = middle, after
-                else:
-                    high = middle
-            return low, state
-    return None
-
-
-def _motion(value: TappingValue) -> Motion:
-    return Motion(value.peak_force, -value.lowest_gap, value.contact_time, value.phase, value.tip_loss)
+        return steady.at_phase(
+            math.asin(reading) if reading <= 1.0 else math.pi - math.asin(max(2.0 - reading, 0.0)), lifted
+        )
+    return steady.at_amplitude(reading * float(scanner.drive["drive.free_amplitude"]), lifted)

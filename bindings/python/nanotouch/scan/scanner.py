@@ -9,7 +9,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -32,6 +32,8 @@ else:
 STRIP = 64
 """lines that follow one coming down of the tip; strips go to the cores, with the same result on any number of them"""
 
+
+Result = TypeVar("Result")
 
 UNDONE = "Height, tip undone"
 """channel of the heights without the tip"""
@@ -112,6 +114,19 @@ class Image(NamedTuple):
             undone = self.without_tip(tip).heights
             planes.append(Plane(UNDONE, undone, "m", self.pixel_size, "nanotouch/scan"))
         return write_planes(path, planes)
+
+
+def _each(
+    work: Callable[[int], Result], items: range, kept: Callable[[int, Result], None], threads: int | None
+) -> None:
+    """Work on the cores; results are told in their order, with their number. What that raises ends the rest."""
+    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+        try:
+            for number, result in enumerate(pool.map(work, items)):
+                kept(number, result)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 class Scanner:
@@ -200,17 +215,19 @@ class Scanner:
             count = min(STRIP, lines - first)
             out[:, :, first : first + count] = self._core.strip(first, count, seed).transpose(1, 2, 0, 3)
 
-        with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-            try:
-                for done, _ in enumerate(pool.map(strip, starts), 1):
-                    if progress is not None:
-                        progress(done / len(starts))
-            except BaseException:
-                pool.shutdown(cancel_futures=True)
-                raise
+        def kept(done: int, _: None) -> None:
+            if progress is not None:
+                progress((done + 1) / len(starts))
+
+        _each(strip, starts, kept, threads)
         return self._image(out)
 
-    def steady(self, accuracy: float = 0.05, threads: int | None = None) -> Image:
+    def steady(
+        self,
+        accuracy: float = 0.05,
+        threads: int | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> Image:
         """The image that an infinitely slow scan would give: tapping, at each pixel the motion of the set point.
 
         Speed, gain, noise, drift and stage do not count; trace and retrace are one. Along a line each pixel's motion
@@ -222,12 +239,13 @@ class Scanner:
             Of the amplitude over A0 and of the peak force over the larger of itself and the pull-off, 1e-6 .. 0.5.
         threads : int, optional
             By default one for each core. The image is the same on any number.
+        progress : callable, optional
+            Told the share that is done; what it raises ends the image.
 
         Raises
         ------
         SolverError
-            With the first place where no motion of the set point repeats each period, or 24 harmonics are not enough;
-            :meth:`run` scans it in time.
+            With the first place where no motion of the set point repeats each period; :meth:`run` scans it in time.
         """
         check_accuracy(accuracy)
         if self.scan.zloop.mode == "contact":
@@ -240,14 +258,16 @@ class Scanner:
             out[:, line] = found
             return int(pixel)
 
-        with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-            for line, pixel in enumerate(pool.map(take, range(lines))):
-                if pixel >= 0:
-                    pool.shutdown(cancel_futures=True)
-                    raise SolverError(
-                        f"line {line}, pixel {pixel}: no motion of the set point repeats each period there to this "
-                        "accuracy; run() scans it in time"
-                    )
+        def kept(line: int, pixel: int) -> None:
+            if pixel >= 0:
+                raise SolverError(
+                    f"line {line}, pixel {pixel}: no motion of the set point repeats each period there; a scan in time "
+                    "(run(), nanotouch scan without --steady) has no such need"
+                )
+            if progress is not None:
+                progress((line + 1) / lines)
+
+        _each(take, range(lines), kept, threads)
         return self._image(np.stack([out, out]))
 
     def _image(self, out: Floats) -> Image:
