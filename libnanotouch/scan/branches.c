@@ -6,7 +6,8 @@
 
 #include "motion.h"
 
-#define SAME 0.2 /* phases of one motion by more and by fewer harmonics [rad] */
+#define CUT 1e-12 /* in the depth [m] */
+#define NEAR 0.02 /* in the swing, over it */
 enum { BRANCHES_MAX = 16 };
 
 /* A run of stable points; heights grow or fall along it. */
@@ -61,7 +62,15 @@ static int point_at(const search *s, const branch *on, double height)
     return i;
 }
 
-/* The branch below the end of another one: of those at its height the one of largest amplitude, else the highest. */
+/* Whether a branch begins where another one is cut: something takes hold there, and takes next to nothing. */
+static int goes_on(const search *s, const branch *from, const branch *one)
+{
+    const nt_balance_point *end = &s->curve->at[from->low], *begin = &s->curve->at[one->high];
+    return fabs(end->depth - begin->depth) < CUT && fabs(end->swing - begin->swing) < NEAR * end->swing;
+}
+
+/* The branch below the end of another one: that which goes on there, else of those at its height the one of largest
+ * amplitude, else the highest. */
 static const branch *next_branch(const search *s, const branch *from)
 {
     const double end = height_of(s, from->low);
@@ -71,6 +80,8 @@ static const branch *next_branch(const search *s, const branch *from)
         const branch *one = &s->all[i];
         if (one == from || !(height_of(s, one->low) < end))
             continue;
+        if (goes_on(s, from, one))
+            return one;
         const int reaches = height_of(s, one->high) >= end;
         const double rank =
             reaches ? 1.0 + s->curve->at[point_at(s, one, end)].amplitude : height_of(s, one->high) - 1.0;

@@ -161,13 +161,16 @@ static void turn_round(nt_balance_point *points, int count)
     }
 }
 
-/* Whether a piece that is there already passes this swing and depth. */
-static int is_traced(const nt_balance_curve *curve, const nt_balance_state *at, double near)
+/* Whether a piece that is there already passes the walk's place, on its side of the gap of capture. */
+static int is_traced(const walk *w, const nt_balance_curve *curve)
 {
+    const nt_balance_state *at = &w->f.o.at;
+    const double near = WIDE * w->one.lever->free_amplitude;
+    const int captured = is_captured(w, at->depth);
     for (int i = 1; i < curve->count; i++) {
         const nt_balance_point *a = &curve->at[i - 1], *b = &curve->at[i];
         const double way = b->depth - a->depth, share = way != 0.0 ? (at->depth - a->depth) / way : 0.0;
-        if (a->piece == b->piece && share > -0.5 && share < 1.5 &&
+        if (a->piece == b->piece && is_captured(w, b->depth) == captured && share > -0.5 && share < 1.5 &&
             fabs(a->swing + share * (b->swing - a->swing) - at->swing) < near)
             return 1;
     }
@@ -204,7 +207,7 @@ nt_status nt_balance_trace(const nt_balance *balance, nt_balance_curve *curve)
     int piece = 0;
     const double A0 = balance->lever->free_amplitude, capture = nt_plan_capture_gap(balance->plan, balance->place);
     for (double depth = 2.0 * A0 + AWAY, next; depth > -A0 && curve->count < NT_BALANCE_POINTS; depth = next) {
-        if (swing_at(&w, depth) && !is_traced(curve, &w.f.o.at, WIDE * A0))
+        if (swing_at(&w, depth) && !is_traced(&w, curve))
             follow_piece(&w, curve, piece++);
         next = depth - fmax(SHORT, FAR * fabs(depth));
         if (depth > capture && next <= capture)

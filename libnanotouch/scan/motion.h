@@ -9,6 +9,7 @@
 #define SHORT 0.02e-9 /* longest step along the curve in the depth, near the surface [m] */
 #define FAR 0.1       /* over the depth */
 #define WIDE 0.02     /* in the swing, over A0 */
+#define SAME 0.2      /* phases of one motion by more and by fewer harmonics, or at the next place [rad] */
 
 typedef struct motion {
     orbit o;

@@ -142,7 +142,7 @@ static nt_status next(course *c, const nt_balance_target *target, nt_balance_cur
         nt_balance_value met;
         near.harmonics = c->value.harmonics;
         if (nt_balance_solve(&near, target, &state, &met) == NT_OK && met.gain > 0.0 && met.stable &&
-            nt_motion_keeps(&near, &met)) {
+            fabs(met.phase - c->value.phase) < SAME && nt_motion_keeps(&near, &met)) {
             c->state = state;
             c->value = of_balance(&met);
             return NT_OK;

@@ -128,3 +128,19 @@ def test_what_has_no_steady_motion_is_told() -> None:
     scanner = nt.Scanner(wet.plan(), settings, rig(spring_constant=2.4, quality=239.0), small)
     with pytest.raises(SolverError, match="line 0, pixel 0: no motion of the set point repeats"):
         scanner.steady()
+
+
+def test_a_branch_goes_on_below_the_gap_of_capture() -> None:
+    """On mica contact takes hold at a gap with next to no loss: lowered in small steps by the time domain the lever
+    stays attracted below it, and so it does here."""
+    scene, rig = nt.presets.mica_in_air()
+    steady = nt.Steady(scene.plan(), rig, accuracy=0.05)
+    heights = np.arange(17.5e-9, 13.5e-9, -0.25e-9)
+    swept = nt.Tapping(scene.plan(), rig, tolerance=1e-8).sweep([19e-9, 18.5e-9, 18e-9, *heights])[3:]
+    capture = scene.plan().explain()["capture_gap"]
+    assert swept[0].value.lowest_gap > capture > swept[-1].value.lowest_gap
+    for height, truth in zip(heights, swept, strict=True):
+        found = steady.at_height(float(height))
+        assert found is not None
+        assert found.phase == pytest.approx(truth.value.phase, abs=0.01)
+        assert abs(found.amplitude - truth.value.amplitude) <= found.amplitude_bound
