@@ -78,8 +78,7 @@ def add_knowledge(parser: argparse.ArgumentParser, auto: bool = False) -> None:
     parser.add_argument(
         "--known-to", action="append", default=[], metavar="WHAT=PERCENT", type=_uncertainty,
         help="standard uncertainty of sensitivity (3 without this), spring_constant, radius or thickness, as "
-        "spring_constant=10; "
-        "or correlation of the first two",
+        "spring_constant=10; or correlation of the first two; or half_angle=1deg",
     )  # fmt: skip
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="in place of the file's, as 8N/m")
     parser.add_argument(
@@ -143,14 +142,16 @@ def _rivals(model: str) -> tuple[str, ...]:
 
 
 def _uncertainty(text: str) -> tuple[str, float]:
-    name, _, percent = text.partition("=")
-    valid = ("sensitivity", "spring_constant", "radius", "thickness", "correlation")
+    name, _, size = text.partition("=")
+    valid = ("sensitivity", "spring_constant", "radius", "thickness", "half_angle", "correlation")
     if name not in valid:
         raise argparse.ArgumentTypeError(f"{name!r}: valid are {', '.join(valid)}")
     try:
-        return name, float(percent) / 100.0
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r}: write it as {name}=10") from None
+        return name, parse_quantity(size, "rad") if name == "half_angle" else float(size) / 100.0
+    except (InvalidValue, ValueError):
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: write it as {name}={'1deg' if name == 'half_angle' else '10'}"
+        ) from None
 
 
 def reading(args: argparse.Namespace) -> dict[str, Any]:

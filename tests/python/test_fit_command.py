@@ -63,9 +63,17 @@ def test_compares_laws_and_draws_stability(tmp_path: Path, capsys: pytest.Captur
     file = write_ibw_curve(tmp_path / "curve.ibw", known_curve())
     out = tmp_path / "out"
     options = ["--model", "pyramid", "--half-angle", "25deg", "--known-to", "spring_constant=10", "--compare"]
+    options += ["--known-to", "half_angle=1deg"]
     assert main(["fit", str(file), *options, "--stability", "--out", str(out)]) == 0
     said = capsys.readouterr().out
-    for part in ("by evidence:", "pyramid", "maugis", "spring constant to 10 %", "stability.png"):
+    for part in (
+        "by evidence:",
+        "pyramid",
+        "maugis",
+        "spring constant to 10 %",
+        "half angle to 1 deg",
+        "stability.png",
+    ):
         assert part in said
     assert (out / "stability.png").stat().st_size > 10_000
     found = json.loads((out / "fit.json").read_text())

@@ -31,16 +31,25 @@ _BOUNDS = ("effective_modulus_least", "effective_modulus_most")
 _KINDS = {"": ", all together", "_statistical": ", of noise and sampling", "_calibration": ", of the calibration"}
 
 
-def assemble(volume: Volume, settings: Settings, blocks: list[Columns], made_of: dict[str, Any]) -> Any:
-    """One Dataset of all blocks."""
+def put(columns: Columns, first: int, curves: int, table: Columns) -> int:
+    """Put a block into the table of all curves, whose rows are made with the first one; returns how many."""
+    count = 0
+    for key, values in columns.items():
+        if key not in table:
+            table[key] = np.empty(curves, object if key == "reason" else values.dtype)
+        count = len(values)
+        table[key][first : first + count] = values
+    return count
+
+
+def assemble(volume: Volume, settings: Settings, table: Columns, made_of: dict[str, Any]) -> Any:
+    """The Dataset of a table."""
     xarray = require("xarray", "maps")
     units = _units(settings)
-    variables: dict[str, Any] = {}
-    for key in blocks[0]:
-        values = np.concatenate([block[key] for block in blocks]).reshape(volume.shape)
-        if key == "reason":
-            values = values.astype(object)
-        variables[key] = (("y", "x"), values, _attributes(key, units, settings.model))
+    variables = {
+        key: (("y", "x"), values.reshape(volume.shape), _attributes(key, units, settings.model))
+        for key, values in table.items()
+    }
     data = xarray.Dataset(variables, _coordinates(volume))
     status = data["status"].values
     data.attrs = {

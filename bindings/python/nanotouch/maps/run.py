@@ -18,7 +18,7 @@ from ..curves import CalibrationTable
 from ..errors import Error, InvalidValue, require
 from ..fit import TipLike
 from .block import fit_block, lost_block
-from .dataset import assemble
+from .dataset import assemble, put
 from .decided import Decisions, decide, decisions_of
 from .settings import Settings
 from .store import BlockStore, Columns
@@ -111,13 +111,13 @@ def fit(
         decisions, unused = decisions_of(volume, Sidecar.from_toml(sidecar))
         made_of["sidecar"] = {str(place): asdict(decision) for place, decision in decisions.items()}
     store = BlockStore(resume, made_of) if resume is not None else None
-    done: dict[int, Columns] = {}
-    total = -(-volume.shape[0] * volume.shape[1] // block)
+    curves, done = volume.shape[0] * volume.shape[1], 0
+    table: Columns = {}
     with _reporting(progress) as report, _workers(cluster) as client:
         for number, columns in _finished(volume, chosen, store, (client, block, threads), decisions):
-            done[number] = columns
-            report(len(done) / total)
-    data = assemble(volume, chosen, [done[number] for number in range(total)], made_of)
+            done += put(columns, number * block, curves, table)
+            report(done / curves)
+    data = assemble(volume, chosen, table, made_of)
     data.attrs |= {"sidecar": json.dumps(made_of.get("sidecar", {})), "sidecar_unused": json.dumps(unused)}
     return data
 
