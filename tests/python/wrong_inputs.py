@@ -287,7 +287,6 @@ fit prose.txt --index -1            | '-1' | 0 .. 1000000000
 fit prose.txt --index x             | 'x' | whole number
 fit prose.txt --poisson-ratio 0.6   | '0.6' | -0.99 .. 0.5
 fit prose.txt --poisson-ratio nan   | 'nan' | -0.99 .. 0.5
-fit prose.txt --known-to radius     | 'radius' | radius=10
 fit prose.txt --known-to weight=3 | 'weight' | sensitivity, spring_constant, radius, thickness, half_angle, correlation
 fit prose.txt --known-to radius=x   | 'radius=x' | radius=10
 fit prose.txt --known-to half_angle=1 | 'half_angle=1' | half_angle=1deg
