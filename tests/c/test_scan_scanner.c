@@ -160,6 +160,59 @@ static void margins_are_those_of_the_simulation(void **state)
     assert_true(swing_at(1.1) > 1.1);
 }
 
+/* In tapping mode, behind a lock-in amplifier of any speed: at 0.9 of the gain margin a deviation dies away. */
+static void a_slow_lock_in_amplifier_counts(void **state)
+{
+    (void)state;
+    make_plan(NULL);
+    const double constants[] = {60e-6, 600e-6, 6e-3};
+    for (int n = 0; n < 3; n++) {
+        nt_scan scan = quiet(NT_ZLOOP_TAPPING);
+        scan.zloop.lock_in = constants[n];
+        nt_scanner scanner = made(&scan);
+        nt_scanner_state at;
+        assert_int_equal(nt_scanner_engage(&scanner, &at, 0, 1), NT_OK);
+        scanner.integral *= 0.9 * nt_scanner_margins(&scanner).gain;
+        at.command += 50e-12;
+        nt_scan_row trace = {.error = trace_error}, back = {.error = trace_signal};
+        scanner.ticks = 2560 + (long)(30.0 * constants[n] / scanner.period);
+        assert_int_equal(nt_scanner_line(&scanner, &at, 0, &trace, &back), NT_OK);
+        double first = 0.0, last = 0.0;
+        for (int i = 0; i < 32; i++) {
+            first = larger(first, fabs(trace_error[i]));
+            last = larger(last, fabs(trace_error[N - 1 - i]));
+        }
+        assert_true(first > 1e-12 && last < 0.1 * first);
+    }
+}
+
+/* What it tells settles as 1 - exp(-t/tau): held at its height far from the surface the lever swings with A0 at once,
+ * and the reading follows. */
+static void the_lock_in_amplifier_settles(void **state)
+{
+    (void)state;
+    make_plan(NULL);
+    nt_scan scan = quiet(NT_ZLOOP_TAPPING);
+    scan.zloop.lock_in = 1e-3;
+    scan.raster.pixels = N;
+    nt_scanner scanner = made(&scan);
+    nt_scanner_state at;
+    assert_int_equal(nt_scanner_engage(&scanner, &at, 0, 1), NT_OK);
+    at.flow = nt_flow_free(&scanner.lever);
+    at.command += 1e-6;
+    at.stage.position = -at.command;
+    at.measured = 0.0;
+    scanner.integral = 1e-9; /* no loop */
+    scanner.ticks = N;
+    nt_scan_row trace = {.signal = trace_signal}, back = {.signal = trace_error};
+    assert_int_equal(nt_scanner_line(&scanner, &at, 0, &trace, &back), NT_OK);
+    for (int i = 0; i < N; i++) {
+        const double t = (i + 1) * scanner.period;
+        assert_true(fabs(trace_signal[i] / 20e-9 + expm1(-t / 1e-3)) < 0.03);
+    }
+    assert_true(trace_signal[N - 1] > 0.9 * 20e-9 && trace_signal[10] < 0.3 * 20e-9);
+}
+
 static double cliff(double x)
 {
     return x < 0.3e-6 ? 200e-9 : 0.0;
@@ -216,6 +269,8 @@ int main(void)
         cmocka_unit_test(a_tilted_flat),
         cmocka_unit_test(margins_of_the_loop),
         cmocka_unit_test(margins_are_those_of_the_simulation),
+        cmocka_unit_test(a_slow_lock_in_amplifier_counts),
+        cmocka_unit_test(the_lock_in_amplifier_settles),
         cmocka_unit_test(parachuting),
         cmocka_unit_test(speed_limit),
     };
