@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scan a surface on the simulated rig, in contact or tapping mode: what the scan will do is told first, then the image
 is taken, there and back, with all channels. `nanotouch touch` and `live` go on from surface.gwy, its heights without
-the tip."""
+the tip. A scene that is a rig file scans with its real slave, in contact mode."""
 
 from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
@@ -15,7 +16,7 @@ from nanotouch import images, scan
 from nanotouch.errors import InvalidValue, MissingExtra, require
 from nanotouch.plots import new_figure, saved
 
-from nanotouch_app import output, scenes, stop, surfaces
+from nanotouch_app import output, scan_rig, scenes, stop, surfaces
 from nanotouch_app.quantity import parse_quantity
 
 FILES = ("scan.gwy", "surface.gwy", "scan.json", "scan.png")
@@ -24,6 +25,7 @@ FLIGHT = 0.03  # of the width after a step down by the whole height, where no li
 TICKS_OF_STAGE = 20.0  # per period of the stage's resonance, where no rate is given
 ACCURACIES = (0.01, 0.03, 0.1, 0.3)  # of forces, the first that the surface allows
 MOST_TICKS = 2e9
+LEAST = 4  # pixels and lines of an image
 
 
 def add_parser(subparsers: Any) -> None:
@@ -57,8 +59,11 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     scene, rig, tables = scenes.read(args.scene if args.scene else _preset(args.what))
+    is_real = scan_rig.is_named(args) and not args.forecast
     with output.busy("reading the surface"):
-        surface = _surface(args, scene, tables)
+        surface = _surface(args, scene, tables, is_real)
+    if is_real:
+        return _on_rig(args, scene, tables, surface)
     plan = _plan(scene, surface, tables)
     scanner = _scanner(args, plan, rig, tables, surface)
     with output.busy("forecasting"):
@@ -78,26 +83,25 @@ def run(args: argparse.Namespace) -> int:
     if accuracy is None:
         _check(scanner, duration)
     with output.folder(args, FILES) as out:
-        image = _taken(scanner, args.seed, accuracy)
-        facts = args.answer | _facts(image)
-        with output.busy("undoing the tip"):
-            tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
-            image.write(out / "scan.gwy", tip)
-            images.write(out / "surface.gwy", image.without_tip(tip))
-        output.write_json(out / "scan.json", facts)
-        try:
-            draw(image, out / "scan.png")
-        except MissingExtra as missing:
-            print(f"picture left out: {missing}")
-        written = [name for name in FILES if (out / name).exists()]
-        args.answer = facts | {"folder": str(out), "files": written}
-        output.say(
-            f"image: heights over {facts['height_range'] * 1e9:.4g} nm, largest force "
-            f"{facts['peak_force'] * 1e9:.3g} nN, trace and retrace differ by {facts['difference'] * 1e9:.3g} nm rms"
-        )
-        if plan.friction.form != "off" and image.mode == "contact":
-            output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
-        print(f"written to {out}/: {', '.join(written)}\ngo on: nanotouch touch {out}/surface.gwy")
+        _write(args, _taken(scanner, args.seed, accuracy), scene, out, plan.friction.form != "off")
+    return 0
+
+
+def _on_rig(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], surface: nt.Surface) -> int:
+    """With the real slave of a rig file, which moves by the clock."""
+    args.mode = scan_rig.mode(args, tables)
+    settings = nt.Scan.from_tables(tables)
+    _set_loop(args, settings, nt.Drive())
+    _set_raster(args, settings, surface, "raster" in tables)
+    rate = None if args.line_rate is None else parse_quantity(args.line_rate, "Hz")
+    if rate is None and any(key.startswith("line_rate") for key in tables.get("raster", {})):
+        rate = settings["raster.line_rate"]
+    with output.folder(args, FILES) as out:
+        session = scan_rig.opened(args, settings, surface, rate)
+        duration = settings["raster.lines"] / settings["raster.line_rate"]
+        print(f"the scan takes {_time(duration)}")
+        args.answer = {"duration": duration, "guarantee": session.guarantee().force}
+        _write(args, scan_rig.taken(session, settings), scene, out, session.plan.friction.form != "off")
     return 0
 
 
@@ -112,13 +116,38 @@ def _accuracy(steady: str | None, scanner: nt.Scanner) -> float | None:
     return accuracy
 
 
+def _write(args: argparse.Namespace, image: scan.Image, scene: nt.Scene, out: Path, slides: bool) -> None:
+    """Files, picture and what there is to say."""
+    facts = args.answer | _facts(image)
+    with output.busy("undoing the tip"):
+        tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
+        image.write(out / "scan.gwy", tip)
+        images.write(out / "surface.gwy", image.without_tip(tip))
+    output.write_json(out / "scan.json", facts)
+    try:
+        draw(image, out / "scan.png")
+    except MissingExtra as missing:
+        print(f"picture left out: {missing}")
+    written = [name for name in FILES if (out / name).exists()]
+    args.answer = facts | {"folder": str(out), "files": written}
+    output.say(
+        f"image: heights over {facts['height_range'] * 1e9:.4g} nm, largest force "
+        f"{facts['peak_force'] * 1e9:.3g} nN, trace and retrace differ by {facts['difference'] * 1e9:.3g} nm rms"
+    )
+    if slides and image.mode == "contact":
+        output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
+    print(f"written to {out}/: {', '.join(written)}\ngo on: nanotouch touch {out}/surface.gwy")
+
+
 def _preset(what: str | None) -> str | None:
     return what if what in scenes.PRESETS + scenes.PAPER else None
 
 
-def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) -> nt.Surface:
+def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], is_real: bool) -> nt.Surface:
     named = nt.SurfaceFile.from_tables(tables)
     preset = _preset(args.what)
+    if is_real and args.what is None and named is None:  # nobody knows yet
+        return nt.Surface.touched_by(scene, surfaces.BUILT_IN["flat"]())
     if args.what is None or preset is not None:
         if named is not None:
             return named.touched_by(scene)
@@ -197,6 +226,8 @@ def _set_raster(args: argparse.Namespace, settings: nt.Scan, surface: nt.Surface
         raster.pixels = raster.lines = float(args.pixels)
     if args.lines is not None:
         raster.lines = float(args.lines)
+    if min(raster.pixels, raster.lines) < LEAST:  # before the scan: the file of an image needs them
+        raise InvalidValue(f"{raster.pixels:g} pixels, {raster.lines:g} lines: an image has at least {LEAST} of each")
     for axis, first, length, whole in zip(
         "xy", (raster.x, raster.y), (raster.width, raster.height), surface.size, strict=True
     ):

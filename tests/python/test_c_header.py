@@ -91,6 +91,30 @@ def test_a_table_is_no_coarser_than_a_tenth_of_the_demand() -> None:
         assert table.bound <= 0.1 * accuracy * 1.051 + 2e-5
 
 
+def test_a_law_of_ones_own_is_in_the_table() -> None:
+    def force(gap: float, strength: float, length: float) -> float:
+        return strength * math.exp(-gap / length)
+
+    nt.scene.register(
+        "header_gel",
+        energy=lambda gap, strength, length: length * force(gap, strength, length),
+        force=force,
+        stiffness=lambda gap, strength, length: force(gap, strength, length) / length,
+        bound=force,
+        parameters={"strength": None, "length": 2e-9},
+        units={"strength": "N", "length": "m"},
+    )
+    plan = nt.Scene(terms={"header_gel": {"strength": 5e-9}}).plan()
+    table, bare = _core.ForceTable(plan.core), _core.ForceTable(nt.Scene().plan().core)
+    gaps = gaps_of(plan, table, np.random.default_rng(7))
+    for attached in (False, True):
+        assert excess(plan, table, gaps, attached) <= 1.0
+    far = np.array([1e-9, 2e-9, 4e-9], dtype=np.float32)
+    own = table.run(far, False)[0] - bare.run(far, False)[0]
+    np.testing.assert_allclose(own, [force(gap, 5e-9, 2e-9) for gap in far.tolist()], atol=2.5e-3 * table.scale)
+    assert "header_gel" in nt.c_header.write(plan)
+
+
 # --- the header ---
 
 

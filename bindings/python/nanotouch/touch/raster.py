@@ -58,7 +58,9 @@ def image(session: Session, scan: Scan) -> Image:
             f"raster.line_rate = {raster.line_rate:g} Hz: valid is up to {0.25 * session.rate / pixels:g} Hz, for two "
             f"ticks of the session in each of {pixels} pixels"
         )
-    session.change("settings", "gains.set_point", loop.set_force)
+    _check_range(session, scan)
+    if session.settings["gains.set_point"] != loop.set_force:
+        session.change("settings", "gains.set_point", loop.set_force)
     ends = _ends(scan)
     settle = 2.0 * session.clearance * session.rig["probe.spring_constant"] / loop.set_force
     _go(session, 0, Input(0.0, ends[0], raster.y, (settle + _SETTLE) / session.settings["gains.height_gain"]))
@@ -72,6 +74,20 @@ def image(session: Session, scan: Scan) -> Image:
             _go(session, line, Input(0.0, ends[0], y + raster.height / lines, ticks / session.rate / pixels))
     size = raster.height / lines, raster.width / pixels
     return Image(Channels(*out[0]), Channels(*out[1]), size, "contact")
+
+
+def _check_range(session: Session, scan: Scan) -> None:
+    """A target beyond a slave's range would end there, and the image with it."""
+    raster = scan.raster
+    for row in session.halves.slave.channels:
+        if not row.driven or row.axis > 1:
+            continue
+        first, last = _ends(scan) if row.axis == 0 else (raster.y, raster.y + raster.height)
+        if first < row.minimum or last > row.maximum:
+            raise InvalidValue(
+                f"the raster goes from {'xy'[row.axis]} = {first:g} to {last:g} m: {row.name} has {row.minimum:g} .. "
+                f"{row.maximum:g} m"
+            )
 
 
 def _ends(scan: Scan) -> tuple[float, float]:
