@@ -30,6 +30,8 @@ def mode(args: argparse.Namespace, tables: dict[str, Any]) -> str:
             "a rig file has no channels for the drive and the lock-in amplifier of tapping: its probe scans with "
             "--mode contact"
         )
+    if args.steady is not None:
+        raise InvalidValue("--steady: an image of the simulated scanner; a real probe scans in time")
     return "contact"
 
 

@@ -63,6 +63,7 @@ def test_the_image_is_that_of_the_device(rig: type[Ranged], capsys: pytest.Captu
     ("given", "words"),
     [
         (["--lines", "3"], "at least 4"),
+        (["--steady"], "scans in time"),
         (["--mode", "tapping"], "no channels for the drive"),
         (["--free-amplitude", "10nm"], "no channels for the drive"),
         ([*RASTER, "--set-point", "900nN"], r"set_point|limits\.force"),
