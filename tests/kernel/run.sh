@@ -43,7 +43,7 @@ build() {
 run() {
   log=$1
   shift
-  timeout 120 "$linux" mem=512M root=/dev/root rootfstype=hostfs rootflags=/ ro loglevel=0 con=null con0=fd:0,fd:1 \
+  timeout 300 "$linux" mem=512M root=/dev/root rootfstype=hostfs rootflags=/ ro loglevel=0 con=null con0=fd:0,fd:1 \
     init="$PWD/init.sh" PROGRAM="$program" "$@" </dev/null >"$log" 2>&1 || true
   grep -q '^RESULT 0' "$log" || { cat "$log" >&2; echo "failed: $log" >&2; exit 1; }
 }
@@ -53,6 +53,13 @@ touch_by_command() {
   "$python" command.py "$work/command" prepare >"$work/simulated.log" 2>&1 || { cat "$work/simulated.log" >&2; exit 1; }
   run "$work/command.log" time-travel=inf-cpu TIME=virtual FOLDER="$work/command" NANOTOUCH="$(dirname "$python")/nanotouch"
   "$python" command.py "$work/command" compare
+}
+
+# An image in contact mode: there, and by a session on the simulated rig here.
+scan_by_command() {
+  "$python" command.py "$work/scan" prepare-scan
+  run "$work/scan.log" time-travel=inf-cpu TIME=virtual SCAN=yes FOLDER="$work/scan" NANOTOUCH="$(dirname "$python")/nanotouch"
+  "$python" command.py "$work/scan" compare-scan
 }
 
 in_virtual_time() {
@@ -72,9 +79,13 @@ cat "$work/command.txt"
 echo "conformance, safety and a touch: $(($(date +%s) - began)) s"
 in_virtual_time 1 &
 first=$!
+scan_by_command >"$work/scan.txt" &
+scanning=$!
 in_virtual_time 2
 wait $first
+wait $scanning
 cmp "$work/virtual1.txt" "$work/virtual2.txt"
 grep -a -e '^watchdog' -e '^a bus' "$work/virtual1.txt"
 echo "two runs in virtual time are alike, byte for byte ($(wc -c <"$work/virtual1.txt") bytes)"
+cat "$work/scan.txt"
 echo "all: $(($(date +%s) - began)) s"

@@ -14,9 +14,8 @@
 
 #include "conformance.h"
 #include "kernel_rig.h"
-#include "larger.h"
-
 #include "kernel_command.h"
+#include "larger.h"
 
 /* --- the rules of a half --- */
 
@@ -367,7 +366,8 @@ static void iio_gives_numbers_and_scans(void **state)
 /* In virtual time only what time may change; a command is a boot of its own. */
 static int run_all(void)
 {
-    const struct CMUnitTest command[] = {cmocka_unit_test(a_command_touches)};
+    const struct CMUnitTest touch[] = {cmocka_unit_test(a_command_touches)};
+    const struct CMUnitTest scan[] = {cmocka_unit_test(a_command_scans)};
     const struct CMUnitTest at_own_pace[] = {cmocka_unit_test(a_touch_is_the_simulated_one),
                                              cmocka_unit_test(latencies)};
     const struct CMUnitTest at_any[] = {
@@ -381,7 +381,7 @@ static int run_all(void)
         cmocka_unit_test(iio_gives_numbers_and_scans),
     };
     if (getenv("FOLDER"))
-        return cmocka_run_group_tests(command, NULL, NULL);
+        return getenv("SCAN") ? cmocka_run_group_tests(scan, NULL, NULL) : cmocka_run_group_tests(touch, NULL, NULL);
     const int failed = is_virtual() ? 0 : cmocka_run_group_tests(at_own_pace, NULL, NULL);
     return failed + cmocka_run_group_tests(at_any, NULL, NULL);
 }

@@ -5,15 +5,17 @@ slave half may be simulated, a rig file's converters, or any of your own (docs/s
 from __future__ import annotations
 
 import math
+from collections.abc import Generator
+from contextlib import closing
 
 import numpy as np
 
 from nanotouch._arrays import Floats
 from nanotouch.errors import DeviceError, InvalidValue
 from nanotouch.scan.scanner import Channels, Image, Scan
+from nanotouch.touch._play import BLOCK_TICKS, Columns, joined, played
 from nanotouch.touch.columns import STATES
-from nanotouch.touch.operator import Input
-from nanotouch.touch.record import Recording
+from nanotouch.touch.operator import Input, core_input
 from nanotouch.touch.session import Session
 
 _SETTLE = 5.0  # time constants of the height servo before the first line
@@ -44,7 +46,7 @@ def image(session: Session, scan: Scan) -> Image:
     InvalidValue
         The session is in another mode, or the raster does not suit it.
     DeviceError
-        The supervisor has held or lifted the tip during the scan: with line, state and reason.
+        The supervisor has held or lifted the tip during the scan: with line, state and reason. Or the loop has ended.
     """
     raster, loop = scan.raster, scan.zloop
     lines, pixels = int(raster.lines), int(raster.pixels)
@@ -61,19 +63,33 @@ def image(session: Session, scan: Scan) -> Image:
     _check_range(session, scan)
     if session.settings["gains.set_point"] != loop.set_force:
         session.change("settings", "gains.set_point", loop.set_force)
-    ends = _ends(scan)
-    settle = 2.0 * session.clearance * session.rig["probe.spring_constant"] / loop.set_force
-    _go(session, 0, Input(0.0, ends[0], raster.y, (settle + _SETTLE) / session.settings["gains.height_gain"]))
+    ways = _ways(session, scan, ticks)
+    for _, _, way in ways:
+        session.core.check(core_input(way))
     out = np.zeros((2, 6, lines, pixels))
-    for line in range(lines):
-        y = raster.y + line * raster.height / lines
-        for back in (0, 1):
-            rows = _go(session, line, Input(0.0, ends[1 - back], y, ticks / session.rate))
-            out[back, :, line] = _sorted(session, rows, scan)
-        if line + 1 < lines:
-            _go(session, line, Input(0.0, ends[0], y + raster.height / lines, ticks / session.rate / pixels))
+    with closing(played(session, [way for _, _, way in ways])) as comes:  # one script: the loop never stops on the way
+        for line, back, way in ways:
+            rows = _rows(comes, round(way.duration * session.rate), line)
+            if back is not None:
+                out[back, :, line] = _sorted(session, rows, scan)
     size = raster.height / lines, raster.width / pixels
     return Image(Channels(*out[0]), Channels(*out[1]), size, "contact")
+
+
+def _ways(session: Session, scan: Scan, ticks: int) -> list[tuple[int, int | None, Input]]:
+    """Down to the surface, then there (0) and back (1) on each line, and over to the next one (None)."""
+    raster, rate = scan.raster, session.rate
+    lines, ends = int(raster.lines), _ends(scan)
+    settle = 2.0 * session.clearance * session.rig["probe.spring_constant"] / scan.zloop.set_force
+    down = (settle + _SETTLE) / session.settings["gains.height_gain"]
+    ways: list[tuple[int, int | None, Input]] = [(0, None, Input(0.0, ends[0], raster.y, down))]
+    for line in range(lines):
+        y = raster.y + line * raster.height / lines
+        ways += [(line, back, Input(0.0, ends[1 - back], y, ticks / rate)) for back in (0, 1)]
+        if line + 1 < lines:
+            over = Input(0.0, ends[0], y + raster.height / lines, ticks / rate / scan.raster.pixels)
+            ways.append((line, None, over))
+    return ways
 
 
 def _check_range(session: Session, scan: Scan) -> None:
@@ -96,28 +112,33 @@ def _ends(scan: Scan) -> tuple[float, float]:
     return scan["raster.x"] - half, scan["raster.x"] + scan["raster.width"] - half
 
 
-def _go(session: Session, line: int, way: Input) -> Recording:
-    """To there; refuses rows in which the supervisor did not run."""
-    rows = session.run(operator=[way])
-    worst = int(rows.state.max())
-    if worst > 0:
-        reasons = int(rows.reasons[rows.state == worst][0])
-        raise DeviceError(f"line {line}: the supervisor went to {STATES[worst]}, reasons {reasons:#x}: no image")
-    return rows
+def _rows(comes: Generator[tuple[Columns, float]], ticks: int, line: int) -> Columns:
+    """Those of a way; refuses rows in which the supervisor did not run."""
+    blocks = []
+    for _ in range(-(-ticks // BLOCK_TICKS)):
+        block, _ = next(comes, ({"state": np.zeros(0)}, 1.0))
+        if not len(block["state"]):
+            raise DeviceError(f"line {line}: the loop has ended: no image")
+        worst = int(block["state"].max())
+        if worst > 0:
+            reasons = int(block["reasons"][block["state"] == worst][0])
+            raise DeviceError(f"line {line}: the supervisor went to {STATES[worst]}, reasons {reasons:#x}: no image")
+        blocks.append(block)
+    return joined(blocks) if blocks else {}
 
 
-def _sorted(session: Session, rows: Recording, scan: Scan) -> Floats:
+def _sorted(session: Session, rows: Columns, scan: Scan) -> Floats:
     """Means over the pixels, and the largest force, in the order of :class:`Channels`."""
     pixels = int(scan["raster.pixels"])
     pixel = scan["raster.width"] / pixels
-    which = np.clip(((rows.x - _ends(scan)[0]) / pixel).astype(int), 0, pixels - 1)
+    which = np.clip(((rows["x"] - _ends(scan)[0]) / pixel).astype(int), 0, pixels - 1)
     count = np.bincount(which, minlength=pixels)
     stiffness = session.rig["probe.spring_constant"]
-    sideways = session.rig["probe.lateral_stiffness"] * np.asarray(getattr(rows, "deflection_x", np.zeros(which.size)))
-    force = np.asarray(rows.slave_force)
+    sideways = session.rig["probe.lateral_stiffness"] * rows.get("deflection_x", np.zeros(which.size))
+    force = rows["slave_force"]
     values = {
-        0: -np.asarray(rows.stage_position), 1: (scan["zloop.set_force"] - force) / stiffness,
-        2: np.asarray(rows.deflection), 5: -sideways,
+        0: -rows["stage_position"], 1: (scan["zloop.set_force"] - force) / stiffness,
+        2: rows["deflection"], 5: -sideways,
     }  # fmt: skip
     out = np.zeros((6, pixels))
     peak = np.full(pixels, -math.inf)
