@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "conformance.h"
-#include "kernel_rig.h"
 #include "kernel_command.h"
+#include "kernel_rig.h"
 #include "larger.h"
 
 /* --- the rules of a half --- */
