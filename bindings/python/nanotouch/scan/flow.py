@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from nanotouch import _core
 from nanotouch.errors import InvalidValue
-from nanotouch.scan.tapping import Drive
+from nanotouch.scan.tapping import Drive, Lever
 from nanotouch.scene import Rig
 from nanotouch.scene.plan import Plan
 
@@ -45,7 +45,7 @@ class FlowValue(NamedTuple):
     """taken by the contact in a period [J]"""
 
 
-class SlowFlow:
+class SlowFlow(Lever):
     """A driven lever over a plan by averages over a period.
 
     Parameters
@@ -59,9 +59,7 @@ class SlowFlow:
     """
 
     def __init__(self, plan: Plan, rig: Rig | None = None, drive: Drive | None = None) -> None:
-        self.plan = plan
-        self.rig = Rig() if rig is None else rig.copy()
-        self.drive = Drive() if drive is None else drive.copy()
+        super().__init__(plan, rig, drive)
         self._core = _core.Flow(self.rig.core, self.drive.core, plan.core)
 
     def free(self) -> FlowState:

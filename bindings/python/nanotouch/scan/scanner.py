@@ -17,7 +17,7 @@ from nanotouch import _core
 from nanotouch._arrays import Floats
 from nanotouch.errors import InvalidValue, SolverError
 from nanotouch.scan.steady import check_accuracy
-from nanotouch.scan.tapping import Drive
+from nanotouch.scan.tapping import Drive, Lever
 from nanotouch.scene import Rig
 from nanotouch.scene.plan import Plan
 
@@ -129,7 +129,7 @@ def _each(
             raise
 
 
-class Scanner:
+class Scanner(Lever):
     """A raster over a plan's surface, prepared.
 
     Parameters
@@ -148,10 +148,8 @@ class Scanner:
         self, plan: Plan, scan: Scan | None = None, rig: Rig | None = None, drive: Drive | None = None
     ) -> None:
         plan.refuse_dents("a scan")
-        self.plan = plan
+        super().__init__(plan, rig, drive)
         self.scan = Scan() if scan is None else scan.copy()
-        self.rig = Rig() if rig is None else rig.copy()
-        self.drive = Drive() if drive is None else drive.copy()
         self._core = _core.Scanner(self.scan.core, self.rig.core, self.drive.core, plan.core)
 
     @property

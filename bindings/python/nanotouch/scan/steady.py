@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nanotouch import _core
 from nanotouch._arrays import Floats
 from nanotouch.errors import InvalidValue
-from nanotouch.scan.tapping import Drive, TappingState
+from nanotouch.scan.tapping import Drive, Lever, TappingState
 from nanotouch.scene import Rig
 from nanotouch.scene.plan import Plan
 
@@ -70,7 +70,7 @@ class AmplitudeCurve(NamedTuple):
     """points of one number hang together, in their order"""
 
 
-class Steady:
+class Steady(Lever):
     """Motions of a driven lever that repeat each period.
 
     Parameters
@@ -89,9 +89,7 @@ class Steady:
         self, plan: Plan, rig: Rig | None = None, drive: Drive | None = None, *, accuracy: float = 0.01
     ) -> None:
         check_accuracy(accuracy)
-        self.plan = plan
-        self.rig = Rig() if rig is None else rig.copy()
-        self.drive = Drive() if drive is None else drive.copy()
+        super().__init__(plan, rig, drive)
         self.accuracy = accuracy
         self._core = _core.Steady(self.rig.core, self.drive.core, accuracy, plan.core)
 

@@ -98,7 +98,16 @@ class Settled(NamedTuple):
     """that it took"""
 
 
-class Tapping:
+class Lever:
+    """What taps, as it was given: later changes of a rig or a drive do not count."""
+
+    def __init__(self, plan: Plan, rig: Rig | None, drive: Drive | None) -> None:
+        self.plan = plan
+        self.rig = Rig() if rig is None else rig.copy()
+        self.drive = Drive() if drive is None else drive.copy()
+
+
+class Tapping(Lever):
     """A driven lever over a plan, in the time domain: one mode of the lever, all harmonics of the force.
 
     Parameters
@@ -116,9 +125,7 @@ class Tapping:
     def __init__(
         self, plan: Plan, rig: Rig | None = None, drive: Drive | None = None, *, tolerance: float = TOLERANCE
     ) -> None:
-        self.plan = plan
-        self.rig = Rig() if rig is None else rig.copy()
-        self.drive = Drive() if drive is None else drive.copy()
+        super().__init__(plan, rig, drive)
         self._core = _core.Tapping(self.rig.core, self.drive.core, tolerance, plan.core)
 
     @property
