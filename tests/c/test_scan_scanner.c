@@ -218,23 +218,34 @@ static double cliff(double x)
     return x < 0.3e-6 ? 200e-9 : 0.0;
 }
 
-/* A step down of 200 nm: back on the floor after v H/(K_I (A0 - A)), within 20 %. */
+/* A step down of 200 nm: back on the floor after v H/(K_I (A0 - A)), within 20 %; what A0 - A is of each mode. */
 static void parachuting(void **state)
 {
     (void)state;
     make_plan(cliff);
-    nt_scan scan = quiet(NT_ZLOOP_TAPPING);
-    scan.zloop.set_amplitude = 0.9;
-    scan.raster.line_rate = 10.0;
-    const nt_scanner scanner = made(&scan);
-    run(&scanner);
-    const double way = nt_scanner_parachute(&scanner, 200e-9, 1e-6 * 20.0);
-    assert_true(way > 0.05e-6 && way < 0.6e-6);
-    int landed = N - 1;
-    while (landed > 0 && trace_error[landed] > -0.5 * 2e-9)
-        landed--;
-    const double found = landed * 1e-6 / N - 0.3e-6;
-    assert_true(fabs(found / way - 1.0) < 0.2);
+    for (int mode = 0; mode < 3; mode++) {
+        nt_scan scan = quiet(mode);
+        scan.zloop.set_amplitude = 0.9;
+        scan.zloop.set_phase = asin(0.9);
+        scan.zloop.set_force = 160e-9;
+        scan.raster.line_rate = 10.0;
+        nt_scanner scanner = made(&scan);
+        if (mode == NT_ZLOOP_CONTACT) {
+            scan.zloop.integral = 3000.0;
+            scanner = made(&scan);
+        }
+        const double left = mode == NT_ZLOOP_CONTACT ? 160e-9 / 40.0 : 0.1 * 20e-9;
+        const double way = nt_scanner_parachute(&scanner, 200e-9, 1e-6 * 20.0);
+        assert_true(fabs(way * scanner.integral * left / (200e-9 * 20e-6) - 1.0) < 1e-6);
+        run(&scanner);
+        assert_true(way > 0.05e-6 && way < 0.6e-6);
+        int landed = N - 1;
+        while (landed > 0 && fabs(trace_error[landed]) < 0.5 * left)
+            landed--;
+        const double found = landed * 1e-6 / N - 0.3e-6;
+        print_message("mode %d: %.3g of what is told\n", mode, found / way);
+        assert_true(fabs(found / way - 1.0) < 0.2);
+    }
 }
 
 static double ramp(double x)

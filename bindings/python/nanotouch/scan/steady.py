@@ -108,7 +108,8 @@ class Steady(Lever):
     def at_amplitude(
         self, amplitude: float, lifted: bool = False, at: tuple[float, float] = (0.0, 0.0)
     ) -> SteadyMotion | None:
-        """The same where the deflection's amplitude first falls to this one [m]: what a z loop holds."""
+        """The same where the deflection's amplitude first falls to this one [m]: what a z loop holds. None also where
+        only a tip that never leaves the contact has that amplitude."""
         return self._found(_AMPLITUDE, amplitude, lifted, at)
 
     def at_phase(self, phase: float, lifted: bool = False, at: tuple[float, float] = (0.0, 0.0)) -> SteadyMotion | None:
