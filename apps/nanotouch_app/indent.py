@@ -11,7 +11,7 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import plasticity, record
-from nanotouch.errors import InvalidValue, MissingExtra, require
+from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import new_figure, saved
 
 from nanotouch_app import output, scenes
@@ -54,13 +54,9 @@ def run(args: argparse.Namespace) -> int:
         facts = facts_of(session, recording)
         record.write(out / "recording.mcap", recording)
         output.write_json(out / "indent.json", facts)
-        try:
+        with output.picture():
             draw(recording, displacement, out / "indent.png")
-        except MissingExtra as missing:
-            print(f"picture left out: {missing}")
-        args.answer = facts | {"folder": str(out), "files": [name for name in FILES if (out / name).exists()]}
-        output.say(words(facts))
-        output.say(f"written to {out}/: {', '.join(args.answer['files'])}")
+        args.answer = output.answered(out, FILES, facts, words(facts))
     return 0
 
 

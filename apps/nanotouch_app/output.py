@@ -198,6 +198,23 @@ def busy(title: str, after: float = 2.0) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
+def picture() -> Iterator[None]:
+    """Draw it, or say why it is left out."""
+    try:
+        yield
+    except MissingExtra as missing:
+        print(f"picture left out: {missing}")
+
+
+def answered(out: Path, names: Iterable[str], facts: Mapping[str, Any], words: str) -> dict[str, Any]:
+    """Say the facts in words, and which files there are; the answer for --json."""
+    files = [name for name in names if (out / name).exists()]
+    say(words)
+    say(f"written to {out}/: {', '.join(files)}")
+    return {**facts, "folder": str(out), "files": files}
+
+
+@contextmanager
 def progress_bar(title: str) -> Iterator[Callable[[float], None]]:
     """A bar on the terminal, for what takes longer than a second; called with the fraction done. None in a log, and
     none where tqdm is missing."""

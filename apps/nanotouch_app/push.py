@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from nanotouch import manipulation
-from nanotouch.errors import InvalidValue, MissingExtra, require
+from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import new_figure, saved
 from nanotouch.touch.record import write_csv
 
@@ -51,13 +51,9 @@ def run(args: argparse.Namespace) -> int:
         facts = facts_of(done)
         write_track(done, out / "push.csv")
         output.write_json(out / "push.json", facts)
-        try:
+        with output.picture():
             draw(done, target, out / "push.png")
-        except MissingExtra as missing:
-            print(f"picture left out: {missing}")
-        args.answer = facts | {"folder": str(out), "files": [name for name in FILES if (out / name).exists()]}
-        output.say(words(facts))
-        output.say(f"written to {out}/: {', '.join(args.answer['files'])}")
+        args.answer = output.answered(out, FILES, facts, words(facts))
     return int(done.believed > tolerance)
 
 
