@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from nanotouch.curves.adhesion import Kind, adhesion_of
+from nanotouch.units import in_words
 
 from .models import is_sharp
 from .show import between, newton, with_sigma
@@ -184,7 +185,7 @@ def _modulus(result: FitResult) -> tuple[tuple[float, float, float], list[tuple[
     lines = [("modulus", f"{title} {text}")]
     if result.assumed_tip:
         sharp = is_sharp(result.model)
-        size = f"{np.degrees(result.half_angle):.3g} degrees" if sharp else f"R = {result.radius * 1e9:g} nm"
+        size = f"{np.degrees(result.half_angle):.3g} degrees" if sharp else f"R = {in_words(result.radius, 'm')}"
         factor = np.tan(result.half_angle) if sharp else np.sqrt(result.radius)
         name, unit = ("tan(half angle)", "Pa") if sharp else ("sqrt(R)", "Pa m^0.5")
         shown = between(low * factor, high * factor, unit)

@@ -10,9 +10,9 @@ import numpy as np
 
 from nanotouch._io.drawing import BLUE, GREEN, VERMILION, new_figure, plain, saved
 from nanotouch.curves import ForceCurve, Segment
-from nanotouch.units import engineering
+from nanotouch.units import engineering, in_words
 
-from .models import Floats
+from .models import Floats, is_sharp
 from .result import FitResult
 
 
@@ -108,5 +108,8 @@ def _box(result: FitResult) -> str:
         "cohesive_range": "$h_0$",
     }
     lines = [f"{symbol} = {result.show(key)}" for key, symbol in symbols.items() if key in result.values]
-    lines.append(f"$R$ = {result.radius * 1e9:.3g} nm, $k_c$ = {result.spring_constant:.3g} N/m")
+    size = f"$R$ = {in_words(result.radius, 'm', 3)}"
+    if is_sharp(result.model):
+        size = rf"$\psi$ = {np.degrees(result.half_angle):.3g}°"
+    lines.append(f"{size}, $k_c$ = {result.spring_constant:.3g} N/m")
     return "\n".join(lines).replace("+-", "±").replace("^2", "²")
