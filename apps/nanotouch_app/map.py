@@ -112,7 +112,8 @@ def _text(data: Any, summary: dict[str, Any]) -> str:
             continue
         spread = 0.5 * (found["upper_quartile"] - found["lower_quartile"])
         text = with_sigma(found["median"], spread, found["unit"])
-        lines.append(f"  {name:18} {text} (median +- half the distance of the quartiles, {found['curves']} curves)")
+        many = "1 curve" if found["curves"] == 1 else f"{found['curves']} curves"
+        lines.append(f"  {name:18} {text} (median +- half the distance of the quartiles, {many})")
     lines += [f"  {number} x no result: {reason}" for reason, number in summary["reasons"].items()]
     lines += [f"  {number} x flag {name}" for name, number in summary["flags"].items()]
     lines += [f"  note: {name!r} of the sidecar is no curve of this map" for name in summary["sidecar_unused"]]

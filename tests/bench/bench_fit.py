@@ -20,6 +20,7 @@ import nanotouch as nt
 import numpy as np
 from nanotouch import _fit
 
+MODELS = ("hertz", "cone", "pyramid", "dmt", "jkr", "maugis")
 POINTS, RUNS, NOISE, RADIUS = 2000, 40, 10e-12, 20e-9  # -, -, N, m
 TRUTH = {"effective_modulus": 2e9, "work_of_adhesion": 0.05, "cohesive_range": 0.2e-9, "sensitivity": 1.0}
 MODULUS, STIFFNESS, CONTACT = 2e6, 0.1, 3e-7  # of the curve for nanite: Pa, N/m, m
@@ -127,7 +128,7 @@ def main() -> None:
     parser.add_argument("--nanite", metavar="PYTHON", help="interpreter of an environment with nanite")
     args = parser.parse_args()
     print(f"{'model':8} fit, even steps [ms]  0.2 nm of jitter [ms]  curve to result [ms]")
-    for name in _fit.models:
+    for name in MODELS:
         print(f"{name:8} {median_ms(fit_of(name, 0.0)):20.2f} {median_ms(fit_of(name, 0.2e-9)):22.2f} "
               f"{median_ms(whole_way(name)):21.2f}")  # fmt: skip
     if args.nanite:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._io.words import counted
 from ..errors import ReadError
 from ..fit.result import REJECTED
 from ..fit.show import with_sigma
@@ -69,7 +70,7 @@ class Spread:
             return f"{start}: none of {self.without} curves shows it"
         _, low, median, high, _ = self.percentiles
         text = f"{start} {with_sigma(median, 0.0, self.unit)} (median; quartiles {with_sigma(low, 0.0, self.unit)} and "
-        text += f"{with_sigma(high, 0.0, self.unit)}; {self.values.size} curves, {self.without} without)"
+        text += f"{with_sigma(high, 0.0, self.unit)}; {counted(self.values.size, 'curve')}, {self.without} without)"
         if self.log_normal:
             text += f"; log-normal about {with_sigma(self.geometric_mean, 0.0, self.unit)}, "
             text += f"factor {self.geometric_deviation:.3g}"

@@ -54,7 +54,8 @@ class Uncertainties:
             if name == "correlation":
                 continue
             if not 0.0 <= value < 1.0:
-                raise InvalidValue(f"uncertainty of {name} = {value}: valid is 0 to below 1")
+                unit = " rad" if name == "half_angle" else ""
+                raise InvalidValue(f"uncertainty of {name} = {value:.4g}{unit}: valid is 0 to below 1{unit}")
 
     @property
     def force(self) -> float:
