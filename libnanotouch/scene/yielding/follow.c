@@ -116,14 +116,16 @@ static double near_kink(const nt_yield_solver *s, double end, double x, double a
     return fmax(PLACED * x, fmin(x, fmin(by_slope, by_jump)));
 }
 
-/* Beside an edge at x that does not stay a panel far wider than x takes no notice of it: the next edge comes nearer. */
-static void grade(const nt_yield_solver *s, nt_yield_edges *list, double x)
+/* Where the panels on both sides of an edge see the kink at places that are farther apart, the edge goes back and forth
+ * between them: the wider one is cut, near the edge if it is far wider than x. */
+static void part(const nt_yield_solver *s, nt_yield_edges *list, int edge, double near)
 {
-    int next = 1;
-    while (next < list->count && !(list->at[next] > x))
-        ++next;
-    if (s->graded && next < list->count && list->at[next] > GRADED * GRADED * x)
-        insert(list, GRADED * x);
+    const nt_yield_mesh *m = &s->mesh;
+    const double at = m->edges[edge], before = at - m->edges[edge - 1], after = m->edges[edge + 1] - at;
+    const double left = nt_yield_mesh_at(m, s->gap, at * (1.0 - 1e-12)),
+                 right = nt_yield_mesh_at(m, s->gap, at * (1.0 + 1e-12));
+    if (fabs(right - left) * 2.0 * s->sample->radius > near)
+        insert(list, after > before ? fmin(at + 0.5 * after, GRADED * at) : at - 0.5 * before);
 }
 
 /* An edge at a kink of the law: the one that was there for it before is moved, else there is one more. */
@@ -142,7 +144,6 @@ static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel,
             list->at[i] = list->at[i + 1];
     }
     insert(list, x);
-    grade(s, list, x);
     return 1;
 }
 
@@ -160,8 +161,14 @@ int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
         int kinked = 0;
         for (int i = 0; i < s->sample->end_count; ++i) {
             const double end = s->sample->ends[i], x = crossing(s, panel, end);
-            if (!isnan(x))
-                kinked |= place_kink(s, list, panel, x, near_kink(s, end, x, all));
+            if (isnan(x))
+                continue;
+            const double near = near_kink(s, end, x, all);
+            const int placed = place_kink(s, list, panel, x, near);
+            const int edge = panel + (x > 0.5 * (m->edges[panel] + m->edges[panel + 1]));
+            if (placed && s->graded && edge > 0 && edge < m->panels)
+                part(s, list, edge, near);
+            kinked |= placed;
         }
         const double rough = roughness(s, panel, p, all);
         changed |= kinked;

@@ -8,6 +8,7 @@
 #include "scene/yielding/yield.h"
 
 enum { N = NT_YIELD_ORDER, STEPS = 40, MESHES = 24, TWICE = 2, HALVINGS = 24, HALVINGS_IN_CONTACT = 4 };
+enum { MOST_MESHES = 3000 };  /* of one table, which takes 50 to 800: what comes to no end is told in seconds */
 enum { FULL = HALVINGS / 4 }; /* what a step counts that no mesh resolves, which a shorter one may not cure */
 
 #define CONVERGED 1e-11 /* of the largest gap */
@@ -136,7 +137,7 @@ static nt_status newton(nt_yield_solver *s, nt_yield_hold hold, double value)
 static nt_status settle(nt_yield_solver *s, nt_yield_hold hold, double value)
 {
     nt_yield_edges list;
-    for (int i = 0; i < MESHES; ++i) {
+    for (int i = 0; i < MESHES && --s->left > 0; ++i) {
         s->graded = i >= TWICE;
         const nt_status status = newton(s, hold, value);
         if (status != NT_OK)
@@ -156,6 +157,7 @@ static nt_status settle(nt_yield_solver *s, nt_yield_hold hold, double value)
 nt_status nt_yield_begin(nt_yield_solver *s, const nt_yield_sample *sample, double gap)
 {
     s->sample = sample;
+    s->left = MOST_MESHES;
     s->h = gap;
     s->mesh.a = 0.0;
     s->mesh.panels = 4;

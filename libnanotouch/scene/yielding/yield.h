@@ -83,12 +83,12 @@ typedef struct nt_yield_solver {
     const nt_yield_sample *sample;
     double tolerance;           /* of the force, of the mesh, over max(|F|, scale) [-] */
     double scale;               /* [N] */
-    int graded;                 /* the panel after such an edge is no wider than some times x */
+    int graded;                 /* edges at kinks have not come to rest: panels beside them are cut */
     double rough;               /* the worst panel, in what it must resolve [-] */
     double h;                   /* [m] */
     double reach;               /* of the law outside an adhesive contact [m] */
     double end;                 /* r^2 - a^2 where its adhesion ends [m^2] */
-    int left;                   /* meshes that may still be made for a contact */
+    int left;                   /* meshes that may still be made */
     double end_slope;           /* of the gap there over h0, over ln of it; 0: not known [-] */
     double share;               /* of the law that acts, on the way to all of it [-] */
     double kink[NT_YIELD_ENDS]; /* x of the ends of the law [m^2] */
