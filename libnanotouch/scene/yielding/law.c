@@ -6,6 +6,8 @@
 #include "scene/terms/term.h"
 #include "scene/yielding/cubic.h"
 
+#define FARTHEST_SHIFT 0.1 /* of the first gap, where force and table differ by a small part of the tolerance */
+
 /* In the part of the nodes low .. high - 1. */
 static nt_law_value eval(const nt_yield_table *table, int low, int high, double h)
 {
@@ -133,6 +135,8 @@ void nt_yield_join(const nt_plan *plan, nt_yield_table *table)
             break;
         table->shift += (value.F - F) / value.k;
     }
+    if (!(fabs(table->shift) < FARTHEST_SHIFT * first)) /* beside an extremum there may be no such gap */
+        table->shift = 0.0;
     value = sum_of(plan, table, 1, first + table->shift);
     for (int i = 0; i < table->count; ++i)
         table->node[i].U += value.U;

@@ -18,6 +18,7 @@
 #define BEYOND 0.02      /* of the radius there: the table of contact begins so much farther */
 #define HIGHEST 1e-3     /* of ln a: where that is */
 #define RESOLVED 2.0     /* times the tolerance: energy that the force does not tell */
+#define RISES 2.0        /* d(centre)/dh: the gap under the apex closes so much faster than the bodies approach */
 #define JUMPS 3.0        /* times the pull at the jump: what a panel resolves, a tolerance of */
 #define NEARER 0.3       /* of a step that is too long for the solver: the next */
 #define WIDER 4.0        /* of the first radius of contact: the next */
@@ -73,7 +74,7 @@ static double distance(const maker *m, const nt_yield_node ends[2], int part, co
 static nt_status add(maker *m, nt_yield_node node)
 {
     if (m->table->count >= NT_YIELD_TABLE)
-        return NT_E_NO_CONVERGENCE;
+        return NT_E_CAPACITY;
     m->table->node[m->table->count++] = node;
     return NT_OK;
 }
@@ -91,10 +92,10 @@ static int leaps(const maker *m, const nt_yield_point *next)
     return m->hold != NT_YIELD_CONTACT && centre > -m->solver.sample->pole && next->centre < KEPT * centre;
 }
 
-/* Where the solver comes to no end, a pull that grows is a jump: no finer table passes it. */
-static int is_pulled(const maker *m)
+/* Where the solver comes to no end, a surface that rises to meet the tip jumps: no finer table passes it. */
+static int jumps_ahead(const maker *m)
 {
-    return m->hold == NT_YIELD_GAP && m->last.F < 0.0 && m->last.k < 0.0;
+    return m->hold == NT_YIELD_GAP && m->last.k < 0.0 && m->last.slope > RISES;
 }
 
 /* Point after point until what is held is at its end, or the range is. */
@@ -117,7 +118,7 @@ static nt_status march(maker *m, int part, double step)
             const int narrow = m->hold == NT_YIELD_CONTACT && from == 0.0 && failed < WIDENINGS;
             step = (narrow ? WIDER : NEARER) * fabs(to - from);
             if (step < least || ++failed > FAILURES)
-                return is_pulled(m) ? NT_E_NO_SOLUTION : status;
+                return jumps_ahead(m) ? NT_E_NO_SOLUTION : status;
             status = NT_OK;
             continue;
         }

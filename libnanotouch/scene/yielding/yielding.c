@@ -13,19 +13,20 @@
 #define ROUGHEST 8.6177e-3 /* tolerances of a table: so that there is one for each power of ten of the demand */
 #define FINER 0.46415888   /* from one to the next: three a decade */
 #define FINEST 2e-6
-#define UNASKED 0.01 /* without a demand all that a table does not know comes to less */
-#define ENDED 20.0   /* times the finest, where a law ends with a kink */
-#define PLENTY 10.0  /* times the finest, then */
-#define INSIDE 0.9   /* of what is left, in a second attempt */
-#define LEAVES 0.7   /* of the demand; the rest is for the form of contact */
-#define WEAKER 0.7   /* of the pull-off of rigid bodies: that of a sample that yields, at least */
-#define CLOSER 1.02  /* ratio of gaps at which forces are sampled */
-#define FLAT 10.0    /* tables of a stiffness are coarser by */
-#define STIFF 0.3    /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
-#define DEEPER 1.05  /* than the largest load */
-#define WORST 0.5    /* the largest error that can be demanded */
-#define UNFELT 0.3   /* of the demand: a spread of radii that one table may leave out */
-#define BETWEEN 0.4  /* of what is left over relief: what lies between its tables */
+#define UNASKED 0.01  /* without a demand all that a table does not know comes to less */
+#define ENDED 20.0    /* times the finest, where a law ends with a kink */
+#define PLENTY 10.0   /* times the finest, then */
+#define INSIDE 0.9    /* of what is left, in a second attempt */
+#define LEAVES 0.7    /* of the demand; the rest is for the form of contact */
+#define WEAKER 0.7    /* of the pull-off of rigid bodies: that of a sample that yields, at least */
+#define CLOSER 1.02   /* ratio of gaps at which forces are sampled */
+#define FLAT 10.0     /* tables of a stiffness are coarser by */
+#define STIFF 0.3     /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
+#define RELEASED 1e-4 /* of the release gap: two solvers agree on it to 3e-5, whatever is demanded */
+#define DEEPER 1.05   /* than the largest load */
+#define WORST 0.5     /* the largest error that can be demanded */
+#define UNFELT 0.3    /* of the demand: a spread of radii that one table may leave out */
+#define BETWEEN 0.4   /* of what is left over relief: what lies between its tables */
 
 enum { ATTEMPTS = 4, OF_EACH_RADIUS = 2, RUNGS = 100, SAMPLES = 1000, HALVINGS = 60 };
 
@@ -119,8 +120,9 @@ static void facts_of(nt_plan *plan, double load)
         pull = fmax(pull, -value.F);
         growth = fmax(growth, -value.k);
     }
+    pull = nt_plan_told(plan, NT_QUANTITY_FORCE, pull);
     plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
-    plan->minimum_spring = growth;
+    plan->minimum_spring = nt_plan_told(plan, NT_QUANTITY_STIFFNESS, growth);
     plan->largest_indentation = -gap_at_load(plan, load);
 }
 
@@ -247,6 +249,8 @@ nt_status nt_plan_yield_table(nt_plan *plan, const nt_scene *scene, const nt_yie
     plan->yield.jump_error = tolerance * fmax(isinf(plan->yield.touch) ? 0.0 : fabs(plan->yield.touch), plan->length);
     if (plan->demand.quantity == NT_QUANTITY_STIFFNESS)
         plan->yield.jump_error *= STIFF;
+    if (plan->yield.holds)
+        plan->yield.jump_error = PARTS * plan->yield.jump_error + RELEASED * fabs(plan->yield.release);
     if (status == NT_OK && held_pull(plan) > fmax(plan->demand.relative_accuracy, tolerance) * plan->scale)
         status = NT_E_NO_CONVERGENCE;
     return status;

@@ -16,6 +16,7 @@ from nanotouch._arrays import Floats
 from nanotouch.errors import SolverError
 from nanotouch.reference._half_space import NODES, Mesh
 from nanotouch.reference._pressures import Pressure
+from nanotouch.reference._yielding import WIDEST
 
 _FADED = 1e-8  # of the energy: the mesh goes so far
 _OCTAVES = 1.25  # from panel to panel
@@ -87,7 +88,7 @@ class Surrounded:
     def _far(self) -> float:
         at_end = abs(float(self.law.energy(np.array([self.h0]))[0]))
         rise = self.h0
-        while abs(float(self.law.energy(np.array([self.h0 + rise]))[0])) > _FADED * at_end and rise < self.R / 2.0:
+        while abs(float(self.law.energy(np.array([self.h0 + rise]))[0])) > _FADED * at_end and rise < WIDEST * self.R:
             rise *= 1.2
         return rise
 

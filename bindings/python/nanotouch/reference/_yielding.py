@@ -26,6 +26,7 @@ from nanotouch.reference._pressures import Pressure
 
 _PANELS = 120
 _FAR = 1e-11  # of the force, that is left beyond the mesh
+WIDEST = 30.0  # times R, where the mesh of a law that fades slower ends
 
 
 class Yielded(NamedTuple):
@@ -158,7 +159,7 @@ class Yielding:
         """X = r^2 beyond which the rest of a rigid paraboloid at a gap has no force to speak of."""
         all_of_it = abs(float(self.law.energy(np.array([max(gap, 0.0)]))[0])) + 1e-300
         rise = self._length(max(gap, 0.0))
-        while abs(float(self.law.energy(np.array([max(gap, 0.0) + rise]))[0])) > _FAR * all_of_it and rise < self.R:
+        while abs(float(self.law.energy(np.array([max(gap, 0.0) + rise]))[0])) > _FAR * all_of_it and rise < WIDEST * self.R:
             rise *= 1.3
         return 2.0 * self.R * rise
 
