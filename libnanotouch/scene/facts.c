@@ -3,9 +3,7 @@
  * that each jump costs. */
 #include <math.h>
 
-#include "scene/terms/term.h"
-
-#define UNTOLD 1e-9 /* of all that the laws are, beside which they cancel: no pull but rounding */
+#include "scene/parts.h"
 
 /* Everything on, in a polished tier. */
 static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
@@ -36,38 +34,19 @@ static double gap_of(const sweep *s, double t)
     return s->in_ratios ? s->first * pow(s->last / s->first, t) : s->first + t * (s->last - s->first);
 }
 
-/* A law that states how large it can be, because it is not monotone, may be narrow: 0.3 % of its gap is seen. */
-static int samples_of(const nt_plan *plan)
-{
-    enum { SAMPLES = 96, NARROW = 8192 };
-    int samples = SAMPLES;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        if (nt_term_rows[term]->limit && nt_plan_full_form(plan, term) != NT_FORM_OFF)
-            samples = NARROW;
-    return samples;
-}
-
-double nt_plan_told(const nt_plan *plan, nt_quantity quantity, double value)
-{
-    double all = 0.0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        all += nt_plan_law_limit(plan, term, 0.0, quantity);
-    return value > UNTOLD * all ? value : 0.0;
-}
-
 /* The largest value above 0 in a sweep: sampled, then refined by golden sections around the largest sample. */
 static double largest_of(const nt_plan *plan, gap_law *law, sweep s)
 {
-    const int samples = samples_of(plan);
+    enum { SAMPLES = 96 };
     double best = 0.0, where = 0.0;
-    for (int i = 0; i <= samples; ++i) {
-        const double value = law(plan, gap_of(&s, (double)i / samples));
+    for (int i = 0; i <= SAMPLES; ++i) {
+        const double value = law(plan, gap_of(&s, (double)i / SAMPLES));
         if (value > best) {
             best = value;
-            where = (double)i / samples;
+            where = (double)i / SAMPLES;
         }
     }
-    double low = fmax(where - 1.0 / samples, 0.0), high = fmin(where + 1.0 / samples, 1.0);
+    double low = fmax(where - 1.0 / SAMPLES, 0.0), high = fmin(where + 1.0 / SAMPLES, 1.0);
     for (int i = 0; i < 32 && best > 0.0; ++i) {
         const double left = high - 0.6180339887498949 * (high - low), right = low + 0.6180339887498949 * (high - low);
         const double value_left = law(plan, gap_of(&s, left)), value_right = law(plan, gap_of(&s, right));
@@ -147,10 +126,9 @@ static double energy_of_contact(const nt_plan *plan, double gap)
 
 nt_status nt_plan_facts(nt_plan *plan)
 {
-    plan->contact_pull = nt_plan_told(plan, NT_QUANTITY_FORCE, strongest_hold(plan));
-    const double apart = nt_plan_told(plan, NT_QUANTITY_FORCE, strongest_apart(plan));
-    plan->pull_off_force = plan->largest_pull_off_force = fmax(plan->contact_pull, apart);
-    plan->minimum_spring = nt_plan_told(plan, NT_QUANTITY_STIFFNESS, steepest_pull(plan));
+    plan->contact_pull = strongest_hold(plan);
+    plan->pull_off_force = plan->largest_pull_off_force = fmax(plan->contact_pull, strongest_apart(plan));
+    plan->minimum_spring = steepest_pull(plan);
     if (plan->source != NT_ADHESION_NONE) {
         plan->capture_energy = fmax(0.0, -energy_of_contact(plan, plan->capture_gap));
         plan->release_energy = fmax(0.0, energy_of_contact(plan, nt_plan_last_hold(plan->release_gap)));

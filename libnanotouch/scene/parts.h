@@ -113,9 +113,6 @@ double nt_plan_away_from_folds(const nt_plan *plan);
  * only from first touch on. */
 void nt_plan_rivals_of(nt_plan *plan);
 
-/* facts.c: a pull [N], or how steeply one grows [N/m]; 0 where it is but the rounding of laws that push. */
-double nt_plan_told(const nt_plan *plan, nt_quantity quantity, double value);
-
 /* options.c: the forms of every term with error and cost. */
 enum { NT_OPTIONS_MAX = 6 };
 #define NT_SAMPLED                                                                                                     \

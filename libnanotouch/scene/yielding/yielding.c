@@ -120,9 +120,8 @@ static void facts_of(nt_plan *plan, double load)
         pull = fmax(pull, -value.F);
         growth = fmax(growth, -value.k);
     }
-    pull = nt_plan_told(plan, NT_QUANTITY_FORCE, pull);
     plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
-    plan->minimum_spring = nt_plan_told(plan, NT_QUANTITY_STIFFNESS, growth);
+    plan->minimum_spring = growth;
     plan->largest_indentation = -gap_at_load(plan, load);
 }
 
