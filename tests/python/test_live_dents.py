@@ -221,6 +221,41 @@ def test_a_ball_that_is_nowhere_near_its_ring_does_not_pass() -> None:
     assert result.figures["largest error"][0] == pytest.approx(2e-6, rel=1e-6)
 
 
+def test_a_tip_that_presses_on_the_glass_or_begins_inside_a_ball_ends_no_session() -> None:
+    watched = Watched("latex_on_glass")
+    watched.advance(0.05)
+    frame = watched.observer.newest()
+    watched.answer({"do": "move", "way": (0.35 * 10e-6 - float(frame["tip_position"][0]), 0.0, 0.0)})
+    watched.advance(0.5)
+    watched.answer({"do": "task", "name": "push", "seed": 1})
+    watched.answer({"do": "press", "on": True})
+    watched.advance(1.0)
+    assert watched.host.trainer is not None
+    exercise = watched.host.trainer.exercise
+    assert isinstance(exercise, Push)
+    before = exercise.particles[0].place.copy()
+    watched.advance(0.5)
+    np.testing.assert_array_equal(exercise.particles[0].place, before)
+    watched.answer({"do": "press", "on": False})
+    watched.answer({"do": "move", "way": (2e-6, 0.0, 0.0)})
+    watched.advance(1.0)
+    assert np.isfinite(exercise.particles[0].place).all()
+    watched.host.close()
+
+
+def test_another_tip_lays_a_fresh_sample(watched: Watched) -> None:
+    hand = operator(watched)
+    hand.down_to(100e-9)
+    hand.up()
+    watched.answer({"do": "task", "name": ""})
+    assert watched.seen.dented is not None
+    assert watched.seen.dented.dents
+    watched.answer({"do": "change", "what": "scene", "field": "tip.radius", "value": 40e-9})
+    assert watched.seen.dented is not None
+    assert not watched.seen.dented.dents
+    assert watched.seen.dented.law.radius == pytest.approx(40e-9, rel=1e-6)
+
+
 def test_a_dent_task_on_a_sample_that_keeps_none_is_refused() -> None:
     watched = Watched("polyester")
     watched.answer({"do": "task", "name": "dent"})

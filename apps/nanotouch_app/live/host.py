@@ -362,3 +362,4 @@ class Host(Tasks):
             described[field] = old
             raise
         before.halt()
+        self.left.report()

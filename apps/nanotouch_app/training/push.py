@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import nanotouch as nt
 import numpy as np
+from nanotouch.errors import Error
 from nanotouch.manipulation import latex
 from numpy.typing import NDArray
 
@@ -48,11 +49,15 @@ class Pushed:
         if not near.any():
             self.state, self.force = None, np.zeros(3)
             return self._touches(False)
-        if self.state is None:
-            first = tips[max(int(np.argmax(near)) - 1, 0)]
-            x, y = (float(part) for part in self.place[:2])
-            self.state = self.particle.place(x, y, (float(first[0]), float(first[1]), float(first[2])))
-        path = self.particle.run(*tips.T, state=self.state)
+        try:
+            if self.state is None:
+                first = tips[max(int(np.argmax(near)) - 1, 0)]
+                x, y = (float(part) for part in self.place[:2])
+                self.state = self.particle.place(x, y, (float(first[0]), float(first[1]), float(first[2])))
+            path = self.particle.run(*tips.T, state=self.state)
+        except Error:  # the tip stands in it when the task begins, or has leapt into it: it lies until the tip is out
+            self.state, self.force = None, np.zeros(3)
+            return self._touches(False)
         self.state, self.place, self.force = path.state, path.position[-1], path.force[-1]
         return self._touches(bool(path.contact_radius[-1, 1] > 0.0))
 
@@ -120,6 +125,7 @@ class Push(Exercise):
             return
         kept = np.flatnonzero(np.diff(np.floor(gone / STEP), prepend=-1.0))
         tips, self.last = tips[kept], tips[kept[-1]]
+        tips[:, 2] = np.maximum(tips[:, 2], 0.0)  # pressed into the glass by less than a nanometre
         for one in self.particles:
             if event := one.follow(tips):
                 self.events.append(event)
