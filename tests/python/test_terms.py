@@ -333,6 +333,23 @@ def test_a_unit_that_no_file_could_spell_is_refused() -> None:
         nt.scene.register("far", parameters={"length": 1.0}, units={"length": "furlong"}, **law)
 
 
+def test_a_parameter_may_have_any_name_but_those_that_are_taken() -> None:
+    def law(gap: float, **values: float) -> float:
+        return 0.0
+
+    laws = dict.fromkeys(("energy", "force", "stiffness", "bound"), law)
+    for name in ("name", "self", "force"):
+        nt.scene.register("odd", parameters={name: 1.0}, units={name: ""}, **laws)
+        assert Scene(terms={"odd": {name: 2.0}}).terms["odd"] == {name: 2.0}
+    for name in ("gap", "version", "not a name"):
+        with pytest.raises(InvalidValue, match=f"no parameter may be called {name}"):
+            nt.scene.register("odd", parameters={name: 1.0}, units={name: ""}, **laws)
+    for followed, match in (("tip.radius", r"length \[Pa\] cannot follow tip.radius \[m\]"), ("tip.shape", "is a number")):
+        nt.scene.register("odd", parameters={"length": followed}, units={"length": "Pa"}, **laws)
+        with pytest.raises(InvalidValue, match=match):
+            Scene(terms={"odd": {}})
+
+
 def test_parameters_are_set_by_add_term_alone() -> None:
     """What stands in `terms` follows the scene; to assign there would change nothing."""
     scene = gelled()

@@ -57,15 +57,21 @@ class Scene(SceneFields, core_type=_core.Scene):
         """The laws of one's own with their parameters, SI. To be read: :meth:`add_term` sets them."""
         return MappingProxyType({name: MappingProxyType(self._term_values(name)) for name in self._terms})
 
-    def add_term(self, name: str, version: int | None = None, **parameters: Any) -> None:
+    def add_term(self, name: str, /, version: int | None = None, **parameters: Any) -> None:
         """Add a registered law, or give one that is there other parameters; a text is a field that one follows."""
         term = find(name, version)
         if name not in self._terms and len(self._terms) == _core.custom_terms:
             raise InvalidValue(f"terms.{name}: a scene has at most {_core.custom_terms} laws of one's own")
         values = term.values(parameters)
-        for value in values.values():
-            if isinstance(value, str) and value not in self.fields:
-                raise InvalidValue(f"terms.{name}: the scene has no field {value!r}")
+        for key, value in values.items():
+            if not isinstance(value, str):
+                continue
+            if value not in self.fields or self.fields[value].choices:
+                raise InvalidValue(f"terms.{name}: the scene has no field {value!r} that is a number")
+            if self.fields[value].unit != term.units[key]:
+                raise InvalidValue(
+                    f"terms.{name}: {key} [{term.units[key]}] cannot follow {value} [{self.fields[value].unit}]"
+                )
         self._terms[name] = term, values
         self._describe_terms()
 

@@ -17,6 +17,7 @@ from nanotouch.units import UNITS, key_spellings, to_si
 TermLaw = Callable[..., float]
 LONGEST_NAME = 31
 GROUP = "nanotouch.terms"
+RESERVED = ("gap", "version")  # the argument of all laws, and what recordings hold beside the parameters
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +140,9 @@ def register(
     for parameter, unit in (units or {}).items():
         if unit not in UNITS:
             raise InvalidValue(f"{name}: unit {unit!r} of {parameter!r}; known are {', '.join(filter(None, UNITS))}")
-    if "version" in (parameters or {}):
-        raise InvalidValue(f"{name}: no parameter may be called version")
+    for parameter in parameters or {}:
+        if not parameter.isidentifier() or parameter in RESERVED:
+            raise InvalidValue(f"{name}: no parameter may be called {parameter}")
     _known[name] = CustomTerm(name, energy, force, stiffness, bound, dict(parameters or {}), dict(units or {}), version)
 
 
