@@ -3,7 +3,7 @@
  * that each jump costs. */
 #include <math.h>
 
-#include "scene/parts.h"
+#include "scene/terms/term.h"
 
 /* Everything on, in a polished tier. */
 static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
@@ -20,9 +20,6 @@ static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
     return sum;
 }
 
-/* Something that is to be largest over gaps. */
-typedef double gap_law(const nt_plan *plan, double gap);
-
 /* Gaps from `first` to `last`, in even steps or in even ratios. */
 typedef struct sweep {
     double first, last;
@@ -35,7 +32,7 @@ static double gap_of(const sweep *s, double t)
 }
 
 /* The largest value above 0 in a sweep: sampled, then refined by golden sections around the largest sample. */
-static double largest_of(const nt_plan *plan, gap_law *law, sweep s)
+static double largest_of(const nt_plan *plan, nt_plan_gap_law *law, sweep s)
 {
     enum { SAMPLES = 96 };
     double best = 0.0, where = 0.0;
@@ -55,6 +52,29 @@ static double largest_of(const nt_plan *plan, gap_law *law, sweep s)
             high = right;
         else
             low = left;
+    }
+    return best;
+}
+
+double nt_plan_largest_at_edges(const nt_plan *plan, nt_plan_gap_law *law, double first, double last)
+{
+    enum { PARTS = 4 };
+    double best = 0.0;
+    for (int term = 0; term < NT_PLAN_TERMS; ++term) {
+        const double *gaps = NULL;
+        const int count = nt_term_rows[term]->edges ? nt_term_rows[term]->edges(nt_term_law(plan, term), &gaps) : 0;
+        sweep around = {0.0, 0.0, 0};
+        for (int i = 1; i < count; ++i)
+            for (int j = 0; j < PARTS; ++j) {
+                const double width = (gaps[i] - gaps[i - 1]) / PARTS, gap = gaps[i - 1] + j * width;
+                const double value = gap >= first && gap <= last ? law(plan, gap) : 0.0;
+                if (value > best) {
+                    best = value;
+                    around = (sweep){fmax(gap - width, first), fmin(gap + width, last), 0};
+                }
+            }
+        if (around.last > 0.0)
+            best = fmax(best, largest_of(plan, law, around));
     }
     return best;
 }
@@ -88,13 +108,15 @@ static double strongest_hold(const nt_plan *plan)
         best = fmax(best, largest_of(plan, pull_out, (sweep){NEAREST, release, 1}));
     for (int term = 0; term < NT_PLAN_TERMS; ++term) /* the force has a corner there; contact's is first touch */
         best = fmax(best, pull_out(plan, fmin(nt_plan_hold_gap(plan, term), release)));
-    return best;
+    return fmax(best, nt_plan_largest_at_edges(plan, pull_out, deepest, release));
 }
 
 /* Out of contact, where a barrier may leave a second minimum. */
 static double strongest_apart(const nt_plan *plan)
 {
-    return largest_of(plan, pull_out, (sweep){fmax(plan->release_gap * (1.0 + 1e-12), NEAREST), 1e-2, 1});
+    const double first = fmax(plan->release_gap * (1.0 + 1e-12), NEAREST);
+    return fmax(largest_of(plan, pull_out, (sweep){first, 1e-2, 1}),
+                nt_plan_largest_at_edges(plan, pull_out, first, INFINITY));
 }
 
 /* The steepest growth of attraction on approach [N/m]; infinite where the force jumps by more than is demanded (the
@@ -113,7 +135,7 @@ static double steepest_pull(const nt_plan *plan)
                         largest_of(plan, growth_in, (sweep){NEAREST, capture, 1}));
     for (int term = 0; term < NT_PLAN_TERMS; ++term)
         steepest = fmax(steepest, growth_in(plan, nt_plan_hold_gap(plan, term) * outside));
-    return steepest;
+    return fmax(steepest, nt_plan_largest_at_edges(plan, growth_in, -capture, INFINITY));
 }
 
 /* By which U in contact lies above that apart [J]. */
@@ -124,10 +146,16 @@ static double energy_of_contact(const nt_plan *plan, double gap)
     return contact + nt_plan_rise(plan, NULL, gap);
 }
 
+double nt_plan_known_pull(const nt_plan *plan, double pull)
+{
+    return pull > nt_plan_table_error(plan, NT_QUANTITY_FORCE) ? pull : 0.0;
+}
+
 nt_status nt_plan_facts(nt_plan *plan)
 {
-    plan->contact_pull = strongest_hold(plan);
-    plan->pull_off_force = plan->largest_pull_off_force = fmax(plan->contact_pull, strongest_apart(plan));
+    plan->contact_pull = nt_plan_known_pull(plan, strongest_hold(plan));
+    plan->pull_off_force = plan->largest_pull_off_force =
+        fmax(plan->contact_pull, nt_plan_known_pull(plan, strongest_apart(plan)));
     plan->minimum_spring = steepest_pull(plan);
     if (plan->source != NT_ADHESION_NONE) {
         plan->capture_energy = fmax(0.0, -energy_of_contact(plan, plan->capture_gap));

@@ -33,6 +33,24 @@ double nt_plan_share(const nt_plan *plan, double error)
     return error == 0.0 ? 0.0 : error / plan->scale;
 }
 
+double nt_plan_table_error(const nt_plan *plan, nt_quantity quantity)
+{
+    double error = 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (nt_term_rows[term]->error)
+            error += plan->ratio * nt_term_rows[term]->error(nt_term_law(plan, term), quantity);
+    return error;
+}
+
+nt_problem nt_plan_reason(const nt_plan *plan, const char *yields, double error)
+{
+    static const char tabled[] = "terms: the table of a law of its own errs by too much beside what is felt (a larger "
+                                 "range.maximum_load, or a law that is weaker where it is not visited)";
+    const double table = nt_plan_share(plan, nt_plan_table_error(plan, plan->demand.quantity));
+    return (nt_problem){table > error ? tabled : yields, NT_UNIT_ERROR, fmax(table, error), 0.0,
+                        plan->demand.relative_accuracy};
+}
+
 static double difference(const nt_plan *plan, int term, nt_form form, double gap)
 {
     const nt_quantity quantity = plan->demand.quantity;

@@ -89,6 +89,11 @@ nt_form nt_plan_full_form(const nt_plan *plan, int term);
 
 /* facts.c: pull-off, stiffness, energies of the jumps, with everything on. */
 nt_status nt_plan_facts(nt_plan *plan);
+/* The largest value above 0 at gaps from `first` to `last` [m] that laws of one's own tell apart, which sweeps pass. */
+typedef double nt_plan_gap_law(const nt_plan *plan, double gap);
+double nt_plan_largest_at_edges(const nt_plan *plan, nt_plan_gap_law *law, double first, double last);
+/* A pull, 0 where the tables of laws of one's own err by more [N]. */
+double nt_plan_known_pull(const nt_plan *plan, double pull);
 
 /* pull_off.c: all of the above at a work of adhesion [J/m^2], which a scene reads that gives a pull-off force; and with
  * the w that has the measured one. */
@@ -134,6 +139,10 @@ void nt_plan_offer(const nt_plan *plan, nt_plan_options *options, int term, nt_f
 double nt_plan_cost_of_place(const nt_plan *plan, nt_form form, int which);
 /* An error in the demanded quantity as a share of its scale. */
 double nt_plan_share(const nt_plan *plan, double error);
+/* What the tables of laws of one's own err by [N or N/m]. */
+double nt_plan_table_error(const nt_plan *plan, nt_quantity quantity);
+/* A refusal that names no accuracy: because of what the sample yields to, or of such a table if that errs by more. */
+nt_problem nt_plan_reason(const nt_plan *plan, const char *yields, double error);
 
 /* elastic.c: what the terms beside contact err by where they add on the undeformed gap, as a share of the demand;
  * also the elastic number, and where a sample that is pulled jumps: 0.56 of a pressure as 1/g^3, 0.81 of an

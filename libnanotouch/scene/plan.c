@@ -182,7 +182,7 @@ static nt_term_refused words_of(const nt_plan *plan)
 /* By the name of that law. */
 static nt_problem by_law(const nt_plan *plan, double error)
 {
-    return (nt_problem){words_of(plan).yields, NT_UNIT_ERROR, error, 0.0, plan->demand.relative_accuracy};
+    return nt_plan_reason(plan, words_of(plan).yields, error);
 }
 
 /* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.

@@ -344,7 +344,10 @@ def test_a_parameter_may_have_any_name_but_those_that_are_taken() -> None:
     for name in ("gap", "version", "not a name"):
         with pytest.raises(InvalidValue, match=f"no parameter may be called {name}"):
             nt.scene.register("odd", parameters={name: 1.0}, units={name: ""}, **laws)
-    for followed, match in (("tip.radius", r"length \[Pa\] cannot follow tip.radius \[m\]"), ("tip.shape", "is a number")):
+    for followed, match in (
+        ("tip.radius", r"length \[Pa\] cannot follow tip.radius \[m\]"),
+        ("tip.shape", "is a number"),
+    ):
         nt.scene.register("odd", parameters={"length": followed}, units={"length": "Pa"}, **laws)
         with pytest.raises(InvalidValue, match=match):
             Scene(terms={"odd": {}})

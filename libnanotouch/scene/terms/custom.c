@@ -79,6 +79,13 @@ static double error(const void *law, nt_quantity quantity)
                                                : 0.0;
 }
 
+static int edges(const void *law, const double **gaps)
+{
+    const nt_custom_table *table = law;
+    *gaps = table->gap;
+    return table->count == 0 ? 0 : table->count + 1;
+}
+
 /* By Derjaguin's relation from the sphere's F = 2 pi R W; inside the first gap that of the first gap. */
 static nt_pressure pressure(const void *law, double gap)
 {
@@ -108,6 +115,6 @@ static const nt_term_form forms[] = {{NT_FORM_TABLE, 1.4, 1.3, "tabulated"}};
     }                                                                                                                  \
     NT_TERM_BESIDE(name_, NULL, full_form, eval, hold, pressure,                                                       \
                    .words = {#name_, #name_, "a law of one's own", NULL, forms, 1, 1}, .limit = limit,                 \
-                   .tabulate = tabulate_##name_, .error = error, .name_of = name_of,                                   \
+                   .tabulate = tabulate_##name_, .error = error, .edges = edges, .name_of = name_of,                   \
                    .refused = NT_TERM_REFUSED("a law of its own"));
 NT_TERMS_CUSTOM(CUSTOM)

@@ -62,6 +62,8 @@ typedef struct nt_term_row {
     nt_status (*tabulate)(void *law, const nt_scene *scene, nt_problem *problem);
     /* What its fullest form errs by itself [N or N/m]. */
     double (*error)(const void *law, nt_quantity quantity);
+    /* Gaps between which it is smooth, that sweeps over gaps would pass over [m]: their number, 0 if there are none. */
+    int (*edges)(const void *law, const double **gaps);
     /* Its name and title, where the scene gives them. */
     const char *(*name_of)(const void *law);
 

@@ -84,7 +84,8 @@ static int takes_relief(const nt_plan *plan)
 /* All that a table does not know, as a share of the demand. */
 static double other_errors(const nt_plan *plan, double nearest, int felt)
 {
-    const double error = felt ? nt_plan_share(plan, without_pressure(plan, nearest)) : 0.0;
+    const double lost = without_pressure(plan, nearest) + nt_plan_table_error(plan, plan->demand.quantity);
+    const double error = felt ? nt_plan_share(plan, lost) : 0.0;
     return error + (takes_relief(plan) ? 0.0 : spread_of_radii(plan));
 }
 
@@ -100,26 +101,37 @@ static double gap_at_load(const nt_plan *plan, double load)
     return nearer;
 }
 
+static double pull_at(const nt_plan *plan, double gap)
+{
+    return -nt_yield_apart(plan, &plan->yield, gap).F;
+}
+
+static double growth_at(const nt_plan *plan, double gap)
+{
+    return -nt_yield_apart(plan, &plan->yield, gap).k;
+}
+
 /* Numbers of the force as it is now. */
 static void facts_of(nt_plan *plan, double load)
 {
     const nt_yield_table *table = &plan->yield;
-    double pull = 0.0, growth = 0.0;
+    double pull = nt_plan_largest_at_edges(plan, pull_at, table->last, INFINITY);
+    double growth = nt_plan_largest_at_edges(plan, growth_at, table->last, INFINITY);
     plan->maximum_stiffness = fmax(nt_yield_apart(plan, &plan->yield, gap_at_load(plan, DEEPER * load)).k, 0.0);
     for (int i = 0; i < table->count; ++i)
         if (table->node[i].F <= DEEPER * load)
             plan->maximum_stiffness = fmax(plan->maximum_stiffness, table->node[i].k);
     const double first = table->first + table->hold;
     for (int i = 0; i <= SAMPLES; ++i) {
-        const nt_law_value value = nt_yield_apart(plan, &plan->yield, first + (table->last - first) * i / SAMPLES);
-        pull = fmax(pull, -value.F);
-        growth = fmax(growth, -value.k);
+        const double gap = first + (table->last - first) * i / SAMPLES;
+        pull = fmax(pull, pull_at(plan, gap));
+        growth = fmax(growth, growth_at(plan, gap));
     }
     for (double gap = first; gap < FARTHEST; gap *= CLOSER) {
-        const nt_law_value value = nt_yield_apart(plan, table, gap);
-        pull = fmax(pull, -value.F);
-        growth = fmax(growth, -value.k);
+        pull = fmax(pull, pull_at(plan, gap));
+        growth = fmax(growth, growth_at(plan, gap));
     }
+    pull = nt_plan_known_pull(plan, pull);
     plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
     plan->minimum_spring = growth;
     plan->largest_indentation = -gap_at_load(plan, load);

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the table of a law of one's own does not know: in the bound, in the numbers of a plan, in the refusal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import nanotouch as nt
+import numpy as np
+import pytest
+from nanotouch import Scene
+from nanotouch.errors import InvalidValue
+from nanotouch.scene._custom import _known
+
+
+@pytest.fixture(autouse=True)
+def forgotten() -> Iterator[None]:
+    yield
+    _known.clear()
+
+
+def stiff_scene(law: str) -> Scene:
+    """Without adhesion, on bodies that hardly yield."""
+    return Scene(
+        tip={"radius": 20e-6, "youngs_modulus": 1e13}, sample={"youngs_modulus": 1e13}, medium={"kind": "vacuum"},
+        adhesion={"work_of_adhesion": 0.0, "hamaker_constant": 0.0}, range={"maximum_load": 3.5e-9}, terms={law: {}},
+    )  # fmt: skip
+
+
+def register_morse(depth: float, centre: float, length: float) -> None:
+    """A Morse potential: F = 4 depth (e^2 - e), e = exp(-(h - centre)/length), so that it pulls by `depth` at most."""
+
+    def at(gap: float, first: float, second: float) -> float:
+        e = math.exp(-(gap - centre) / length)
+        return 4.0 * depth * (first * e**2 - second * e)
+
+    nt.scene.register(
+        "morse", parameters={}, units={},
+        energy=lambda gap: at(gap, 0.5 * length, length), force=lambda gap: at(gap, 1.0, 1.0),
+        stiffness=lambda gap: at(gap, 2.0 / length, 1.0 / length),
+        bound=lambda gap: max(abs(at(gap, 1.0, 1.0)), depth if gap < centre + math.log(2.0) * length else 0.0),
+    )  # fmt: skip
+
+
+def test_the_end_of_a_table_is_in_the_bound_of_a_sample_that_yields() -> None:
+    """It ends at 1e-9 of the law at z0, which may be far above the largest load: what is cut off is 0.13 S here."""
+    register_morse(1.79e-9, 2.63e-9, 0.395e-9)
+    scene = stiff_scene("morse")
+    with pytest.raises(InvalidValue, match="the table of a law of its own errs by too much"):
+        scene.plan(3.9e-4)
+    register_morse(1.79e-9, 1.2e-9, 0.395e-9)
+    scene = stiff_scene("morse")
+    plan = scene.plan(0.01)
+    gaps = np.concatenate([np.linspace(1.2e-9, 8e-9, 400), np.geomspace(8e-9, 1e-5, 100)])
+    truth = np.array([scene.term_force("morse", gap) for gap in gaps])
+    error = np.abs(plan.force(gaps[::-1])[::-1] - truth) / np.maximum(np.abs(truth), plan.scale)
+    assert error[truth < 3.5e-9].max() <= plan.bound + plan.explain()["rigid_error"]
+
+
+def test_a_narrow_pull_far_out_is_found() -> None:
+    """Of a width that a sweep in ratios passes over: a Gaussian at 20 nm, 0.1 nm wide."""
+    depth, centre, width = 1.84e-9, 20.1e-9, 0.135e-9
+
+    def pull(gap: float) -> float:
+        return -depth * math.exp(-(((gap - centre) / width) ** 2))
+
+    nt.scene.register(
+        "far", parameters={}, units={}, force=pull, stiffness=lambda gap: 2.0 * (gap - centre) / width**2 * pull(gap),
+        energy=lambda gap: -depth * width * math.sqrt(math.pi) / 2.0 * math.erfc((gap - centre) / width),
+        bound=lambda gap: depth if gap < centre else -pull(gap),
+    )  # fmt: skip
+    plan = stiff_scene("far").plan(0.05)
+    assert plan.pull_off_force == pytest.approx(depth, rel=1e-3)
+    assert plan.minimum_spring == pytest.approx(depth / width * math.sqrt(2.0 / math.e), rel=1e-2)
+
+
+def test_a_law_that_only_pushes_has_no_pull_off() -> None:
+    """Whatever its table's last digits are."""
+
+    def push(gap: float) -> float:
+        return 1e-9 * math.exp((2e-9 - gap) / 0.3e-9)
+
+    nt.scene.register(
+        "wall", parameters={}, units={}, energy=lambda gap: 0.3e-9 * push(gap), force=push, bound=push,
+        stiffness=lambda gap: push(gap) / 0.3e-9,
+    )  # fmt: skip
+    scene = stiff_scene("wall")
+    for gap in (-1e-3, 1.8e-9):
+        scene.range.minimum_gap = gap
+        plan = scene.plan(0.05)
+        assert plan.pull_off_force == 0.0
+        assert plan.scale == pytest.approx(1e-3 * scene.range.maximum_load)
