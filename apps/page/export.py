@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from nanotouch import presets, units
+from nanotouch import units
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.supervisor import REASONS
 from nanotouch_app.live import hand, host, look, readings, relief, seen, sliders, stage
-from nanotouch_app.live.subject import PRESETS, of_preset
+from nanotouch_app.live.subject import PRESETS, felt, of_preset
 from nanotouch_app.training import LESSON, TASKS, find, pull_off, staircase, steady, stiffer, trace
 from nanotouch_app.training.lesson_pages import PAGES
 from nanotouch_app.training.lesson_texts import TEXTS as LESSON_TEXTS
@@ -45,7 +45,7 @@ def preset(name: str) -> dict[str, Any]:
     """One card with all that it lays."""
     subject = of_preset(name)
     return {
-        "name": name, "title": subject.title, "hint": subject.hint, "felt": presets.FELT[PRESETS[name].scene or name],
+        "name": name, "title": subject.title, "hint": subject.hint, "felt": felt(name),
         "scene": subject.scene.to_dict(), "rig": subject.rig.to_dict(), "surface": surface_of(subject.topography),
         "accuracy": subject.accuracy, "relief": float(subject.topography.height_range),
     }  # fmt: skip

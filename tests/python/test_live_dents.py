@@ -4,17 +4,19 @@ surface as it was edited, undo and rewind; balls of a task that the tip pushes."
 
 from __future__ import annotations
 
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import plasticity
 from nanotouch_app import view
-from nanotouch_app.live import dented, film
+from nanotouch_app.live import board, cards, dented, film
 from nanotouch_app.live.host import Host
+from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.seen import Seen
-from nanotouch_app.live.subject import of_preset
+from nanotouch_app.live.subject import PRESETS, felt, of_preset
 from nanotouch_app.training import named
 from nanotouch_app.training.ideal import Operator
 from nanotouch_app.training.push import Push, Pushed
@@ -188,6 +190,23 @@ def test_the_picture_draws_dents_and_balls(tmp_path: Any) -> None:
     host.answer({"do": "task", "name": ""})
     assert not studio.picture.stage.balls.balls
     studio.close()
+
+
+def test_each_preset_has_a_card_with_its_words() -> None:
+    written: list[str] = []
+    painter = SimpleNamespace(box=lambda *_: None, text=lambda _x, _y, words, *_, **__: written.append(words))
+    cards.draw(cast(Any, painter), LIGHT, (0.0, 0.0, 800.0, 800.0), "")
+    for name, preset in PRESETS.items():
+        assert preset.title in written
+        assert felt(name)
+        assert of_preset(name).felt == felt(name)
+
+
+def test_each_task_of_the_menu_has_a_key() -> None:
+    pytest.importorskip("vtkmodules")
+    from nanotouch_app.live.window import FUNCTION_KEYS  # it loads VTK
+
+    assert len(FUNCTION_KEYS) >= len(board.MENU)
 
 
 def test_a_ball_that_is_pushed_beside_its_middle_turns_away() -> None:

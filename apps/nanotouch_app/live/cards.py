@@ -5,11 +5,9 @@ from __future__ import annotations
 
 import textwrap
 
-from nanotouch import presets
-
 from nanotouch_app.live.look import SMALL, TITLE, Palette
 from nanotouch_app.live.painter import Painter
-from nanotouch_app.live.subject import PRESETS
+from nanotouch_app.live.subject import PRESETS, felt
 
 Frame = tuple[float, float, float, float]
 COLUMNS, GAP, HEAD = 2, 12.0, 44.0  # [pixels]
@@ -49,7 +47,7 @@ def draw(painter: Painter, palette: Palette, frame: Frame, opened: str) -> None:
         letters = max(10, int((box[2] - 24) / LETTER))
         painter.text(left, top - 17, preset.title, palette.ink, bold=True)
         lines = [(line, palette.accent) for line in textwrap.wrap(preset.hint, letters)]
-        lines += [(line, palette.quiet) for line in textwrap.wrap(presets.FELT[preset.scene or name], letters)]
+        lines += [(line, palette.quiet) for line in textwrap.wrap(felt(name), letters)]
         fits = int((box[3] - 44.0) / 16.0) + 1
         if len(lines) > fits:
             lines[fits - 1] = (f"{lines[fits - 1][0]} ...", lines[fits - 1][1])

@@ -64,6 +64,11 @@ class Preset:
     """of its forces: where a slider leads to what is less well known, a little less is asked"""
 
 
+def felt(name: str) -> str:
+    """What the hand feels of a preset."""
+    return PRESETS[name].felt or presets.FELT[PRESETS[name].scene or name]
+
+
 def soft_gold() -> tuple[nt.Scene, nt.Rig]:
     """A diamond tip on annealed gold, which yields and keeps dents; contact alone."""
     scene = nt.Scene(
@@ -164,5 +169,5 @@ def of_preset(name: str) -> Subject:
     known = PRESETS[name]
     of = known.scene or name
     scene, rig = (known.made or getattr(presets, of))()
-    return Subject(name, known.title, scene, rig, known.surface(), known.felt or presets.FELT[of], known.hint,
+    return Subject(name, known.title, scene, rig, known.surface(), felt(name), known.hint,
                    accuracy=known.accuracy)  # fmt: skip

@@ -37,7 +37,7 @@ PLAIN_KEYS = {
 }  # fmt: skip
 ARROWS = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
 ARROW_PIXELS = 4.0
-FUNCTION_KEYS = tuple(f"f{number}" for number in range(1, 10))
+FUNCTION_KEYS = tuple(f"f{number}" for number in range(1, 13))
 HEIGHT_KEYS = {"plus": True, "kp_add": True, "minus": False, "kp_subtract": False}
 REPEAT = 0.08  # a key that is let go for less than this [s] is held: X11 repeats it so
 
