@@ -297,7 +297,9 @@ def draw(image: scan.Image, path: Any) -> None:
     ]
     for panel, (title, values) in zip(panels, shown, strict=False):
         low, high = np.percentile(values, (0.5, 99.5))
-        drawn = panel.imshow(values, origin="lower", extent=extent, aspect="auto", vmin=low, vmax=max(high, low + 1e-9))
+        drawn = panel.imshow(
+            values, origin="lower", extent=extent, aspect="auto", vmin=low, vmax=high if high > low else low + 1.0
+        )
         figure.colorbar(drawn, ax=panel)
         panel.set_title(title, loc="left", fontsize="medium")
         panel.set_xlabel("x (um)")

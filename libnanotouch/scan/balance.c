@@ -154,8 +154,10 @@ static void add_bounds(const nt_balance *b, motion *f, double fold, nt_balance_v
     value->force_bound = fmax(fabs(down - here), fabs(up - here));
     const double answer = fabs(value->gain) < STEEP ? fabs(value->gain) * moved : answer_to(b, &begun, fold, moved);
     value->amplitude_bound = fmax(moved, answer) + GRAIN * t->free_amplitude;
-    if (fabs(f->o.lowest - nt_plan_capture_gap(b->plan, b->place)) <= moved || !(answer < HUGE_VAL))
-        value->amplitude_bound = value->force_bound = HUGE_VAL; /* it may take hold, or not; or end */
+    const int may_catch = fabs(f->o.lowest - nt_plan_capture_gap(b->plan, b->place)) <= moved;
+    const int may_hold = f->o.captured && f->o.top - b->plan->release_gap <= moved;
+    if (may_catch || may_hold || !(answer < HUGE_VAL)) /* or the branch ends */
+        value->amplitude_bound = value->force_bound = HUGE_VAL;
 }
 
 static nt_balance_value value_of(const nt_balance *b, motion *f, const slopes *s)

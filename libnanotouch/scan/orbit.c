@@ -217,13 +217,14 @@ static int integrate(orbit *o)
     for (int n = 2; n <= o->balance->harmonics; n++)
         turned += (n % 2 ? -1.0 : 1.0) * o->at.real[n];
     o->middle = o->at.depth - lever->cosine * turned;
-    const double top = o->middle + lever->cosine * o->at.swing;
     memset(o->force, 0, sizeof o->force);
     if (products_of(o) > 0) {
         memset(o->slope, 0, sizeof o->slope);
         memset(o->damper, 0, sizeof o->damper);
     }
     find_lowest(o);
+    double ignored;
+    const double top = o->top = way_at(o, 0.0, &ignored);
     nt_interaction_state history = {0, 0.0, 0.0};
     nt_interaction_advance_gap(plan, &history, o->balance->place, o->lowest);
     o->captured = history.attached;

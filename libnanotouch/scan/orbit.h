@@ -11,7 +11,7 @@ typedef struct orbit {
     const nt_balance *balance;
     nt_balance_state at; /* swing, depth, higher harmonics */
     double middle;       /* gap where only the mean acts [m] */
-    double low_angle, lowest;
+    double low_angle, lowest, top;
     int orders, captured, released;
     double force[ORDERS + 1][2];    /* F_n/k_c, real and imaginary, n = 0 .. orders [m] */
     double slope[PRODUCTS + 1][2];  /* 1/pi of the integral of dF/dh e^(-i p psi)/k_c */
