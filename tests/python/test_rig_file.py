@@ -76,6 +76,11 @@ def test_each_key_is_needed_and_named(path: tuple[str, ...]):
 
 
 WRONG = {
+    ("slave", "chips", "adc", "clock_MHz"): (18, "AD7606: clock = 1.8e.07 Hz"),
+    ("slave", "chips", "adc", "device"): ("/dev/spidev0.0", r"chips.dac\] and .*chips.adc\] are the same device"),
+    ("slave", "deflection_z", "channel"): (0, r"position_z\] and .*deflection_z\] are the same wire: channel 0 of adc"),
+    ("slave", "lines", "watchdog"): ("estop", r"emergency_stop and .*watchdog are the same line: estop"),
+    ("slave", "lines", "debounce_ms"): (-1, "debounce = -0.001 s: valid is 0"),
     ("slave", "chips", "dac", "chip"): ("AD9999", "known are AD5791"),
     ("slave", "chips", "dac", "clock_MHz"): (float("nan"), "finite"),
     ("slave", "chips", "dac", "high_V"): (-10, "converter.span.high"),
@@ -186,6 +191,15 @@ def test_a_rehearsal_needs_one_word(command: str, tmp_path: Path, monkeypatch: p
     Path("rig.toml").write_text(FILE.read_text().replace('"spidev"', '"simulated"'))
     assert main(command.format("rig.toml").split()) == 0
     assert files.of_scene(Path("rig.toml")).rig.probe.spring_constant == 8.0  # nanotouch live
+
+
+def test_two_axes_on_one_output():
+    given = tables()
+    slave = given["slave"]
+    slave["axes"] = 3
+    slave["travel_x"], slave["position_x"] = dict(slave["travel_z"]), dict(slave["position_z"], channel=2)
+    with pytest.raises(InvalidValue, match=r"travel_x\] and \[slave.travel_z\] are the same wire: channel 0 of dac"):
+        rig_file.from_tables(given)
 
 
 STRANGE: list[Any] = [

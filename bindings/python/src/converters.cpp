@@ -36,6 +36,9 @@ static nt_converter converter_of(const py::dict &table, nt_chip &own)
     made.chip = nt_chip_find(name.c_str());
     if (!made.chip)
         raise(NT_E_ARGUMENT, "chip = '" + name + "' is none that is known");
+    const auto clock = table["clock"].cast<double>();
+    if (!(clock >= 1e3 && clock <= made.chip->clock)) // what its data sheet allows
+        raise_on(NT_E_RANGE, {"clock", "Hz", clock, 1e3, made.chip->clock}, name);
     made.span = {table["low"].cast<double>(), table["high"].cast<double>()};
     return made;
 }

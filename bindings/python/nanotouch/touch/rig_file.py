@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -30,21 +30,22 @@ from numpy.typing import NDArray
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
 from nanotouch.errors import InvalidValue
+from nanotouch.touch._rig_table import Table
 from nanotouch.touch.hal import Mailbox, SharedObject
-from nanotouch.units import key_spellings, to_si
+from nanotouch.units import key_spellings
 
 HALVES = ("master", "slave")
 ELSEWHERE = {"shared_object": ("path", "option"), "mailbox": ("name",)}
 """backends that a program of its own makes, with their keys"""
 BACKENDS = ("spidev", "iio", *ELSEWHERE, "simulated")
 AXES = ("x", "y", "z")
-MOST = 1000
-"""whole numbers of a rig file are small: axes, channels"""
 QUANTITIES = {
     "master": {"position": "position", "force": "felt", "motor": "driven"},
     "slave": {"position": "position", "deflection": "felt", "travel": "driven"},
 }
 """tables of a half, with what the library calls them"""
+MOST_DEBOUNCE = 0.1
+"""of the limit switch [s], as nt_gpio_open has it"""
 LINES = ("emergency_stop", "limit_switch", "laser_enable", "watchdog", "convert")
 
 
@@ -70,49 +71,7 @@ class RigFile(NamedTuple):
     slave: RealHalf | None
 
 
-class _Table:
-    """A table of the file; every key that is taken out is known, and what is left is not."""
-
-    def __init__(self, where: str, given: object) -> None:
-        if not isinstance(given, Mapping):
-            raise InvalidValue(f"[{where}] must be a table")
-        self.where, self.left = where, dict(given)
-
-    def word(self, key: str, kind: type | tuple[type, ...] = str, example: str = '"..."') -> Any:
-        if key not in self.left:
-            raise InvalidValue(f"[{self.where}] {key} is missing: write {key} = {example}")
-        value = self.left.pop(key)
-        is_large = isinstance(value, int) and not 0 <= value <= MOST
-        is_odd = isinstance(value, str) and not (value and value.isprintable())
-        if not isinstance(value, kind) or isinstance(value, bool) or is_large or is_odd:
-            raise InvalidValue(f"[{self.where}] {key} = {value!r}: write {key} = {example}")
-        return value
-
-    def number(self, name: str, unit: str, default: float | None = None) -> float:
-        keys = key_spellings(name, unit)
-        found = [key for key in keys if key in self.left]
-        if len(found) > 1:
-            raise InvalidValue(f"[{self.where}] has both {found[0]} and {found[1]}: give one")
-        if not found:
-            if default is not None:
-                return default
-            raise InvalidValue(f"[{self.where}] {name} is missing: write {' or '.join(keys)} = a number")
-        value = self.left.pop(found[0])
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise InvalidValue(f"[{self.where}] {found[0]} = {value!r}: it must be a finite number")
-        return to_si(float(value), keys[found[0]])
-
-    def table(self, key: str, example: str) -> _Table:
-        if key not in self.left:
-            raise InvalidValue(f"[{self.where}.{key}] is missing: {example}")
-        return _Table(f"{self.where}.{key}", self.left.pop(key))
-
-    def done(self) -> None:
-        if self.left:
-            raise InvalidValue(f"[{self.where}] has no key {next(iter(self.left))!r}")
-
-
-def _chip(table: _Table) -> dict[str, Any]:
+def _chip(table: Table) -> dict[str, Any]:
     chip = table.word("chip", example=f'"{_core.rigs.chips()[0]}"')
     if chip not in _core.rigs.chips():
         raise InvalidValue(f"[{table.where}] chip = {chip!r}: known are {', '.join(_core.rigs.chips())}")
@@ -127,7 +86,7 @@ def _chip(table: _Table) -> dict[str, Any]:
     return made
 
 
-def _iio_chip(table: _Table) -> dict[str, Any]:
+def _iio_chip(table: Table) -> dict[str, Any]:
     """A device of IIO: what its driver does not say."""
     ways = [way for way in ("inputs", "outputs") if way in table.left]
     if len(ways) != 1:
@@ -152,7 +111,7 @@ def _is_word(given: object) -> bool:
     return isinstance(given, str) and bool(given) and given.isprintable() and " " not in given
 
 
-def _channel(table: _Table, chips: list[str], unit: str, calibrated: dict[str, datetime.date]) -> dict[str, Any]:
+def _channel(table: Table, chips: list[str], unit: str, calibrated: dict[str, datetime.date]) -> dict[str, Any]:
     chip = table.word("chip", example=f'"{chips[0]}"')
     if chip not in chips:
         raise InvalidValue(f"[{table.where}] chip = {chip!r}: this half has {', '.join(chips)}")
@@ -172,16 +131,44 @@ def _channel(table: _Table, chips: list[str], unit: str, calibrated: dict[str, d
     return made
 
 
-def _lines(table: _Table) -> dict[str, Any]:
+def _lines(table: Table) -> dict[str, Any]:
     made: dict[str, Any] = {"emergency_stop": table.word("emergency_stop", example='"estop"')}
     for name in LINES[1:]:
         made[name] = table.word(name, example='"..."') if name in table.left else None
     made["debounce"] = table.number("debounce", "s", 0.0)
+    if not 0.0 <= made["debounce"] <= MOST_DEBOUNCE:
+        raise InvalidValue(f"[{table.where}] debounce = {made['debounce']:g} s: valid is 0 .. {MOST_DEBOUNCE:g} s")
+    _refuse_twice({f"[{table.where}] {name}": made[name] for name in LINES if made[name] is not None}, "line")
     table.done()
     return made
 
 
-def _half(half: str, table: _Table, backend: str) -> Converters:
+def _refuse_twice(named: Mapping[str, object], what: str) -> None:
+    """What two keys name, one of them has not."""
+    seen: dict[object, str] = {}
+    for where, value in named.items():
+        if value in seen:
+            raise InvalidValue(f"{seen[value]} and {where} are the same {what}: {value}")
+        seen[value] = where
+
+
+def _check_wires(half: str, setup: Mapping[str, Any], names: Sequence[str]) -> None:
+    """Each device is one chip, each output drives one thing, each input measures one."""
+    devices = {f"[{half}.chips.{name}]": chip["device"] for name, chip in zip(names, setup["chips"], strict=True)}
+    if "context" not in setup:  # a device of IIO may both drive and measure
+        _refuse_twice(devices, "device")
+    for is_driven in (True, False):
+        wires = {
+            f"[{half}.{word}_{axis}]": f"channel {one['channel']} of {names[one['converter']]}"
+            for word, name in QUANTITIES[half].items()
+            if (name == "driven") == is_driven
+            for axis, one in zip(AXES, setup[name], strict=True)
+            if one
+        }
+        _refuse_twice(wires, "wire")
+
+
+def _half(half: str, table: Table, backend: str) -> Converters:
     context = {"context": table.word("context", example='"local:"')} if backend == "iio" else {}
     read_chip = _iio_chip if backend == "iio" else _chip
     axes = table.word("axes", int, "1")
@@ -208,11 +195,12 @@ def _half(half: str, table: _Table, backend: str) -> Converters:
     else:
         setup["lines"] = None
     table.done()
+    _check_wires(half, setup, list(chips))
     _core.rigs.check_converters(setup)
     return Converters(setup, calibrated)
 
 
-def _elsewhere(half: str, backend: str, table: _Table, folder: Path) -> SharedObject | Mailbox:
+def _elsewhere(half: str, backend: str, table: Table, folder: Path) -> SharedObject | Mailbox:
     """A half of another maker: by its file, which a relative path seeks beside the rig file, or by its name."""
     if backend == "mailbox":
         made: SharedObject | Mailbox = Mailbox(table.word("name", example='"stage"'))
@@ -245,7 +233,7 @@ def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
             raise InvalidValue(f"[{half}] has no key {next(iter(rest))!r}")
     if backend == "simulated":
         return None
-    table = _Table(half, {key: given[key] for key in given if key in own and key != "backend"})
+    table = Table(half, {key: given[key] for key in given if key in own and key != "backend"})
     return _elsewhere(half, backend, table, folder) if backend in ELSEWHERE else _half(half, table, backend)
 
 
