@@ -67,6 +67,11 @@ int nt_dents_undo(nt_dents *dents)
         return 0;
     --dents->count;
     dents->full = 0;
+    if (dents->inside >= dents->count) { /* the tip is over it: nothing is known here until it is placed anew */
+        dents->inside = -1;
+        dents->began = dents->bottom = 0.0;
+        dents->contact = (nt_indentation_state){.dent_radius = 0.0};
+    }
     return 1;
 }
 

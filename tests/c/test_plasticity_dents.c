@@ -261,6 +261,41 @@ static void energy_is_kept(void **state)
     assert_true(worst < 2e-6); /* the kinks lie anywhere in 2000 pieces */
 }
 
+/* Presses, drags, taps, goes elsewhere, takes back, at random: the list stays whole, and what is told of it, one dent
+ * at a time as a session does, leads to the same list. */
+static void the_list_stays_whole(void **state)
+{
+    (void)state;
+    nt_random random = nt_random_seed(11);
+    for (int i = 0; i < 60; ++i) {
+        nt_dents dents = {0};
+        nt_dent told[NT_DENTS];
+        int count = 0;
+        nt_dents_place(&gold, &dents, 0.0, 0.0);
+        for (int k = 0; k < 400 && !dents.full; ++k) {
+            const double x = 60e-9 * nt_random_uniform(&random), heat = dents.dissipated;
+            const double what = nt_random_uniform(&random);
+            nt_dents_advance(&gold, &dents, what < 0.4 ? 1e-9 : -2e-9 * nt_random_uniform(&random));
+            if (dents.touches && nt_random_uniform(&random) < 0.3)
+                nt_dents_slide(&gold, &dents, dents.at[0] + 10e-9 * nt_random_uniform(&random), 0.0);
+            const int left = nt_dents_place(&gold, &dents, what < 0.2 ? dents.at[0] : x, 0.0);
+            for (int m = dents.count - left; m < dents.count; ++m) {
+                assert_true(m == count || (m == count - 1 && dents.made[m].grown > 0));
+                told[m] = dents.made[m];
+                count = m + 1;
+            }
+            if (nt_random_uniform(&random) < 0.1)
+                count -= nt_dents_undo(&dents);
+            assert_true(dents.count == count && dents.dissipated >= heat && dents.inside < NT_DENTS);
+        }
+        for (int m = 0; m < count; ++m) {
+            const nt_dent *dent = &dents.made[m];
+            assert_true(dent->before < m && dent->imprint.depth > 0.0 && dent->load > 0.0);
+            assert_memory_equal(&told[m].imprint, &dent->imprint, sizeof dent->imprint);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,6 +307,7 @@ int main(void)
         cmocka_unit_test(a_dent_remembers_its_load),
         cmocka_unit_test(an_older_dent_grows_as_a_new_one),
         cmocka_unit_test(taps_add_up_to_one_dent),
+        cmocka_unit_test(the_list_stays_whole),
         cmocka_unit_test(energy_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
