@@ -101,7 +101,11 @@ def test_energy_is_kept_on_random_paths() -> None:
             assert (np.diff(path.dissipated, prepend=heat) >= 0.0).all()
             assert (path.stored >= 0.0).all()
             turnover += float(np.abs(np.diff(path.work, prepend=begun.work)).sum())
-            worst = max(worst, float(np.abs(path.stored + path.dissipated - path.work).max()) / max(turnover, 1e-30))
+            worst = float(
+                np.maximum(
+                    worst, float(np.abs(path.stored + path.dissipated - path.work).max()) / np.maximum(turnover, 1e-30)
+                )
+            )
             heat = float(path.dissipated[-1])
         pushed += heat > 0.0
     print(f"{wires} wires: stored + dissipated beside the work within {worst:.2g} of the turnover")
