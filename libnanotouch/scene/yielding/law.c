@@ -6,6 +6,9 @@
 #include "scene/terms/term.h"
 #include "scene/yielding/cubic.h"
 
+enum { SAMPLES = 1000, HALVINGS = 60 };
+
+#define CLOSER 1.02        /* ratio of gaps at which forces are sampled */
 #define FARTHEST_SHIFT 0.1 /* of the first gap, where force and table differ by a small part of the tolerance */
 
 /* In the part of the nodes low .. high - 1. */
@@ -160,4 +163,54 @@ double nt_plan_rise(const nt_plan *plan, const nt_place *place, double gap)
     if (place && plan->relief.count > 0)
         return nt_yield_relief_at(plan, place, 1, gap).law.U - nt_yield_relief_at(plan, place, 0, gap).law.U;
     return nt_plan_around(plan, 1, gap).U - nt_plan_around(plan, 0, gap).U;
+}
+
+/* --- Facts --- */
+
+/* Where a load is reached, which lies between nodes [m]; the table's end where that is less. */
+static double gap_at_load(const nt_plan *plan, double load)
+{
+    const nt_yield_table *table = &plan->yield;
+    double nearer = table->last, farther = table->first + table->hold;
+    for (int i = 0; i < HALVINGS && nt_yield_apart(plan, &plan->yield, table->last).F > load; ++i) {
+        const double middle = 0.5 * (nearer + farther);
+        *(nt_yield_apart(plan, &plan->yield, middle).F > load ? &nearer : &farther) = middle;
+    }
+    return nearer;
+}
+
+static double pull_at(const nt_plan *plan, double gap)
+{
+    return -nt_yield_apart(plan, &plan->yield, gap).F;
+}
+
+static double growth_at(const nt_plan *plan, double gap)
+{
+    return -nt_yield_apart(plan, &plan->yield, gap).k;
+}
+
+void nt_yield_facts(nt_plan *plan, double load)
+{
+    const nt_yield_table *table = &plan->yield;
+    double pull = nt_plan_largest_at_edges(plan, pull_at, table->last, INFINITY);
+    double growth = nt_plan_largest_at_edges(plan, growth_at, table->last, INFINITY);
+    plan->maximum_stiffness =
+        fmax(nt_yield_apart(plan, &plan->yield, gap_at_load(plan, NT_YIELD_DEEPER * load)).k, 0.0);
+    for (int i = 0; i < table->count; ++i)
+        if (table->node[i].F <= NT_YIELD_DEEPER * load)
+            plan->maximum_stiffness = fmax(plan->maximum_stiffness, table->node[i].k);
+    const double first = table->first + table->hold;
+    for (int i = 0; i <= SAMPLES; ++i) {
+        const double gap = first + (table->last - first) * i / SAMPLES;
+        pull = fmax(pull, pull_at(plan, gap));
+        growth = fmax(growth, growth_at(plan, gap));
+    }
+    for (double gap = first; gap < NT_YIELD_FARTHEST; gap *= CLOSER) {
+        pull = fmax(pull, pull_at(plan, gap));
+        growth = fmax(growth, growth_at(plan, gap));
+    }
+    pull = nt_plan_known_pull(plan, pull);
+    plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
+    plan->minimum_spring = growth;
+    plan->largest_indentation = -gap_at_load(plan, load);
 }

@@ -164,9 +164,14 @@ nt_status nt_yield_table_hold(nt_yield_table *table, const nt_yield_sample *samp
 nt_law_value nt_yield_table_eval(const nt_yield_table *table, double h);
 nt_law_value nt_yield_table_held(const nt_yield_table *table, double h);
 
+#define NT_YIELD_FARTHEST 1e-2 /* gaps that are looked at [m] */
+#define NT_YIELD_DEEPER 1.05   /* tables reach beyond the largest load by */
+
 /* law.c: all beside contact by a table, at a gap of the plan; where contact holds or does not. */
 nt_law_value nt_yield_apart(const nt_plan *plan, const nt_yield_table *table, double gap);
 nt_law_value nt_yield_around(const nt_plan *plan, const nt_yield_table *table, int attached, double gap);
+/* Pull-off, stiffnesses and depth of a plan as it is now, without adhesion, up to a load [N]. */
+void nt_yield_facts(nt_plan *plan, double load);
 /* Force and table meet at the first gap, and U begins there as that of the laws. */
 void nt_yield_join(const nt_plan *plan, nt_yield_table *table);
 

@@ -7,7 +7,6 @@
 #include "scene/yielding/yield.h"
 
 #define GAPS 1.1           /* ratio of gaps that are looked at */
-#define FARTHEST 1e-2      /* [m] */
 #define SEAM 0.1           /* of the tolerance: where the table begins */
 #define PARTS 2.5          /* a table's bound over its tolerance */
 #define ROUGHEST 8.6177e-3 /* tolerances of a table: so that there is one for each power of ten of the demand */
@@ -19,16 +18,14 @@
 #define INSIDE 0.9    /* of what is left, in a second attempt */
 #define LEAVES 0.7    /* of the demand; the rest is for the form of contact */
 #define WEAKER 0.7    /* of the pull-off of rigid bodies: that of a sample that yields, at least */
-#define CLOSER 1.02   /* ratio of gaps at which forces are sampled */
 #define FLAT 10.0     /* tables of a stiffness are coarser by */
 #define STIFF 0.3     /* of the tolerance: the gap of a jump, where that of a stiffness was sought */
 #define RELEASED 1e-4 /* of the release gap: two solvers agree on it to 3e-5, whatever is demanded */
-#define DEEPER 1.05   /* than the largest load */
 #define WORST 0.5     /* the largest error that can be demanded */
 #define UNFELT 0.3    /* of the demand: a spread of radii that one table may leave out */
 #define BETWEEN 0.4   /* of what is left over relief: what lies between its tables */
 
-enum { ATTEMPTS = 4, OF_EACH_RADIUS = 2, RUNGS = 100, SAMPLES = 1000, HALVINGS = 60 };
+enum { ATTEMPTS = 4, OF_EACH_RADIUS = 2, RUNGS = 100 };
 
 static int adheres(const nt_plan *plan)
 {
@@ -38,10 +35,11 @@ static int adheres(const nt_plan *plan)
 /* The gap from which on the terms add within an error: bisected to where they no longer do. */
 static double where_rigid(const nt_plan *plan, double hold, double error)
 {
-    double low = fmax(hold, nt_elastic_hold(plan)) * (1.0 + 1e-12), high = FARTHEST; /* held, they have no length */
+    double low = fmax(hold, nt_elastic_hold(plan)) * (1.0 + 1e-12),
+           high = NT_YIELD_FARTHEST; /* held, they have no length */
     nt_elastic_sum s = nt_elastic_sum_at(plan, low);
     const double length = s.all_F / s.all_k;
-    for (double gap = FARTHEST; gap > low; gap /= GAPS) {
+    for (double gap = NT_YIELD_FARTHEST; gap > low; gap /= GAPS) {
         s = nt_elastic_sum_at(plan, gap);
         if (nt_elastic_error(plan, &s) > error) {
             low = gap;
@@ -87,54 +85,6 @@ static double other_errors(const nt_plan *plan, double nearest, int felt)
     const double lost = without_pressure(plan, nearest) + nt_plan_table_error(plan, plan->demand.quantity);
     const double error = felt ? nt_plan_share(plan, lost) : 0.0;
     return error + (takes_relief(plan) ? 0.0 : spread_of_radii(plan));
-}
-
-/* Where a load is reached, which lies between nodes [m]; the table's end where that is less. */
-static double gap_at_load(const nt_plan *plan, double load)
-{
-    const nt_yield_table *table = &plan->yield;
-    double nearer = table->last, farther = table->first + table->hold;
-    for (int i = 0; i < HALVINGS && nt_yield_apart(plan, &plan->yield, table->last).F > load; ++i) {
-        const double middle = 0.5 * (nearer + farther);
-        *(nt_yield_apart(plan, &plan->yield, middle).F > load ? &nearer : &farther) = middle;
-    }
-    return nearer;
-}
-
-static double pull_at(const nt_plan *plan, double gap)
-{
-    return -nt_yield_apart(plan, &plan->yield, gap).F;
-}
-
-static double growth_at(const nt_plan *plan, double gap)
-{
-    return -nt_yield_apart(plan, &plan->yield, gap).k;
-}
-
-/* Numbers of the force as it is now. */
-static void facts_of(nt_plan *plan, double load)
-{
-    const nt_yield_table *table = &plan->yield;
-    double pull = nt_plan_largest_at_edges(plan, pull_at, table->last, INFINITY);
-    double growth = nt_plan_largest_at_edges(plan, growth_at, table->last, INFINITY);
-    plan->maximum_stiffness = fmax(nt_yield_apart(plan, &plan->yield, gap_at_load(plan, DEEPER * load)).k, 0.0);
-    for (int i = 0; i < table->count; ++i)
-        if (table->node[i].F <= DEEPER * load)
-            plan->maximum_stiffness = fmax(plan->maximum_stiffness, table->node[i].k);
-    const double first = table->first + table->hold;
-    for (int i = 0; i <= SAMPLES; ++i) {
-        const double gap = first + (table->last - first) * i / SAMPLES;
-        pull = fmax(pull, pull_at(plan, gap));
-        growth = fmax(growth, growth_at(plan, gap));
-    }
-    for (double gap = first; gap < FARTHEST; gap *= CLOSER) {
-        pull = fmax(pull, pull_at(plan, gap));
-        growth = fmax(growth, growth_at(plan, gap));
-    }
-    pull = nt_plan_known_pull(plan, pull);
-    plan->pull_off_force = plan->largest_pull_off_force = plan->contact_pull = pull;
-    plan->minimum_spring = growth;
-    plan->largest_indentation = -gap_at_load(plan, load);
 }
 
 /* What the plan says of its terms. */
@@ -272,7 +222,7 @@ nt_status nt_plan_yield_compose(nt_plan *plan, const nt_scene *scene, double wor
     nt_yield_join(plan, &plan->yield);
     if (adheres(plan))
         return nt_plan_yield_contact(plan, scene, work_of_adhesion);
-    facts_of(plan, scene->range.maximum_load);
+    nt_yield_facts(plan, scene->range.maximum_load);
     return NT_OK;
 }
 
@@ -286,7 +236,7 @@ static nt_status compose(nt_plan *plan, const nt_scene *scene, double error, nt_
     describe(plan, error);
     if (budget > 0.0 && plan->cost > budget * NT_BUDGET_ROUNDS)
         return refuse(problem, (nt_problem){"demand.budget", "", budget, plan->cost, 1e9});
-    facts_of(plan, scene->range.maximum_load);
+    nt_yield_facts(plan, scene->range.maximum_load);
     return NT_OK;
 }
 
@@ -302,7 +252,7 @@ static nt_status refuse_modulus(const nt_plan *plan, const nt_scene *scene, nt_p
 static double finest_of(const nt_plan *plan, const nt_scene *scene)
 {
     const nt_yield_terms in = {plan, adheres(plan) ? 0.0 : nt_elastic_hold(plan), 0};
-    const nt_yield_sample sample = nt_yield_sample_of(&in, scene, FARTHEST);
+    const nt_yield_sample sample = nt_yield_sample_of(&in, scene, NT_YIELD_FARTHEST);
     const double finest = sample.end_count > 0 ? ENDED * FINEST : FINEST;
     return plan->demand.quantity == NT_QUANTITY_STIFFNESS ? FLAT * FINEST : finest;
 }
@@ -358,7 +308,7 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, nt_yield_wanted *of
     const double alone = takes_relief(plan) ? 1.0 - BETWEEN : 1.0;
     const double share = alone * (adheres(plan) && !surrounded ? LEAVES : 1.0);
     const double spread = spread_of_radii(plan);
-    of->load = DEEPER * scene->range.maximum_load;
+    of->load = NT_YIELD_DEEPER * scene->range.maximum_load;
     of->finest = share * finest;
     of->tolerance = rung_below(share * left, of->finest);
     if (!(left >= finest) && others >= WORST && others - spread < demanded)

@@ -159,7 +159,9 @@ class Yielding:
         """X = r^2 beyond which the rest of a rigid paraboloid at a gap has no force to speak of."""
         all_of_it = abs(float(self.law.energy(np.array([max(gap, 0.0)]))[0])) + 1e-300
         rise = self._length(max(gap, 0.0))
-        while abs(float(self.law.energy(np.array([max(gap, 0.0) + rise]))[0])) > _FAR * all_of_it and rise < WIDEST * self.R:
+        while rise < WIDEST * self.R:
+            if abs(float(self.law.energy(np.array([max(gap, 0.0) + rise]))[0])) <= _FAR * all_of_it:
+                break
             rise *= 1.3
         return 2.0 * self.R * rise
 
