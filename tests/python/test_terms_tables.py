@@ -43,19 +43,38 @@ def register_morse(depth: float, centre: float, length: float) -> None:
     )  # fmt: skip
 
 
-def test_the_end_of_a_table_is_in_the_bound_of_a_sample_that_yields() -> None:
-    """It ends at 1e-9 of the law at z0, which may be far above the largest load: what is cut off is 0.13 S here."""
-    register_morse(1.79e-9, 2.63e-9, 0.395e-9)
+@pytest.mark.parametrize(("centre", "demand"), [(2.63e-9, 1e-3), (1.2e-9, 0.01)])
+def test_the_end_of_a_table_is_in_the_bound_of_a_sample_that_yields(centre: float, demand: float) -> None:
+    """A core far above the largest load: the table ended at 1e-9 of it, which cut off 0.13 S."""
+    register_morse(1.79e-9, centre, 0.395e-9)
     scene = stiff_scene("morse")
-    with pytest.raises(InvalidValue, match="the table of a law of its own errs by too much"):
-        scene.plan(3.9e-4)
-    register_morse(1.79e-9, 1.2e-9, 0.395e-9)
-    scene = stiff_scene("morse")
-    plan = scene.plan(0.01)
+    plan = scene.plan(demand)
     gaps = np.concatenate([np.linspace(1.2e-9, 8e-9, 400), np.geomspace(8e-9, 1e-5, 100)])
     truth = np.array([scene.term_force("morse", gap) for gap in gaps])
     error = np.abs(plan.force(gaps[::-1])[::-1] - truth) / np.maximum(np.abs(truth), plan.scale)
     assert error[truth < 3.5e-9].max() <= plan.bound + plan.explain()["rigid_error"]
+
+
+def test_what_a_table_cannot_tell_is_refused_with_what_it_can() -> None:
+    register_morse(1.79e-9, 2.63e-9, 0.395e-9)
+    with pytest.raises(InvalidValue, match=r"demand\.relative_accuracy = 1e-05: valid is 0\.0004"):
+        stiff_scene("morse").plan(1e-5)
+
+
+def test_a_core_that_no_load_reaches_is_planned() -> None:
+    """A wall of 9 mN at contact, 1 nN at 5 nm, touched with 10 nN."""
+
+    def force(gap: float) -> float:
+        return 1e-9 * math.exp(-(gap - 5e-9) / 0.3e-9)
+
+    nt.scene.register("wall", energy=lambda gap: force(gap) * 0.3e-9, force=force, bound=force, parameters={}, units={},
+                      stiffness=lambda gap: force(gap) / 0.3e-9)  # fmt: skip
+    scene = stiff_scene("wall")
+    scene.tip.radius, scene.range.maximum_load = 20e-9, 10e-9
+    plan, gaps = scene.plan(1e-2), np.linspace(4.31e-9, 8e-9, 300)
+    truth = np.array([force(gap) for gap in gaps])
+    error = np.abs(plan.force(gaps[::-1])[::-1] - truth) / np.maximum(truth, plan.scale)
+    assert error.max() <= plan.bound + plan.explain()["rigid_error"]
 
 
 def test_a_narrow_pull_far_out_is_found() -> None:

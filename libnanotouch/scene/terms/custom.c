@@ -25,7 +25,7 @@ static nt_status tabulate(void *law, const nt_scene *scene, int place, nt_proble
     if (custom->law && custom->bound && memchr(custom->name, '\0', NT_CUSTOM_NAME)) {
         memcpy(table->name, custom->name, strlen(custom->name) + 1u);
         table->radius = scene->tip.radius;
-        status = nt_custom_tabulate(table, custom, scene->adhesion.equilibrium_distance, &found);
+        status = nt_custom_tabulate(table, custom, scene, &found);
     }
     if (status != NT_OK && problem) {
         *problem = found;

@@ -17,6 +17,7 @@
 #define DISAGREE 1e-2    /* F is not -dU/dh beyond this share, or k not -dF/dh beyond ten times it */
 #define TABLED 2.0       /* the error oscillates within a cell: what was sampled may be half of it */
 #define BOUND_HOLDS 1e-9 /* a bound may be this share too small, by rounding */
+#define REACHED 1e1      /* times the largest load: a force beyond it is felt only where more pulls, which S is then */
 #define BEYOND 1.1       /* ratio of gaps at which it is held to its bound beyond the table */
 enum { INSIDE = 3 };     /* samples inside a cell */
 
@@ -31,6 +32,7 @@ typedef struct builder {
     const nt_custom_term *custom;
     nt_law_value ends[NT_CUSTOM_CELLS + 1];
     cell cells[NT_CUSTOM_CELLS];
+    double felt; /* nothing presses the tip to where the force is larger [N] */
     nt_problem *problem;
 } builder;
 
@@ -87,11 +89,13 @@ static nt_status measure(builder *b, int i)
     return NT_OK;
 }
 
-/* Largest |F| and |k| of all samples. */
-static cell largest(const builder *b)
+/* Largest |F| and |k| of all samples where |F| is no more than a force. */
+static cell largest(const builder *b, double felt)
 {
     cell all = {0.0, 0.0, 0.0, 0.0};
     for (int i = 0; i < b->table->count; ++i) {
+        if (fmin(fabs(b->ends[i].F), fabs(b->ends[i + 1].F)) > felt)
+            continue;
         all.force = fmax(all.force, b->cells[i].force);
         all.stiffness = fmax(all.stiffness, b->cells[i].stiffness);
         all.force_error = fmax(all.force_error, b->cells[i].force_error);
@@ -108,7 +112,7 @@ static double relative(double error, double size, double all)
 /* The cell that is most worth splitting; -1 if none is. */
 static int worst(const builder *b)
 {
-    const cell all = largest(b);
+    const cell all = largest(b, b->felt);
     double most = TOLERANCE;
     int found = -1;
     for (int i = 0; i < b->table->count; ++i) {
@@ -154,7 +158,7 @@ static nt_status build(builder *b, double hold)
         *b->problem = (nt_problem){NULL, "N", first, 0.0, INFINITY};
         return NT_E_RANGE;
     }
-    while (end < FARTHEST && !(b->custom->bound(b->custom->context, end) <= END * first))
+    while (end < FARTHEST && !(b->custom->bound(b->custom->context, end) <= END * fmin(first, b->felt)))
         end *= 2.0;
     table->count = FIRST_CELLS;
     for (int i = 0; i <= FIRST_CELLS; ++i) {
@@ -179,7 +183,7 @@ static nt_status build(builder *b, double hold)
 /* Energy, force and stiffness are one law: cells err little in F, and most of them in k (a force may have kinks). */
 static nt_status check_derivatives(const builder *b)
 {
-    const cell all = largest(b);
+    const cell all = largest(b, INFINITY);
     double off = 0.0;
     int wrong = 0;
     for (int i = 0; i < b->table->count; ++i) {
@@ -240,17 +244,18 @@ static nt_status check_bound(const builder *b)
 static void finish(const builder *b)
 {
     nt_custom_table *table = b->table;
-    const cell all = largest(b);
+    const cell all = largest(b, b->felt);
     for (int i = 0; i < table->count; ++i)
         table->U[i][0] -= b->ends[table->count].U;
     table->force_error = TABLED * all.force_error + table->largest_force[table->count];
     table->stiffness_error = TABLED * all.stiffness_error + fabs(b->ends[table->count].k);
 }
 
-nt_status nt_custom_tabulate(nt_custom_table *table, const nt_custom_term *custom, double hold, nt_problem *problem)
+nt_status nt_custom_tabulate(nt_custom_table *table, const nt_custom_term *custom, const nt_scene *scene,
+                             nt_problem *problem)
 {
-    builder b = {.table = table, .custom = custom, .problem = problem};
-    nt_status status = build(&b, hold);
+    builder b = {.table = table, .custom = custom, .felt = REACHED * scene->range.maximum_load, .problem = problem};
+    nt_status status = build(&b, scene->adhesion.equilibrium_distance);
     if (status == NT_OK)
         status = check_derivatives(&b);
     if (status == NT_OK)

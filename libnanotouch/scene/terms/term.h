@@ -110,9 +110,10 @@ const char *nt_term_name_of(const nt_plan *plan, int term);
 /* Words and cost of a form. */
 const nt_term_form *nt_term_form_of(const nt_plan *plan, int term, nt_form form);
 
-/* custom_table.c: the table of a law of one's own from `hold` [m] on. NT_E_NOT_FINITE, NT_E_RANGE: what it states is
- * wrong, with problem->field left to the caller. */
-nt_status nt_custom_tabulate(nt_custom_table *table, const nt_custom_term *custom, double hold, nt_problem *problem);
+/* custom_table.c: the table of a law of one's own from the interatomic distance on; it is resolved where the largest
+ * load reaches. NT_E_NOT_FINITE, NT_E_RANGE: what it states is wrong, with problem->field left to the caller. */
+nt_status nt_custom_tabulate(nt_custom_table *table, const nt_custom_term *custom, const nt_scene *scene,
+                             nt_problem *problem);
 /* The cell of a gap that is not below the first one; -1 beyond the last. */
 int nt_custom_cell(const nt_custom_table *table, double gap);
 
