@@ -139,7 +139,8 @@ def main(wasm: str) -> int:
         skip("the package is not installed: tools/setup.sh test")
     node = node_that_runs()
     subprocess.run([python_with_zig(), ROOT / "apps/page/build_wasm.py", wasm], check=True)
-    asked = {name: [*CHANGES, *([REFUSED[name]] if name in REFUSED else [])] for name in PRESETS}
+    at_home = [name for name, one in PRESETS.items() if one.made is None]  # the page has no balls and no dents
+    asked = {name: [*CHANGES, *([REFUSED[name]] if name in REFUSED else [])] for name in at_home}
     with tempfile.TemporaryDirectory() as folder:
         table, questions = Path(folder) / "table.json", Path(folder) / "asked.json"
         subprocess.run([sys.executable, ROOT / "apps/page/export.py", table], check=True)

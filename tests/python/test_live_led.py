@@ -164,7 +164,12 @@ def test_a_real_slave_at_hard_pace_is_led_and_watched(tmp_path: Path) -> None:
         _until(lambda: observer.newest() is not None)
         for message in remote.turn(None):
             seen.hear(message)
-        seen.look(observer)
+
+        def arrived() -> bool:
+            seen.look(observer)
+            return seen.frame is not None
+
+        _until(arrived)
         start = float(seen.frame["master_position"][2])
         remote.ask({"do": "wheel", "steps": 3.0}, seen.frame)
 
