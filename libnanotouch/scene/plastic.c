@@ -43,7 +43,7 @@ static int is_tabulated(const nt_plan *plan)
 static double peak_pressure(const nt_plan *plan, const nt_scene *scene)
 {
     if (is_tabulated(plan))
-        return nt_yield_table_peak(&plan->yield, scene->range.maximum_load);
+        return nt_yield_table_pressure(&plan->yield, scene->range.maximum_load, nt_yield_peak_at);
     const nt_law_value law = at(plan, plan->largest_indentation);
     const nt_shape_kind kind = plan->shape.kind;
     const double hertz = 2.0 * plan->contact.effective_modulus * law.a / (NT_PI * plan->contact.radius);
@@ -54,15 +54,17 @@ static double peak_pressure(const nt_plan *plan, const nt_scene *scene)
 /* At the largest load [Pa]. */
 static double largest_mean(const nt_plan *plan, const nt_scene *scene)
 {
+    if (is_tabulated(plan))
+        return nt_yield_table_pressure(&plan->yield, scene->range.maximum_load, nt_yield_mean_at);
     const nt_law_value law = at(plan, plan->largest_indentation);
-    return is_tabulated(plan) ? peak_pressure(plan, scene) / OF_MEAN : mean_pressure(&law);
+    return mean_pressure(&law);
 }
 
 /* The largest load up to that mean pressure, which nowhere falls with the depth [N]. */
 static double load_at(const nt_plan *plan, double pressure)
 {
     if (is_tabulated(plan))
-        return KEEPS * nt_yield_table_load(&plan->yield, OF_MEAN * pressure);
+        return KEEPS * nt_yield_table_load(&plan->yield, pressure, nt_yield_mean_at);
     double low = 0.0, high = plan->largest_indentation;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);

@@ -92,6 +92,7 @@ typedef struct nt_yield_table {
     int holds;         /* 1: the nodes from `apart` on are an adhesive contact and all that acts around it ... */
     double release;    /* ... that lets go at this h [m] */
     double ratio;      /* of the effective radius it is of to the tip's own [-] */
+    int layered;       /* 1: of a layer bonded to rigid ground */
     double share;      /* of w, what the tail pulls in contact that the surface does not jump into [J/m^2] */
     nt_yield_node node[NT_YIELD_TABLE];
 } nt_yield_table;

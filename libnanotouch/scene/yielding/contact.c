@@ -257,7 +257,7 @@ int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point)
     }
     if (!nt_yield_eliminate(s, y, n))
         return 0;
-    const nt_pressure outer = nt_yield_law(s, s->gap[n - 1]);
+    const nt_pressure outer = nt_yield_law(s, nt_yield_outer_gap(s));
     F = 2.0 * NT_PI * R * outer.energy + 2.0 * E * a * (-h - a * a / (3.0 * R));
     k = 2.0 * NT_PI * R * outer.pressure + 2.0 * E * a;
     (void)nt_yield_rim(s, h, e, &slope);
@@ -269,7 +269,7 @@ int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point)
         g_h += m->K1[j] * p.slope * y[j];
     }
     const double stress = s->sample->stress + nt_yield_law(s, s->sample->range).pressure;
-    *point = (nt_yield_point){h, F, k, 0.0, 0.0, a};
+    *point = (nt_yield_point){h, F, k, 0.0, 0.0, a, 0.0};
     const double wider = excess(s, a, e * (1.0 + NUDGE), 1), narrower = excess(s, a, e * (1.0 - NUDGE), 1);
     point->k -= NT_PI * stress * g_h * g_h / ((wider - narrower) * s->sample->range / (2.0 * NUDGE * e));
     (void)excess(s, a, e, 1);
@@ -340,5 +340,5 @@ double nt_yield_energy_in_contact(const nt_yield_solver *s)
         U +=
             m->area[i] * (i < N ? held - adhesion * (s->sample->range - s->gap[i]) : nt_yield_law(s, s->gap[i]).energy);
     }
-    return U + energy_beyond(s->sample, s->gap[m->count - 1]);
+    return U + energy_beyond(s->sample, nt_yield_outer_gap(s));
 }

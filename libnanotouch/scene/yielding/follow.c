@@ -16,6 +16,9 @@ enum { N = NT_YIELD_ORDER };
 #define WIDEST 4.0     /* of R^2: the mesh ends there */
 #define FINE 2e-3      /* of what a panel must resolve: it can be twice as wide */
 #define UNFELT 1.0     /* of what a panel must resolve: what the place of a kink may do to the force */
+#define UNEVEN 8.0     /* times how far the middle gap is off: what an uneven gap does to the force, no more */
+#define LITTLE 0.03    /* of the energy of a panel */
+#define ROUNDING 1e-12 /* of x: inside a panel, not on its edge */
 #define PLACED 2e-4    /* of x: nearer to a kink no edge has to be */
 #define GRADED 4.0     /* times x: the edge after a kink */
 #define BEFORE 1e-9    /* of the gap of a kink: where the law is still that before it */
@@ -72,8 +75,8 @@ static double roughness(const nt_yield_solver *s, int panel, const double *p, do
     for (int i = panel * N; i < (panel + 1) * N; ++i)
         least = fmin(least, s->gap[i]);
     const double width = m->edges[panel + 1] - m->edges[panel];
-    const double tail = nt_yield_mesh_tail(p, panel) * NT_PI * width / all;
-    const double bent = nt_yield_mesh_tail(s->gap, panel) / fmax(least, length_at(s, 0.0));
+    const double tail = nt_yield_mesh_tail(m, p, panel) * NT_PI * width / all;
+    const double bent = nt_yield_mesh_tail(m, s->gap, panel) / fmax(least, length_at(s, 0.0));
     return fmax(tail / s->tolerance, bent / BENT);
 }
 
@@ -147,6 +150,51 @@ static int place_kink(const nt_yield_solver *s, nt_yield_edges *list, int panel,
     return 1;
 }
 
+/* A panel on which the gap grows evenly presses what the energies at its ends tell. */
+typedef struct evenly {
+    double E, per_energy; /* energy at its start [J/m^2], force per energy [m^2] */
+} evenly;
+
+/* What the pressure at the nodes of a panel leaves out of that, up to a share of the panel [N]. */
+static double left_out(const nt_yield_solver *s, int panel, const double *p, const evenly *by, double share)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    const double low = m->edges[panel], x = low + share * (m->edges[panel + 1] - low);
+    double seen = 0.0;
+    for (int i = panel * N; i < (panel + 1) * N; ++i) {
+        const double there = share < 1.0 ? nt_yield_mesh_at(m, p, low + share * (m->x[i] - low)) : p[i];
+        seen += share * m->area[i] * there;
+    }
+    return (by->E - nt_yield_law(s, nt_yield_mesh_at(m, s->gap, x)).energy) * by->per_energy - seen;
+}
+
+/* A law so short that no node of a panel sees it: what is left out, in what is tolerated, and the x that cuts the panel
+ * nearest to that law. 0 where no more is left out than an uneven gap explains, and where the bodies overlap: such a
+ * gap only tells that they touch before. */
+static double unseen(const nt_yield_solver *s, int panel, const double *p, double all, double *cut)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    const double low = m->edges[panel], high = m->edges[panel + 1], middle = 0.5 * (low + high);
+    const double near = nt_yield_mesh_at(m, s->gap, low + ROUNDING * high), far = nt_yield_mesh_at(m, s->gap, high);
+    if (!(near >= 0.0 && far > near))
+        return 0.0;
+    const evenly by = {nt_yield_law(s, near).energy, NT_PI * (high - low) / (far - near)};
+    const double pressed = (by.E - nt_yield_law(s, far).energy) * by.per_energy, out = left_out(s, panel, p, &by, 1.0);
+    if (!(fabs(out) > s->tolerance * all))
+        return 0.0;
+    const double uneven = fabs(nt_yield_mesh_at(m, s->gap, middle) - 0.5 * (near + far)) / (far - near);
+    if (!(fabs(out) > UNEVEN * uneven * fabs(pressed) + s->tolerance * all))
+        return 0.0;
+    const int inner = fabs(left_out(s, panel, p, &by, 0.5)) > 0.5 * fabs(out);
+    double from = inner ? 0.0 : 0.5, to = inner ? 0.5 : 1.0; /* nearly all of it lies on one side */
+    for (int i = 0; i < 50; ++i) {
+        const double share = 0.5 * (from + to), before = left_out(s, panel, p, &by, share) / out;
+        *(before < (inner ? 1.0 - LITTLE : LITTLE) ? &from : &to) = share;
+    }
+    *cut = low + to * (high - low);
+    return fabs(out) / (s->tolerance * all);
+}
+
 /* Cuts what is not resolved, puts edges at kinks, goes further out where force is left; whether anything changed. */
 int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
 {
@@ -170,16 +218,19 @@ int nt_yield_refine(nt_yield_solver *s, nt_yield_edges *list)
                 part(s, list, edge, near);
             kinked |= placed;
         }
-        const double rough = roughness(s, panel, p, all);
+        double rough = roughness(s, panel, p, all);
+        double cut = 0.5 * (m->edges[panel] + m->edges[panel + 1]);
         changed |= kinked;
+        if (!kinked && rough <= 1.0)
+            rough = unseen(s, panel, p, all, &cut);
         if (kinked || rough <= 1.0)
             continue;
         s->rough = fmax(s->rough, rough);
-        insert(list, 0.5 * (m->edges[panel] + m->edges[panel + 1]));
+        insert(list, cut);
         changed = 1;
     }
     const double R = s->sample->radius, last = m->edges[m->panels];
-    const double outer = fabs(nt_yield_law(s, s->gap[m->count - 1]).energy) * 2.0 * NT_PI * R;
+    const double outer = fabs(nt_yield_law(s, nt_yield_outer_gap(s)).energy) * 2.0 * NT_PI * R;
     if (outer > LEFT_OVER * s->tolerance * all && last < WIDEST * R * R) {
         insert(list, FURTHER * last);
         s->rough = fmax(s->rough, outer / (LEFT_OVER * s->tolerance * all));

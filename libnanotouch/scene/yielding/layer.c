@@ -12,6 +12,7 @@
 
 enum { WAVES = NT_YIELD_WAVES, NODES = NT_YIELD_NODES };
 
+#define FAR 16.0   /* series of the sine integral */
 #define SHORT 0.05 /* k a, below which a series is nearer than the closed form */
 
 /* Int_0^a of cos(k t) and t^2 cos(k t). */
@@ -26,6 +27,23 @@ static double second(double k, double a)
     if (y < SHORT)
         return a * a * a * (1.0 / 3.0 - y2 / 10.0 + y2 * y2 / 168.0);
     return (a * a * sin(y) + 2.0 * a * cos(y) / k - 2.0 * sin(y) / (k * k)) / k;
+}
+
+/* Int_0^y sin(t)/t dt: its series, or far out its asymptotic one. */
+static double sine_integral(double y)
+{
+    const double y2 = y * y;
+    double sum = 0.0, term = y;
+    if (y > FAR) {
+        const double f = (1.0 - (2.0 - (24.0 - 720.0 / y2) / y2) / y2) / y;
+        const double g = (1.0 - (6.0 - (120.0 - 5040.0 / y2) / y2) / y2) / y2;
+        return 0.5 * NT_PI - f * cos(y) - g * sin(y);
+    }
+    for (int n = 1; fabs(term) > 1e-17 * y || n < y; n += 2) {
+        sum += term / n;
+        term *= -y2 / ((n + 1.0) * (n + 2.0));
+    }
+    return sum;
 }
 
 /* What the solution is wanted for: each node, -Q0's part of h, and its part of R. */
@@ -110,9 +128,11 @@ void nt_yield_layer_add(nt_yield_mesh *mesh, const nt_yield_sample *sample, cons
     for (int n = 0; n < WAVES; ++n) {
         const double *wave = waves + n * NODES, *answered = c.node + n * NODES;
         const double rim = 2.0 / sample->modulus * cos(s->k[n] * mesh->a), inside = 4.0 * first(s->k[n], mesh->a);
+        const double apex = -2.0 / NT_PI * s->k[n] * sine_integral(s->k[n] * mesh->a);
         for (int i = 0; i < mesh->count; ++i) {
             mesh->K0[i] += rim * answered[i];
             mesh->load[i] -= inside * answered[i];
+            mesh->under_load[i] += apex * answered[i];
             mesh->bend[0][i] -= 8.0 / sample->modulus / mesh->area[i] * wave[i] * c.R[n];
             mesh->bend[1][i] -= 8.0 / sample->modulus / mesh->area[i] * wave[i] * c.h[n];
             for (int j = i; j < mesh->count; ++j)
@@ -120,6 +140,8 @@ void nt_yield_layer_add(nt_yield_mesh *mesh, const nt_yield_sample *sample, cons
         }
         mesh->edge[0] -= rim * c.R[n];
         mesh->edge[1] -= rim * c.h[n];
+        mesh->under[0] -= apex * c.R[n];
+        mesh->under[1] -= apex * c.h[n];
         mesh->push[0] += inside * c.R[n];
         mesh->push[1] += inside * c.h[n];
     }

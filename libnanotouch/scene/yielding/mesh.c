@@ -61,14 +61,13 @@ static basis basis_of(void)
     return b;
 }
 
-double nt_yield_mesh_tail(const double *values, int panel)
+double nt_yield_mesh_tail(const nt_yield_mesh *mesh, const double *values, int panel)
 {
-    const basis b = basis_of();
     double tail = 0.0;
     for (int k = N - 2; k < N; ++k) {
         double sum = 0.0;
         for (int j = 0; j < N; ++j)
-            sum += b.L[k][j] * values[panel * N + j];
+            sum += mesh->L[k][j] * values[panel * N + j];
         tail = fmax(tail, fabs(sum));
     }
     return tail;
@@ -76,7 +75,6 @@ double nt_yield_mesh_tail(const double *values, int panel)
 
 double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double x)
 {
-    const basis b = basis_of();
     const double last = mesh->edges[mesh->panels], inside = fmin(fmax(x, 0.0), last);
     int panel = 0;
     double P[N], sum = 0.0;
@@ -86,7 +84,7 @@ double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double 
     legendre(2.0 * (inside - mesh->edges[panel]) / width - 1.0, P);
     for (int k = 0; k < N; ++k)
         for (int j = 0; j < N; ++j)
-            sum += P[k] * b.L[k][j] * values[panel * N + j];
+            sum += P[k] * mesh->L[k][j] * values[panel * N + j];
     return x > last ? sum * sqrt(last / x) : sum;
 }
 
@@ -171,6 +169,7 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     if (layered)
         s = spectrum_of(sample);
     gauss(NT, y, w);
+    memcpy(mesh->L, b.L, sizeof mesh->L);
     place_nodes(mesh, &b);
     memset(mesh->K, 0, sizeof mesh->K);
     memset(mesh->load, 0, sizeof mesh->load);
@@ -178,6 +177,8 @@ void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, doub
     memset(mesh->bend, 0, sizeof mesh->bend);
     memset(mesh->edge, 0, sizeof mesh->edge);
     memset(mesh->push, 0, sizeof mesh->push);
+    memset(mesh->under, 0, sizeof mesh->under);
+    memset(mesh->under_load, 0, sizeof mesh->under_load);
     memset(waves, 0, NT_YIELD_WAVES * NT_YIELD_NODES * sizeof *waves);
     for (int panel = 0; panel < mesh->panels; ++panel)
         for (int i = 0; i < NT; ++i) {

@@ -190,7 +190,7 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
     }
     if (!nt_yield_eliminate(s, y, n))
         return 0;
-    const nt_pressure outer = nt_yield_law(s, s->gap[n - 1]);
+    const nt_pressure outer = nt_yield_law(s, nt_yield_outer_gap(s));
     double F = 2.0 * NT_PI * R * outer.energy, k = 2.0 * NT_PI * R * outer.pressure, u0 = 0.0, u0_slope = 0.0;
     for (int j = 0; j < n; ++j) {
         const double weight = a > 0.0 ? m->load[j] : m->area[j];
@@ -199,10 +199,13 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
         u0 += m->K0[j] * p[j].pressure;
         u0_slope += m->K0[j] * p[j].slope * y[j];
     }
-    *point = (nt_yield_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a};
+    *point = (nt_yield_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a, 0.0};
     if (a > 0.0) {
         F += 2.0 * E * a * (-s->h - a * a / (3.0 * R)) + m->push[0] + m->push[1] * s->h;
-        *point = (nt_yield_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a};
+        double under = m->under[0] + m->under[1] * s->h;
+        for (int j = 0; j < n; ++j)
+            under += m->under_load[j] * p[j].pressure;
+        *point = (nt_yield_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a, under};
     }
     return isfinite(point->F) && isfinite(point->k);
 }

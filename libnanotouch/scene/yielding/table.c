@@ -271,6 +271,7 @@ nt_status nt_yield_table_make(nt_yield_table *table, const nt_yield_sample *samp
     m.solver.scale = range->scale;
     *table = empty;
     table->touch = -INFINITY;
+    table->layered = sample->thickness > 0.0;
     nt_status status = make_apart(&m, sample->length);
     table->apart = table->count;
     if (status == NT_OK && !table->jumps)

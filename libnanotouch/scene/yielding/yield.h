@@ -39,21 +39,24 @@ typedef struct nt_yield_mesh {
     double edges[NT_YIELD_PANELS + 1];        /* [m^2] */
     double x[NT_YIELD_NODES];                 /* [m^2] */
     double area[NT_YIELD_NODES];              /* [m^2] */
+    double L[NT_YIELD_ORDER][NT_YIELD_ORDER]; /* Legendre coefficients of a panel, from values at its nodes [-] */
     double K[NT_YIELD_NODES][NT_YIELD_NODES]; /* u = K p [m/Pa] */
     double K0[NT_YIELD_NODES];                /* u(0) = K0 . p; in contact 2 q(a)/E* = K0 . p [m/Pa] */
     double K1[NT_YIELD_NODES];                /* u at the first edge, where adhesion ends [m/Pa] */
     double load[NT_YIELD_NODES];              /* 4 Int q dt = load . p [m^2] */
     /* What the contact of a layer adds at h, value and slope in h; 0 on a half-space. */
-    double bend[2][NT_YIELD_NODES]; /* to u [m, -] */
-    double edge[2];                 /* to 2 q(a)/E* [m, -] */
-    double push[2];                 /* to F [N, N/m] */
+    double bend[2][NT_YIELD_NODES];    /* to u [m, -] */
+    double edge[2];                    /* to 2 q(a)/E* [m, -] */
+    double push[2];                    /* to F [N, N/m] */
+    double under[2];                   /* to the pressure under the apex [Pa, Pa/m]; */
+    double under_load[NT_YIELD_NODES]; /* and by each pressure outside [-] */
 } nt_yield_mesh;
 /* From edges, panels and a; `waves` is room for 2 times NT_YIELD_WAVES times NT_YIELD_NODES numbers. */
 void nt_yield_mesh_make(nt_yield_mesh *mesh, const nt_yield_sample *sample, double *waves);
 /* Values at the nodes, taken to an x; beyond the mesh they fall as 1/r. */
 double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double x);
 /* The last two Legendre coefficients of values on a panel, the larger. */
-double nt_yield_mesh_tail(const double *values, int panel);
+double nt_yield_mesh_tail(const nt_yield_mesh *mesh, const double *values, int panel);
 
 /* yield_layer.c: wave numbers [1/m], and weights times X(k t) - 1, of a bonded layer. */
 typedef struct nt_yield_spectrum {
@@ -71,12 +74,13 @@ typedef enum nt_yield_hold {
 
 /* One equilibrium. */
 typedef struct nt_yield_point {
-    double h;      /* gap of the undeformed bodies [m] */
-    double F;      /* on the tip, + repulsive [N] */
-    double k;      /* -dF/dh [N/m] */
-    double centre; /* the gap under the apex [m] */
-    double slope;  /* d(centre)/dh; of contact 0 [-] */
-    double a;      /* radius of contact [m] */
+    double h;          /* gap of the undeformed bodies [m] */
+    double F;          /* on the tip, + repulsive [N] */
+    double k;          /* -dF/dh [N/m] */
+    double centre;     /* the gap under the apex [m] */
+    double slope;      /* d(centre)/dh; of contact 0 [-] */
+    double a;          /* radius of contact [m] */
+    double layer_peak; /* what a layer adds to the pressure under the apex [Pa] */
 } nt_yield_point;
 
 typedef struct nt_yield_solver {
@@ -100,6 +104,12 @@ typedef struct nt_yield_solver {
 static inline nt_pressure nt_yield_law(const nt_yield_solver *s, double gap)
 {
     return s->sample->law(s->sample->context, gap);
+}
+
+/* The gap at the end of the mesh, beyond which bodies count as rigid [m]. */
+static inline double nt_yield_outer_gap(const nt_yield_solver *s)
+{
+    return nt_yield_mesh_at(&s->mesh, s->gap, s->mesh.edges[s->mesh.panels]);
 }
 
 /* What the pressure in contact does at x outside [m], and its slope in h. */
@@ -215,11 +225,15 @@ nt_bank_value nt_yield_relief_at(const nt_plan *plan, const nt_place *place, int
 double nt_yield_relief_fold(const nt_plan *plan, double radius, int attached);
 double nt_yield_relief_share(const nt_plan *plan, double radius, double *slope);
 
-/* yield_peak.c: the largest pressure on the sample [Pa], of an equilibrium; without adhesion at a load, and the load at
- * which it is that [N]: infinite beyond the table. From node to node it is a power of the load. */
+/* peak.c: the largest pressure on the sample, of an equilibrium [Pa]. */
 double nt_yield_peak_of(const nt_yield_sample *sample, const nt_yield_point *point);
-double nt_yield_table_peak(const nt_yield_table *table, double load);
-double nt_yield_table_load(const nt_yield_table *table, double peak);
+/* Of a node of a table without adhesion: the largest pressure, the mean [Pa]. */
+typedef double nt_yield_pressure(const nt_yield_table *table, const nt_yield_node *node);
+nt_yield_pressure nt_yield_peak_at, nt_yield_mean_at;
+/* It at a load, and the load at which it is that [N]: infinite beyond the table. Between nodes it is a power of the
+ * load. */
+double nt_yield_table_pressure(const nt_yield_table *table, double load, nt_yield_pressure *of);
+double nt_yield_table_load(const nt_yield_table *table, double pressure, nt_yield_pressure *of);
 
 /* yield_terms.c: the pressures of all terms, at a gap that is counted from `hold` [m]. */
 typedef struct nt_yield_terms {
