@@ -110,3 +110,42 @@ def test_a_law_that_only_pushes_has_no_pull_off() -> None:
         plan = scene.plan(0.05)
         assert plan.pull_off_force == 0.0
         assert plan.scale == pytest.approx(1e-3 * scene.range.maximum_load)
+
+
+def register_two(decay: tuple[float, float], bell: tuple[float, float, float]) -> None:
+    """F = A exp(-h/l) + B exp(-((h - c)/s)^2)."""
+    (A, length), (B, centre, width) = decay, bell
+
+    def energy(gap: float) -> float:
+        return A * length * math.exp(-gap / length) + B * width * math.sqrt(math.pi) / 2.0 * math.erfc(
+            (gap - centre) / width
+        )
+
+    def bell_at(gap: float) -> float:
+        return B * math.exp(-(((gap - centre) / width) ** 2))
+
+    nt.scene.register(
+        "two", parameters={}, units={}, energy=energy, force=lambda gap: A * math.exp(-gap / length) + bell_at(gap),
+        stiffness=lambda gap: A / length * math.exp(-gap / length) + 2.0 * (gap - centre) / width**2 * bell_at(gap),
+        bound=lambda gap: abs(A) * math.exp(-gap / length) + abs(B if gap < centre else bell_at(gap)),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("radius", "decay", "bell", "load", "demand"),
+    [
+        (54e-9, (-8.8e-13, 1e-6), (1.8e-8, 0.25e-9, 0.22e-9), 2.5e-6, 3.6e-5),  # the short one was lost: error 1
+        (3.84e-9, (1.1e-12, 43e-9), (-3.85e-10, 66e-9, 35e-9), 120e-9, 1e-3),  # the long one was shifted by 0.5 nm
+    ],
+)
+def test_laws_far_shorter_and_far_longer_than_the_mesh(
+    radius: float, decay: tuple[float, float], bell: tuple[float, float, float], load: float, demand: float
+) -> None:
+    register_two(decay, bell)
+    scene = stiff_scene("two")
+    scene.tip.radius, scene.range.maximum_load = radius, load
+    plan, gaps = scene.plan(demand), np.geomspace(0.2e-9, 1e-6, 600)
+    truth = np.array([scene.term_force("two", gap) for gap in gaps])
+    error = np.abs(plan.force(gaps[::-1])[::-1] - truth) / np.maximum(np.abs(truth), plan.scale)
+    assert plan.explain()["yields"]
+    assert error.max() <= plan.bound + plan.explain()["rigid_error"]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from nanotouch import Scene
+from nanotouch.errors import InvalidValue
 from scipy.integrate import simpson
 
 RADIUS, MODULUS = 1e-6, 1e6
@@ -19,10 +20,17 @@ class Contact(NamedTuple):
 
     indentation: float
     force: float
+    peak: float
+
+
+def weights(x: np.ndarray) -> np.ndarray:
+    """Simpson's, of an even grid."""
+    return (x[1] - x[0]) / 3.0 * np.where(np.arange(len(x)) % 2, 4.0, 2.0 - np.isin(np.arange(len(x)), (0, len(x) - 1)))
 
 
 def contact(a: float, thickness: float, nu: float) -> Contact:
-    """q + int M q ds = E*(delta - t^2/R)/2 on 0 .. a by Nystroem's method; delta is where q(a) = 0."""
+    """q + int M q ds = E*(delta - t^2/R)/2 on 0 .. a by Nystroem's method; delta is where q(a) = 0. Under the apex the
+    pressure is -2/pi int q'/t dt."""
     modulus = MODULUS / (1.0 - nu**2)
     k = np.linspace(0.0, 30.0, 3001)
     top = (3.0 - 4.0 * nu) * np.sinh(2.0 * k) - 2.0 * k
@@ -30,10 +38,13 @@ def contact(a: float, thickness: float, nu: float) -> Contact:
     y, w = np.polynomial.legendre.leggauss(40)
     t, w = np.append(0.5 * a * (1.0 + y), a), np.append(0.5 * a * w, 0.0)
     waves = np.cos(np.outer(t, k / thickness))
-    M = simpson(waves[:, None, :] * waves[None, :, :] * (top / bottom - 1.0), x=k / thickness) * 2.0 / np.pi
+    missing, x = (top / bottom - 1.0) * 2.0 / np.pi, k / thickness
+    M = simpson(waves[:, None, :] * waves[None, :, :] * missing, x=x)
     solved = np.linalg.solve(np.eye(len(t)) + M * w, np.stack([np.ones_like(t), -(t**2) / RADIUS], axis=1))
     delta = -solved[-1, 1] / solved[-1, 0]
-    return Contact(delta, 4.0 * w @ (0.5 * modulus * (delta * solved[:, 0] + solved[:, 1])))
+    q = 0.5 * modulus * (delta * solved[:, 0] + solved[:, 1])
+    steeper = np.sin(np.outer(t, x)) * x / t[:, None] @ (missing * (waves.T @ (w * q)) * weights(x))
+    return Contact(delta, 4.0 * w @ q, 2.0 / np.pi * (w @ (modulus / RADIUS - steeper)))
 
 
 def layered(thickness: float, nu: float) -> Scene:
@@ -88,3 +99,37 @@ def test_a_layer_that_is_not_solved_is_warned_of(adhesion: float) -> None:
         assert truth.force / (half * truth.indentation**1.5) - 1.0 == pytest.approx(more, rel=0.25)
     scene.sample.thickness = 1e-3
     assert not any("half-space" in warning.text for warning in scene.plan(1e-2).warnings)
+
+
+def test_the_peak_grows_from_hertz_to_that_of_a_thin_layer() -> None:
+    """1.5 times the mean on a half-space; on a thin layer (1 - r^2/a^2)^2 has 3 times it where the layer keeps its
+    volume, and 1 - r^2/a^2 twice where it does not (Johnson 1985, Sec. 5.8)."""
+    for ratio, nu, least, most in (
+        (0.02, 0.3, 1.499, 1.501),
+        (4.0, 0.5, 2.0, 2.3),
+        (12.0, 0.5, 2.4, 3.0),
+        (8.0, 0.0, 1.85, 2.0),
+    ):
+        found = contact(1e-6, 1e-6 / ratio, nu)
+        assert least < found.peak * np.pi * 1e-12 / found.force < most
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 3.0])
+def test_a_layer_yields_from_its_own_peak_pressure(nu: float, ratio: float) -> None:
+    """Warned of at 1.6 Y under the apex; refused where the mean is 3 Y, which is less than two thirds of the peak."""
+    truth = contact(0.2e-6, 0.2e-6 / ratio, nu)
+    scene = layered(0.2e-6 / ratio, nu)
+    scene.tip.surface_potential = scene.sample.surface_potential = -1.5e-3  # adds 0.7 kPa where the bodies touch
+    scene.range.maximum_load = truth.force
+    scene.sample.yield_strength = 0.98 * truth.peak / 1.6
+    (told,) = [w for w in scene.plan(1e-3).warnings if "where the sample begins to yield" in w.text]
+    assert told.value == pytest.approx(truth.peak, rel=1e-2)
+    scene.sample.yield_strength = 1.02 * truth.peak / 1.6
+    assert not [w for w in scene.plan(1e-3).warnings if "begins to yield" in w.text]
+    mean = truth.force / (np.pi * 0.04e-12)
+    scene.sample.yield_strength = 1.03 * mean / 3.0
+    scene.plan(1e-3)
+    scene.sample.yield_strength = 0.97 * mean / 3.0
+    with pytest.raises(InvalidValue, match="mean pressure above 3 times the yield strength of the sample"):
+        scene.plan(1e-3)
