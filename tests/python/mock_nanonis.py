@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 
 HEADER = struct.Struct(">32siHH")
 SIGNALS = ("Current (A)", "Bias (V)", "Deflection (m)")
+PIEZO = 1e-6  # from its middle to either end [m]
 SPEED = 20e-6  # of its servo [m/s]
 SURFACE = -100e-9  # z at which the tip touches [m]
 SHARE = 0.5  # of the way into the sample that the lever bends [-]
@@ -28,9 +29,13 @@ class Tip:
     """z + upwards, as the controller has it; it goes towards where the servo sends it."""
 
     z: float = 0.0
-    high: float = 1e-6
-    low: float = -1e-6
-    limited: int = 0
+    high: float = 0.9e-6
+    low: float = -0.9e-6
+    limited: int = 1
+    """0: limits have no effect and cannot be set, and the piezo's are told"""
+    lag: float = 0.0
+    """of the status behind a servo that is switched on [s]"""
+    switched: float = 0.0
     set_point: float = 0.0
     status: int = 1
     withdrawn: bool = False
@@ -43,8 +48,8 @@ class Tip:
         """As far as it comes in the time since."""
         now = time.monotonic()
         way, self.seen = SPEED * (now - self.seen), now
-        bottom = self.low if self.limited else -1e-6
-        goal = self.high if self.withdrawn else max(bottom, SURFACE - self.set_point / SHARE)
+        bottom = self.low if self.limited else -PIEZO
+        goal = PIEZO if self.withdrawn else max(bottom, SURFACE - self.set_point / SHARE)
         if self.withdrawn or self.status == 2:
             self.z += max(-way, min(way, goal - self.z))
 
@@ -128,9 +133,9 @@ class Controller:
             case "ZCtrl.ZPosGet":
                 return (tip.z,)
             case "ZCtrl.LimitsGet":
-                return tip.high, tip.low
+                return (tip.high, tip.low) if tip.limited else (PIEZO, -PIEZO)
             case "ZCtrl.LimitsSet":
-                tip.high, tip.low = values
+                tip.high, tip.low = values if tip.limited else (tip.high, tip.low)
             case "ZCtrl.LimitsEnabledGet":
                 return (tip.limited,)
             case "ZCtrl.LimitsEnabledSet":
@@ -140,9 +145,9 @@ class Controller:
             case "ZCtrl.SetpntSet":
                 (tip.set_point,) = values
             case "ZCtrl.OnOffSet":
-                tip.status, tip.withdrawn = 1 + int(values[0]), False
+                tip.status, tip.withdrawn, tip.switched = 1 + int(values[0]), False, time.monotonic()
             case "ZCtrl.StatusGet":
-                return (tip.status,)
+                return (1 if time.monotonic() < tip.switched + tip.lag else tip.status,)
             case "ZCtrl.Withdraw":
                 tip.status, tip.withdrawn = 1, True
             case "Signals.ValGet":

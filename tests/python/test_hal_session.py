@@ -47,6 +47,53 @@ def test_slave_of_one_axis_touches() -> None:
     assert "one axis" not in str(nt.Session().guarantee())
 
 
+class Elsewhere(nt.hal.Slave):
+    """A stage of three axes that stands away from where the session starts; below `floor` lies a sample."""
+
+    def __init__(self, x: float, y: float, z: float, floor: float = 1.0) -> None:
+        self.at, self.floor, self.ticks = (x, y, z), floor, 0
+        self.told: list[tuple[float, ...]] = [self.at]
+
+    def describe(self) -> Capabilities:
+        return Capabilities(axes=3, feels=True)
+
+    def read(self) -> Reading:
+        self.ticks += 1
+        deflection = max(0.0, 0.5 * (self.at[2] - self.floor)) + 1e-12 * (self.ticks % 7)
+        return Reading(position=self.at, felt=(math.nan, math.nan, deflection))
+
+    def write(self, action: Action) -> None:
+        self.at = tuple(action.target)
+        self.told.append(self.at)
+
+
+@pytest.mark.parametrize("z", [-0.2e-6, 0.3e-6])
+def test_stage_that_stands_elsewhere_does_not_jump(z: float) -> None:
+    """Up, sideways, down: no step is larger than the limits allow, and none leads sideways below the start's height."""
+    slave = Elsewhere(0.4e-6, -0.5e-6, z)
+    session = nt.Session(slave=slave)
+    settings = session.settings
+    told = np.array(slave.told)
+    assert abs(told[-1, 2]) < 1e-15
+    way = told[: 1 + np.all(told == [*told[-1, :2], 0.0], axis=1).argmax()]  # what follows is the sign test
+    assert len(way) > 200  # 0.5 um at 20 um/s
+    steps = np.diff(way, axis=0) * settings.gains.rate
+    most = 1.0 + 1e-9
+    assert np.abs(steps[:, :2]).max() <= most * settings.limits.lateral_speed
+    assert steps[:, 2].max() <= most * settings.gains.approach_speed
+    assert -steps[:, 2].min() <= most * settings.limits.stage_speed
+    assert way[1:][np.any(steps[:, :2] != 0.0, axis=1), 2].max() <= 0.0
+    assert set(session.advance(0.1)["state"]) == {0}
+
+
+def test_stage_that_meets_something_on_its_way_is_refused() -> None:
+    """It has been approached while it was lifted: the start lies in the sample now."""
+    slave = Elsewhere(0.0, 0.0, -0.2e-6, floor=-0.1e-6)
+    with pytest.raises(InvalidValue, match=r"deflection on the way to where the session starts = 3\.3"):
+        nt.Session(slave=slave)
+    assert max(0.5 * (told[2] - slave.floor) for told in slave.told) < 33.2e-9  # a step beyond deflection_bias
+
+
 def test_slave_of_ones_own_is_recorded_and_replayed(tmp_path: Path) -> None:
     """Its start height is not known, which a file has to bear."""
     pytest.importorskip("mcap")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A controller that owns its z servo (Nanonis' TCP protocol) as a slave: two of its set points, and a mailbox.
 
-The session's travel becomes the lower z limit of the controller: its servo goes no farther. Its set-point is a
-deflection at which the servo backs away by itself, in its own time. So a slow link steers, and a fast servo guards.
+The session's travel becomes the lower z limit of the controller: its servo goes no farther. Travel is 0 where the tip
+stands when the session arms. The set-point is a deflection at which the servo backs away by itself, in its own time.
+So a slow link steers, and a fast servo guards.
 What follows from which failure is told in docs/devices.md.
 
 Usage: python -m nanotouch_app.devices.nanonis NAME --guard-nm 100 [--host HOST] [--port PORT ...]
@@ -15,6 +16,7 @@ import argparse
 import math
 import re
 import signal
+import struct
 import sys
 import threading
 import time
@@ -31,8 +33,18 @@ from nanotouch_app.devices.nanonis_watcher import PAUSE, Limits, Watcher, give_b
 
 PERIOD = 20e-3
 """between two readings, at the latest [s]"""
-ON = 2
-"""what ZCtrl.StatusGet says of a servo that is on; 1 is off, 5 after a safe-tip event"""
+OFF, ON = 1, 2
+"""what ZCtrl.StatusGet says of a servo; 5 after a safe-tip event"""
+SETTLING = 0.3
+"""for so long the status may lag behind a servo that was switched on [s]"""
+
+ROOM = 0.1
+"""to draw back from where a session starts, of the range between the z limits [-]"""
+
+
+def _single(value: float) -> float:
+    """As the protocol carries it, in single precision."""
+    return float(struct.unpack("f", struct.pack("f", value))[0])
 
 
 @dataclass(frozen=True)
@@ -66,6 +78,8 @@ class Bridge:
     """the servo is on at our request, so the tip may touch"""
     watcher: Watcher | None = None
     """that withdraws if we cannot; told each round where we stand"""
+    settled: float = 0.0
+    """from this moment on a servo that is off is one that somebody has switched off [s]"""
 
     def connect(self) -> None:
         """Find signal and limits. The z limits that the user has set are the range of the session."""
@@ -83,15 +97,20 @@ class Bridge:
         if setup.scale == 1.0 and not re.search(r"\(m\)$", setup.signal):
             raise InvalidValue(f"signal = {setup.signal!r} is not in m: give its scale in m per unit")
         self.index = names.index(setup.signal)
-        (was_limited,) = self.link.call("ZCtrl.LimitsEnabledGet", gives="I")
-        self.high, self.low = self.link.call("ZCtrl.LimitsGet", gives="ff")
-        if not -1.0 < self.low < self.high < 1.0:
-            raise InvalidValue(f"z limits = {self.low:g} .. {self.high:g} m: the lower one must be below the other")
-        self.limits = Limits(self.high, self.low, was_limited)
+        (are_enabled,) = self.link.call("ZCtrl.LimitsEnabledGet", gives="I")
+        if not are_enabled:
+            raise InvalidValue("z limits = off: the controller takes none. Set them, and switch them on")
+        high, low = self.link.call("ZCtrl.LimitsGet", gives="ff")
+        if not -1.0 < low < high < 1.0:
+            raise InvalidValue(f"z limits = {low:g} .. {high:g} m: the lower one must be below the other")
+        self.limits = self.told = Limits(high, low)
+        self.guard = _single(setup.guard / setup.scale)
 
     def capabilities(self) -> Capabilities:
-        """A slave with a servo of its own. Towards the sample is down: our z is minus theirs."""
-        ends = {"minimum": -self.high, "maximum": -self.low}
+        """A slave with a servo of its own. Towards the sample is down: our z is minus theirs, from where the tip stands
+        when a session arms. So the range is the widest that there can be; the limits hold in any case."""
+        width = self.limits.high - self.limits.low
+        ends = {"minimum": -width, "maximum": width}
         z = [Channel("stage z", "m", **ends), Channel("travel", "m", driven=True, **ends)]
         felt = [Channel("deflection", "m", minimum=-math.inf, maximum=math.inf)]
         return Capabilities(axes=self.setup.axes, period=self.setup.period, feels=True, servos=True, channels=z + felt)
@@ -120,32 +139,49 @@ class Bridge:
             self._take()
         elif not request.is_armed and self.is_ours:  # the session has ended, or is silent
             self._withdraw(self.link)
-        target = request.target
-        if not request.is_armed or not math.isfinite(target[2]):
+        if not request.is_armed:
             return
-        self._limit(-target[2])
+        target = request.target
+        if math.isfinite(target[2]):
+            self._limit(self.start - target[2])
+        self._check()
         if self.setup.axes == 3 and all(map(math.isfinite, target)):
             self.link.call("FolMe.XYPosSet", "ddI", target[0], target[1], 0)
 
     def _limit(self, low: float) -> None:
-        self.link.call("ZCtrl.LimitsSet", "ff", self.high, min(max(low, self.low), self.high))
+        low = _single(min(max(low, self.limits.low), self.limits.high))
+        self.told = Limits(self.limits.high, low)
+        self.link.call("ZCtrl.LimitsSet", "ff", self.told.high, low)
+
+    def _check(self) -> None:
+        """Is it as it was told? Somebody else may set limits and guard, or switch the limits off."""
+        kept = Limits(*self.link.call("ZCtrl.LimitsGet", gives="ff"))
+        (guard,) = self.link.call("ZCtrl.SetpntGet", gives="f")
+        if kept != self.told or guard != self.guard:
+            was, told = (f"z limits of {each.low:g} .. {each.high:g} m" for each in (kept, self.told))
+            raise LinkError(
+                f"the controller has {was} and a set-point of {guard:g}, told were {told} and {self.guard:g}"
+            )
 
     def _take(self) -> None:
-        """The servo goes on where the tip stands. Each set point is read back first."""
-        (z,) = self.link.call("ZCtrl.ZPosGet", gives="f")
-        guard = self.setup.guard / self.setup.scale
+        """The servo goes on, at the most where the tip stands. Each set point is read back first."""
+        self.start = self._start(self._height())
         self.is_ours = True  # from here on a failure withdraws
         self._tell()
-        self._limit(z)
-        self.link.call("ZCtrl.LimitsEnabledSet", "I", 1)
-        self.link.call("ZCtrl.SetpntSet", "f", guard)
-        (enabled,) = self.link.call("ZCtrl.LimitsEnabledGet", gives="I")
-        _, low = self.link.call("ZCtrl.LimitsGet", gives="ff")
-        (set_point,) = self.link.call("ZCtrl.SetpntGet", gives="f")
-        if not enabled or not abs(low - z) < 1e-12 or not abs(set_point - guard) <= 1e-6 * abs(guard):
-            raise LinkError(f"the controller kept a lower limit of {low:g} m and a set-point of {set_point:g}, "
-                            f"told were {z:g} m and {guard:g}")  # fmt: skip
+        self._limit(self.start)
+        self.link.call("ZCtrl.SetpntSet", "f", self.guard)
+        self._check()
         self.link.call("ZCtrl.OnOffSet", "I", 1)
+        self.settled = time.monotonic() + SETTLING
+
+    def _start(self, z: float) -> float:
+        """Where the tip stands; lower where there is no room to draw back, for a withdrawal may have left it high."""
+        room = ROOM * (self.limits.high - self.limits.low)
+        return min(max(z, self.limits.low), self.limits.high - room)
+
+    def _height(self) -> float:
+        (z,) = self.link.call("ZCtrl.ZPosGet", gives="f")
+        return float(z)
 
     def _withdraw(self, link: Link) -> None:
         self.counts["attempts"] += 1
@@ -159,15 +195,22 @@ class Bridge:
     def _reading(self, box: mailbox.Device) -> Reading:
         """What is no number stays NaN. A servo that somebody else switched off is an emergency stop."""
         flags = []
-        if self.is_ours and self.link.call("ZCtrl.StatusGet", gives="H") != (ON,):
+        if self.is_ours and self._is_off():
             flags.append("emergency_stop")
         begun = box.now()  # no earlier: the reading may be older than the reply
-        (z,) = self.link.call("ZCtrl.ZPosGet", gives="f")
+        z = self._height()
+        travel = (self.start if self.is_ours else self._start(z)) - z
         (value,) = self.link.call("Signals.ValGet", "iI", self.index, 0, gives="f")
         x, y = NONE[:2] if self.setup.axes == 1 else self.link.call("FolMe.XYPosGet", "I", 0, gives="dd")
-        place = tuple(each if math.isfinite(each) else math.nan for each in (x, y, -z))
+        place = tuple(each if math.isfinite(each) else math.nan for each in (x, y, travel))
         deflection = value * self.setup.scale if math.isfinite(value) else math.nan
         return Reading(position=place, felt=(math.nan, math.nan, deflection), time=begun, flags=flags)
+
+    def _is_off(self) -> bool:
+        (status,) = self.link.call("ZCtrl.StatusGet", gives="H")
+        if status == ON:
+            self.settled = 0.0
+        return bool(status != ON and (status != OFF or time.monotonic() >= self.settled))
 
     # --- when the controller fails ---
 
@@ -218,7 +261,13 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--guard-nm", type=float, required=True, metavar="NM",
                         help="deflection at which the controller's servo backs away; above any of a touch")  # fmt: skip
     parser.add_argument("--host", default="127.0.0.1")
-    parser.add_argument("--port", type=int, nargs="+", default=[6501, 6502], help="the first one is used")
+    parser.add_argument(
+        "--port",
+        type=int,
+        nargs="+",
+        default=[6501, 6502],
+        help="two or more; the first one is used, the others withdraw",
+    )
     parser.add_argument("--signal", default="Deflection (m)", help="of the deflection (default: %(default)s)")
     parser.add_argument("--scale", type=float, default=1.0, metavar="M", help="deflection per unit of it [m]")
     parser.add_argument("--axes", type=int, choices=(1, 3), default=1)
@@ -228,10 +277,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _setup(args: argparse.Namespace) -> Setup:
-    given = {"guard-nm": args.guard_nm, "period-ms": args.period_ms, "scale": abs(args.scale)}
-    for key, value in given.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise InvalidValue(f"{key} = {value:g}: it must be above 0")
+    ranges = {"guard-nm": (args.guard_nm, 1e-3, 1e5), "period-ms": (args.period_ms, 1.0, 1e3),
+              "timeout": (args.timeout, 1e-2, 60.0), "scale": (abs(args.scale), 1e-12, 1.0)}  # fmt: skip
+    if len(args.port) < 2:
+        raise InvalidValue(f"port = {args.port[0]}: two are needed, for the controller serves one program at each")
+    for key, (value, least, most) in ranges.items():
+        if not least <= value <= most:
+            raise InvalidValue(f"{key} = {value:g}: valid is {least:g} .. {most:g}")
     return Setup(1e-9 * args.guard_nm, args.host, tuple(args.port), args.signal, args.scale, 1e-3 * args.period_ms,
                  0.4 * args.timeout, args.axes)  # fmt: skip
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A process beside the bridge (nanotouch_app.devices.nanonis). It withdraws the tip when the bridge is killed or hangs.
 
-The bridge tells it where it stands, one line at a time: "held HIGH LOW LIMITED" while the tip may touch, else "free".
+The bridge tells it where it stands, one line at a time: "held HIGH LOW" while the tip may touch, else "free".
 The bridge is lost when the pipe ends, or when no line comes for SILENCE deadlines of a reply while the tip is held.
 
 Usage, by the bridge: python -m nanotouch_app.devices.nanonis_watcher HOST PATIENCE PORT [PORT ...]
@@ -39,7 +39,6 @@ class Limits:
     """[m]"""
     low: float
     """[m]"""
-    enabled: int
 
 
 def withdraw(link: Link) -> None:
@@ -48,9 +47,8 @@ def withdraw(link: Link) -> None:
 
 
 def give_back(link: Link, limits: Limits) -> None:
-    """The user's limits, after a withdrawal."""
+    """The user's limits, after a withdrawal. Where somebody has switched them off, the controller takes none."""
     link.call("ZCtrl.LimitsSet", "ff", limits.high, limits.low)
-    link.call("ZCtrl.LimitsEnabledSet", "I", limits.enabled)
 
 
 class Watcher:
@@ -62,7 +60,7 @@ class Watcher:
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._pipe = self._process.stdin
-        if self._process.stdout.readline().strip() != b"ready":
+        if not any(line.strip() == b"ready" for line in self._process.stdout):  # others may print before it
             self.close()
             raise LinkError("the watcher did not start")
         with suppress(OSError, AttributeError):  # a pipe of Windows, before Python 3.12
@@ -74,7 +72,7 @@ class Watcher:
 
     def tell(self, held: Limits | None) -> None:
         """Limits to give back while the tip may touch, else None. LinkError if nobody listens."""
-        line = f"held {held.high!r} {held.low!r} {held.enabled}\n" if held else "free\n"
+        line = f"held {held.high!r} {held.low!r}\n" if held else "free\n"
         try:
             os.write(self._pipe.fileno(), line.encode())
         except OSError as error:
@@ -118,8 +116,8 @@ def rescue(host: str, ports: Sequence[int], patience: float, limits: Limits) -> 
 
 def _limits(line: str) -> Limits | None:
     match line.split():
-        case ["held", high, low, enabled]:
-            return Limits(float(high), float(low), int(enabled))
+        case ["held", high, low]:
+            return Limits(float(high), float(low))
     return None
 
 

@@ -40,7 +40,7 @@ typedef struct nt_session_setup {
     long ring_capacity;    /* records held between two reads, rounded up to a power of two; 0: nothing is recorded */
     double minimum_margin; /* refuse to open below this stability margin; 0: never, and a law of one's own is not tried
                               [-] */
-    int preflight;         /* 1: tare and sign test before the first tick (preflight.h) */
+    int preflight;         /* 1: a real stage goes to the start, tare, sign test (preflight.h); 0: it jumps there */
     nt_probe_model probe_model;
     double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_faults *faults; /* of the simulated halves from their switching on, before preflight; NULL: none */
