@@ -70,6 +70,9 @@ static nt_status attach(nt_mailbox_half *half, nt_half wanted, nt_problem *probl
     }
     if (status == NT_E_DEVICE)
         (void)nt_problem_set(problem, "programs that serve this mailbox", "", 0.0, 1.0, 1.0);
+    if (status == NT_E_STATE)
+        (void)nt_problem_set(problem, "programs of this user that serve this mailbox (another user's does)", "", 0.0,
+                             1.0, 1.0);
     if (status != NT_OK)
         return status;
     link->description = link->block->description;

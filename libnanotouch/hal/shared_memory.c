@@ -138,8 +138,10 @@ nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name
         return status;
     shared->file = shm_open(shared->name, writable ? O_RDWR : O_RDONLY, 0);
     if (shared->file < 0)
-        return NT_E_DEVICE;
-    if (fstat(shared->file, &found) != 0 || found.st_size == 0 || flock(shared->file, LOCK_SH | LOCK_NB) == 0)
+        return errno == EACCES && writable ? NT_E_STATE : NT_E_DEVICE;
+    if (fstat(shared->file, &found) == 0 && writable && found.st_uid != geteuid()) /* what it says would be obeyed */
+        status = NT_E_STATE;
+    else if (fstat(shared->file, &found) != 0 || found.st_size == 0 || flock(shared->file, LOCK_SH | LOCK_NB) == 0)
         status = NT_E_DEVICE; /* who gets the lock has found what an ended owner has left */
     else if (found.st_size != (off_t)size)
         status = NT_E_UNSUPPORTED;

@@ -28,7 +28,8 @@ typedef struct nt_shared {
 nt_status nt_shared_create(nt_shared *shared, const char *kind, const char *name, size_t size);
 /* Is this the process that made it? Asks the system. */
 int nt_shared_is_own(const nt_shared *shared);
-/* NT_E_DEVICE if it is not there or its owner has ended, NT_E_UNSUPPORTED if it has another size. */
+/* NT_E_DEVICE if it is not there or its owner has ended, NT_E_UNSUPPORTED if it has another size, NT_E_STATE if it
+ * shall be writable and is another user's. */
 nt_status nt_shared_attach(nt_shared *shared, const char *kind, const char *name, size_t size, int writable);
 /* Gives the memory back; the owner's block is removed, by the owner alone. May be repeated. */
 void nt_shared_close(nt_shared *shared);

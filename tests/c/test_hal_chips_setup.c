@@ -83,6 +83,18 @@ static void old(nt_converter_setup *s)
 {
     s->felt[NT_Z].latency = -1.0;
 }
+static void coarse(nt_converter_setup *s)
+{
+    s->felt[NT_Z].gain *= 1e6;
+}
+static void loud(nt_converter_setup *s)
+{
+    s->felt[NT_Z].noise = 1.0;
+}
+static void lifted(nt_converter_setup *s)
+{
+    s->driven[NT_Z].maximum = 0.5 * s->driven[NT_Z].minimum;
+}
 
 static void a_setup_names_what_is_wrong(void **state)
 {
@@ -102,6 +114,9 @@ static void a_setup_names_what_is_wrong(void **state)
     refused(sideways, NT_E_RANGE, "channels of an axis that the half does not have");
     refused(unsure, NT_E_NOT_FINITE, "channel.uncertainty");
     refused(old, NT_E_RANGE, "channel.latency");
+    refused(coarse, NT_E_RANGE, "channel.gain, with which the range has 16 steps");
+    refused(loud, NT_E_RANGE, "channel.noise");
+    refused(lifted, NT_E_RANGE, "channel.maximum of a travel that holds 0");
     assert_int_equal(nt_converter_half_init(&half, NULL, NULL), NT_E_ARGUMENT);
 }
 

@@ -333,9 +333,30 @@ static void half_written_readings_are_never_taken(void **state)
     end_by_hand();
 }
 
+/* One of another user stands under the name. Only root can try: it may open what is anybody's. */
+static void a_program_of_another_user_is_not_obeyed(void **state)
+{
+    (void)state;
+    if (geteuid() != 0)
+        skip();
+    assert_int_equal(mailbox_start(&program, NT_HALF_SLAVE, mailbox_name(name, "foreign")), NT_OK);
+    char path[128];
+    (void)snprintf(path, sizeof path, "/dev/shm/nanotouch.mailbox.%s", name);
+    assert_int_equal(chown(path, 65534, 65534), 0);
+    nt_mailbox_half mailbox = half_of(name);
+    const nt_hal_choice choice = {nt_mailbox_backend(NT_HALF_SLAVE), &mailbox};
+    nt_problem problem = {0};
+    nt_hal hal = {0};
+    assert_int_equal(nt_hal_open(&hal, NT_HALF_SLAVE, &choice, &host, &problem), NT_E_STATE);
+    assert_string_equal(problem.field, "programs of this user that serve this mailbox (another user's does)");
+    assert_int_equal(chown(path, 0, 0), 0);
+    mailbox_end(&program);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_program_of_another_user_is_not_obeyed),
         cmocka_unit_test(both_halves_conform),
         cmocka_unit_test(wrong_devices),
         cmocka_unit_test(one_program_and_one_session),

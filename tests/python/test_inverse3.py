@@ -51,13 +51,52 @@ WRONG = [
     '{"inverse3": [{"state": {}}]}',
     frame().replace("0.01", "NaN"), frame().replace("0.01", "1e999"), frame().replace("0.01", "true"),
     frame().replace("0.01", '"0.01"'), frame().replace("0.01", "null"), frame().replace('"x": 0.01, ', ""),
-    frame().replace('"cursor_position"', '"position"'), frame(z=5.0), frame().replace(f'"{ID}"', "7"), frame()[:-1],
+    frame().replace('"cursor_position"', '"position"'), frame(z=5.0),
+    frame().replace("0.01", "1" + "0" * 400), frame().replace('"state"', '"status": {"ready": false}, "state"', 1),
+    frame().replace(f'"{ID}"', "7"), frame()[:-1],
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize("text", [*WRONG, b"\xff\xfe\x00", b"\x00" * 100])
 def test_garbage_is_no_frame(text: str | bytes) -> None:
     assert inverse3.understood(text) is None
+
+
+STILL = {
+    "position": dict.fromkeys("xyz", 0),
+    "rotation": {"w": 1.0, "x": 0, "y": 0, "z": 0},
+    "scale": dict.fromkeys("xyz", 1),
+}
+UPSIDE_DOWN = STILL | {"rotation": {"w": 0.0, "x": 1, "y": 0, "z": 0}}
+
+
+def told(config: object = None, transform: object = None) -> str:
+    """A frame with these beside its position."""
+    made = json.loads(frame())
+    (one,) = made["inverse3"]
+    one |= {"config": config} if config else {}
+    one["state"] |= {"transform": transform} if transform else {}
+    return json.dumps(made)
+
+
+def test_axes_that_somebody_has_turned_are_none() -> None:
+    """The first frame of a connection tells basis and mount, each frame the transform."""
+    bridge = inverse3.Bridge(None)  # type: ignore[arg-type]
+    plain = {"basis": {"permutation": "XYZ"}, "mount": STILL}
+
+    def is_taken(text: str) -> bool:
+        return bridge._untouched(inverse3.understood(text)) is not None
+
+    assert is_taken(told(plain, STILL))
+    assert is_taken(told())
+    assert not is_taken(told(transform=UPSIDE_DOWN))
+    assert not is_taken(told(transform=STILL | {"scale": {"x": 1, "y": 1, "z": -1}}))
+    assert not is_taken(told(transform={"rotation": 3}))
+    assert is_taken(told())
+    for odd in ({"basis": {"permutation": "XZY"}}, {"mount": UPSIDE_DOWN}):
+        assert not is_taken(told(plain | odd))
+        assert not is_taken(told())  # remembered
+    assert is_taken(told(plain))
 
 
 @settings(max_examples=50, deadline=None)

@@ -112,6 +112,44 @@ def test_what_is_wrong_is_named(path: tuple[str, ...]):
         rig_file.from_tables(given)
 
 
+TOMORROW = datetime.date.today() + datetime.timedelta(days=2)
+ODD: dict[str, tuple[str, dict[str, Any], str]] = {  # table, what is odd in it, and what the refusal says
+    "future": ("slave.position_z", {"calibrated": TOMORROW}, r"slave.position_z\] calibrated = .* is in the future"),
+    "coarse": ("slave.travel_z", {"gain_um_per_V": 1e9}, "travel_z: channel.gain, with which the range has 16 steps"),
+    "loud": (
+        "slave.deflection_z",
+        {"noise_pm": 1e9},
+        "deflection_z: channel.noise = 0.001 m: valid is 0 .. 6.59",
+    ),
+    "no start": ("slave.travel_z", {"minimum_um": 2}, "travel_z: channel.minimum of a travel that holds 0 = 2e-06 m"),
+    "far": ("slave.travel_z", {"maximum_um": 20}, "travel_z: channel.maximum = 2e-05 m: valid is -1e-05 .. 9.9"),
+    "way": ("slave.chips.adc", {"device": "/dev/./spidev0.0"}, "are the same device: /dev/spidev0.0"),
+    "two axes": ("slave", {"axes": 2}, r"\[slave\] axes = 2: it has travel_z alone"),
+    "rig": ("stage", {"axes": 3}, r"\[stage\] axes = 3: its half has one"),
+    "backend": ("slave", {"backend": None}, r"\[slave\] backend is missing: write backend = \"spidev\""),
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_what_cannot_be_is_named_with_its_table(name: str):
+    given = tables()
+    where, odd, words = ODD[name]
+    table = given
+    for key in where.split("."):
+        table = table[key]
+    table |= odd
+    if odd == {"backend": None}:
+        del table["backend"]
+    with pytest.raises(InvalidValue, match=words):
+        rig_file.from_tables(given)
+
+
+def test_the_rig_has_the_axes_of_its_half():
+    given = tables()
+    del given["stage"]
+    assert rig_file.from_tables(given).rig["stage"]["axes"] == 1
+
+
 def test_a_master_on_converters_and_a_simulated_one():
     given = tables()
     given["master"] = {"rate_Hz": 1000, "backend": "simulated"}
@@ -123,6 +161,10 @@ def test_a_master_on_converters_and_a_simulated_one():
              "uncertainty_percent": 3, "calibrated": datetime.date(2026, 1, 2)}  # fmt: skip
     given["master"] = {"backend": "spidev", "axes": 1, "chips": given["slave"]["chips"], "position_z": channel,
                        "motor_z": motor}  # fmt: skip
+    with pytest.raises(InvalidValue, match=r"\[master.chips.dac\] and \[slave.chips.dac\] are the same device"):
+        rig_file.from_tables(given)
+    given["master"]["chips"] = {name: chip | {"device": chip["device"].replace("spidev0", "spidev1")}
+                                for name, chip in given["slave"]["chips"].items()}  # fmt: skip
     found = rig_file.from_tables(given)
     assert found.master is not None
     assert found.master.setup["driven"][2]["gain"] == 0.5
@@ -196,7 +238,7 @@ def test_a_rehearsal_needs_one_word(command: str, tmp_path: Path, monkeypatch: p
 def test_two_axes_on_one_output():
     given = tables()
     slave = given["slave"]
-    slave["axes"] = 3
+    slave["axes"] = 2
     slave["travel_x"], slave["position_x"] = dict(slave["travel_z"]), dict(slave["position_z"], channel=2)
     with pytest.raises(InvalidValue, match=r"travel_x\] and \[slave.travel_z\] are the same wire: channel 0 of dac"):
         rig_file.from_tables(given)

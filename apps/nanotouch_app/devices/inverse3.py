@@ -39,6 +39,8 @@ REACH = 0.2
 """the cursor stays within this distance of the origin of the workspace, along each axis [m]"""
 CENTRE = (0.0, -0.15, 0.2)
 """of the workspace, in the service's frame: x to the right, y away from the base, z up [m]"""
+LARGE = 1e3
+"""what no length [m], scale or turn of a frame reaches; JSON has whole numbers that no float holds"""
 STRONGEST = 10.0
 """force along an axis [N]"""
 BUTTONS = ("a", "b", "c")
@@ -62,6 +64,10 @@ class Frame(NamedTuple):
     position: tuple[float, float, float]
     """in our axes: x, y, and towards the sample [m]"""
     buttons: int
+    is_turned: bool
+    """the service reports in other axes than its own, by this frame's transform"""
+    was_turned: bool | None
+    """by basis or mount of a frame that tells the configuration, as the first one does; None: it tells none"""
 
 
 def _vector(given: object) -> tuple[float, float, float] | None:
@@ -69,10 +75,29 @@ def _vector(given: object) -> tuple[float, float, float] | None:
     if not isinstance(given, dict):
         return None
     numbers = [given.get(axis) for axis in "xyz"]
-    if any(isinstance(n, bool) or not isinstance(n, int | float) or not math.isfinite(n) for n in numbers):
+    if any(isinstance(n, bool) or not isinstance(n, int | float) or not abs(n) < LARGE for n in numbers):
         return None
     x, y, z = (float(n) for n in numbers)  # type: ignore[arg-type]
     return x, y, z
+
+
+def _is_identity(given: object) -> bool:
+    """Whether a mount or transform of the service's changes nothing."""
+    if not isinstance(given, dict):
+        return False
+    rotation = given.get("rotation")
+    turn = _vector(rotation) if isinstance(rotation, dict) else None
+    shift, scale = _vector(given.get("position")), _vector(given.get("scale"))
+    return turn == shift == (0.0, 0.0, 0.0) and scale == (1.0, 1.0, 1.0)
+
+
+def _configured(found: dict[str, Any]) -> bool | None:
+    """Whether basis or mount of a device turn its axes; None if the frame does not tell."""
+    config = found.get("config")
+    if not isinstance(config, dict):
+        return None
+    basis, mount = config.get("basis"), config.get("mount")
+    return not (basis is None or basis == {"permutation": "XYZ"}) or not (mount is None or _is_identity(mount))
 
 
 def to_ours(position: Sequence[float]) -> tuple[float, float, float]:
@@ -104,8 +129,10 @@ def understood(text: str | bytes, device: str = "") -> Frame | None:
         return None
     if not isinstance(given, dict) or (found := _first(given.get("inverse3"), device)) is None:
         return None
-    state = found.get("state")
-    position = _vector(state.get("cursor_position")) if isinstance(state, dict) else None
+    state, status = found.get("state"), found.get("status")
+    if not isinstance(state, dict) or (isinstance(status, dict) and status.get("ready") is False):
+        return None
+    position = _vector(state.get("cursor_position"))
     if position is None or any(abs(value) > REACH for value in to_ours(position)):
         return None
     grip = _first(given.get("wireless_verse_grip"), "") or {}
@@ -113,7 +140,8 @@ def understood(text: str | bytes, device: str = "") -> Frame | None:
     buttons = sum(
         1 << bit for bit, name in enumerate(BUTTONS) if isinstance(pressed, dict) and pressed.get(name) is True
     )
-    return Frame(found["device_id"], to_ours(position), buttons)
+    is_turned = "transform" in state and not _is_identity(state["transform"])
+    return Frame(found["device_id"], to_ours(position), buttons, is_turned, _configured(found))
 
 
 def command(device: str, force: Sequence[float]) -> str:
@@ -131,8 +159,10 @@ class Bridge:
     device: str = ""
     """id of the device; "": the first one that is there, and no other from then on"""
     counts: dict[str, int] = field(
-        default_factory=lambda: dict.fromkeys(("frames", "refused", "late", "connections"), 0)
+        default_factory=lambda: dict.fromkeys(("frames", "refused", "turned", "late", "connections"), 0)
     )
+    is_turned: bool = False
+    """the service reports in other axes than its own: up may be down"""
 
     async def run(self) -> None:
         """Connect, and again after each loss. Meanwhile the program lives, and its last reading grows old."""
@@ -180,7 +210,7 @@ class Bridge:
 
     async def _answer(self, link: Any, data: str | bytes) -> bool:
         """Publish a good frame; send the force in any case, so that the next frame comes. Was it good?"""
-        frame = understood(data, self.device)
+        frame = self._untouched(understood(data, self.device))
         self.counts["frames" if frame else "refused"] += 1
         if frame:
             self.device = frame.device
@@ -190,6 +220,19 @@ class Bridge:
             async with asyncio.timeout(TIMEOUT):
                 await link.send_str(command(self.device, force))
         return frame is not None
+
+    def _untouched(self, frame: Frame | None) -> Frame | None:
+        """None for a frame in axes that somebody has turned."""
+        if frame is None:
+            return None
+        self.is_turned = self.is_turned if frame.was_turned is None else frame.was_turned
+        if not self.is_turned and not frame.is_turned:
+            return frame
+        if not self.counts["turned"]:
+            print("inverse3: the service turns, moves or scales the axes: set basis, mount and transform back",
+                  file=sys.stderr, flush=True)  # fmt: skip
+        self.counts["turned"] += 1
+        return None
 
 
 def _losses() -> tuple[type[BaseException], ...]:

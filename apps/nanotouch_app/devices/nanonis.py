@@ -110,8 +110,8 @@ class Bridge:
         """A slave with a servo of its own. Towards the sample is down: our z is minus theirs, from where the tip stands
         when a session arms. So the range is the widest that there can be; the limits hold in any case."""
         width = self.limits.high - self.limits.low
-        ends = {"minimum": -width, "maximum": width}
-        z = [Channel("stage z", "m", **ends), Channel("travel", "m", driven=True, **ends)]
+        z = [Channel("stage z", "m", minimum=-width, maximum=width),
+             Channel("travel", "m", driven=True, minimum=-width, maximum=width)]  # fmt: skip
         felt = [Channel("deflection", "m", minimum=-math.inf, maximum=math.inf)]
         return Capabilities(axes=self.setup.axes, period=self.setup.period, feels=True, servos=True, channels=z + felt)
 

@@ -261,8 +261,15 @@ static void check_converters(const py::dict &given)
 {
     Chips own;
     const nt_converter_setup setup = setup_of(given, own);
-    nt_problem problem{};
-    raise_on(nt_converter_setup_check(&setup, &problem), problem, given["half"].cast<std::string>());
+    nt_problem problem{"", "", 0.0, 0.0, 0.0}, one{};
+    const nt_status status = nt_converter_setup_check(&setup, &problem);
+    const std::string half = given["half"].cast<std::string>(), field = problem.field;
+    const nt_converter_channel *const kinds[] = {setup.position, setup.felt, setup.driven};
+    const char *const words[][3] = {{"position", "force", "motor"}, {"position", "deflection", "travel"}};
+    for (int at = 0; field.rfind("channel.", 0) == 0 && at < 3 * NT_AXES; ++at)
+        raise_on(nt_converter_channel_check(&setup, &kinds[at / NT_AXES][at % NT_AXES], &one), one,
+                 half + "." + words[setup.half][at / NT_AXES] + "_" + "xyz"[at % NT_AXES]);
+    raise_on(status, problem, half);
 }
 
 // Times of frames that change nothing, a list for each chip [s].

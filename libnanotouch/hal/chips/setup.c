@@ -7,6 +7,8 @@
 #include "core/problem.h"
 #include "hal/chips/half.h"
 
+#define LEAST_STEPS 16.0 /* of a converter within a range */
+
 typedef struct use {
     const char *name; /* of the field */
     const nt_converter_channel *channels;
@@ -41,32 +43,50 @@ static void reach(const nt_converter_setup *setup, const nt_converter_channel *c
     ends[!falls] = channel->offset + channel->gain * high;
 }
 
-static nt_status check_numbers(const nt_converter_channel *channel, nt_problem *problem)
+static nt_status check_numbers(const nt_converter_channel *channel, const char *unit, nt_problem *problem)
 {
     if (!isfinite(channel->gain) || channel->gain == 0.0)
         return bad(problem, "channel.gain, which is not 0", channel->gain, -HUGE_VAL, HUGE_VAL);
     if (!isfinite(channel->offset))
-        return bad(problem, "channel.offset", channel->offset, -HUGE_VAL, HUGE_VAL);
+        return nt_problem_set(problem, "channel.offset", unit, channel->offset, -HUGE_VAL, HUGE_VAL);
     if (!(channel->uncertainty >= 0.0 && channel->uncertainty <= 1.0))
         return bad(problem, "channel.uncertainty", channel->uncertainty, 0.0, 1.0);
-    if (!(channel->noise >= 0.0) || isinf(channel->noise))
-        return bad(problem, "channel.noise", channel->noise, 0.0, HUGE_VAL);
+    if (!(channel->noise >= 0.0))
+        return nt_problem_set(problem, "channel.noise", unit, channel->noise, 0.0, HUGE_VAL);
     if (!(channel->latency >= 0.0 && channel->latency <= 1.0))
         return nt_problem_set(problem, "channel.latency", "s", channel->latency, 0.0, 1.0);
     return NT_OK;
 }
 
-/* Both ends of the range can be reached, but for the step that a DAC keeps to itself at either end. */
-static nt_status check_range(const nt_converter_setup *setup, const nt_converter_channel *channel, nt_problem *problem)
+/* Both ends of the range can be reached, but for the step that a DAC keeps to itself at either end; and it has steps.
+ */
+static nt_status check_range(const nt_converter_setup *setup, const nt_converter_channel *channel, const char *unit,
+                             nt_problem *problem)
 {
     const nt_converter *on = &setup->converter[channel->converter];
-    const double slack = 2.0 * fabs(channel->gain) * nt_chip_step(on->chip, &on->span);
+    const double step = nt_chip_step(on->chip, &on->span), slack = 2.0 * fabs(channel->gain) * step;
+    const double width = channel->maximum - channel->minimum, most = width / (LEAST_STEPS * step);
     double ends[2];
     reach(setup, channel, ends);
     if (!(channel->minimum >= ends[0] - slack && channel->minimum < channel->maximum))
-        return bad(problem, "channel.minimum", channel->minimum, ends[0], channel->maximum);
+        return nt_problem_set(problem, "channel.minimum", unit, channel->minimum, ends[0], channel->maximum);
     if (!(channel->maximum <= ends[1] + slack))
-        return bad(problem, "channel.maximum", channel->maximum, channel->minimum, ends[1]);
+        return nt_problem_set(problem, "channel.maximum", unit, channel->maximum, channel->minimum, ends[1]);
+    if (fabs(channel->gain) > most)
+        return bad(problem, "channel.gain, with which the range has 16 steps", channel->gain, -most, most);
+    if (channel->noise > width)
+        return nt_problem_set(problem, "channel.noise", unit, channel->noise, 0.0, width);
+    return NT_OK;
+}
+
+/* A session begins at travel 0. */
+static nt_status check_start(const nt_converter_channel *travel, nt_problem *problem)
+{
+    if (travel->minimum > 0.0)
+        return nt_problem_set(problem, "channel.minimum of a travel that holds 0", "m", travel->minimum, -HUGE_VAL,
+                              0.0);
+    if (travel->maximum < 0.0)
+        return nt_problem_set(problem, "channel.maximum of a travel that holds 0", "m", travel->maximum, 0.0, HUGE_VAL);
     return NT_OK;
 }
 
@@ -79,6 +99,8 @@ static int drives_it(const nt_converter_setup *setup, const nt_converter_channel
 static nt_status check_channel(const nt_converter_setup *setup, const use *as, int axis, nt_problem *problem)
 {
     const nt_converter_channel *channel = &as->channels[axis];
+    const int is_slave = setup->half == NT_HALF_SLAVE;
+    const char *unit = is_slave || as->channels == setup->position ? "m" : "N";
     if (channel->converter < 0 || channel->converter >= setup->converters)
         return bad(problem, "channel.converter", channel->converter, 0.0, setup->converters - 1);
     const nt_chip *chip = setup->converter[channel->converter].chip;
@@ -87,26 +109,37 @@ static nt_status check_channel(const nt_converter_setup *setup, const use *as, i
     if (as->is_driven ? !chip->is_dac
                       : chip->is_dac && !(as->channels == setup->position && drives_it(setup, channel, axis)))
         return bad(problem, as->name, chip->is_dac, as->is_driven, as->is_driven);
-    const nt_status status = check_numbers(channel, problem);
-    return status == NT_OK ? check_range(setup, channel, problem) : status;
+    nt_status status = check_numbers(channel, unit, problem);
+    if (status == NT_OK)
+        status = check_range(setup, channel, unit, problem);
+    return status == NT_OK && is_slave && as->is_driven && axis == NT_Z ? check_start(channel, problem) : status;
 }
 
-static nt_status check_uses(const nt_converter_setup *setup, nt_problem *problem)
+nt_status nt_converter_channel_check(const nt_converter_setup *setup, const nt_converter_channel *channel,
+                                     nt_problem *problem)
 {
     const use uses[] = {{"position: channels of an ADC", setup->position, 0},
                         {"felt: channels of an ADC", setup->felt, 0},
                         {"driven: channels of a DAC", setup->driven, 1}};
     for (int i = 0; i < 3; ++i)
         for (int axis = 0; axis < NT_AXES; ++axis) {
-            if (!uses[i].channels[axis].is_used)
+            if (channel != &uses[i].channels[axis] || !channel->is_used)
                 continue;
             if (setup->axes == 1 && axis != NT_Z)
                 return bad(problem, "channels of an axis that the half does not have", 1.0, 0.0, 0.0);
-            const nt_status status = check_channel(setup, &uses[i], axis, problem);
-            if (status != NT_OK)
-                return status;
+            return check_channel(setup, &uses[i], axis, problem);
         }
     return NT_OK;
+}
+
+static nt_status check_uses(const nt_converter_setup *setup, nt_problem *problem)
+{
+    const nt_converter_channel *const kinds[] = {setup->position, setup->felt, setup->driven};
+    nt_status status = NT_OK;
+    for (int i = 0; i < 3; ++i)
+        for (int axis = 0; axis < NT_AXES && status == NT_OK; ++axis)
+            status = nt_converter_channel_check(setup, &kinds[i][axis], problem);
+    return status;
 }
 
 nt_status nt_converter_setup_check(const nt_converter_setup *setup, nt_problem *problem)

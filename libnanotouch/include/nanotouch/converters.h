@@ -99,6 +99,9 @@ typedef struct nt_converter_half {
 
 /* Checks a setup: NT_OK; else NT_E_ARGUMENT, NT_E_RANGE or NT_E_NOT_FINITE with the field. problem may be NULL. */
 NT_API nt_status nt_converter_setup_check(const nt_converter_setup *setup, nt_problem *problem);
+/* Checks one channel of it, which must be part of the setup; NT_OK for one that is not used. */
+NT_API nt_status nt_converter_channel_check(const nt_converter_setup *setup, const nt_converter_channel *channel,
+                                            nt_problem *problem);
 /* Checks and copies the setup. Nothing is sent. */
 NT_API nt_status nt_converter_half_init(nt_converter_half *converters, const nt_converter_setup *setup,
                                         nt_problem *problem);

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import datetime
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -126,7 +127,12 @@ def _channel(table: Table, chips: list[str], unit: str, calibrated: dict[str, da
         "noise": table.number("noise", unit, 0.0),
         "latency": table.number("latency", "s", 0.0),
     }
-    calibrated[table.where] = table.word("calibrated", datetime.date, "2026-11-20")
+    day = table.word("calibrated", datetime.date, "2026-11-20")
+    if isinstance(day, datetime.datetime):
+        day = day.date()
+    if day > datetime.date.today() + datetime.timedelta(days=1):  # a day: of another time zone
+        raise InvalidValue(f"[{table.where}] calibrated = {day} is in the future: today is {datetime.date.today()}")
+    calibrated[table.where] = day
     table.done()
     return made
 
@@ -138,7 +144,6 @@ def _lines(table: Table) -> dict[str, Any]:
     made["debounce"] = table.number("debounce", "s", 0.0)
     if not 0.0 <= made["debounce"] <= MOST_DEBOUNCE:
         raise InvalidValue(f"[{table.where}] debounce = {made['debounce']:g} s: valid is 0 .. {MOST_DEBOUNCE:g} s")
-    _refuse_twice({f"[{table.where}] {name}": made[name] for name in LINES if made[name] is not None}, "line")
     table.done()
     return made
 
@@ -153,10 +158,7 @@ def _refuse_twice(named: Mapping[str, object], what: str) -> None:
 
 
 def _check_wires(half: str, setup: Mapping[str, Any], names: Sequence[str]) -> None:
-    """Each device is one chip, each output drives one thing, each input measures one."""
-    devices = {f"[{half}.chips.{name}]": chip["device"] for name, chip in zip(names, setup["chips"], strict=True)}
-    if "context" not in setup:  # a device of IIO may both drive and measure
-        _refuse_twice(devices, "device")
+    """Each output drives one thing, each input measures one."""
     for is_driven in (True, False):
         wires = {
             f"[{half}.{word}_{axis}]": f"channel {one['channel']} of {names[one['converter']]}"
@@ -166,6 +168,22 @@ def _check_wires(half: str, setup: Mapping[str, Any], names: Sequence[str]) -> N
             if one
         }
         _refuse_twice(wires, "wire")
+
+
+def _check_devices(halves: Mapping[str, RealHalf | None]) -> None:
+    """Each device is one chip, each line has one purpose, of both halves."""
+    devices: dict[str, object] = {}
+    lines: dict[str, object] = {}
+    for half, found in halves.items():
+        if not isinstance(found, Converters):
+            continue
+        if "context" not in found.setup:  # a device of IIO may both drive and measure
+            devices |= {f"[{half}.chips.{chip['name']}]": os.path.realpath(chip["device"])
+                        for chip in found.setup["chips"]}  # fmt: skip
+        named = found.setup["lines"] or {}
+        lines |= {f"[{half}.lines] {name}": named[name] for name in LINES if named.get(name) is not None}
+    _refuse_twice(devices, "device")
+    _refuse_twice(lines, "line")
 
 
 def _half(half: str, table: Table, backend: str) -> Converters:
@@ -190,6 +208,9 @@ def _half(half: str, table: Table, backend: str) -> Converters:
     for key in needed:
         if f"{half}.{key}" not in calibrated:
             raise InvalidValue(f"[{half}.{key}] is missing: a {half} needs it")
+    moved = [f"{needed[-1][:-1]}{axis}" for axis in AXES if f"{half}.{needed[-1][:-1]}{axis}" in calibrated]
+    if len(moved) < axes:
+        raise InvalidValue(f"[{half}] axes = {axes}: it has {', '.join(moved)} alone")
     if half == "slave" or "lines" in table.left:
         setup["lines"] = _lines(table.table("lines", "a slave that moves needs an emergency stop"))
     else:
@@ -216,8 +237,14 @@ def _elsewhere(half: str, backend: str, table: Table, folder: Path) -> SharedObj
 def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     """The real half, its keys taken out of the tables; what describes the rig stays."""
     given = tables.get(half)
-    if not isinstance(given, Mapping) or "backend" not in given:
+    if half == "slave" and half in tables and not isinstance(given, Mapping):
+        raise InvalidValue(f"[{half}] must be a table")
+    if not isinstance(given, Mapping) or ("backend" not in given and half == "master" and "chips" not in given):
         return None
+    if "backend" not in given:
+        raise InvalidValue(
+            f'[{half}] backend is missing: write backend = "spidev"; others are {", ".join(BACKENDS[1:])}'
+        )
     backend = given["backend"]
     if backend not in BACKENDS:
         raise InvalidValue(f"[{half}] backend = {backend!r}: valid are {', '.join(BACKENDS)}")
@@ -254,6 +281,7 @@ def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> 
     the file is, for paths in it."""
     left = dict(tables)
     found = {half: _taken(half, left, Path(folder)) for half in HALVES}
+    _check_devices(found)
     if isinstance(found["slave"], Converters):
         setup = found["slave"].setup
         deflection = setup["felt"][2]
@@ -261,7 +289,10 @@ def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> 
         left["probe"] = _known(left.get("probe", {}), lever)
         ways = {"travel_sigma": "driven", "position_sigma": "position"}
         sigmas = {key: (max(axis["uncertainty"] for axis in setup[name] if axis), "") for key, name in ways.items()}
-        left["stage"] = _known(left.get("stage", {}), sigmas)
+        only = {"axes": (1, "")} if setup["axes"] == 1 else {}
+        left["stage"] = _known(left.get("stage", {}), sigmas | only)
+        if only and isinstance(left["stage"], Mapping) and left["stage"]["axes"] != 1:
+            raise InvalidValue(f"[stage] axes = {left['stage']['axes']!r}: its half has one, [slave] axes = 1")
     return RigFile(left, found["master"], found["slave"])
 
 
