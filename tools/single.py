@@ -58,6 +58,12 @@ WORDS = {"double": "float", "HUGE_VAL": "HUGE_VALF", "DBL_EPSILON": "FLT_EPSILON
 NOTE = """/* SPDX-License-Identifier: BSD-3-Clause
  * Made by tools/single.py from nanotouch {version}: do not edit. {what} */
 """
+NARROWED = """
+#if defined(__GNUC__) /* sums are double, and meant to be narrowed where they leave */
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wfloat-conversion"
+#endif
+"""
 CHOICES = """
 /* In the type of what they are given: what adds up is double. */
 static inline float ntf_lesser(float a, float b)
@@ -334,7 +340,7 @@ def write_header(folder: Path, version: str, kept: list[str]) -> None:
 def write_source(folder: Path, version: str) -> None:
     """Write all functions as one source."""
     parts = [NOTE.format(version=version, what="")]
-    parts.append('#include "nanotouch_single.h"\n\n#include <math.h>\n#include <stddef.h>\n' + CHOICES)
+    parts.append('#include "nanotouch_single.h"\n\n#include <math.h>\n#include <stddef.h>\n' + NARROWED + CHOICES)
     parts += [single(function_of(name, path)) for name, path in CALLED.items()]
     for name in PRIVATE:
         parts += [single(i) for i in items((LIBRARY / f"control/{name}.h").read_text()) if is_prototype(i)]

@@ -343,10 +343,9 @@ static void a_program_of_another_user_is_not_obeyed(void **state)
     char path[128];
     (void)snprintf(path, sizeof path, "/dev/shm/nanotouch.mailbox.%s", name);
     assert_int_equal(chown(path, 65534, 65534), 0);
-    nt_mailbox_half mailbox = half_of(name);
+    mailbox = half_of(name);
     const nt_hal_choice choice = {nt_mailbox_backend(NT_HALF_SLAVE), &mailbox};
     nt_problem problem = {0};
-    nt_hal hal = {0};
     assert_int_equal(nt_hal_open(&hal, NT_HALF_SLAVE, &choice, &host, &problem), NT_E_STATE);
     assert_string_equal(problem.field, "programs of this user that serve this mailbox (another user's does)");
     assert_int_equal(chown(path, 0, 0), 0);
