@@ -138,3 +138,23 @@ def test_real_images(name: str, most: float) -> None:
         clean, _ = images.prepare(images.read(path))
     assert images.roughness(result).rms < most * NM
     assert clean.height_range < 100 * NM  # the spike of 490 nm in the second has gone
+
+
+def lattice(kind: str) -> synthetic.Array:
+    """Structures whose walls have harmonics, or leave few points of a tile flat; 256 pixels."""
+    y, x = np.mgrid[:256, :256].astype(float)
+    if kind == "holes":
+        return -60 * NM * ((x % 48 < 30) & (y % 48 < 30))
+    if kind == "lines along":
+        return 20 * NM * (y % 37 < 13)
+    return 20 * NM * (x % 37 < 13)
+
+
+@pytest.mark.parametrize("kind", ["holes", "lines along", "lines across"])
+def test_a_bow_is_seen_through_a_lattice(kind: str) -> None:
+    """The walls' harmonics are no fine grating, and walls do not hide the slope of a tile."""
+    truth = lattice(kind)
+    rng = np.random.default_rng(3)
+    scan = known.scanned(truth, rng, offsets=0.0, drift=0.0, bow=5 * NM)
+    assert error(levelled(scan, "plane+lines")[0], truth) > 1.0 * NM
+    assert error(levelled(scan)[0], truth) < 0.2 * NM

@@ -74,7 +74,7 @@ def analyse(strips: Floats) -> Drift:
     """Tell drift from structure. strips: (ny, columns), means over blocks along x [m], NaN where not to count."""
     profile = rows.summed(np.diff(strips, axis=0))
     found = rows.analyse(strips)
-    period = found.period or _period(profile)
+    period = _period(profile) or found.period
     if period is not None:
         return Drift(found.offsets, 0.0, (), True, period)
     jumps = _jumps(strips, profile)
@@ -101,18 +101,16 @@ def anisotropy(strips: Floats) -> float:
 
 
 def _period(profile: Floats) -> float | None:
-    """Of the one frequency of the steps that stands out of its neighbours [row]."""
+    """Of the lowest frequency of the steps that stands out of its neighbours [row]; walls have harmonics."""
     steps = np.diff(profile)
     if len(steps) < 2 * _NEAR:
         return None
     power = np.abs(np.fft.rfft((steps - steps.mean()) * np.hanning(len(steps)))) ** 2
-    best, period = _LINE, None
     for k in range(3, len(power) - 1):
         near = np.concatenate([power[max(1, k - 10) : max(1, k - 2)], power[k + 3 : k + 11]])
-        ratio = power[k] / max(float(np.median(near)), 1e-300)
-        if ratio > best:
-            best, period = ratio, len(steps) / k
-    return period
+        if power[k] > _LINE * max(float(np.median(near)), 1e-300) and power[k] >= power[k + 1]:
+            return len(steps) / k
+    return None
 
 
 def _jumps(strips: Floats, profile: Floats) -> list[tuple[int, int, float]]:
@@ -241,10 +239,17 @@ def _tile_slopes(strips: Floats) -> tuple[Floats, Floats]:
     width = max(1, strips.shape[1] // 64)
     count = strips.shape[1] // width
     blocks = strips[:, : count * width].reshape(len(strips), count, width).mean(axis=2)
-    steps = np.diff(blocks, axis=1)
+    steps = _without_walls(np.diff(blocks, axis=1))
     tall, wide = np.array_split(np.arange(len(steps)), 8), np.array_split(np.arange(count - 1), min(16, count // 4))
     slopes = [[_known_median(steps[np.ix_(j, i)]) for i in wide] for j in tall]
     return np.array(slopes), np.array([i.mean() for i in wide])
+
+
+def _without_walls(steps: Floats) -> Floats:
+    """NaN where a step stands out of all by far: of the few in a narrow tile half may lie on the walls of a grating."""
+    off = np.abs(steps - _known_median(steps))
+    limit = _HIGH * MAD * _known_median(off)
+    return np.where(off > limit, np.nan, steps) if limit > 0.0 else steps
 
 
 def _known_median(values: Floats) -> float:
