@@ -78,6 +78,8 @@ def add_parser(subparsers: Any) -> None:
     results = parser.add_argument_group("results")
     output.add_options(results)
     results.add_argument("--verbose", action="store_true", help="tell models, error bounds and limits in full, too")
+    results.add_argument("--no-pictures", action="store_true", help="record and tell, but draw nothing, which takes most "
+                         "of a short touch")  # fmt: skip
     results.add_argument("--no-window", action="store_true", help="do not open the 3-D view where there is a display")
 
 
@@ -94,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
         facts = summary.summarise(session, recording)
         output.write_json(out / "summary.json", facts)
         with output.busy("drawing"):
-            missing = _draw(session, topography, recording, out)
+            missing = [] if args.no_pictures else _draw(session, topography, recording, out)
         written = [name for name in FILES if (out / name).exists()]
         args.answer = facts | {"folder": str(out), "files": written}
         if session.halves.slave.real:

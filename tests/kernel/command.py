@@ -35,7 +35,16 @@ def prepare(folder: Path) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "rig.toml").write_text(text)
     (folder / "simulated.toml").write_text(text.replace('"spidev"', '"simulated"'))
-    given = ["--scene", str(folder / "simulated.toml"), "--surface", "flat", "--mode", "curve", "--no-window"]
+    given = [
+        "--scene",
+        str(folder / "simulated.toml"),
+        "--surface",
+        "flat",
+        "--mode",
+        "curve",
+        "--no-window",
+        "--no-pictures",
+    ]
     return nanotouch(["touch", *given, "--out", str(folder / "simulated"), "--overwrite"])
 
 

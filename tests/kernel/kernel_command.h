@@ -154,8 +154,8 @@ static void run_command(char *const words[])
 static void a_command_touches(void **state)
 {
     (void)state;
-    static char *words[] = {"nanotouch", "touch", "--scene", "rig.toml",    "--mode",
-                            "curve",     "--out", "real",    "--overwrite", NULL};
+    static char *words[] = {"nanotouch", "touch", "--scene",       "rig.toml",    "--mode", "curve",
+                            "--out",     "real",  "--no-pictures", "--overwrite", NULL};
     run_command(words);
     assert_int_equal(chips.wrong_mode, 0);
 }

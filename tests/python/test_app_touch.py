@@ -320,3 +320,10 @@ def test_an_image_is_levelled_as_it_is_told(tmp_path: Path, capsys: pytest.Captu
     assert ranges["none"] > 50.0
     assert main(["touch", file, "--level", "flatten"]) != 0
     assert "method: 'flatten'" in capsys.readouterr().err
+
+
+def test_no_pictures(tmp_path: Path) -> None:
+    assert (
+        main(["touch", "--surface", "flat", "--duration", "0.5s", "--no-pictures", "--out", str(tmp_path / "out")]) == 0
+    )
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"recording.mcap", "summary.json"}
