@@ -13,7 +13,7 @@
 static const double cost_height[2] = {2.0, 2.3};   /* height and slopes */
 static const double cost_radius[2] = {1.0, 1.0};   /* and the effective radius */
 static const double cost_property[2] = {0.7, 0.6}; /* and each property */
-static const double cost_tables[2] = {3.4, 3.1};   /* and four tables of a sample that yields, in place of one */
+static const double cost_tables[2] = {6.6, 5.4};   /* and four tables of a sample that yields, in place of one */
 
 #define LAST_BITS                                                                                                      \
     5e-15 /* of each term beside contact, within which a difference loses some, too; large ones can cancel to a small  \

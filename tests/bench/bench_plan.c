@@ -280,6 +280,49 @@ static void draw(nt_random *random, nt_scene *scene, nt_demand *demand)
     scene->range.maximum_load = 1e-6 * scene->tip.radius / 20e-9 * 0.1;
 }
 
+/* Stated beside measured. */
+static void report_plan(const char *name, int over)
+{
+    const cost found = measure(plan.largest_indentation, over);
+    const cost in_unit = {found.throughput / unit.throughput, found.latency / unit.latency};
+    printf(",\n  \"%s\": {\"stated\": [%.2f, %.2f], \"measured\": [%.2f, %.2f], \"ratio\": [%.2f, %.2f]}", name,
+           plan.cost, plan.latency, in_unit.throughput, in_unit.latency, in_unit.throughput / plan.cost,
+           in_unit.latency / plan.latency);
+}
+
+/* Soft samples, which yield: dry and sticky, or pushed by a double layer; flat and over relief. */
+static void report_yielding(void)
+{
+    static nt_yield_table room[NT_YIELD_RADII];
+    for (int wet = 0; wet < 3; ++wet)
+        for (int over = 0; over < 2; ++over) {
+            static const char *const names[] = {"", " to a double layer", " to a double layer, sticky"};
+            char name[64];
+            nt_scene scene = nt_scene_defaults();
+            const nt_demand demand = {.relative_accuracy = 0.01};
+            nt_plan_inputs inputs = {.scene = &scene, .demand = &demand};
+            scene.medium.relative_humidity = 0.0;
+            scene.sample.youngs_modulus = 1e7;
+            scene.range.maximum_load = 1e-9;
+            if (wet) {
+                scene.medium.kind = NT_MEDIUM_LIQUID;
+                scene.medium.ionic_strength = 10.0;
+                scene.tip.surface_potential = scene.sample.surface_potential = 0.02;
+                scene.adhesion.hamaker_constant = 0.0;
+                scene.adhesion.work_of_adhesion = wet == 1 ? 0.0 : 1e-3;
+            }
+            if (over && make_surface(&scene) == NT_OK) {
+                inputs.surface = &surface;
+                inputs.radii = &radii;
+                inputs.room = room;
+            }
+            if (make(&inputs) != NT_OK || plan.yield.count == 0)
+                continue;
+            (void)snprintf(name, sizeof name, "yielding%s%s", names[wet], over ? ", relief" : "");
+            report_plan(name, over);
+        }
+}
+
 static void report_random(uint64_t seed)
 {
     nt_random random = nt_random_seed(seed);
@@ -295,7 +338,6 @@ static void report_random(uint64_t seed)
         }
         if (make(&inputs) != NT_OK)
             continue;
-        const cost found = measure(plan.largest_indentation, over);
         char forms[200] = "";
         for (int i = -1; i < plan.on_count; ++i) {
             const nt_plan_term *term = &plan.terms[i < 0 ? NT_PLAN_CONTACT : plan.on[i]];
@@ -303,11 +345,9 @@ static void report_random(uint64_t seed)
             (void)snprintf(forms + used, sizeof forms - used, "%s%s %s", i < 0 ? "" : ", ", term->name,
                            nt_form_name(term->form));
         }
-        printf(
-            ",\n  \"plan %d%s: %s\": {\"stated\": [%.2f, %.2f], \"measured\": [%.2f, %.2f], \"ratio\": [%.2f, %.2f]}",
-            ++made, over ? ", surface" : "", forms, plan.cost, plan.latency, found.throughput / unit.throughput,
-            found.latency / unit.latency, found.throughput / unit.throughput / plan.cost,
-            found.latency / unit.latency / plan.latency);
+        char name[sizeof forms + 32];
+        (void)snprintf(name, sizeof name, "plan %d%s: %s", ++made, over ? ", surface" : "", forms);
+        report_plan(name, over);
     }
 }
 
@@ -336,6 +376,7 @@ int main(int argc, char **argv)
     report_laws(NT_FORM_TABLE);
     scene = nt_scene_defaults();
     report_surface(&scene);
+    report_yielding();
     report_random(argc > 1 ? strtoull(argv[1], NULL, 10) : 7);
     printf("\n}\n");
     return 0;

@@ -44,7 +44,7 @@ static const nt_term_form forms[] = {
     {NT_FORM_JKR, 1.5, 2.4, "JKR"},
     {NT_FORM_TABLE, 1.6, 1.5, "Maugis-Dugdale table"},
     {NT_FORM_POLISHED, 6.0, 5.6, "Maugis-Dugdale, polished table"},
-    {NT_FORM_YIELDING, 2.2, 2.4, "on a sample that yields to all forces together"},
+    {NT_FORM_YIELDING, 2.4, 2.5, "on a sample that yields to all forces together"},
     {NT_FORM_LOCAL_EXACT, 68.0, 59.0, "Maugis-Dugdale, exact, with the radius of each place"},
 };
 enum { FORMS = sizeof forms / sizeof forms[0] };
