@@ -11,8 +11,8 @@ adds up over a session (nt_sum) stays double. Only what the step calls is taken,
 has single precision in the library, too.
 """
 
+import argparse
 import re
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -362,10 +362,14 @@ def write_tests(folder: Path, sources: list[str]) -> None:
 
 def main() -> None:
     """Write the files."""
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description="Writes the touch step in single precision, or tests of it.")
+    parser.add_argument("folder", type=Path, help="where the files go")
+    parser.add_argument("tests", nargs="*", help="C tests of the double step: those are written in single precision")
+    given = parser.parse_args()
+    folder = given.folder
     folder.mkdir(parents=True, exist_ok=True)
-    if sys.argv[2:]:
-        write_tests(folder, sys.argv[2:])
+    if given.tests:
+        write_tests(folder, given.tests)
         return
     version = re.search(r'NT_VERSION "(.*)"', (PUBLIC / "version.h").read_text())
     kept = declarations()
