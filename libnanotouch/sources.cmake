@@ -186,7 +186,7 @@ set(nanotouch_sources_control
     control/touch.c
     control/touch_make.c
     control/verdict.c)
-set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c)
+set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c hal/sim/tap.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted

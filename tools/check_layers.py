@@ -34,9 +34,9 @@ USES = {
     "scene/yielding": "core forces contact friction plasticity surface scene scene/terms",
     "scan": "core forces contact friction plasticity surface scene dynamics",
     "view": "core forces contact friction plasticity surface scene",
-    "hal/sim": "core forces contact friction plasticity surface scene dynamics hal",
+    "hal/sim": "core forces contact friction plasticity surface scene dynamics scan hal",
     "hal/linux": "core hal hal/chips",
-    "session": "core forces contact friction plasticity surface scene dynamics control hal hal/sim",
+    "session": "core forces contact friction plasticity surface scene dynamics scan control hal hal/sim",
     "fit": "core forces contact contact/maugis curves fit/models",
     "fit/models": "core contact contact/maugis curves fit",
 }

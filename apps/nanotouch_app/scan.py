@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scan a surface on the simulated rig, in contact or tapping mode: what the scan will do is told first, then the image
 is taken, there and back, with all channels. `nanotouch touch` and `live` go on from surface.gwy, its heights without
-the tip. A scene that is a rig file scans with its real slave, in contact mode."""
+the tip. A scene that is a rig file scans with its real slave."""
 
 from __future__ import annotations
 
@@ -90,14 +90,14 @@ def run(args: argparse.Namespace) -> int:
 def _on_rig(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], surface: nt.Surface) -> int:
     """With the real slave of a rig file, which moves by the clock."""
     args.mode = scan_rig.mode(args, tables)
-    settings = nt.Scan.from_tables(tables)
-    _set_loop(args, settings, nt.Drive())
+    settings, drive = nt.Scan.from_tables(tables), nt.Drive.from_tables(tables)
+    _set_loop(args, settings, drive)
     _set_raster(args, settings, surface, "raster" in tables)
     rate = None if args.line_rate is None else parse_quantity(args.line_rate, "Hz")
     if rate is None and any(key.startswith("line_rate") for key in tables.get("raster", {})):
         rate = settings["raster.line_rate"]
     with output.folder(args, FILES) as out:
-        session = scan_rig.opened(args, settings, surface, rate)
+        session = scan_rig.opened(args, settings, drive, surface, rate)
         duration = settings["raster.lines"] / settings["raster.line_rate"]
         print(f"the scan takes {_time(duration)}")
         args.answer = {"duration": duration, "guarantee": session.guarantee().force}
@@ -130,9 +130,10 @@ def _write(args: argparse.Namespace, image: scan.Image, scene: nt.Scene, out: Pa
         print(f"picture left out: {missing}")
     written = [name for name in FILES if (out / name).exists()]
     args.answer = facts | {"folder": str(out), "files": written}
+    force = "" if facts["peak_force"] is None else f"largest force {facts['peak_force'] * 1e9:.3g} nN, "
     output.say(
-        f"image: heights over {facts['height_range'] * 1e9:.4g} nm, largest force "
-        f"{facts['peak_force'] * 1e9:.3g} nN, trace and retrace differ by {facts['difference'] * 1e9:.3g} nm rms"
+        f"image: heights over {facts['height_range'] * 1e9:.4g} nm, {force}trace and retrace differ by "
+        f"{facts['difference'] * 1e9:.3g} nm rms"
     )
     if slides and image.mode == "contact":
         output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
@@ -262,9 +263,10 @@ def _taken(scanner: nt.Scanner, seed: int, accuracy: float | None) -> scan.Image
 def _facts(image: scan.Image) -> dict[str, Any]:
     there, back = image.trace, image.retrace
     difference = there.height - back.height
+    peak = float(max(there.peak_force.max(), back.peak_force.max()))
     return {
         "height_range": float(np.ptp(there.height)),
-        "peak_force": float(max(there.peak_force.max(), back.peak_force.max())),
+        "peak_force": None if math.isnan(peak) else peak,  # of tapping nothing measures it on a rig
         "largest_error": float(np.abs(there.error).max()),
         "difference": float(np.sqrt(np.mean((difference - difference.mean()) ** 2))),
         "friction": float(0.5 * np.mean(there.lateral - back.lateral)),
@@ -293,7 +295,9 @@ def draw(image: scan.Image, path: Any) -> None:
         ("Phase (degrees)", np.degrees(image.trace.phase)) if taps else ("Deflection (nm)", image.trace.signal * 1e9),
         ("Lateral force (nN)", image.trace.lateral * 1e9)
         if image.trace.lateral.any()
-        else ("Largest force (nN)", image.trace.peak_force * 1e9),
+        else ("Largest force (nN)", image.trace.peak_force * 1e9)
+        if not np.isnan(image.trace.peak_force).any()
+        else ("Amplitude (nm)", image.trace.signal * 1e9),
     ]
     for panel, (title, values) in zip(panels, shown, strict=False):
         low, high = np.percentile(values, (0.5, 99.5))

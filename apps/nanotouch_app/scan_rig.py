@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scan on the real slave of a rig file: contact mode by a session, whose height servo holds the force."""
+"""A scan on the real slave of a rig file: a session's height servo holds the force, or the amplitude of a tap."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from nanotouch.units import in_words
 from nanotouch_app import output, scenes
 from nanotouch_app.quantity import parse_quantity
 
+PEAK = 0.1  # accuracy of the peak force that is told
 LINES = 16  # of the raster that tell the relief, if a surface is named
 SETTLES = 2.0  # time constants of the height servo in a pixel, where no line rate is given
 
@@ -23,38 +24,76 @@ def is_named(args: argparse.Namespace) -> bool:
 
 
 def mode(args: argparse.Namespace, tables: dict[str, Any]) -> str:
-    """Contact, of which the hal has all channels."""
-    asked = args.mode or tables.get("zloop", {}).get("mode", "contact")
-    if asked != "contact" or args.free_amplitude is not None:
+    """Contact, or tapping where the slave has a lock-in amplifier."""
+    asked = str(args.mode or tables.get("zloop", {}).get("mode", "contact"))
+    if asked not in nt.raster.MODES:
+        raise InvalidValue(f"--mode {asked}: a rig file's probe scans with {' or '.join(nt.raster.MODES)}")
+    slave = scenes.real_halves(args.scene)["slave"]
+    if asked == "tapping" and isinstance(slave, nt.rig_file.Converters) and not any(slave.setup["lock_in"]):
         raise InvalidValue(
-            "a rig file has no channels for the drive and the lock-in amplifier of tapping: its probe scans with "
-            "--mode contact"
+            f"{args.scene} has no [slave.amplitude] and [slave.lag]: without a lock-in amplifier its probe scans with "
+            "--mode contact (docs/hardware.md)"
         )
+    if asked == "contact" and args.free_amplitude is not None:
+        raise InvalidValue("--free-amplitude goes with --mode tapping")
     if args.steady is not None:
         raise InvalidValue("--steady: an image of the simulated scanner; a real probe scans in time")
-    return "contact"
+    return asked
 
 
-def opened(args: argparse.Namespace, settings: nt.Scan, surface: nt.Surface, rate: float | None) -> nt.Session:
+def _take_tap(wanted: nt.Settings, settings: nt.Scan, drive: nt.Drive, tables: dict[str, Any]) -> None:
+    """What [drive] and [zloop] say, and the options, into the settings of the session."""
+    for name in ("at", "frequency", "free_amplitude"):
+        wanted[f"tap.{name}"] = drive[f"drive.{name}"]
+    wanted["tap.set_amplitude"] = settings["zloop.set_amplitude"]
+    for name in ("lock_in", "noise"):
+        if any(key.startswith(name) for key in tables.get("zloop", {})):
+            wanted[f"tap.{name}"] = settings[f"zloop.{name}"]
+
+
+def opened(
+    args: argparse.Namespace, settings: nt.Scan, drive: nt.Drive, surface: nt.Surface, rate: float | None
+) -> nt.Session:
     """The session that scans, armed; sets the line rate. ``rate``: that somebody gave [Hz]."""
     scene, rig, tables = scenes.read(args.scene)
     raster = settings.raster
     lines = (raster.y + raster.height * line / (LINES - 1) for line in range(LINES))
     path = [(x, y) for y in lines for x in (raster.x, raster.x + raster.width)]
-    what: dict[str, Any] = {"surface": surface, "mode": "topography", "path": path}
-    wanted = nt.Session(scene, rig, minimum_margin=0.0, **what).settings.copy()
+    what: dict[str, Any] = {"surface": surface, "path": path}
+    wanted = nt.Session(scene, rig, minimum_margin=0.0, mode="topography", **what).settings.copy()
     wanted.update_from_tables(tables)
-    wanted.gains.set_point = settings.zloop.set_force
+    taps = settings.zloop.mode == "tapping"
+    if taps:
+        _take_tap(wanted, settings, drive, tables)
+    else:
+        wanted.gains.set_point = settings.zloop.set_force
     if args.gain is not None:
         wanted.gains.height_gain = parse_quantity(args.gain, "Hz")
     servo = float(wanted.gains.height_gain)
     raster.line_rate = rate if rate is not None else float(f"{servo / (2.0 * SETTLES * raster.pixels):.2g}")
-    session = nt.Session(scene, rig, settings=wanted, **what, **scenes.real_halves(args.scene))
-    output.say(
-        f"promised {in_words(session.guarantee().force, 'N', 4)} at most on the sample; it is held at "
-        f"{in_words(wanted.gains.set_point, 'N', 4)}, with K_I = {servo:.3g}/s"
-    )
+    mode = nt.raster.MODES[str(settings.zloop.mode)]
+    session = nt.Session(scene, rig, settings=wanted, mode=mode, **what, **scenes.real_halves(args.scene))
+    promised = in_words(session.guarantee().force, "N", 4)
+    if taps:
+        _say_tapping(session, drive, promised, servo)
+    else:
+        held = in_words(wanted.gains.set_point, "N", 4)
+        output.say(f"promised {promised} at most on the sample; it is held at {held}, with K_I = {servo:.3g}/s")
     return session
+
+
+def _say_tapping(session: nt.Session, drive: nt.Drive, promised: str, servo: float) -> None:
+    """What is held, and the peak force of a tap, which is told by the scene alone."""
+    amplitude = session.settings["tap.set_amplitude"] * session.settings["tap.free_amplitude"]
+    output.say(
+        f"promised {promised} at most on the sample, as a mean over many taps; an amplitude of "
+        f"{in_words(amplitude, 'm', 4)} is held, with K_I = {servo:.3g}/s"
+    )
+    motion = nt.Steady(session.plan, session.rig, drive, accuracy=PEAK).at_amplitude(amplitude)
+    if motion is None:
+        output.say("no motion of this set point repeats in this scene: its peak force is not known")
+    else:
+        output.say(f"each tap presses with {in_words(motion.peak_force, 'N', 3)} in this scene; nothing measures it")
 
 
 def taken(session: nt.Session, settings: nt.Scan) -> nt.scan.Image:

@@ -170,10 +170,10 @@ def _position_error(session: nt.Session, recording: Recording) -> Any:
 
 
 def _force_error(session: nt.Session, recording: Recording) -> Any:
-    """f_m - alpha_f f_s in contact; for the height servo alpha_f (set-point - f_s); a curve follows no force [N]."""
+    """f_m - alpha_f f_s in contact; for the height servo alpha_f (set-point - f_s); curve and tapping have none [N]."""
     gains = session.settings.gains
     touching = recording.contact_radius > 0.0
-    if session.mode == "curve":
+    if session.mode in ("curve", "tapping"):
         return ()
     if session.mode in ("topography", "approach"):
         return gains.alpha_f * (gains.set_point - recording.slave_force[touching])

@@ -18,6 +18,7 @@ DID = {
     "topography": "followed a line at constant force",
     "approach": "found the surface and stayed on it",
     "curve": "recorded a force-distance curve",
+    "tapping": "followed a line at constant amplitude",
 }
 NEXT = {
     "point": ("scan", "feel the forces along a line"),
@@ -25,6 +26,7 @@ NEXT = {
     "topography": ("curve", "record a force-distance curve"),
     "approach": ("point", "press at one point"),
     "curve": ("point", "press at one point with the hand"),
+    "tapping": ("topography", "feel only the height, at constant force"),
 }
 """the mode to try after another one, and what it does"""
 

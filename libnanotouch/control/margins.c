@@ -138,6 +138,15 @@ static nt_verdict judge_without_motor(const nt_margins *margins, const nt_gains 
     return isinf(least.margin) ? (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed") : least;
 }
 
+/* The height servo over a hard sample, which the amplitude follows one to one, with the lags of a free lever and of the
+ * lock-in amplifier in the loop: gain times lag, as of the force. */
+static nt_verdict judge_tapping(const nt_margins *margins, const nt_rig *rig, const nt_settings *settings,
+                                const nt_gains *gains)
+{
+    const double lag = slave_delay(rig, gains) + nt_tap_lag(rig, &settings->tap);
+    return (nt_verdict)NT_VERDICT(fmin(margins->height_margin, 1.0 / (gains->height_gain * lag)), "amplitude servo");
+}
+
 nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, double contact_stiffness, nt_mode mode,
                                nt_margins *margins)
 {
@@ -146,6 +155,8 @@ nt_verdict nt_verdict_on_known(const nt_rig *rig, const nt_settings *settings, d
     *margins = compute(&equivalent.rig, &equivalent.gains, equivalent.contact_stiffness, &loop);
     if (mode == NT_MODE_CURVE)
         return (nt_verdict)NT_VERDICT(INFINITY, "none: no loop is closed");
+    if (mode == NT_MODE_TAPPING)
+        return judge_tapping(margins, &equivalent.rig, settings, &equivalent.gains);
     if (mode != NT_MODE_TOUCH)
         return (nt_verdict)NT_VERDICT(margins->height_margin, "height servo");
     const double coupling = nt_servo_coupling_margin(&equivalent.rig, &equivalent.gains, contact_stiffness,

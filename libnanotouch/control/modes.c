@@ -62,11 +62,14 @@ static double run_touch(const nt_touch *touch, nt_touch_state *state)
     return state->engaged * effort.motor_force + nt_passivity_damping_force(&touch->passivity, &state->passivity);
 }
 
-/* How far the height servo would go in this period towards the set-point [m]. */
+/* How far the height servo would go in this period towards the set-point [m]: down for more force, or where the
+ * amplitude is larger than what is held. */
 static double height_step(const nt_touch *touch, const nt_touch_state *state)
 {
     const nt_gains *gains = &touch->settings.gains;
-    const double error = (gains->set_point - state->signals.slave_force) / touch->rig.probe.spring_constant;
+    const double force_error = (gains->set_point - state->signals.slave_force) / touch->rig.probe.spring_constant;
+    const double set_amplitude = touch->settings.tap.set_amplitude * touch->drive_amplitude;
+    const double error = state->mode == NT_MODE_TAPPING ? state->amplitude - set_amplitude : force_error;
     return step_of(touch, gains->height_gain * error);
 }
 
@@ -128,6 +131,7 @@ double nt_mode_run(const nt_touch *touch, nt_touch_state *state)
     case NT_MODE_TOUCH:
         return run_touch(touch, state);
     case NT_MODE_TOPOGRAPHY:
+    case NT_MODE_TAPPING:
         return run_topography(touch, state);
     case NT_MODE_APPROACH:
         return run_approach(touch, state);

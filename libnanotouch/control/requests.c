@@ -43,7 +43,7 @@ nt_status nt_touch_arm(nt_touch_state *state, int confirmed)
 
 nt_status nt_touch_set_mode(nt_touch_state *state, nt_mode mode)
 {
-    if (mode > NT_MODE_CURVE)
+    if (mode > NT_MODE_TAPPING)
         return NT_E_ARGUMENT;
     state->wanted_mode = mode;
     if (mode == state->mode)

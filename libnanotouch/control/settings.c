@@ -53,7 +53,22 @@ static const nt_field settings_fields[] = {
     FIELD(limits.deflection_drift, "m/s", 0.0, 1.0, "largest drift of the deflection at the tare"),
     FIELD(limits.gauge_bias, "N", 0.0, 1e3, "largest bias of the hand's gauge that is tared away"),
     FIELD(limits.gauge_drift, "N/s", 0.0, 1e6, "largest drift of the hand's gauge at the tare"),
+    FIELD(tap.at, "tip|base", 0.0, 1.0, "where a simulated lever is driven"),
+    FIELD(tap.frequency, "Hz", 0.0, 1e9, "frequency of the drive, 0 for the free resonance"),
+    FIELD(tap.free_amplitude, "m", 1e-11, 1e-6, "amplitude A0 of the deflection far from the sample"),
+    FIELD(tap.tolerance, "", 0.001, 0.5, "share of A0 by which the free amplitude may be off at opening"),
+    FIELD(tap.set_amplitude, "", 0.2, 0.98, "amplitude that is held, over A0"),
+    FIELD(tap.lock_in, "s", 0.0, 1.0, "time constant of the lock-in amplifier"),
+    FIELD(tap.noise, "m", 0.0, 1e-6, "standard deviation of a reading of the amplitude"),
+    FIELD(tap.resolution, "m", 0.0, 1e-6, "step of a reading of the amplitude"),
 };
+
+static const nt_tap tap_defaults = {.at = 1, /* base */
+                                    .free_amplitude = 20e-9,
+                                    .tolerance = 0.1,
+                                    .set_amplitude = 0.7,
+                                    .lock_in = 20e-6,
+                                    .noise = 20e-12};
 
 nt_settings nt_settings_defaults(const nt_rig *rig)
 {
@@ -100,9 +115,15 @@ nt_settings nt_settings_defaults(const nt_rig *rig)
                    .deflection_drift = 0.3 * nt_probe_deflection_range(&rig->probe),
                    .gauge_bias = 0.1 * rig->master.gauge_range,
                    .gauge_drift = 0.3 * rig->master.gauge_range},
+        .tap = tap_defaults,
         .control = {.choice = rig->master.gauge ? NT_CONTROL_DEFAULT : NT_CONTROL_IMPEDANCE},
     };
     return settings;
+}
+
+double nt_tap_lag(const nt_rig *rig, const nt_tap *tap)
+{
+    return tap->lock_in + rig->probe.quality / (NT_PI * rig->probe.resonance);
 }
 
 void nt_settings_keep_to(nt_settings *settings, double load)

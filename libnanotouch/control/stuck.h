@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Private to control/: is the deflection's sensor dead? */
+ * Private to control/: is a sensor dead? */
 #ifndef NANOTOUCH_CONTROL_STUCK_H
 #define NANOTOUCH_CONTROL_STUCK_H
 
 #include "nanotouch/supervisor.h"
 
-/* Of a valid sample. NT_HOLD for a sensor that seems dead, NT_LATCHED where a step away has not helped. shows_none: the
- * reading is one that shows no noise anyway. */
-nt_state nt_stuck_judge(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
+/* Of a valid reading at a travel of the stage. NT_HOLD for a sensor that seems dead, NT_LATCHED where a step away has
+ * not helped. shows_none: the reading is one that shows no noise anyway. */
+nt_state nt_stuck_judge(const nt_stuck_limits *limits, nt_stuck *stuck, double reading, double position,
                         int shows_none);
 
 #endif

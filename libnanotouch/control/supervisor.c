@@ -19,8 +19,11 @@
 
 nt_supervisor_state nt_supervisor_start(void)
 {
-    return (nt_supervisor_state){
-        .state = NT_RUN, .stuck_deflection = NAN, .surface = NAN, .expected = NAN}; /* nothing seen yet */
+    return (nt_supervisor_state){.state = NT_RUN,
+                                 .deflection = {.value = NAN},
+                                 .amplitude = {.value = NAN},
+                                 .surface = NAN,
+                                 .expected = NAN}; /* nothing seen yet */
 }
 
 static nt_state worse(nt_state a, nt_state b)
@@ -47,6 +50,13 @@ static int shows_sideways(const nt_supervisor *supervisor, const nt_sample *samp
            (isfinite(sample->deflection[NT_X]) && isfinite(sample->deflection[NT_Y]));
 }
 
+/* A lever that taps shows amplitude and lag always; a lock-in amplifier's noise may bring a small one below 0. */
+static int shows_tapping(const nt_supervisor *supervisor, const nt_sample *sample)
+{
+    const double most = supervisor->amplitude.most;
+    return most == 0.0 || (is_within(sample->amplitude, 2.0 * most) && isfinite(sample->lag));
+}
+
 /* Numbers that no sensor of this rig can give (twice its range) are as bad as no numbers. The deflection is judged by
  * its force. */
 static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
@@ -57,8 +67,9 @@ static int is_valid(const nt_supervisor *supervisor, const nt_sample *sample)
            (!supervisor->leads_sideways || is_within_sideways(supervisor, sample)) &&
            (gauge == 0.0 || is_within(sample->operator_force[NT_Z], 2.0 * gauge)) &&
            is_within(sample->stage_position[NT_Z], supervisor->stage_range) && isfinite(sample->deflection[NT_Z]) &&
-           shows_sideways(supervisor, sample) && isfinite(sample->stage_position[NT_X]) &&
-           isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) && sample->age >= 0.0;
+           shows_sideways(supervisor, sample) && shows_tapping(supervisor, sample) &&
+           isfinite(sample->stage_position[NT_X]) && isfinite(sample->stage_position[NT_Y]) && isfinite(sample->age) &&
+           sample->age >= 0.0;
 }
 
 static nt_state blame(nt_supervisor_state *state, uint32_t reason, nt_state verdict)
@@ -86,7 +97,7 @@ static int is_saturated(const nt_supervisor *supervisor, const nt_sample *sample
 static int tells_force(const nt_supervisor *supervisor, const nt_supervisor_state *state, const nt_sample *sample)
 {
     return isfinite(sample->deflection[NT_Z]) && !is_saturated(supervisor, sample) &&
-           state->stuck_run < NT_STUCK_SAMPLES;
+           state->deflection.run < NT_STUCK_SAMPLES;
 }
 
 static int is_held_too_hard(const nt_supervisor *supervisor, const nt_sample *sample)
@@ -164,8 +175,24 @@ static nt_state judge_lateness(const nt_supervisor *supervisor, nt_supervisor_st
 static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample,
                             int saturated)
 {
-    const nt_state verdict = nt_stuck_judge(supervisor, state, sample, saturated);
+    const nt_stuck_limits limits = {supervisor->stuck_distance, supervisor->noise};
+    const double position = sample->stage_position[NT_Z];
+    const nt_state verdict =
+        worse(nt_stuck_judge(&limits, &state->deflection, sample->deflection[NT_Z], position, saturated),
+              nt_stuck_judge(&supervisor->amplitude.stuck, &state->amplitude, sample->amplitude, position, 0));
     return verdict == NT_RUN ? NT_RUN : blame(state, NT_REASON_STUCK, verdict);
+}
+
+/* A drive that is gone looks like hard contact: the servo draws the tip up, and the amplitude has to come back while
+ * lever and lock-in amplifier can follow. It tells of no force: LATCHED, and the tip lifts. */
+static nt_state judge_amplitude(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
+{
+    const nt_amplitude_limits *tap = &supervisor->amplitude;
+    if (tap->most == 0.0)
+        return NT_RUN;
+    const int is_lost = sample->amplitude < tap->lost || sample->amplitude > tap->most;
+    state->lost_run = is_lost ? state->lost_run + 1u : 0u;
+    return state->lost_run > tap->settling ? blame(state, NT_REASON_AMPLITUDE, NT_LATCHED) : NT_RUN;
 }
 
 /* NaN or infinite: nobody knows how late, and nothing is made up for. */
@@ -242,6 +269,7 @@ static nt_state judge_measured(const nt_supervisor *supervisor, nt_supervisor_st
     const int saturated = is_saturated(supervisor, sample);
     nt_state verdict = judge_force(supervisor, state, sample, saturated);
     verdict = worse(verdict, judge_indentation(supervisor, state, sample, situation->moves_sideways));
+    verdict = worse(verdict, judge_amplitude(supervisor, state, sample));
     verdict = worse(verdict, judge_age(supervisor, state, sample));
     verdict = worse(verdict, judge_motion(supervisor, state, sample));
     return worse(verdict, judge_stuck(supervisor, state, sample, saturated));
@@ -283,16 +311,15 @@ nt_status nt_supervisor_arm(nt_supervisor_state *state, int confirmed)
     if (state->state == NT_LATCHED && !confirmed)
         return NT_E_STATE;
     nt_supervisor_state fresh = nt_supervisor_start();
-    fresh.stuck_deflection = state->stuck_deflection;
+    fresh.deflection = state->deflection;
+    fresh.deflection.run = 0;
+    fresh.deflection.position = 0.0;
+    fresh.amplitude = state->amplitude;
+    fresh.amplitude.run = 0;
     fresh.surface = state->surface;
     fresh.indentation = state->indentation;
     fresh.late_ticks = state->late_ticks;
     fresh.expected = state->expected;
-    fresh.stuck_band = state->stuck_band;
-    fresh.noise_samples = state->noise_samples;
-    fresh.noise_sum = state->noise_sum;
-    fresh.noise = state->noise;
-    fresh.last_deflection = state->last_deflection;
     *state = fresh;
     return NT_OK;
 }

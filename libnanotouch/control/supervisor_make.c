@@ -35,12 +35,18 @@ const char *nt_reason_name(uint32_t reason)
                                         "control law gave no number",
                                         "gain backed off",
                                         "stale master",
-                                        "lateral force limit"};
+                                        "lateral force limit",
+                                        "amplitude lost"};
     for (uint32_t bit = 0; bit < sizeof names / sizeof *names; ++bit)
         if (reason == 1u << bit)
             return names[bit];
     return "";
 }
+
+/* An amplitude so small over A0 is no tapping, and one so large is of another drive. */
+#define LOST_SHARE 0.1
+#define MOST_SHARE 1.5
+#define SETTLING 3.0 /* time constants of lever and lock-in amplifier in which an amplitude comes back */
 
 /* Time constant of the stage behind its reference: what the notch leaves of the resonance, and dead time [s]. */
 static double stage_lag(const nt_rig *rig, const nt_gains *gains)
@@ -96,4 +102,16 @@ nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings)
                            .lift_share = 2.0 * rig->stage.hysteresis + CREEP_DECADES * rig->stage.creep,
                            .path_kept = exp(-period / settings->limits.follow_time),
                            .limits = settings->limits};
+}
+
+nt_amplitude_limits nt_supervisor_amplitude(const nt_rig *rig, const nt_settings *settings)
+{
+    const nt_tap *tap = &settings->tap;
+    const double travelled = STUCK_STEPS * greater(rig->stage.resolution, LEAST_STAGE_STEP);
+    return (nt_amplitude_limits){
+        .lost = LOST_SHARE * tap->free_amplitude,
+        .most = MOST_SHARE * tap->free_amplitude,
+        .settling = 1u + (uint32_t)ceil(SETTLING * nt_tap_lag(rig, tap) * settings->gains.rate),
+        .stuck = {tap->noise > tap->resolution ? travelled : 0.0, tap->noise},
+    };
 }

@@ -106,6 +106,7 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     signals->operator_force = touch->rig.master.gauge ? sample->operator_force[NT_Z] : 0.0;
     signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
     signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
+    state->amplitude = sample->amplitude;
     nt_sideways_read(touch, state, sample);
     rescale(touch, state);
     const int closes = touch->rig.master.motor; /* without a motor no loop closes through the hand */
@@ -164,7 +165,7 @@ static void drive_motor(const nt_touch *touch, nt_touch_state *state, double wan
     state->motor_force = nt_motor_limit(&touch->settings.limits, touch->motor_step, state->motor_force, wanted,
                                         state->signals.smooth_speed);
     const int coupled = state->supervisor.state == NT_RUN && state->mode == state->wanted_mode && !state->clutch_open;
-    if (coupled && state->mode <= NT_MODE_TOPOGRAPHY)
+    if (coupled && (state->mode <= NT_MODE_TOPOGRAPHY || state->mode == NT_MODE_TAPPING))
         state->coupled_force = state->motor_force;
 }
 
@@ -195,6 +196,8 @@ void nt_touch_step(const nt_touch *touch, nt_touch_state *state, const nt_sample
     if (state->passivity.gain < 1.0 || state->passivity_sideways[NT_X].gain < 1.0)
         state->supervisor.reasons |= NT_REASON_BACKED_OFF;
     state->command.motor_force[NT_Z] = state->motor_force;
+    state->command.drive_amplitude = touch->drive_amplitude;
+    state->command.drive_frequency = touch->drive_frequency;
     for (int i = 0; i < NT_AXES; ++i)
         state->sent[state->ticks % NT_TOUCH_SENT][i] = state->command.motor_force[i];
     state->command.state = (uint32_t)state->supervisor.state;

@@ -93,7 +93,7 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
         status = check_against_rig(settings, rig, problem);
     if (status != NT_OK)
         return status;
-    if (mode > NT_MODE_CURVE)
+    if (mode > NT_MODE_TAPPING)
         return NT_E_ARGUMENT;
     const double period = 1.0 / settings->gains.rate;
     const nt_servo_equivalent equivalent = nt_servo_equivalent_of(rig, settings, INFINITY);
@@ -116,6 +116,12 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
                      .passivity = nt_passivity_make(&equivalent.rig, &equivalent.gains),
                      .rescale = nt_rescale_make(rig, settings),
                      .supervisor = nt_supervisor_make(rig, settings)};
+    if (mode == NT_MODE_TAPPING) {
+        const nt_tap *tap = &settings->tap;
+        made.drive_amplitude = tap->free_amplitude;
+        made.drive_frequency = tap->frequency > 0.0 ? tap->frequency : rig->probe.resonance;
+        made.supervisor.amplitude = nt_supervisor_amplitude(rig, settings);
+    }
     made.passivity_sideways = sideways_passivity(rig, settings);
     made.passivity.damping = rig->master.damping; /* what the motor feeds forward is in its force already */
     made.passivity.credit = rig->master.gauge ? 0.0 : rig->master.damping;

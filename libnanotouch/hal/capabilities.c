@@ -9,7 +9,7 @@
 #include "core/problem.h"
 
 #define LONGEST_PERIOD 1.0 /* between the measurements of a half [s] */
-#define ALL_BITS (2u * NT_IS_SLOW - 1u)
+#define ALL_BITS (2u * NT_CAN_TAP - 1u)
 
 static nt_status broken(nt_problem *problem, const char *rule, double value, double minimum, double maximum)
 {
@@ -25,8 +25,8 @@ static int is_amount(double value)
 
 static nt_status check_numbers(const nt_channel_row *row, nt_problem *problem)
 {
-    if (row->axis < NT_X || row->axis > NT_Z)
-        return broken(problem, "axis of a channel", row->axis, NT_X, NT_Z);
+    if (row->axis < NT_X || row->axis > NT_AXES)
+        return broken(problem, "axis of a channel", row->axis, NT_X, NT_AXES);
     if (!(row->minimum < row->maximum))
         return broken(problem, "minimum of a channel", row->minimum, -HUGE_VAL, row->maximum);
     const struct {
@@ -41,16 +41,21 @@ static nt_status check_numbers(const nt_channel_row *row, nt_problem *problem)
     return NT_OK;
 }
 
+static int is_one_of(const char *unit, const char *a, const char *b)
+{
+    return strcmp(unit, a) == 0 || strcmp(unit, b) == 0;
+}
+
 static nt_status check_row(const nt_channel_row *row, nt_problem *problem)
 {
     if (!row->name || !row->name[0])
         return broken(problem, "channels without a name", 1.0, 0.0, 0.0);
-    if (!row->unit || (strcmp(row->unit, "m") != 0 && strcmp(row->unit, "N") != 0))
-        return broken(problem, "channels with a unit other than m and N", 1.0, 0.0, 0.0);
+    if (!row->unit || !(is_one_of(row->unit, "m", "N") || is_one_of(row->unit, "rad", "Hz")))
+        return broken(problem, "channels with a unit other than m, N, rad and Hz", 1.0, 0.0, 0.0);
     const nt_status status = check_numbers(row, problem);
     if (status != NT_OK)
         return status;
-    const int may_stay = isnan(row->safe) && strcmp(row->unit, "m") == 0;
+    const int may_stay = isnan(row->safe) && is_one_of(row->unit, "m", "Hz");
     if (row->driven && !may_stay && !(row->safe >= row->minimum && row->safe <= row->maximum))
         return broken(problem, "safe value of a driven channel", row->safe, row->minimum, row->maximum);
     if (!row->driven && !isnan(row->safe))

@@ -8,6 +8,7 @@
 #include "core/axes.h"
 #include "core/problem.h"
 #include "hal/capabilities.h"
+#include "hal/reading.h"
 
 #define ALL_CHANNELS ((1u << NT_READS) - 1u)
 
@@ -65,8 +66,8 @@ nt_status nt_hal_arm(nt_hal *hal)
 
 static void forget(nt_reading *reading, uint32_t flags)
 {
-    for (int i = 0; i < NT_AXES; ++i)
-        reading->position[i] = reading->felt[i] = NAN;
+    for (int i = 0; i < NT_READS; ++i)
+        *nt_reading_channel(reading, i) = NAN;
     reading->flags |= flags;
     reading->valid = 0;
 }
@@ -86,6 +87,8 @@ static void keep_valid(nt_reading *reading)
     keep(reading, NT_READS_FELT + NT_X, &reading->felt[NT_X]);
     keep(reading, NT_READS_FELT + NT_Y, &reading->felt[NT_Y]);
     keep(reading, NT_READS_FELT + NT_Z, &reading->felt[NT_Z]);
+    keep(reading, NT_READS_AMPLITUDE, &reading->amplitude);
+    keep(reading, NT_READS_LAG, &reading->lag);
 }
 
 /* A device that fails is lost, whatever it says of it; a model that fails is the caller's matter. */
@@ -158,6 +161,8 @@ void nt_hal_join(const nt_hal *master, const nt_hal *slave, uint64_t tick, int64
     copy_axes(sample->operator_force, hand->felt);
     copy_axes(sample->stage_position, probe->position);
     copy_axes(sample->deflection, probe->felt);
+    sample->amplitude = probe->amplitude;
+    sample->lag = probe->lag;
 }
 
 nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t now, nt_sample *sample)
@@ -173,9 +178,12 @@ nt_status nt_hal_sample(nt_hal *master, nt_hal *slave, uint64_t tick, int64_t no
 nt_status nt_hal_command(nt_hal *master, nt_hal *slave, const nt_command *command, nt_action *action)
 {
     action->state = command->state;
+    action->drive_amplitude = action->drive_frequency = 0.0;
     copy_axes(action->target, command->motor_force);
     const nt_status status = nt_hal_write(master, action);
     copy_axes(action->target, command->stage_position);
+    action->drive_amplitude = command->drive_amplitude;
+    action->drive_frequency = command->drive_frequency;
     const nt_status second = nt_hal_write(slave, action);
     return status == NT_OK ? second : status;
 }

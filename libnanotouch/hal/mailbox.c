@@ -9,6 +9,7 @@
 #include "hal/capabilities.h"
 #include "hal/clock.h"
 #include "hal/mailbox_memory.h"
+#include "hal/reading.h"
 
 #define DEFAULT_PERIOD 1e-3 /* [s] */
 #define DEFAULT_TIMEOUT 0.1 /* without word from the other side: the rig is left safe [s] */
@@ -115,17 +116,14 @@ nt_status nt_mailbox_open(nt_mailbox **mailbox, const char *name, const nt_mailb
 
 int nt_mailbox_is_sound(const nt_reading *reading, uint32_t can, int axes)
 {
-    const uint32_t has = axes == 1 ? 1u << NT_Z : (1u << NT_AXES) - 1u;
-    const uint32_t may = has << NT_READS_POSITION | (can & NT_CAN_FEEL ? has << NT_READS_FELT : 0u);
-    if (reading->flags & ~ALL_FLAGS || reading->valid & ~may)
+    nt_reading found = *reading;
+    if (reading->flags & ~ALL_FLAGS || reading->valid & ~nt_reading_may_hold(can, axes))
         return 0;
     if (reading->flags & NT_SAMPLE_DEVICE_LOST && reading->valid)
         return 0;
-    for (int i = 0; i < NT_READS; ++i) {
-        const double value = i < NT_AXES ? reading->position[i] : reading->felt[i - NT_AXES];
-        if (reading->valid >> i & 1u && !isfinite(value))
+    for (int i = 0; i < NT_READS; ++i)
+        if (reading->valid >> i & 1u && !isfinite(*nt_reading_channel(&found, i)))
             return 0;
-    }
     return 1;
 }
 

@@ -7,6 +7,7 @@
 #include "core/problem.h"
 #include "hal/clock.h"
 #include "hal/mailbox_memory.h"
+#include "hal/reading.h"
 
 #define NAP 200000               /* between two looks [ns] */
 #define FIRST_READING 1000000000 /* arm waits so long for it [ns] */
@@ -167,7 +168,7 @@ static void take(nt_mailbox_half *half)
     }
     for (int i = 0; i < NT_READS; ++i)
         if (!(found.valid >> i & 1u))
-            *(i < NT_AXES ? &found.position[i] : &found.felt[i - NT_AXES]) = (double)NAN;
+            *nt_reading_channel(&found, i) = (double)NAN;
     found.time = host_time(link, age);
     found.sequence = number;
     found.lateness = 0.0; /* it leads no clock */
@@ -223,13 +224,19 @@ static nt_status write_half(void *context, const nt_action *action)
 {
     nt_mailbox_half *half = context;
     const nt_mailbox_link *link = half->link;
-    nt_mailbox_request request = {.is_armed = 1, .state = action->state, .tick = action->tick};
+    nt_mailbox_request request = {.is_armed = 1,
+                                  .state = action->state,
+                                  .tick = action->tick,
+                                  .drive_amplitude = action->drive_amplitude,
+                                  .drive_frequency = action->drive_frequency};
     copy_axes(request.target, action->target);
     for (int axis = link->description.axes == 1 ? NT_Z : NT_X; axis < NT_AXES; ++axis) {
         if (!isfinite(request.target[axis]))
             return NT_E_NOT_FINITE;
         request.target[axis] = clipped(half, axis, request.target[axis]);
     }
+    if (!isfinite(request.drive_amplitude) || !isfinite(request.drive_frequency))
+        return NT_E_NOT_FINITE;
     ask(half, &request);
     return NT_OK;
 }

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "core/problem.h"
+#include "hal/reading.h"
 #include "nanotouch/hal.h"
 
 #define STALE_PERIODS 2.0 /* of the slower of loop and half: older is stale (supervisor.c) */
@@ -34,21 +35,17 @@ static nt_status named(play *p, nt_status status, const char *operation)
 
 /* --- one reading --- */
 
-/* What it may call valid: the axes that it has, and what it feels along them. */
-static uint32_t may_be_valid(const nt_capabilities *has)
-{
-    const uint32_t axes = has->axes == 1 ? 1u << NT_Z : (1u << NT_AXES) - 1u;
-    return axes << NT_READS_POSITION | (has->can & NT_CAN_FEEL ? axes << NT_READS_FELT : 0u);
-}
-
+/* A half that does not tap leaves amplitude and lag alone. */
 static nt_status check_numbers(play *p, const nt_reading *reading)
 {
-    const uint32_t stray = reading->valid & ~may_be_valid(&p->hal.capabilities);
+    const nt_capabilities *has = &p->hal.capabilities;
+    const uint32_t stray = reading->valid & ~nt_reading_may_hold(has->can, has->axes);
+    nt_reading read = *reading;
     if (stray)
         return broken(p, "valid bits of what it cannot measure", stray, 0.0, 0.0);
-    for (int i = 0; i < NT_READS; ++i) {
-        const int axis = i % NT_AXES, is_valid = reading->valid >> i & 1u;
-        const double value = i < NT_AXES ? reading->position[axis] : reading->felt[axis];
+    for (int i = 0; i < (has->can & NT_CAN_TAP ? NT_READS : NT_READS_AMPLITUDE); ++i) {
+        const int is_valid = reading->valid >> i & 1u;
+        const double value = *nt_reading_channel(&read, i);
         if (is_valid && !isfinite(value))
             return broken(p, "valid bits of what is no number", i, -1.0, -1.0);
         if (!is_valid && !isnan(value))

@@ -5,8 +5,10 @@
 #include "core/clamp.h"
 #include "core/problem.h"
 #include "nanotouch/preflight.h"
-
 #include "session/state.h"
+
+#define SETTLES 10.0 /* time constants of lever and lock-in amplifier until the free amplitude is there */
+#define MEASURED 50L /* ticks, at the least, over which it is a mean */
 
 /* One period: along each axis by no more than this. 1 if it is there. */
 static int go_on(double *at, double goal, double most)
@@ -95,4 +97,36 @@ nt_status nt_session_fly(nt_session *session, nt_problem *problem)
     if (status == NT_OK && !isfinite(session->master_start))
         return NT_E_DEVICE;
     return status;
+}
+
+/* The lever is far from the sample: the drive makes what the settings say, or the session does not open. */
+nt_status nt_session_find_amplitude(nt_session *session, nt_problem *problem)
+{
+    const nt_touch *touch = &session->now->touch;
+    const nt_tap *tap = &touch->settings.tap;
+    const nt_command command = {.stage_position = {session->now->setup.x, session->now->setup.y},
+                                .drive_amplitude = touch->drive_amplitude,
+                                .drive_frequency = touch->drive_frequency};
+    const double lag = nt_tap_lag(&touch->rig, tap) / touch->period;
+    const long settle = 2 + (long)ceil(SETTLES * lag), measure = MEASURED + (long)ceil(lag);
+    double sum = 0.0;
+    nt_status status = NT_OK;
+    for (long i = 0; i < settle + measure && status == NT_OK; ++i) {
+        nt_sample sample;
+        nt_session_keep_time(session);
+        status = nt_session_sample(session, 0, &sample);
+        if (status == NT_OK && sample.flags) /* a press of the stop is not lost here */
+            return nt_problem_set(problem, "flags of a sample before arming (safety.md)", "", sample.flags, 0.0, 0.0);
+        if (status == NT_OK && i >= settle)
+            sum += sample.amplitude + 0.0 * sample.lag; /* what is not measured is no number */
+        if (status == NT_OK)
+            status = nt_session_write(session, 0, &command);
+        ++session->flights;
+    }
+    const double found = sum / (double)measure, off = tap->tolerance * tap->free_amplitude;
+    if (status != NT_OK || fabs(found - tap->free_amplitude) <= off)
+        return status;
+    (void)nt_problem_set(problem, "free amplitude as measured (tap.free_amplitude, tap.tolerance)", "m", found,
+                         tap->free_amplitude - off, tap->free_amplitude + off);
+    return NT_E_RANGE;
 }

@@ -12,8 +12,10 @@ static nt_status compose_mode(const nt_session *session, nt_call *call, nt_probl
     const nt_gains *gains = &session->now->setup.settings.gains;
     const nt_scaling scaling = {gains->alpha_p, gains->alpha_f};
     const double mode = call->event.value[0];
-    if (!(mode >= 0.0 && mode <= NT_MODE_CURVE && mode == floor(mode))) {
-        (void)nt_problem_set(problem, "mode", NT_MODE_WORDS, mode, 0.0, NT_MODE_CURVE);
+    const int taps = session->now->setup.mode == NT_MODE_TAPPING;
+    const double least = taps ? NT_MODE_TAPPING : 0.0, most = taps ? NT_MODE_TAPPING : NT_MODE_CURVE;
+    if (!(mode >= least && mode <= most && mode == floor(mode))) { /* the drive is on or off while a session is open */
+        (void)nt_problem_set(problem, "mode", NT_MODE_WORDS, mode, least, most);
         return NT_E_ARGUMENT;
     }
     return nt_compose_standing(&call->next, session->now, (nt_mode)mode, &scaling, problem);
@@ -38,14 +40,16 @@ static int is_of_surface(const nt_properties *of, const char *field)
     return 0;
 }
 
-/* What cannot change while a session is open: the clock, the delay that the rig was built with, scales (rescale), and
- * the tip that a surface was dilated with. */
+/* What cannot change while a session is open: the clock, the delay that the rig was built with, scales (rescale), drive
+ * and lock-in amplifier, and the tip that a surface was dilated with. */
 static int is_fixed(const nt_session *session, const char *field)
 {
     static const char *const fixed[] = {"gains.rate", "gains.delay", "gains.alpha_p", "gains.alpha_f"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; ++i)
         if (strcmp(field, fixed[i]) == 0)
             return 1;
+    if (strncmp(field, "tap.", 4) == 0 && strcmp(field, "tap.set_amplitude") != 0)
+        return 1;
     if (is_of_surface(session->now->setup.properties, field))
         return 1;
     return nt_terrain_surface(session->now->terrain) && strncmp(field, "tip.", 4) == 0;

@@ -2,10 +2,12 @@
  * The two halves of a session's rig: those that the setup names, or simulated ones. */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "core/problem.h"
 #include "session/state.h"
 
+#define LOCK_IN_RANGE 4.0      /* over the free amplitude */
 #define MOST_SUBSTEPS 100000.0 /* of a cantilever in a period; the session would hardly move on */
 
 static int64_t session_now(const nt_host *host)
@@ -30,6 +32,15 @@ static double master_start(const nt_composition *composition)
     return -0.4 * setup->rig.master.travel + climb;
 }
 
+nt_sim_lock_in nt_session_lock_in(const nt_tap *tap)
+{
+    return (nt_sim_lock_in){
+        .drive = {tap->at ? NT_DRIVE_BASE : NT_DRIVE_TIP, tap->frequency, tap->free_amplitude},
+        .time = tap->lock_in,
+        .sensor = {tap->noise, tap->resolution, LOCK_IN_RANGE * tap->free_amplitude},
+    };
+}
+
 static nt_sim_setup sim_setup_of(const nt_session *session)
 {
     const nt_session_setup *setup = &session->now->setup;
@@ -51,7 +62,10 @@ static nt_sim_setup sim_setup_of(const nt_session *session)
 static nt_status open_half(nt_session *session, nt_half half, nt_problem *problem)
 {
     const nt_session_setup *setup = &session->now->setup;
-    const nt_sim_setup simulated = sim_setup_of(session);
+    nt_sim_setup simulated = sim_setup_of(session);
+    const nt_sim_lock_in lock_in = nt_session_lock_in(&setup->settings.tap);
+    if (setup->mode == NT_MODE_TAPPING)
+        simulated.lock_in = &lock_in;
     const int is_master = half == NT_HALF_MASTER;
     nt_hal_choice choice = is_master ? setup->master : setup->slave;
     nt_status status = NT_OK;
@@ -61,6 +75,8 @@ static nt_status open_half(nt_session *session, nt_half half, nt_problem *proble
         choice = (nt_hal_choice){nt_sim_master_backend(), &session->sim.master};
     } else if (!choice.backend) {
         status = nt_sim_slave_init(&session->sim.slave, &simulated);
+        if (status == NT_E_UNSUPPORTED)
+            (void)nt_problem_set(problem, "tapping on a sample that keeps dents", "no|yes", 1.0, 0.0, 0.0);
         choice = (nt_hal_choice){nt_sim_slave_backend(), &session->sim.slave};
     }
     nt_hal *hal = is_master ? &session->master : &session->slave;
@@ -127,6 +143,26 @@ static nt_status check_halves(const nt_session *session, nt_problem *problem)
     return NT_OK;
 }
 
+/* A slave that taps, with what its drive reaches; one that is not driven through the hal is the instrument's own. */
+static nt_status check_drive(const nt_session *session, nt_problem *problem)
+{
+    const nt_capabilities *slave = &session->slave.capabilities;
+    const nt_touch *touch = &session->now->touch;
+    if (session->now->setup.mode != NT_MODE_TAPPING)
+        return NT_OK;
+    if (!(slave->can & NT_CAN_TAP))
+        return nt_problem_set(problem, "mode tapping (this slave has no lock-in amplifier)", "no|yes", 1.0, 0.0, 0.0);
+    for (int i = 0; i < slave->rows; ++i) {
+        const nt_channel_row *row = &slave->channels[i];
+        const int is_frequency = strcmp(row->unit, "Hz") == 0;
+        const double asked = is_frequency ? touch->drive_frequency : touch->drive_amplitude;
+        if (row->driven && row->axis == NT_AXES && !(asked >= row->minimum && asked <= row->maximum))
+            return nt_problem_set(problem, is_frequency ? "tap.frequency" : "tap.free_amplitude", row->unit, asked,
+                                  row->minimum, row->maximum);
+    }
+    return NT_OK;
+}
+
 static const char *option_of(const char *option)
 {
     return option ? option : "";
@@ -173,6 +209,8 @@ nt_status nt_session_open_halves(nt_session *session, nt_problem *problem)
         status = find_leader(session, problem);
     if (status == NT_OK)
         status = check_halves(session, problem);
+    if (status == NT_OK)
+        status = check_drive(session, problem);
     if (status == NT_OK)
         status = check_substep(session, problem);
     if (status == NT_OK && (session->master.capabilities.can | session->slave.capabilities.can) & NT_IS_REAL)

@@ -74,6 +74,8 @@ static void fill(nt_record *record, const nt_session *session, const nt_sample *
     copy_axes(record->stage_position, sample->stage_position);
     copy_axes(record->stage_command, command->stage_position);
     copy_axes(record->deflection, sample->deflection);
+    record->amplitude = sample->amplitude;
+    record->lag = sample->lag;
     copy_axes(record->motor_force, command->motor_force);
     copy_axes(record->tip_force, truth->tip_force);
 }

@@ -50,6 +50,8 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
         status = nt_session_open_halves(session, problem);
     if (status == NT_OK && setup->preflight)
         status = nt_session_fly(session, problem);
+    if (status == NT_OK && setup->mode == NT_MODE_TAPPING)
+        status = nt_session_find_amplitude(session, problem);
     if (status != NT_OK)
         return status;
     session->touch_state = nt_touch_start(&session->now->touch, session->master_start, setup->x, setup->y);

@@ -53,7 +53,7 @@ static nt_status check_choices(const nt_session_setup *setup, nt_problem *proble
         const char *field, *names;
         long value, minimum, maximum;
     } choices[] = {
-        {"mode", NT_MODE_WORDS, (long)setup->mode, 0, NT_MODE_CURVE},
+        {"mode", NT_MODE_WORDS, (long)setup->mode, 0, NT_MODE_TAPPING},
         {"probe_model", NT_PROBE_WORDS, (long)setup->probe_model, 0, NT_PROBE_DYNAMIC},
         {"preflight", "no|yes", setup->preflight, 0, 1},
         {"dilated", "no|yes", setup->dilated, 0, 1},
@@ -111,6 +111,13 @@ static nt_status check_heeded(const nt_session_setup *setup, nt_problem *problem
     if (setup->substep > 0.0 && (has_own_slave || setup->probe_model == NT_PROBE_QUASI_STATIC))
         return nt_problem_set(problem, "substep where no cantilever is simulated as dynamic", "rad", setup->substep,
                               0.0, 0.0);
+    if (setup->mode == NT_MODE_TAPPING && !has_own_slave) {
+        const nt_sim_lock_in lock_in = nt_session_lock_in(&setup->settings.tap);
+        nt_tapping lever;
+        const nt_status status = nt_tapping_init(&lever, &setup->rig.probe, &lock_in.drive, 1e-9, problem);
+        if (status != NT_OK)
+            return status;
+    }
     if (setup->probe_model != NT_PROBE_AUTO && has_own_slave)
         return nt_problem_set(problem, "probe_model with a slave of one's own", NT_PROBE_WORDS,
                               (double)setup->probe_model, NT_PROBE_AUTO, NT_PROBE_AUTO);

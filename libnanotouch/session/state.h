@@ -110,6 +110,8 @@ nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *
 
 /* --- halves.c --- */
 
+/* Drive and lock-in amplifier of a simulated slave, as the settings say. */
+nt_sim_lock_in nt_session_lock_in(const nt_tap *tap);
 /* Opens, configures and arms both halves. */
 nt_status nt_session_open_halves(nt_session *session, nt_problem *problem);
 /* The shortest one of a half that measures by a clock of its own; infinite where there is none [s]. What is simulated
@@ -119,6 +121,8 @@ double nt_session_own_period(const nt_session *session);
 nt_status nt_session_check_pace(const nt_session *session, nt_pace pace);
 /* Tare and sign test, on the rig's own time. */
 nt_status nt_session_fly(nt_session *session, nt_problem *problem);
+/* Of mode tapping: switches the drive on and compares the free amplitude with the settings. */
+nt_status nt_session_find_amplitude(nt_session *session, nt_problem *problem);
 
 /* --- run.c --- */
 

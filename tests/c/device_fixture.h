@@ -113,6 +113,8 @@ static inline nt_reading reading_of(uint64_t sequence)
                         .time = 1000 * (int64_t)sequence,
                         .position = {at, 2.0 * at, 3.0 * at},
                         .felt = {4.0 * at, 5.0 * at, 6.0 * at},
+                        .amplitude = 7.0 * at,
+                        .lag = 8.0 * at,
                         .valid = ALL};
 }
 

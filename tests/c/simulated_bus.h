@@ -25,8 +25,11 @@ typedef enum bus_fault {
     BUS_FAULTS
 } bus_fault;
 
-typedef struct simulated_bus {
+typedef struct simulated_bus simulated_bus;
+struct simulated_bus {
     bus_fault fault;
+    /* What other chips answer, in place of those below; NULL: none do. */
+    void (*plays)(simulated_bus *bus, int chip, const uint8_t *out, uint8_t *in, uint32_t count);
     uint32_t dac, control, reply; /* registers of an AD5791 */
     int has_reply;
     long frames[2];
@@ -36,7 +39,7 @@ typedef struct simulated_bus {
     int corrupt;      /* so many of its frames come with a bit wrong; below 0: all */
     int error;        /* errno of messages ... */
     int errors;       /* ... so many of them; below 0: all */
-} simulated_bus;
+};
 
 static inline simulated_bus simulated_bus_after_power_up(void)
 {
@@ -123,11 +126,13 @@ static inline void simulated_frame(simulated_bus *bus, int chip, const uint8_t *
 {
     ++bus->frames[chip & 1];
     memset(in, 0, count);
-    if (chip == 0)
+    if (bus->plays)
+        bus->plays(bus, chip, out, in, count);
+    else if (chip == 0)
         simulated_ad5791(bus, out, in, count);
-    if (chip == 1 && bus->has_crc)
+    else if (bus->has_crc)
         simulated_ad7768(bus, out, in, count);
-    if (chip == 1 && !bus->has_crc)
+    else
         simulated_ad7606(bus, in, count);
     if (bus->fault == BUS_ALL_ZERO || bus->fault == BUS_ALL_ONE)
         memset(in, bus->fault == BUS_ALL_ONE ? 0xFF : 0x00, count);

@@ -47,9 +47,22 @@ static inline nt_rig widened_rig(const ntf_rig *from)
     return rig;
 }
 
+/* It holds a choice, too. */
+static inline nt_tap widened_tap(const ntf_tap *from)
+{
+    return (nt_tap){.at = from->at,
+                    .frequency = (double)from->frequency,
+                    .free_amplitude = (double)from->free_amplitude,
+                    .tolerance = (double)from->tolerance,
+                    .set_amplitude = (double)from->set_amplitude,
+                    .lock_in = (double)from->lock_in,
+                    .noise = (double)from->noise,
+                    .resolution = (double)from->resolution};
+}
+
 static inline nt_settings widened_settings(const ntf_settings *from)
 {
-    nt_settings settings = {.control.choice = (nt_control_choice)from->control.choice};
+    nt_settings settings = {.control.choice = (nt_control_choice)from->control.choice, .tap = widened_tap(&from->tap)};
     WIDEN(settings.gains, from->gains);
     WIDEN(settings.limits, from->limits);
     return settings;

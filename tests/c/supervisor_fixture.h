@@ -35,7 +35,7 @@ static input healthy(nt_state state)
 {
     return (input){.sample = {.deflection[NT_Z] = 1e-9, .stage_position[NT_Z] = 1e-6},
                    .reference = 1e-6,
-                   .history = {.state = state, .stuck_deflection = NAN, .surface = 1e-6, .expected = 1e-6}};
+                   .history = {.state = state, .deflection = {.value = NAN}, .surface = 1e-6, .expected = 1e-6}};
 }
 
 static nt_state step(input *in)

@@ -33,7 +33,7 @@ static void every_field_is_refused_by_name(void **state)
     int count = 0;
     const nt_field *fields = nt_settings_fields(&count);
     assert_int_equal((size_t)count * sizeof(double),
-                     sizeof(nt_gains) + sizeof(nt_limits)); /* no number is without a check */
+                     sizeof(nt_gains) + sizeof(nt_limits) + sizeof(nt_tap)); /* no number is without a check */
     for (int i = 0; i < count; i++) {
         const nt_field *field = &fields[i];
         const double outside[] = {nextafter(field->minimum, -HUGE_VAL), nextafter(field->maximum, HUGE_VAL), NAN,
@@ -42,7 +42,8 @@ static void every_field_is_refused_by_name(void **state)
             nt_settings settings = nt_settings_defaults(&rig);
             nt_problem problem = {0};
             nt_field_set(field, &settings, outside[j]);
-            assert_int_equal(nt_settings_check(&settings, &problem), j < 2 ? NT_E_RANGE : NT_E_NOT_FINITE);
+            const int is_choice = field->size != sizeof(double);
+            assert_int_equal(nt_settings_check(&settings, &problem), j < 2 || is_choice ? NT_E_RANGE : NT_E_NOT_FINITE);
             assert_string_equal(problem.field, field->name);
         }
     }

@@ -27,8 +27,8 @@ static void a_stuck_sensor_is_found_while_z_moves(void **unused)
     assert_in_range(ticks_until(&in, NT_HOLD, 1e-6), 50, 52); /* 5 nm */
     assert_int_equal(in.history.state, NT_HOLD);
     /* a sensor whose noise is known: a quarter of that is no sign of life, more is */
-    in.history.noise_samples = 200;
-    in.history.stuck_band = 70e-12;
+    in.history.deflection.noise_samples = 200;
+    in.history.deflection.band = 70e-12;
     in.sample.deflection[NT_Z] += 60e-12;
     assert_int_equal(step(&in), NT_HOLD);
     in.sample.deflection[NT_Z] += 20e-12;
@@ -43,15 +43,15 @@ static void the_supervisor_learns_the_noise(void **unused)
     for (int i = 0; i < 4; i++) {
         input in = healthy(NT_RUN);
         for (int tick = 0; tick < 200; tick++) {
-            assert_true(in.history.stuck_band == 0.0);
+            assert_true(in.history.deflection.band == 0.0);
             in.sample.deflection[NT_Z] = 1e-9 + steps[i][tick >= 149] * (tick % 2);
             assert_int_equal(step(&in), NT_RUN);
         }
         const double declared = touch.rig.probe.sensitivity * touch.rig.probe.noise / 6.0;
         const double wanted = 0.25 * smaller(declared, steps[i][1] / 1.128379);
-        assert_true(fabs(in.history.stuck_band / wanted - 1.0) < 0.03);
+        assert_true(fabs(in.history.deflection.band / wanted - 1.0) < 0.03);
         assert_int_equal(nt_supervisor_arm(&in.history, 1), NT_OK);
-        assert_true(fabs(in.history.stuck_band / wanted - 1.0) < 0.03);
+        assert_true(fabs(in.history.deflection.band / wanted - 1.0) < 0.03);
     }
 }
 

@@ -52,15 +52,15 @@ static void age_six_periods(input *in)
 
 static void stuck(input *in)
 {
-    in->history.stuck_deflection = in->sample.deflection[NT_Z];
-    in->history.stuck_run = 49;
-    in->history.stuck_position = in->sample.stage_position[NT_Z] - 6e-9; /* has moved by six steps */
+    in->history.deflection.value = in->sample.deflection[NT_Z];
+    in->history.deflection.run = 49;
+    in->history.deflection.position = in->sample.stage_position[NT_Z] - 6e-9; /* has moved by six steps */
 }
 
 static void stuck_for_long(input *in)
 {
     stuck(in);
-    in->history.stuck_run = 99;
+    in->history.deflection.run = 99;
 }
 
 static void off_its_command(input *in)
@@ -323,9 +323,9 @@ static void a_lateral_force_past_its_limit_lifts(void **unused)
 static void reasons_have_names(void **unused)
 {
     (void)unused;
-    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_LATERAL; bit <<= 1)
+    for (uint32_t bit = NT_REASON_INVALID; bit <= NT_REASON_AMPLITUDE; bit <<= 1)
         assert_true(nt_reason_name(bit)[0] != 0);
-    assert_string_equal(nt_reason_name(NT_REASON_LATERAL << 1), "");
+    assert_string_equal(nt_reason_name(NT_REASON_AMPLITUDE << 1), "");
     assert_string_equal(nt_reason_name(0), "");
     assert_string_equal(nt_reason_name(NT_REASON_FORCE_LIMIT), "force limit");
 }

@@ -72,7 +72,7 @@ static void channels_are_checked(void **state)
     assert_int_equal(open_with("half", NULL), NT_OK);
     nt_channel_row wrong = row;
     wrong.unit = "mm";
-    expect_row_refused(wrong, "channels with a unit other than m and N");
+    expect_row_refused(wrong, "channels with a unit other than m, N, rad and Hz");
     wrong = row, wrong.name = "";
     expect_row_refused(wrong, "channels without a name");
     wrong = row, wrong.axis = 7;
@@ -94,7 +94,7 @@ static void the_rest_is_checked(void **state)
     says = sound(NULL);
     assert_int_equal(open_with(NULL, &problem), NT_E_ARGUMENT);
     assert_string_equal(problem.field, "backends without a name");
-    says.can = 1u << 8;
+    says.can = 1u << 9;
     assert_int_equal(open_with("half", &problem), NT_E_RANGE);
     assert_string_equal(problem.field, "unknown bits of capabilities.can");
     says = sound(NULL), says.size = 1;

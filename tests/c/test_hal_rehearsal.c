@@ -80,7 +80,7 @@ static nt_status describe_device(void *context, nt_capabilities *capabilities)
     rows[1] = (nt_channel_row){"motor", "N", 1, NT_Z, -5.0, 5.0, 0.0, 0.0, 1e-4, 0.0};
     rows[0].name = is == NAMELESS_CHANNEL ? "" : "position";
     rows[0].unit = is == WRONG_UNIT ? "mm" : "m";
-    rows[0].axis = is == WRONG_AXIS ? 3 : NT_Z;
+    rows[0].axis = is == WRONG_AXIS ? 4 : NT_Z;
     rows[0].maximum = is == EMPTY_RANGE ? -0.01 : 0.01;
     rows[0].noise = is == NOISE_IS_NAN ? (double)NAN : 0.0;
     rows[0].safe = is == READ_IS_SAFE ? 0.0 : (double)NAN;
@@ -238,7 +238,7 @@ static const char *const rules[OFFENCES] = {
     [TOO_MANY_AXES] = "capabilities.axes",
     [GROWN_CAPABILITIES] = "capabilities.size",
     [NAMELESS_CHANNEL] = "channels without a name",
-    [WRONG_UNIT] = "channels with a unit other than m and N",
+    [WRONG_UNIT] = "channels with a unit other than m, N, rad and Hz",
     [WRONG_AXIS] = "axis of a channel",
     [EMPTY_RANGE] = "minimum of a channel",
     [NOISE_IS_NAN] = "noise of a channel",

@@ -64,8 +64,8 @@ def test_the_image_is_that_of_the_device(rig: type[Ranged], capsys: pytest.Captu
     [
         (["--lines", "3"], "at least 4"),
         (["--steady"], "scans in time"),
-        (["--mode", "tapping"], "no channels for the drive"),
-        (["--free-amplitude", "10nm"], "no channels for the drive"),
+        (["--mode", "tapping"], "no lock-in amplifier"),
+        (["--free-amplitude", "10nm"], "goes with --mode tapping"),
         ([*RASTER, "--set-point", "900nN"], r"set_point|limits\.force"),
         ([*RASTER, "--line-rate", "900Hz"], "valid is up to"),
     ],

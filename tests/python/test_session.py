@@ -19,7 +19,7 @@ import pytest
 from nanotouch import Input, Recording, Rig, Scene, Session, Settings, Surface, record, surface
 from nanotouch._core import Signals
 from nanotouch.errors import Error, InvalidValue
-from nanotouch.touch.columns import SIDEWAYS
+from nanotouch.touch.columns import SIDEWAYS, TAPPING
 from nanotouch.touch.session import Columns, settings_for_path
 
 RUN, LATCHED = record.STATES.index("RUN"), record.STATES.index("LATCHED")
@@ -69,11 +69,11 @@ def test_run_equals_advance_bitwise() -> None:
 
 def test_columns_are_those_of_a_recording() -> None:
     block = Session().advance(0.01)
-    assert set(block) == set(record.COLUMNS) - set(SIDEWAYS)
+    assert set(block) == set(record.COLUMNS) - set(SIDEWAYS + TAPPING)
     assert {len(values) for values in block.values()} == {100}
     np.testing.assert_allclose(block["time"], np.arange(100) * 1e-4, rtol=1e-15)
     empty = Session().advance(0.0)
-    assert set(empty) == set(record.COLUMNS) - set(SIDEWAYS)
+    assert set(empty) == set(record.COLUMNS) - set(SIDEWAYS + TAPPING)
     assert all(values.size == 0 for values in empty.values())
 
 

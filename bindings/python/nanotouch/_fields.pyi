@@ -584,9 +584,38 @@ class SettingsLimitsValues(TypedDict, total=False):
     gauge_bias: float
     gauge_drift: float
 
+class SettingsTap(Section):
+    at: Literal["tip", "base"]
+    """where a simulated lever is driven"""
+    frequency: float
+    """frequency of the drive, 0 for the free resonance [Hz], 0 .. 1e+09"""
+    free_amplitude: float
+    """amplitude A0 of the deflection far from the sample [m], 1e-11 .. 1e-06"""
+    tolerance: float
+    """share of A0 by which the free amplitude may be off at opening [-], 0.001 .. 0.5"""
+    set_amplitude: float
+    """amplitude that is held, over A0 [-], 0.2 .. 0.98"""
+    lock_in: float
+    """time constant of the lock-in amplifier [s], 0 .. 1"""
+    noise: float
+    """standard deviation of a reading of the amplitude [m], 0 .. 1e-06"""
+    resolution: float
+    """step of a reading of the amplitude [m], 0 .. 1e-06"""
+
+class SettingsTapValues(TypedDict, total=False):
+    at: Literal["tip", "base"]
+    frequency: float
+    free_amplitude: float
+    tolerance: float
+    set_amplitude: float
+    lock_in: float
+    noise: float
+    resolution: float
+
 class SettingsSections(TypedDict, total=False):
     gains: SettingsGainsValues
     limits: SettingsLimitsValues
+    tap: SettingsTapValues
 
 class SettingsFields(Description, core_type=_core.Settings):
     def __init__(self, **sections: Unpack[SettingsSections]) -> None: ...
@@ -594,6 +623,8 @@ class SettingsFields(Description, core_type=_core.Settings):
     def gains(self) -> SettingsGains: ...
     @property
     def limits(self) -> SettingsLimits: ...
+    @property
+    def tap(self) -> SettingsTap: ...
 
 class DriveDrive(Section):
     at: Literal["tip", "base"]
@@ -761,3 +792,7 @@ class Columns:
     """of a lever that gives way sideways, at the tip, to the right [m]"""
     deflection_y: NDArray[float64]
     """of a lever that gives way sideways, at the tip, up the image [m]"""
+    amplitude: NDArray[float64]
+    """of a lever that taps, at the drive's frequency, as measured [m]"""
+    lag: NDArray[float64]
+    """of a lever that taps, of the deflection behind the drive, as measured [rad]"""

@@ -42,6 +42,8 @@ UNITS: dict[str, dict[str, float]] = {
     "N/m": _scaled("N", "mkun", "/m"),
     "m/N": _scaled("m", "mun", "/N"),
     "J/m^2": _scaled("J", "mu", "/m2"),
+    "rad/V": {"rad/V": 1.0, "deg/V": math.pi / 180.0},
+    "Hz/V": {"Hz/V": 1.0, "kHz/V": 1e3},
     "m/V": _scaled("m", "un", "/V"),
     "m/s": _scaled("m", "mun", "/s"),
     "N/V": _scaled("N", "munp", "/V"),

@@ -84,6 +84,8 @@ struct Measured {
     py::array_t<uint32_t> flags;
     Array master_x, master_y;
     bool leads_sideways;
+    Array amplitude, lag;
+    bool taps;
 };
 
 static nt_sample sample_at(const Measured &measured, py::ssize_t i)
@@ -103,6 +105,10 @@ static nt_sample sample_at(const Measured &measured, py::ssize_t i)
         sample.master_position[NT_X] = measured.master_x.data()[i];
         sample.master_position[NT_Y] = measured.master_y.data()[i];
     }
+    if (measured.taps) {
+        sample.amplitude = measured.amplitude.data()[i];
+        sample.lag = measured.lag.data()[i];
+    }
     sample.flags = measured.flags.data()[i];
     return sample;
 }
@@ -110,7 +116,7 @@ static nt_sample sample_at(const Measured &measured, py::ssize_t i)
 static Measured measured_of(const py::dict &columns)
 {
     const auto column = [&](const char *name) { return columns[name].cast<Array>(); };
-    const bool leads_sideways = columns.contains("master_x");
+    const bool leads_sideways = columns.contains("master_x"), taps = columns.contains("amplitude");
     return {column("age"),
             column(columns.contains("master_age") ? "master_age" : "age"), // one age stood for both once
             column("lateness"),
@@ -123,7 +129,10 @@ static Measured measured_of(const py::dict &columns)
             columns["flags"].cast<py::array_t<uint32_t>>(),
             leads_sideways ? column("master_x") : Array(),
             leads_sideways ? column("master_y") : Array(),
-            leads_sideways};
+            leads_sideways,
+            taps ? column("amplitude") : Array(),
+            taps ? column("lag") : Array(),
+            taps};
 }
 
 // The touch step as a recording has run it: its settings may have changed on the way.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// converters.h, hal_spi.h, timing.h, realtime.h: a half on converters from a rig file, and what this machine keeps
-#include <algorithm>
+// converters.h, hal_spi.h, hal_iio.h: a half on converters from a rig file
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -11,8 +11,6 @@
 #include "hal.h"
 #include "nanotouch/hal_iio.h"
 #include "nanotouch/hal_spi.h"
-#include "nanotouch/realtime.h"
-#include "nanotouch/timing.h"
 #ifdef NANOTOUCH_HAS_LINUX
 #include "nanotouch/hal_linux.h"
 #endif
@@ -63,11 +61,12 @@ static nt_converter_channel channel_of(const py::handle &given)
     return made;
 }
 
-static void channels_of(const py::dict &setup, const char *name, nt_converter_channel to[NT_AXES])
+template <size_t count>
+static void channels_of(const py::dict &setup, const char *name, nt_converter_channel (&to)[count])
 {
     const auto list = setup[name].cast<py::list>();
-    for (int axis = 0; axis < NT_AXES; ++axis)
-        to[axis] = channel_of(list[static_cast<size_t>(axis)]);
+    for (size_t i = 0; i < count && i < list.size(); ++i)
+        to[i] = channel_of(list[i]);
 }
 
 static nt_converter_setup setup_of(const py::dict &given, Chips &own)
@@ -84,6 +83,7 @@ static nt_converter_setup setup_of(const py::dict &given, Chips &own)
     channels_of(given, "position", made.position);
     channels_of(given, "felt", made.felt);
     channels_of(given, "driven", made.driven);
+    channels_of(given, "lock_in", made.lock_in);
     made.exchange = nt_spi_exchange;
     return made;
 }
@@ -257,19 +257,23 @@ std::shared_ptr<Half> converter_half_of(const py::object &given, nt_half half)
     return std::make_shared<ConverterHalf>(setup, half);
 }
 
-static void check_converters(const py::dict &given)
+// And a step of the amplitude as its ADC reads it [m]; 0 without a lock-in amplifier.
+static double check_converters(const py::dict &given)
 {
     Chips own;
     const nt_converter_setup setup = setup_of(given, own);
     nt_problem problem{"", "", 0.0, 0.0, 0.0}, one{};
     const nt_status status = nt_converter_setup_check(&setup, &problem);
-    const std::string half = given["half"].cast<std::string>(), field = problem.field;
-    const nt_converter_channel *const kinds[] = {setup.position, setup.felt, setup.driven};
-    const char *const words[][3] = {{"position", "force", "motor"}, {"position", "deflection", "travel"}};
-    for (int at = 0; field.rfind("channel.", 0) == 0 && at < 3 * NT_AXES; ++at)
-        raise_on(nt_converter_channel_check(&setup, &kinds[at / NT_AXES][at % NT_AXES], &one), one,
-                 half + "." + words[setup.half][at / NT_AXES] + "_" + "xyz"[at % NT_AXES]);
+    const auto half = given["half"].cast<std::string>();
+    const auto keys = given["keys"].cast<std::vector<std::vector<std::string>>>();
+    const nt_converter_channel *const kinds[] = {setup.position, setup.felt, setup.driven, setup.lock_in};
+    for (size_t kind = 0; std::strncmp(problem.field, "channel.", 8) == 0 && kind < keys.size(); ++kind)
+        for (size_t i = 0; i < keys[kind].size(); ++i)
+            raise_on(nt_converter_channel_check(&setup, &kinds[kind][i], &one), one, half + "." + keys[kind][i]);
     raise_on(status, problem, half);
+    const nt_converter_channel &amplitude = setup.lock_in[NT_LOCK_IN_AMPLITUDE];
+    const nt_converter &on = setup.converter[amplitude.converter];
+    return amplitude.is_used ? std::fabs(amplitude.gain) * nt_chip_step(on.chip, &on.span) : 0.0;
 }
 
 // Times of frames that change nothing, a list for each chip [s].
@@ -323,66 +327,6 @@ static py::array_t<double> iio_scan(const py::dict &given, int converter, long c
     return volts;
 }
 
-// --- what this machine keeps ---
-
-static py::dict histogram_of(const nt_histogram &histogram)
-{
-    py::list edges, counts;
-    for (int i = 0; i < NT_HISTOGRAM_BUCKETS; ++i)
-        if (histogram.counts[i] > 0) {
-            edges.append(1e-9 * static_cast<double>(nt_histogram_edge(i)));
-            counts.append(histogram.counts[i]);
-        }
-    py::dict found;
-    found["edges"] = edges;
-    found["counts"] = counts;
-    for (const double share : {0.5, 0.99, 0.999, 0.9999})
-        found[py::float_(share)] = 1e-9 * static_cast<double>(nt_histogram_quantile(&histogram, share));
-    found["most"] = 1e-9 * static_cast<double>(histogram.most);
-    return found;
-}
-
-static int stop_when_asked(void *context, uint64_t, double)
-{
-    auto &due = *static_cast<std::chrono::steady_clock::time_point *>(context);
-    const auto now = std::chrono::steady_clock::now();
-    if (now < due)
-        return 0;
-    due = now + std::chrono::milliseconds(200);
-    const py::gil_scoped_acquire gil; // five times a second: Ctrl-C is heard
-    return PyErr_CheckSignals();
-}
-
-static py::dict latency(double period, uint64_t ticks, int priority, int processor)
-{
-    nt_realtime_wish wish = nt_realtime_wish_defaults();
-    wish.priority = priority;
-    wish.processor = processor;
-    wish.locks = wish.stays_awake = priority > 0;
-    nt_realtime realtime{};
-    auto timing = std::make_unique<nt_timing>();
-    auto due = std::chrono::steady_clock::now();
-    const nt_loop_phases phases = {stop_when_asked, nullptr, nullptr, &due};
-    nt_status granted, status = NT_OK;
-    {
-        const py::gil_scoped_release release;
-        granted = nt_realtime_begin(&realtime, &wish);
-        if (granted == NT_OK)
-            status = nt_loop_run_timed(period, ticks, &phases, timing.get());
-        nt_realtime_end(granted == NT_OK ? &realtime : nullptr);
-    }
-    if (PyErr_Occurred())
-        throw py::error_already_set();
-    raise_on(granted, "what a loop is granted");
-    raise_on(status, "loop");
-    py::dict found = histogram_of(timing->phases[NT_LOOP_WAKE]);
-    found["ticks"] = timing->ticks;
-    found["missed"] = timing->missed;
-    found["overrun"] = timing->overrun;
-    found["refused"] = std::string(realtime.refused);
-    return found;
-}
-
 void bind_converters(py::module_ &core)
 {
     py::module_ module = core.def_submodule("rigs");
@@ -390,7 +334,7 @@ void bind_converters(py::module_ &core)
     module.def("check_converters", check_converters);
     module.def("time_frames", time_frames);
     module.def("iio_scan", iio_scan);
-    module.def("latency", latency);
+    bind_timing(module);
     module.def("chips", [] {
         std::vector<std::string> names;
         for (int i = 0; nt_chip_at(i); ++i)

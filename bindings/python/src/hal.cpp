@@ -131,7 +131,7 @@ uint32_t can_of(const py::object &capabilities)
         return capabilities.attr(name).cast<bool>() ? value : 0u;
     };
     return bit("feels", NT_CAN_FEEL) | bit("pushes", NT_CAN_PUSH) | bit("servos", NT_CAN_SERVO) |
-           bit("event_driven", NT_IS_EVENT_DRIVEN);
+           bit("event_driven", NT_IS_EVENT_DRIVEN) | bit("taps", NT_CAN_TAP);
 }
 
 static nt_status describe_python(void *context, nt_capabilities *capabilities)
@@ -202,10 +202,19 @@ static uint32_t flags_of(const py::object &names)
     return flags;
 }
 
+// One number, NaN where it is not measured; returns its valid bit.
+static uint32_t number_at(const py::object &reading, const char *name, int channel, double &number)
+{
+    number = number_of<double>(reading.attr(name), name, "numbers, NaN where nothing is measured");
+    return std::isnan(number) ? 0u : 1u << channel;
+}
+
 void take_measured(const py::object &given, nt_reading &reading)
 {
     reading.valid = numbers_of(given, "position", reading.position) << NT_READS_POSITION;
     reading.valid |= numbers_of(given, "felt", reading.felt) << NT_READS_FELT;
+    reading.valid |= number_at(given, "amplitude", NT_READS_AMPLITUDE, reading.amplitude);
+    reading.valid |= number_at(given, "lag", NT_READS_LAG, reading.lag);
     reading.flags = flags_of(given.attr("flags"));
     reading.buttons = number_of<uint32_t>(given.attr("buttons"), "buttons", "whole numbers, 0 .. 2^32 - 1");
 }
@@ -247,7 +256,8 @@ static nt_status write_python(void *context, const nt_action *action)
     return guarded(context, [action](PythonHalf &half) {
         half.self.attr("write")(
             half.action_type(action->tick, action->time, half.states[py::int_(action->state)],
-                             py::make_tuple(action->target[0], action->target[1], action->target[2])));
+                             py::make_tuple(action->target[0], action->target[1], action->target[2]),
+                             action->drive_amplitude, action->drive_frequency));
     });
 }
 

@@ -43,6 +43,7 @@ std::shared_ptr<Half> half_of(const py::object &given, nt_half half);
 std::shared_ptr<Half> converter_half_of(const py::object &given, nt_half half);
 void bind_converters(py::module_ &module);
 void bind_drive(py::module_ &module); // of the submodule that it makes
+void bind_timing(py::module_ &rigs);
 
 // A nanotouch.hal.Replay.
 std::shared_ptr<Half> replay_half_of(const py::object &given, nt_half half);

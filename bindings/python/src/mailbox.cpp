@@ -73,7 +73,8 @@ struct Mailbox {
         nt_mailbox_request request;
         nt_mailbox_ask(get(), &request);
         return py::make_tuple(request.is_armed != 0, request.state, request.tick, request.time,
-                              py::make_tuple(request.target[0], request.target[1], request.target[2]), request.lift);
+                              py::make_tuple(request.target[0], request.target[1], request.target[2]), request.lift,
+                              request.drive_amplitude, request.drive_frequency);
     }
     void close()
     {

@@ -47,6 +47,11 @@ static constexpr Column deflections[] = {
     ALONG("deflection_x", deflection, NT_X),
     ALONG("deflection_y", deflection, NT_Y),
 };
+// Where the lever taps.
+static constexpr Column tapping[] = {
+    SCALAR(amplitude),
+    SCALAR(lag),
+};
 
 using Records = std::vector<nt_record>;
 
@@ -87,6 +92,8 @@ static py::dict read_records(Session &self, long count)
         std::for_each(std::begin(lateral), std::end(lateral), add);
     if (gives_way)
         std::for_each(std::begin(deflections), std::end(deflections), add);
+    if (touch->mode == NT_MODE_TAPPING)
+        std::for_each(std::begin(tapping), std::end(tapping), add);
     out["state"] = bits_of<uint8_t>(records, got, &nt_record::state);
     out["reasons"] = bits_of<uint32_t>(records, got, &nt_record::reasons);
     out["flags"] = bits_of<uint32_t>(records, got, &nt_record::flags);
@@ -291,7 +298,8 @@ static py::dict described_half(const Session &self, int half)
                     py::arg("feels") = can(NT_CAN_FEEL), py::arg("pushes") = can(NT_CAN_PUSH),
                     py::arg("servos") = can(NT_CAN_SERVO), py::arg("leads") = can(NT_LEADS_CLOCK),
                     py::arg("real") = can(NT_IS_REAL), py::arg("event_driven") = can(NT_IS_EVENT_DRIVEN),
-                    py::arg("slow") = can(NT_IS_SLOW), py::arg("channels") = channels);
+                    py::arg("slow") = can(NT_IS_SLOW), py::arg("taps") = can(NT_CAN_TAP),
+                    py::arg("channels") = channels);
 }
 
 // The dents so far, the oldest first: [start x, start y, end x, end y, radius, depth, load, before].

@@ -53,6 +53,8 @@ static nt_status describe_half(void *context, nt_capabilities *capabilities)
     capabilities->can = NT_IS_REAL | (setup->felt[NT_Z].is_used ? (uint32_t)NT_CAN_FEEL : 0u);
     if (setup->half == NT_HALF_MASTER && setup->driven[NT_Z].is_used)
         capabilities->can |= NT_CAN_PUSH;
+    if (setup->lock_in[NT_LOCK_IN_AMPLITUDE].is_used)
+        capabilities->can |= NT_CAN_TAP;
     capabilities->axes = setup->axes;
     capabilities->period = 0.0;
     capabilities->rows = c->row_count;
@@ -112,7 +114,7 @@ static nt_status ask_all(nt_converter_half *c, nt_converter_answers *answers)
         judge(c, answers->verdict[i], &status);
     }
     int is_other = answers->is_unset;
-    for (int axis = 0; axis < NT_AXES; ++axis)
+    for (int axis = 0; axis < NT_DRIVES; ++axis)
         is_other |= setup->driven[axis].is_used && answers->held[axis] != c->codes[axis];
     if (status != NT_OK || !is_other)
         return status;
@@ -136,6 +138,20 @@ static int is_saturated(const nt_converter_half *c, const nt_converter_answers *
     const double value = nt_converter_half_value(c, channel, code);
     return answers->verdict[channel->converter] == NT_CHIP_SATURATED || code <= nt_chip_lowest(chip) ||
            code >= nt_chip_highest(chip) || value < channel->minimum || value > channel->maximum;
+}
+
+/* One at an end of its range is no number: an amplitude that is too large, or a lag that turns round, tells nothing. */
+static void fill_lock_in(const nt_converter_half *c, const nt_converter_answers *answers, nt_reading *reading)
+{
+    double *const to[] = {&reading->amplitude, &reading->lag};
+    for (int i = 0; i < NT_LOCK_IN_OUTPUTS; ++i) {
+        const nt_converter_channel *channel = &c->setup.lock_in[i];
+        if (!channel->is_used)
+            continue;
+        const int32_t code = code_of(c, answers, NT_Z, channel);
+        if (!is_saturated(c, answers, channel, code))
+            mark(reading, NT_READS_AMPLITUDE + i, to[i], nt_converter_half_value(c, channel, code));
+    }
 }
 
 static void fill(const nt_converter_half *c, const nt_converter_answers *answers, nt_reading *reading)
@@ -164,33 +180,47 @@ static nt_status read_half(void *context, nt_reading *reading)
                             .sequence = ++c->sequence,
                             .time = c->host->now(c->host),
                             .position = {NAN, NAN, NAN},
-                            .felt = {NAN, NAN, NAN}};
+                            .felt = {NAN, NAN, NAN},
+                            .amplitude = NAN,
+                            .lag = NAN};
     const nt_status status = ask_all(c, &answers);
     c->bad = status == NT_OK ? 0 : c->bad + 1;
     if (c->is_gone || c->bad >= NT_CONVERTER_BAD)
         return NT_E_DEVICE;
-    if (status == NT_OK)
+    if (status == NT_OK) {
         fill(c, &answers, reading);
-    else
+        fill_lock_in(c, &answers, reading);
+    } else
         reading->flags |= NT_SAMPLE_INVALID;
     return NT_OK;
 }
 
 /* --- write, and the end --- */
 
+/* What is asked of a channel; a frequency of 0 is none: the oscillator keeps its own. */
+static double asked_of(const nt_converter_half *c, const nt_action *action, int axis)
+{
+    if (axis < NT_AXES)
+        return action->target[axis];
+    if (axis == NT_DRIVES_AMPLITUDE)
+        return action->drive_amplitude;
+    return action->drive_frequency == 0.0 ? nt_converter_half_value(c, &c->setup.driven[axis], c->codes[axis])
+                                          : action->drive_frequency;
+}
+
 /* A target that is no number never reaches a chip. One that could not be sent shows in the next read-back. */
 static nt_status write_half(void *context, const nt_action *action)
 {
     nt_converter_half *c = context;
-    int32_t codes[NT_AXES] = {0};
-    for (int axis = 0; axis < NT_AXES; ++axis)
+    int32_t codes[NT_DRIVES] = {0};
+    for (int axis = 0; axis < NT_DRIVES; ++axis)
         if (c->setup.driven[axis].is_used) {
             const nt_status status =
-                nt_converter_half_code(c, &c->setup.driven[axis], action->target[axis], &codes[axis]);
+                nt_converter_half_code(c, &c->setup.driven[axis], asked_of(c, action, axis), &codes[axis]);
             if (status != NT_OK)
                 return status;
         }
-    for (int axis = 0; axis < NT_AXES && !c->is_gone; ++axis)
+    for (int axis = 0; axis < NT_DRIVES && !c->is_gone; ++axis)
         if (c->setup.driven[axis].is_used)
             (void)nt_converter_half_drive(c, axis, codes[axis]);
     if (c->setup.lines.beat)
@@ -201,10 +231,10 @@ static nt_status write_half(void *context, const nt_action *action)
 static void leave_axis(nt_converter_half *c, int axis)
 {
     const nt_converter_channel *driven = &c->setup.driven[axis];
-    const int is_force = c->setup.half == NT_HALF_MASTER;
+    const int is_zero = c->setup.half == NT_HALF_MASTER || axis == NT_DRIVES_AMPLITUDE;
     const double lift = axis == NT_Z && c->lift > 0.0 ? c->lift : 0.0;
     int32_t code;
-    if (nt_converter_half_code(c, driven, is_force ? 0.0 : nt_converter_half_value(c, driven, c->codes[axis]) - lift,
+    if (nt_converter_half_code(c, driven, is_zero ? 0.0 : nt_converter_half_value(c, driven, c->codes[axis]) - lift,
                                &code) != NT_OK)
         return;
     for (int i = 0; i < ATTEMPTS && !c->is_gone; ++i)
@@ -218,6 +248,8 @@ static void disarm_half(void *context)
     for (int axis = NT_Z; axis >= NT_X && c->is_armed; --axis) /* the lift first */
         if (c->driven >> axis & 1u)
             leave_axis(c, axis);
+    if (c->is_armed && c->driven >> NT_DRIVES_AMPLITUDE & 1u) /* a frequency stays */
+        leave_axis(c, NT_DRIVES_AMPLITUDE);
     if (c->is_armed)
         (void)enable(c, 0);
     c->is_armed = 0;

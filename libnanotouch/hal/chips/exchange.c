@@ -60,8 +60,8 @@ static nt_status ask_dac(nt_converter_half *c, int converter, nt_converter_answe
     const nt_converter *on = &c->setup.converter[converter];
     const nt_chip *chip = on->chip;
     nt_chip_frame set, frames[NT_CONVERTER_FRAMES];
-    int axes[NT_AXES], count = 0;
-    for (int axis = 0; axis < NT_AXES; ++axis)
+    int axes[NT_DRIVES], count = 0;
+    for (int axis = 0; axis < NT_DRIVES; ++axis)
         if (c->setup.driven[axis].is_used && c->setup.driven[axis].converter == converter) {
             frames[count] = nt_chip_ask(chip, c->setup.driven[axis].channel);
             axes[count++] = axis;
@@ -112,14 +112,14 @@ static nt_status ask_control(nt_converter_half *c, int converter, nt_chip_frame 
     return status;
 }
 
-/* Where a driven axis starts: forces at 0, a stage where it stands, or at 0 V if its output has been off. */
+/* Where it starts: a force or an oscillation at 0, a stage where it stands, or at 0 V if its output has been off. */
 static nt_status start_axis(nt_converter_half *c, int axis, int was_off, const nt_converter_answers *before)
 {
     const nt_converter_channel *driven = &c->setup.driven[axis];
     const nt_chip *chip = c->setup.converter[driven->converter].chip;
     int32_t code = before->held[axis];
     nt_status status = NT_OK;
-    if (c->setup.half == NT_HALF_MASTER)
+    if (c->setup.half == NT_HALF_MASTER || axis == NT_DRIVES_AMPLITUDE)
         status = nt_converter_half_code(c, driven, 0.0, &code);
     else if (was_off || code < nt_chip_lowest(chip) || code > nt_chip_highest(chip))
         status = nt_converter_half_code(c, driven, driven->offset, &code);
@@ -142,7 +142,7 @@ static nt_status start_dac(nt_converter_half *c, int converter, const nt_convert
     if (has_control && status == NT_OK && is_hanging(answer.bytes))
         return NT_E_DEVICE; /* where the stage stands is unknown: nothing is driven */
     const int was_off = has_control && nt_chip_is_off(on->chip, answer.bytes);
-    for (int axis = 0; axis < NT_AXES && status == NT_OK; ++axis)
+    for (int axis = 0; axis < NT_DRIVES && status == NT_OK; ++axis)
         if (c->setup.driven[axis].is_used && c->setup.driven[axis].converter == converter)
             status = start_axis(c, axis, was_off, before);
     if (!has_control || status != NT_OK)

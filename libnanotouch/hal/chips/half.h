@@ -9,8 +9,8 @@
 typedef struct nt_converter_answers {
     nt_chip_frame adc[NT_CONVERTERS];
     nt_chip_verdict verdict[NT_CONVERTERS];
-    int32_t held[NT_AXES]; /* what the DACs say that they hold, by driven axis */
-    int is_unset;          /* one of them is not as it was set up */
+    int32_t held[NT_DRIVES]; /* what the DACs say that they hold, by what is driven */
+    int is_unset;            /* one of them is not as it was set up */
 } nt_converter_answers;
 
 /* Exchanges, with the count of those that failed. NT_E_DEVICE once the half is lost. */

@@ -12,7 +12,7 @@
 typedef struct use {
     const char *name; /* of the field */
     const nt_converter_channel *channels;
-    int is_driven;
+    int count, is_driven;
 } use;
 
 static nt_status bad(nt_problem *problem, const char *field, double value, double minimum, double maximum)
@@ -96,11 +96,20 @@ static int drives_it(const nt_converter_setup *setup, const nt_converter_channel
     return driven->is_used && driven->converter == read->converter && driven->channel == read->channel;
 }
 
+static const char *unit_of(const nt_converter_setup *setup, const use *as, int axis)
+{
+    if (as->channels == setup->lock_in)
+        return axis == NT_LOCK_IN_LAG ? "rad" : "m";
+    if (as->is_driven && axis == NT_DRIVES_FREQUENCY)
+        return "Hz";
+    return setup->half == NT_HALF_SLAVE || as->channels == setup->position ? "m" : "N";
+}
+
 static nt_status check_channel(const nt_converter_setup *setup, const use *as, int axis, nt_problem *problem)
 {
     const nt_converter_channel *channel = &as->channels[axis];
     const int is_slave = setup->half == NT_HALF_SLAVE;
-    const char *unit = is_slave || as->channels == setup->position ? "m" : "N";
+    const char *unit = unit_of(setup, as, axis);
     if (channel->converter < 0 || channel->converter >= setup->converters)
         return bad(problem, "channel.converter", channel->converter, 0.0, setup->converters - 1);
     const nt_chip *chip = setup->converter[channel->converter].chip;
@@ -115,17 +124,26 @@ static nt_status check_channel(const nt_converter_setup *setup, const use *as, i
     return status == NT_OK && is_slave && as->is_driven && axis == NT_Z ? check_start(channel, problem) : status;
 }
 
+enum { USES = 4 };
+
+static void list_uses(const nt_converter_setup *setup, use uses[USES])
+{
+    uses[0] = (use){"position: channels of an ADC", setup->position, NT_AXES, 0};
+    uses[1] = (use){"felt: channels of an ADC", setup->felt, NT_AXES, 0};
+    uses[2] = (use){"driven: channels of a DAC", setup->driven, NT_DRIVES, 1};
+    uses[3] = (use){"lock_in: channels of an ADC", setup->lock_in, NT_LOCK_IN_OUTPUTS, 0};
+}
+
 nt_status nt_converter_channel_check(const nt_converter_setup *setup, const nt_converter_channel *channel,
                                      nt_problem *problem)
 {
-    const use uses[] = {{"position: channels of an ADC", setup->position, 0},
-                        {"felt: channels of an ADC", setup->felt, 0},
-                        {"driven: channels of a DAC", setup->driven, 1}};
-    for (int i = 0; i < 3; ++i)
-        for (int axis = 0; axis < NT_AXES; ++axis) {
+    use uses[USES];
+    list_uses(setup, uses);
+    for (int i = 0; i < USES; ++i)
+        for (int axis = 0; axis < uses[i].count; ++axis) {
             if (channel != &uses[i].channels[axis] || !channel->is_used)
                 continue;
-            if (setup->axes == 1 && axis != NT_Z)
+            if (setup->axes == 1 && axis < NT_Z && uses[i].channels != setup->lock_in)
                 return bad(problem, "channels of an axis that the half does not have", 1.0, 0.0, 0.0);
             return check_channel(setup, &uses[i], axis, problem);
         }
@@ -134,12 +152,29 @@ nt_status nt_converter_channel_check(const nt_converter_setup *setup, const nt_c
 
 static nt_status check_uses(const nt_converter_setup *setup, nt_problem *problem)
 {
-    const nt_converter_channel *const kinds[] = {setup->position, setup->felt, setup->driven};
+    use uses[USES];
+    list_uses(setup, uses);
     nt_status status = NT_OK;
-    for (int i = 0; i < 3; ++i)
-        for (int axis = 0; axis < NT_AXES && status == NT_OK; ++axis)
-            status = nt_converter_channel_check(setup, &kinds[i][axis], problem);
+    for (int i = 0; i < USES; ++i)
+        for (int axis = 0; axis < uses[i].count && status == NT_OK; ++axis)
+            status = nt_converter_channel_check(setup, &uses[i].channels[axis], problem);
     return status;
+}
+
+/* A slave taps with all of a lock-in amplifier, and its drive can be switched off. */
+static nt_status check_tapping(const nt_converter_setup *setup, nt_problem *problem)
+{
+    const nt_converter_channel *drive = &setup->driven[NT_DRIVES_AMPLITUDE];
+    const int has_drive = drive->is_used || setup->driven[NT_DRIVES_FREQUENCY].is_used;
+    const int outputs = setup->lock_in[NT_LOCK_IN_AMPLITUDE].is_used + setup->lock_in[NT_LOCK_IN_LAG].is_used;
+    if (setup->half == NT_HALF_MASTER && (has_drive || outputs))
+        return bad(problem, "drive or lock-in amplifier of a master", 1.0, 0.0, 0.0);
+    if (outputs == 1 || (has_drive && outputs == 0))
+        return bad(problem, "outputs of the lock-in amplifier, amplitude and lag", outputs, 2.0, 2.0);
+    if (drive->is_used && !(drive->minimum <= 0.0 && drive->maximum > 0.0))
+        return nt_problem_set(problem, "drive amplitude: its minimum, which switches it off", "m", drive->minimum,
+                              -HUGE_VAL, 0.0);
+    return NT_OK;
 }
 
 nt_status nt_converter_setup_check(const nt_converter_setup *setup, nt_problem *problem)
@@ -159,43 +194,60 @@ nt_status nt_converter_setup_check(const nt_converter_setup *setup, nt_problem *
         return bad(problem, "channels of the position along z", 0.0, 1.0, 1.0);
     if (setup->half == NT_HALF_SLAVE && (!setup->driven[NT_Z].is_used || !setup->felt[NT_Z].is_used))
         return bad(problem, "channels of a slave's travel and deflection along z", 0.0, 1.0, 1.0);
-    return check_uses(setup, problem);
+    const nt_status status = check_tapping(setup, problem);
+    return status == NT_OK ? check_uses(setup, problem) : status;
 }
 
 /* --- what it says of itself --- */
 
-static const char *const names[2][3][NT_AXES] = {
+static const char *const names[2][3][NT_DRIVES] = {
     {{"position x", "position y", "position z"},
      {"force x", "force y", "force z"},
      {"motor force x", "motor force y", "motor force z"}},
     {{"stage x", "stage y", "stage z"},
      {"deflection x", "deflection y", "deflection z"},
-     {"travel x", "travel y", "travel z"}},
+     {"travel x", "travel y", "travel z", "drive amplitude", "drive frequency"}},
 };
 
-static nt_channel_row row_of(const nt_converter_half *c, int kind, int axis, const nt_converter_channel *channel)
+/* The numbers of a channel; what it is called, and what it is left at, is for the caller. */
+static nt_channel_row row_of(const nt_converter_half *c, const nt_converter_channel *channel, const char *name,
+                             const char *unit)
 {
     const nt_converter *on = &c->setup.converter[channel->converter];
-    const int is_master = c->setup.half == NT_HALF_MASTER, is_driven = kind == 2;
-    const int is_force = is_master && kind != 0;
-    return (nt_channel_row){.name = names[!is_master][kind][axis],
-                            .unit = is_force ? "N" : "m",
-                            .driven = is_driven,
-                            .axis = axis,
+    return (nt_channel_row){.name = name,
+                            .unit = unit,
+                            .axis = NT_AXES,
                             .minimum = channel->minimum,
                             .maximum = channel->maximum,
                             .step = fabs(channel->gain) * nt_chip_step(on->chip, &on->span),
                             .noise = channel->noise,
                             .latency = channel->latency + on->chip->settle,
-                            .safe = is_driven && is_force ? 0.0 : (double)NAN};
+                            .safe = NAN};
+}
+
+static nt_channel_row axis_row(const nt_converter_half *c, int kind, int axis, const nt_converter_channel *channel)
+{
+    const int is_master = c->setup.half == NT_HALF_MASTER, is_force = is_master && kind != 0;
+    const char *unit = is_force ? "N" : axis == NT_DRIVES_FREQUENCY ? "Hz" : "m";
+    nt_channel_row row = row_of(c, channel, names[!is_master][kind][axis], unit);
+    row.driven = kind == 2;
+    row.axis = axis < NT_AXES ? axis : NT_AXES;
+    if (row.driven && (is_force || axis == NT_DRIVES_AMPLITUDE))
+        row.safe = 0.0;
+    return row;
 }
 
 void nt_converter_half_describe(nt_converter_half *c)
 {
     const nt_converter_channel *const kinds[] = {c->setup.position, c->setup.felt, c->setup.driven};
+    const nt_converter_channel *lock_in = c->setup.lock_in;
     c->row_count = 0;
     for (int kind = 0; kind < 3; ++kind)
-        for (int axis = 0; axis < NT_AXES; ++axis)
+        for (int axis = 0; axis < (kind == 2 ? NT_DRIVES : NT_AXES); ++axis)
             if (kinds[kind][axis].is_used)
-                c->rows[c->row_count++] = row_of(c, kind, axis, &kinds[kind][axis]);
+                c->rows[c->row_count++] = axis_row(c, kind, axis, &kinds[kind][axis]);
+    if (lock_in[NT_LOCK_IN_AMPLITUDE].is_used) {
+        c->rows[c->row_count++] = row_of(c, &lock_in[NT_LOCK_IN_AMPLITUDE], "amplitude", "m");
+        c->rows[c->row_count++] = row_of(c, &lock_in[NT_LOCK_IN_LAG], "lag", "rad");
+    }
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "nanotouch/material.h"
 #include "parts.h"
 
 static const char *const position_names[] = {"position x", "position y", "position z"};
@@ -72,6 +73,22 @@ void nt_sim_list_master(nt_sim_master *master)
                                     .safe = 0.0});
 }
 
+/* Drive and lock-in amplifier. */
+static void add_tapping(nt_sim_slave *slave)
+{
+    nt_sim_link *link = &slave->link;
+    const nt_sensor *sensor = &slave->tap.lock_in.sensor;
+    const double latency = link->rig.converters.adc_latency, resonance = link->rig.probe.resonance;
+    const nt_channel_row rows[] = {
+        {"amplitude", "m", 0, NT_AXES, -sensor->range, sensor->range, sensor->resolution, sensor->noise, latency, NAN},
+        {"lag", "rad", 0, NT_AXES, -NT_PI, NT_PI, 0.0, 0.0, latency, NAN},
+        {"drive amplitude", "m", 1, NT_AXES, 0.0, sensor->range, 0.0, 0.0, link->period, 0.0},
+        {"drive frequency", "Hz", 1, NT_AXES, 0.1 * resonance, 3.0 * resonance, 0.0, 0.0, link->period, NAN}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        add(link, &rows[i]);
+    link->valid |= 1u << NT_READS_AMPLITUDE | 1u << NT_READS_LAG;
+}
+
 void nt_sim_list_slave(nt_sim_slave *slave)
 {
     static const char *const command_names[] = {"stage x", "stage y", "stage travel"};
@@ -104,4 +121,6 @@ void nt_sim_list_slave(nt_sim_slave *slave)
                                     .latency = effect_latency(link),
                                     .safe = i == NT_Z ? -range : (double)NAN}); /* drawn back, where it is */
     }
+    if (slave->tap.is_there)
+        add_tapping(slave);
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "hal/reading.h"
 #include "parts.h"
 
 enum { SENSORS = NT_CHANNEL_OPERATOR_FORCE + 1 };
@@ -217,7 +218,7 @@ static void spoil_frame(const nt_sim_link *link, const nt_fault *fault, nt_readi
 static void mark(nt_reading *reading)
 {
     for (int i = 0; i < NT_READS; i++) {
-        double *value = i < NT_READS_FELT ? &reading->position[i] : &reading->felt[i - NT_READS_FELT];
+        double *value = nt_reading_channel(reading, i);
         if (isnan(*value))
             reading->valid &= ~(1u << i);
         else if (!(reading->valid >> i & 1u))

@@ -80,6 +80,18 @@ void nt_sim_list_slave(nt_sim_slave *slave);
 double nt_sim_surface_height(const nt_sim_slave *slave);
 nt_status nt_sim_move_probe(nt_sim_slave *slave);
 
+/* --- tap.c: the same of a lever that taps --- */
+
+nt_status nt_sim_tap_init(nt_sim_slave *slave, const nt_sim_lock_in *lock_in);
+/* Asks for another drive. NT_E_NOT_FINITE, NT_E_RANGE. */
+nt_status nt_sim_tap_drive(nt_sim_slave *slave, double amplitude, double frequency);
+/* Does the lever swing, or shall it? */
+int nt_sim_taps(const nt_sim_slave *slave);
+/* Over a place whose height is that of the surface now; base: z_b above that [m]. */
+nt_status nt_sim_tap_step(nt_sim_slave *slave, double base, double surface);
+/* What the lock-in amplifier shows in this tick. */
+void nt_sim_tap_read(nt_sim_slave *slave, nt_reading *reading);
+
 /* --- faults.c: what each fault does, where it acts; most rigs have none --- */
 
 /* The values of all faults of a kind that act now. */

@@ -156,6 +156,7 @@ void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
     slave->plan = plan;
     slave->lowered = slave->dents.touches = 0; /* what touched by another law has let go */
     slave->place_x = slave->law_gap = NAN;     /* nothing is known of it yet */
+    slave->tap.table = (nt_flow_table){.cell = {{.is_made = 0}}};
 }
 
 /* A sample that keeps dents has one contact everywhere: the slope alone turns its force aside. */
@@ -174,6 +175,9 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const int is_elsewhere = find_place(slave);
     find_dents(slave);
     const double surface = slave->place.surface.z - slave->lowered + nt_sim_surface_jump(&slave->link);
+    const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
+    if (nt_sim_taps(slave))
+        return nt_sim_tap_step(slave, base, surface);
     const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties);
     probe_context context = {.plan = slave->plan,
                              .interaction = &slave->interaction,
@@ -183,7 +187,6 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
                              .law = slave->law,
                              .deepest = HUGE_VAL};
     const nt_force_field field = {force_at, slave->dynamic ? passed : moved_to, &context, slave->plan->length};
-    const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
     const nt_status status = slave->dynamic
                                  ? nt_cantilever_step(&slave->cantilever_model, &slave->cantilever, &field, base,
                                                       nt_sim_noise_now(&slave->link, NT_SIM_NOISE_TIP))

@@ -37,7 +37,7 @@ static nt_status describe_master(void *context, nt_capabilities *capabilities)
 
 static nt_status describe_slave(void *context, nt_capabilities *capabilities)
 {
-    capabilities->can = NT_CAN_FEEL;
+    capabilities->can = NT_CAN_FEEL | (((nt_sim_slave *)context)->tap.is_there ? NT_CAN_TAP : 0u);
     capabilities->axes = (int)((nt_sim_slave *)context)->link.rig.stage.axes;
     list_channels(&((nt_sim_slave *)context)->link, capabilities);
     return NT_OK;
@@ -73,6 +73,7 @@ static void disarm_slave(void *context)
     nt_sim_slave *slave = context;
     for (int i = 0; i < NT_SIM_SLOTS; i++)
         slave->pending[i][NT_Z] = -0.5 * slave->link.rig.stage.travel;
+    slave->tap.lever.strength = 0.0;
 }
 
 const nt_backend *nt_sim_master_backend(void)

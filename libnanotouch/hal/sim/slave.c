@@ -49,6 +49,9 @@ static int is_dynamic(const nt_sim_slave *slave, nt_probe_model model)
 static nt_status begin(nt_sim_slave *slave, const nt_sim_setup *setup)
 {
     init_sensors(slave);
+    const nt_status tap = nt_sim_tap_init(slave, setup->lock_in);
+    if (tap != NT_OK)
+        return tap;
     nt_sim_list_slave(slave);
     for (int i = 0; i < NT_AXES; i++)
         slave->converted.position[i] = slave->converted.felt[i] = NAN;
@@ -100,7 +103,10 @@ nt_status nt_sim_slave_read(nt_sim_slave *slave, nt_reading *reading)
     nt_sim_link *link = &slave->link;
     moment_now(slave, slave->moments[link->tick % NT_SIM_SLOTS]);
     nt_reading *converted = &slave->converted;
+    slave->tap.moments[link->tick % NT_SIM_SLOTS][0] = slave->tap.amplitude;
+    slave->tap.moments[link->tick % NT_SIM_SLOTS][1] = slave->tap.lag;
     if (nt_sim_is_converted(link)) {
+        nt_sim_tap_read(slave, converted);
         double seen[2];
         nt_sim_moment_before(link, slave->moments, seen);
         converted->position[NT_Z] = nt_sim_sense(link, &slave->stage_sensor, NT_CHANNEL_STAGE_POSITION, seen[0]);
@@ -173,6 +179,9 @@ nt_status nt_sim_slave_write(nt_sim_slave *slave, const nt_action *action)
 {
     if (!nt_sim_is_finite(action))
         return NT_E_NOT_FINITE;
+    const nt_status driven = nt_sim_tap_drive(slave, action->drive_amplitude, action->drive_frequency);
+    if (driven != NT_OK)
+        return driven;
     nt_sim_link *link = &slave->link;
     const int lost = nt_sim_lost_periods(link);
     link->lateness = lost * link->period;

@@ -18,6 +18,12 @@ enum {
     NT_CONVERTER_FRAMES = 2 * NT_AXES + 2 /* in one exchange, at most */
 };
 
+/* What a half drives: an axis each, and of a slave that taps two more. */
+enum { NT_DRIVES_AMPLITUDE = NT_AXES, NT_DRIVES_FREQUENCY, NT_DRIVES };
+
+/* What a lock-in amplifier gives an ADC. */
+enum { NT_LOCK_IN_AMPLITUDE, NT_LOCK_IN_LAG, NT_LOCK_IN_OUTPUTS };
+
 /* One frame of an exchange; `in` is what came back (as many bytes). */
 typedef struct nt_transfer {
     const uint8_t *out;
@@ -50,21 +56,22 @@ typedef struct nt_converter_channel {
     int is_used;
     int converter;           /* which chip: 0 .. */
     int channel;             /* of that chip: 0 .. */
-    double gain;             /* [m/V] or [N/V], not 0; its sign is that of the wiring */
-    double offset;           /* the value at 0 V [m] or [N] */
+    double gain;             /* [m/V], [N/V], [rad/V] or [Hz/V], not 0; its sign is that of the wiring */
+    double offset;           /* the value at 0 V [m], ... */
     double uncertainty;      /* of gain, one standard deviation, relative [-] */
-    double minimum, maximum; /* of the value, within the chip's span [m] or [N] */
-    double noise, latency;   /* of a reading: standard deviation, and age beyond the conversion [m] or [N], [s] */
+    double minimum, maximum; /* of the value, within the chip's span [m], ... */
+    double noise, latency;   /* of a reading: standard deviation [m], ...; age beyond the conversion [s] */
 } nt_converter_channel;
 
 /* A half. What is driven along an axis is travel for a slave and motor force for a master. A position that no ADC
- * measures may be the converter that drives the stage: what is read is then what the chip says that it holds. */
+ * measures may be the converter that drives the stage: what is read is then what the chip says that it holds. A slave
+ * taps if both outputs of a lock-in amplifier are read; drives that are not used are the instrument's own. */
 typedef struct nt_converter_setup {
     nt_half half;
     int axes; /* 1 (z alone), 2 or 3 */
     int converters;
     nt_converter converter[NT_CONVERTERS];
-    nt_converter_channel position[NT_AXES], felt[NT_AXES], driven[NT_AXES];
+    nt_converter_channel position[NT_AXES], felt[NT_AXES], driven[NT_DRIVES], lock_in[NT_LOCK_IN_OUTPUTS];
     nt_exchange exchange;
     void *bus; /* of exchange */
     nt_converter_lines lines;
@@ -86,13 +93,13 @@ typedef struct nt_converter_half {
     nt_converter_setup setup;
     nt_converter_counts counts;
     const nt_host *host;
-    nt_channel_row rows[3 * NT_AXES];
+    nt_channel_row rows[2 * NT_AXES + NT_DRIVES + NT_LOCK_IN_OUTPUTS];
     int row_count;
-    int32_t codes[NT_AXES]; /* that each driven axis was told last */
-    double lift;            /* that disarm owes [m] */
+    int32_t codes[NT_DRIVES]; /* that each driven channel was told last */
+    double lift;              /* that disarm owes [m] */
     uint64_t sequence;
     int bad;         /* ticks in a row that did not work */
-    uint32_t driven; /* axes that have been driven since it was opened, bit by bit */
+    uint32_t driven; /* what has been driven since it was opened, bit by bit */
     int is_armed;
     int is_gone; /* the bus has said so */
 } nt_converter_half;

@@ -10,27 +10,27 @@
 extern "C" {
 #endif
 
-#define NT_HAL_API_VERSION 2
+#define NT_HAL_API_VERSION 3
 /* Of a shared object: `const nt_backend *nanotouch_backend(void)`. */
 #define NT_BACKEND_ENTRY "nanotouch_backend"
 
 typedef enum nt_half { NT_HALF_MASTER, NT_HALF_SLAVE } nt_half;
 
-/* The six channels that a half may read: three of position, three of what it feels. */
-enum { NT_READS_POSITION = 0, NT_READS_FELT = NT_AXES, NT_READS = 2 * NT_AXES };
+/* The channels that a half may read: three of position, three of what it feels, and of a lever that taps two. */
+enum { NT_READS_POSITION = 0, NT_READS_FELT = NT_AXES, NT_READS_AMPLITUDE = 2 * NT_AXES, NT_READS_LAG, NT_READS };
 
 /* One channel, read or driven. */
 typedef struct nt_channel_row {
     const char *name; /* "deflection", "motor force x", ... */
-    const char *unit; /* SI: "m", "N" */
+    const char *unit; /* SI: "m", "N"; "rad", "Hz" */
     int driven;       /* 0: it is read; 1: it is driven */
-    int axis;         /* NT_X, NT_Y, NT_Z */
+    int axis;         /* NT_X, NT_Y, NT_Z; NT_AXES: of drive or lock-in amplifier */
     double minimum;   /* of its range [unit] */
     double maximum;   /* [unit] */
     double step;      /* of its converter, 0: none is known [unit] */
     double noise;     /* standard deviation [unit] */
     double latency;   /* from the moment measured to the reading, or from the write to its effect [s] */
-    double safe;      /* driven: what disarm leaves it at, NaN: a position that stays where it is; read: NaN [unit] */
+    double safe;      /* driven: what disarm leaves it at, NaN: a position or frequency that stays; read: NaN [unit] */
 } nt_channel_row;
 
 /* What a half can do. */
@@ -42,7 +42,8 @@ enum {
     NT_IS_REAL = 1u << 4,          /* an actuator can move something: needs the hard pace */
     NT_IS_EVENT_DRIVEN = 1u << 5,  /* readings come when something happens; a heartbeat comes every period */
     NT_KEEPS_OWN_SAFETY = 1u << 6, /* stops by itself when writes stay away */
-    NT_IS_SLOW = 1u << 7           /* its calls are not real-time safe (a Python class): free or wall pace only */
+    NT_IS_SLOW = 1u << 7,          /* its calls are not real-time safe (a Python class): free or wall pace only */
+    NT_CAN_TAP = 1u << 8           /* slave: its lever is driven, and a lock-in amplifier reads amplitude and lag */
 };
 
 typedef struct nt_capabilities {
@@ -72,8 +73,10 @@ typedef struct nt_reading {
     double position[NT_AXES]; /* of hand or stage, x, y and towards the sample [m] */
     double felt[NT_AXES];     /* master: the operator's force [N]; slave: deflections, the third + upwards [m] */
     double lateness;          /* of this period, where the half leads the clock; else 0 [s] */
-    uint32_t valid;           /* bit 1 << channel: position 0 .. 2, felt 3 .. 5 */
+    uint32_t valid;           /* bit 1 << channel: position 0 .. 2, felt 3 .. 5, amplitude 6, lag 7 */
     uint32_t buttons;         /* of the master, bit by bit */
+    double amplitude;         /* slave with NT_CAN_TAP: of the deflection at the drive's frequency [m] */
+    double lag;               /* the same: of the deflection behind the drive, 90 degrees free at resonance [rad] */
 } nt_reading;
 
 /* What a half shall do. */
@@ -83,6 +86,8 @@ typedef struct nt_action {
     uint64_t tick;          /* of the loop */
     int64_t time;           /* of this tick [ns] */
     double target[NT_AXES]; /* master: motor force [N]; slave: x, y and travel towards the sample [m] */
+    double drive_amplitude; /* slave with NT_CAN_TAP: that the lever shall have far from the sample, 0: no drive [m] */
+    double drive_frequency; /* the same [Hz] */
 } nt_action;
 
 /* What the host offers a shared object. */

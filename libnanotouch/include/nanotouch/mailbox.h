@@ -42,6 +42,8 @@ typedef struct nt_mailbox_request {
     uint64_t tick;          /* of the loop */
     int64_t time;           /* when it was asked, on the clock of nt_mailbox_now [ns] */
     double target[NT_AXES]; /* master: motor force, 0 unless armed [N]; slave: x, y and travel, NaN: stay [m] */
+    double drive_amplitude; /* slave that taps: of its lever far from the sample, 0: no drive [m] */
+    double drive_frequency; /* the same [Hz] */
     double lift;            /* slave: how far to lift at the least, once is_armed goes from 1 to 0 [m] */
 } nt_mailbox_request;
 

@@ -74,6 +74,8 @@ typedef struct nt_record {
                                         of the start [m] */
     double stage_command[NT_AXES];   /* [m] */
     double deflection[NT_AXES];      /* measured, tared [m] */
+    double amplitude;                /* measured, of a lever that taps; else NaN [m] */
+    double lag;                      /* the same, of its deflection behind the drive [rad] */
     double slave_force;              /* f_s = k_c zeta [N] */
     double motor_force[NT_AXES];     /* tau_m commanded [N] */
     double gap;                      /* truth: h [m] */

@@ -14,9 +14,10 @@ typedef enum nt_mode {
     NT_MODE_TOUCH,      /* the operator moves z and feels the force (point touch, tactile scan) */
     NT_MODE_TOPOGRAPHY, /* z is servoed to a constant force, the operator feels the height only */
     NT_MODE_APPROACH,   /* down at approach_speed until the set-point is felt, then held there */
-    NT_MODE_CURVE       /* down to the set-point, up again by curve_length, at approach_speed */
+    NT_MODE_CURVE,      /* down to the set-point, up again by curve_length, at approach_speed */
+    NT_MODE_TAPPING     /* z is servoed to a constant amplitude of a driven lever; from opening to closing */
 } nt_mode;
-#define NT_MODE_WORDS "touch|topography|approach|curve"
+#define NT_MODE_WORDS "touch|topography|approach|curve|tapping"
 
 typedef enum nt_control_choice {
     NT_CONTROL_DEFAULT,
@@ -82,18 +83,33 @@ typedef struct nt_limits {
     double gauge_drift;      /* ... [N/s] */
 } nt_limits;
 
+/* Drive and lock-in amplifier, of mode tapping alone; K_I is gains.height_gain. */
+typedef struct nt_tap {
+    int at;                /* "tip|base": where a simulated lever is driven (tapping.h) */
+    double frequency;      /* of the drive, 0: at the free resonance [Hz] */
+    double free_amplitude; /* A0, of the deflection far from the sample [m] */
+    double tolerance;      /* by which the free amplitude may differ from A0 when a session opens, over A0 [-] */
+    double set_amplitude;  /* that is held, over A0 [-] */
+    double lock_in;        /* time constant of the lock-in amplifier [s] */
+    double noise;          /* of a reading of the amplitude, standard deviation [m] */
+    double resolution;     /* step of that reading, 0: none [m] */
+} nt_tap;
+
 typedef struct nt_settings {
     nt_gains gains;
     nt_limits limits;
+    nt_tap tap;
     nt_control control;
 } nt_settings;
 /* 10 kHz, K_f = 2, scaling by the heuristic rule for a slave path of 0.4 um, limits inside the rig's ranges; the
  * impedance law if the rig has no gauge. */
 NT_API nt_settings nt_settings_defaults(const nt_rig *rig);
+/* Time constants of the lever's amplitude, Q/(pi f_0), and of the lock-in amplifier together [s]. */
+NT_API double nt_tap_lag(const nt_rig *rig, const nt_tap *tap);
 /* Lowers what would press harder than a load [N], as the largest one of a scene: the force limit to it, the set-point
  * to half of it. Infinity lowers nothing. */
 NT_API void nt_settings_keep_to(nt_settings *settings, double load);
-/* The table of gains and limits; *count (NULL allowed) its length. */
+/* The table of gains, limits and tap; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_settings_fields(int *count);
 /* NT_OK, or the first field that is out of its range, in *problem (NULL allowed). */
 NT_API nt_status nt_settings_check(const nt_settings *settings, nt_problem *problem);

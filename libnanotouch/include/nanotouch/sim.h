@@ -7,6 +7,7 @@
 #include "nanotouch/dents.h"
 #include "nanotouch/dynamics.h"
 #include "nanotouch/faults.h"
+#include "nanotouch/flow.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
@@ -23,6 +24,13 @@ typedef enum nt_probe_model {
 } nt_probe_model;
 #define NT_PROBE_WORDS "auto|quasi-static|dynamic"
 
+/* What a slave that taps has beside the rest. */
+typedef struct nt_sim_lock_in {
+    nt_drive drive;   /* what it is driven with where it is asked for free_amplitude (tapping.h) */
+    double time;      /* constant of the lock-in amplifier [s] */
+    nt_sensor sensor; /* of the amplitude; its range is the largest one, too, that the drive can be asked for [m] */
+} nt_sim_lock_in;
+
 /* What is simulated. */
 typedef struct nt_sim_setup {
     const nt_plan *plan;    /* borrowed, must outlive the rig */
@@ -35,11 +43,12 @@ typedef struct nt_sim_setup {
     double
         delay; /* between write and effect, 0 .. NT_SIM_DELAY_MAX with the converters' own [periods]; may be a part */
     nt_probe_model probe_model;
-    double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
-    const nt_faults *faults; /* copied; NULL: none */
+    double substep;                /* of the dynamic cantilever, 0: 0.25 [rad] */
+    const nt_faults *faults;       /* copied; NULL: none */
+    const nt_sim_lock_in *lock_in; /* copied; NULL: the lever is not driven */
 } nt_sim_setup;
 
-enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000, NT_SIM_CHANNELS = 9 };
+enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000, NT_SIM_CHANNELS = 13 };
 
 /* Where everything really is; a real rig has no such thing. */
 typedef struct nt_truth {
@@ -62,6 +71,7 @@ typedef enum nt_sim_noise {
     NT_SIM_NOISE_FAULT = NT_CHANNEL_OPERATOR_FORCE + 1,
     NT_SIM_NOISE_HAND = 2 * NT_SIM_NOISE_FAULT,
     NT_SIM_NOISE_TIP, /* thermal motion of the cantilever */
+    NT_SIM_NOISE_LOCK_IN,
     NT_SIM_NOISES
 } nt_sim_noise;
 
@@ -108,6 +118,18 @@ typedef struct nt_sim_master {
 
 /* --- the slave: stage, probe, surface --- */
 
+/* A lever that taps, by its slow flow (flow.h), and the lock-in amplifier behind it. */
+typedef struct nt_sim_tap {
+    int is_there; /* else the slave has neither drive nor lock-in amplifier */
+    nt_sim_lock_in lock_in;
+    nt_tapping lever; /* with the drive that it has now; no drive: strength 0 */
+    double strength;  /* D for the whole free amplitude [m] */
+    nt_flow_state flow;
+    nt_flow_table table;
+    double amplitude, lag;           /* behind the lock-in amplifier [m], [rad] */
+    double moments[NT_SIM_SLOTS][2]; /* of both [m], [rad] */
+} nt_sim_tap;
+
 typedef struct nt_sim_slave {
     nt_sim_link link;
     const nt_plan *plan;
@@ -133,8 +155,9 @@ typedef struct nt_sim_slave {
     double moments[NT_SIM_SLOTS][2];       /* deflection and travel [m] */
     nt_reading converted;
     nt_truth truth;
-    nt_law_value law;        /* of the interaction, the last one that was asked for ... */
-    double law_gap;          /* ... and at which gap; NaN: of another plan [m] */
+    nt_law_value law; /* of the interaction, the last one that was asked for ... */
+    double law_gap;   /* ... and at which gap; NaN: of another plan [m] */
+    nt_sim_tap tap;
     nt_place place;          /* what the plan knows of the surface ... */
     double place_x, place_y; /* ... there [m] */
 } nt_sim_slave;

@@ -28,7 +28,8 @@ enum {
     NT_REASON_LAW = 1u << 14,             /* the control law gave no number */
     NT_REASON_BACKED_OFF = 1u << 15,      /* the passivity observer has taken gain away: a flag */
     NT_REASON_MASTER_STALE = 1u << 16,    /* the master's reading is older than two of its own periods */
-    NT_REASON_LATERAL = 1u << 17          /* the lateral force is at its limit */
+    NT_REASON_LATERAL = 1u << 17,         /* the lateral force is at its limit */
+    NT_REASON_AMPLITUDE = 1u << 18        /* the amplitude is lost, or beyond what this drive can make */
 };
 /* "force limit", ... of one reason bit; "" for none. */
 NT_API const char *nt_reason_name(uint32_t reason);
@@ -42,6 +43,19 @@ typedef enum nt_lift {
     NT_LIFT_TRIES,   /* it did grow: it lifts, and the force alone tells whether that helps */
     NT_LIFT_GIVEN_UP /* it went the wrong way */
 } nt_lift;
+
+/* When a sensor counts as dead. */
+typedef struct nt_stuck_limits {
+    double distance; /* of the stage, over which readings show no noise; 0: it cannot be told [m] */
+    double noise;    /* of a reading, as declared: standard deviation [m] */
+} nt_stuck_limits;
+
+/* What is judged of a lever that taps. All 0: it does not. */
+typedef struct nt_amplitude_limits {
+    double lost, most;     /* below the first one nothing taps; the drive cannot make more than the second [m] */
+    uint32_t settling;     /* in which lever and lock-in amplifier follow [periods] */
+    nt_stuck_limits stuck; /* of the amplitude */
+} nt_amplitude_limits;
 
 /* All that does not change while it runs. */
 typedef struct nt_supervisor {
@@ -65,40 +79,48 @@ typedef struct nt_supervisor {
     double lift_share;      /* of the way up that declared hysteresis and creep may take, while no integral acts [-] */
     double path_kept;       /* of that way, per period: it fades over follow_time [-] */
     nt_limits limits;
+    nt_amplitude_limits amplitude;
 } nt_supervisor;
+
+/* Of a sensor that may be dead: readings without noise while the stage moves. */
+typedef struct nt_stuck {
+    uint32_t run;           /* readings without noise in a row */
+    double value;           /* [m] */
+    double band;            /* within which a reading shows no noise [m]; from these: */
+    uint32_t noise_samples; /* that have been looked at */
+    double noise_sum;       /* of their differences, in this block [m] */
+    double noise;           /* of the quietest block: standard deviation [m] */
+    double last;            /* reading [m] */
+    double position;        /* x_s where they began [m] */
+} nt_stuck;
+
 typedef struct nt_supervisor_state {
     nt_state state;
     uint32_t reasons;
-    uint32_t invalid_run;    /* invalid samples in a row */
-    uint32_t law_run;        /* laws without a number in a row */
-    uint32_t late_run;       /* late ticks less punctual ones, at least 0 */
-    uint32_t late_ticks;     /* all of them */
-    uint32_t stuck_run;      /* deflections without noise in a row */
-    double stuck_deflection; /* [m] */
-    double stuck_band;       /* within which a deflection shows no noise [m]; from these: */
-    uint32_t noise_samples;  /* that have been looked at */
-    double noise_sum;        /* of their differences, in this block [m] */
-    double noise;            /* of the quietest block: standard deviation [m] */
-    double last_deflection;  /* [m] */
-    double stuck_position;   /* x_s where they began [m] */
-    double expected;         /* where the stage should be by now [m] */
-    double path;             /* that this has gone lately, to and fro [m] */
-    uint32_t off_run;        /* ticks in a row in which the stage was not there */
-    nt_lift lift;            /* of a stop */
-    int presses;             /* in a stop: force shows, or cannot be read */
-    int lifts;               /* the stage is told to go up */
-    nt_sum reference;        /* where it was told to be [m] */
-    double turn;             /* where it should have been when the lift began [m] */
-    double stopped;          /* where it should have been when the stop began [m] */
-    double lift_force;       /* largest force until it should have turned [N] */
-    uint32_t growth_run;     /* ticks in a row in which the force has grown since */
-    double turn_position;    /* where it was read to be when the lift began [m] */
-    double top_position;     /* the farthest up that it has been read since [m] */
-    double fall_position;    /* where it was first read to be well below that [m] */
-    uint32_t fall_run;       /* ticks in a row in which it has gone on the wrong way */
-    double late;             /* of this tick: a stop lifts by the clock, not by ticks [s] */
-    double surface;          /* travel of the tip at first touch [m] */
-    double indentation;      /* [m] */
+    uint32_t invalid_run; /* invalid samples in a row */
+    uint32_t law_run;     /* laws without a number in a row */
+    uint32_t late_run;    /* late ticks less punctual ones, at least 0 */
+    uint32_t late_ticks;  /* all of them */
+    nt_stuck deflection, amplitude;
+    uint32_t lost_run;    /* amplitudes in a row that are lost, or cannot be */
+    double expected;      /* where the stage should be by now [m] */
+    double path;          /* that this has gone lately, to and fro [m] */
+    uint32_t off_run;     /* ticks in a row in which the stage was not there */
+    nt_lift lift;         /* of a stop */
+    int presses;          /* in a stop: force shows, or cannot be read */
+    int lifts;            /* the stage is told to go up */
+    nt_sum reference;     /* where it was told to be [m] */
+    double turn;          /* where it should have been when the lift began [m] */
+    double stopped;       /* where it should have been when the stop began [m] */
+    double lift_force;    /* largest force until it should have turned [N] */
+    uint32_t growth_run;  /* ticks in a row in which the force has grown since */
+    double turn_position; /* where it was read to be when the lift began [m] */
+    double top_position;  /* the farthest up that it has been read since [m] */
+    double fall_position; /* where it was first read to be well below that [m] */
+    uint32_t fall_run;    /* ticks in a row in which it has gone on the wrong way */
+    double late;          /* of this tick: a stop lifts by the clock, not by ticks [s] */
+    double surface;       /* travel of the tip at first touch [m] */
+    double indentation;   /* [m] */
 } nt_supervisor_state;
 /* What the supervisor has to know beside the sample. */
 typedef struct nt_situation {
@@ -109,6 +131,8 @@ typedef struct nt_situation {
 
 /* Thresholds of a rig and its settings; both have been checked. */
 NT_API nt_supervisor nt_supervisor_make(const nt_rig *rig, const nt_settings *settings);
+/* The same of mode tapping: the amplitude is judged, too. */
+NT_API nt_amplitude_limits nt_supervisor_amplitude(const nt_rig *rig, const nt_settings *settings);
 /* In RUN, nothing seen yet. */
 NT_API nt_supervisor_state nt_supervisor_start(void);
 /* One tick. Returns the new state, never less severe than RETRACT or LATCHED once reached (nt_supervisor_arm). */

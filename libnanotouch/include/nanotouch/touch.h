@@ -23,16 +23,18 @@ typedef struct nt_touch {
     double period; /* T [s] */
     nt_control_law law;
     nt_stage_loop stage_loop;
-    int leads_sideways;   /* master and stage have more than one axis: x and y follow the hand, not a path ... */
-    int feels_sideways;   /* and its motors push back in x and y, for the lever shows what holds the tip */
-    double borders[2][2]; /* ... within these, of x and of y; infinite where nothing borders it [m] */
-    double force_filter;  /* of the low-pass of f_m, per period [-] */
-    uint32_t delay;       /* after which a motor force acts, as far as it is remembered [periods] */
-    double speed_filter;  /* of the master's speed estimate, per period [-] */
-    double stage_step;    /* largest, in a period [m] */
-    double stage_end;     /* of its travel, either way [m] */
-    double motor_step;    /* largest, in a period [N] */
-    double spike;         /* a deflection that jumps by more than this may be a wrong reading [m] */
+    int leads_sideways;     /* master and stage have more than one axis: x and y follow the hand, not a path ... */
+    int feels_sideways;     /* and its motors push back in x and y, for the lever shows what holds the tip */
+    double borders[2][2];   /* ... within these, of x and of y; infinite where nothing borders it [m] */
+    double force_filter;    /* of the low-pass of f_m, per period [-] */
+    uint32_t delay;         /* after which a motor force acts, as far as it is remembered [periods] */
+    double speed_filter;    /* of the master's speed estimate, per period [-] */
+    double stage_step;      /* largest, in a period [m] */
+    double stage_end;       /* of its travel, either way [m] */
+    double motor_step;      /* largest, in a period [N] */
+    double drive_amplitude; /* of mode tapping, 0 in the others [m] */
+    double drive_frequency; /* the same [Hz] */
+    double spike;           /* a deflection that jumps by more than this may be a wrong reading [m] */
     nt_passivity passivity;
     nt_passivity passivity_sideways; /* of x and of y, by what the master shows of the hand */
     nt_rescale rescale;
@@ -55,6 +57,7 @@ typedef struct nt_touch_state {
     nt_stage_loop_state stage_loop;
     nt_signals signals;                  /* what the law is given */
     double deflections[2];               /* of the last two valid samples [m] */
+    double amplitude;                    /* of mode tapping, of the last valid sample [m] */
     nt_sum reference;                    /* where the stage shall be [m] */
     nt_sum offset;                       /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
     double stretch;                      /* of the virtual coupling, at the operator's scale [m] */

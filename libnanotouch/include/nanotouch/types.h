@@ -76,6 +76,8 @@ typedef struct nt_sample {
     double operator_force[NT_AXES];  /* f_m [N] */
     double stage_position[NT_AXES];  /* x and y of the tip, and x_s, the travel towards the sample [m] */
     double deflection[NT_AXES];      /* of the cantilever: sideways where it is measured, and zeta [m] */
+    double amplitude;                /* of a lever that taps, at the drive's frequency; else NaN [m] */
+    double lag;                      /* of its deflection behind the drive; else NaN [rad] */
     uint32_t flags;                  /* NT_SAMPLE_* */
 } nt_sample;
 
@@ -86,6 +88,8 @@ typedef enum nt_state { NT_RUN, NT_HOLD, NT_RETRACT, NT_LATCHED } nt_state;
 typedef struct nt_command {
     double motor_force[NT_AXES];    /* tau_m [N] */
     double stage_position[NT_AXES]; /* x and y of the tip, and x_s [m] */
+    double drive_amplitude;         /* that a lever shall tap with far from the sample; 0: no drive [m] */
+    double drive_frequency;         /* [Hz] */
     uint32_t state;                 /* nt_state after this tick */
     uint32_t reasons;               /* NT_REASON_* bits (control.h) that explain the state */
 } nt_command;

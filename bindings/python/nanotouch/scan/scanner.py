@@ -66,7 +66,7 @@ class Channels(NamedTuple):
     phase: Floats
     """lag behind the drive, 0 in contact mode [rad]"""
     peak_force: Floats
-    """largest in the pixel [N]"""
+    """largest in the pixel [N]; NaN where nothing measures it: a real rig that taps"""
     lateral: Floats
     """force of the lever on the tip along x [N]: against friction and up slopes; 0 in tapping mode"""
 
@@ -103,7 +103,8 @@ class Image(NamedTuple):
         taps = self.mode != "contact"
         names = {"height": ("Height", "m"), "signal": ("Amplitude" if taps else "Deflection", "m")}
         names |= {"phase": ("Phase", "rad")} if taps else {}
-        names |= {"error": ("Error", "m"), "peak_force": ("Peak force", "N")}
+        names |= {"error": ("Error", "m")}
+        names |= {} if np.isnan(self.trace.peak_force).any() else {"peak_force": ("Peak force", "N")}
         names |= {} if taps else {"lateral": ("Lateral force", "N")}
         planes = [
             Plane(f"{name}{direction}", getattr(channels, key), unit, self.pixel_size, "nanotouch/scan")

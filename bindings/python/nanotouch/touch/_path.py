@@ -12,7 +12,7 @@ from nanotouch.errors import InvalidValue
 if TYPE_CHECKING:
     from nanotouch.scene.surface import Surface
 
-Mode = Literal["point", "scan", "topography", "approach", "curve"]
+Mode = Literal["point", "scan", "topography", "approach", "curve", "tapping"]
 MODES: tuple[Mode, ...] = get_args(Mode)
 STANDING: tuple[Mode, ...] = ("point", "approach", "curve")
 """modes that stay at one place"""

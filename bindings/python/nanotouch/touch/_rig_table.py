@@ -14,6 +14,33 @@ MOST = 1000
 """whole numbers of a rig file are small: axes, channels"""
 
 
+AXES = ("x", "y", "z")
+QUANTITIES = {
+    "master": {"position": "position", "force": "felt", "motor": "driven"},
+    "slave": {"position": "position", "deflection": "felt", "travel": "driven"},
+}
+"""tables of a half, with what the library calls them"""
+DRIVES = {"drive_amplitude": "m", "drive_frequency": "Hz"}
+"""tables of what a slave drives beside its axes, in the order of the library, with their units"""
+LOCK_IN = {"amplitude": "m", "lag": "rad"}
+"""tables of the outputs of a lock-in amplifier, likewise"""
+
+
+def keys_of(half: str) -> dict[str, list[str]]:
+    """Tables of its channels by what the library calls them, in its order."""
+    keys = {name: [f"{word}_{axis}" for axis in AXES] for word, name in QUANTITIES[half].items()} | {"lock_in": []}
+    if half == "slave":
+        keys["driven"] += DRIVES
+        keys["lock_in"] += LOCK_IN
+    return keys
+
+
+def unit_of(half: str, key: str) -> str:
+    """Of a channel's value."""
+    is_force = half == "master" and not key.startswith("position")
+    return "N" if is_force else (DRIVES | LOCK_IN).get(key, "m")
+
+
 class Table:
     """A table of the file; every key that is taken out is known, and what is left is not."""
 

@@ -57,6 +57,8 @@ COLUMNS: dict[str, Column] = {
     "tip_force_y": Column("<f8", "N", "simulated truth: force on the tip, up the image"),
     "deflection_x": Column("<f8", "m", "of a lever that gives way sideways, at the tip, to the right"),
     "deflection_y": Column("<f8", "m", "of a lever that gives way sideways, at the tip, up the image"),
+    "amplitude": Column("<f8", "m", "of a lever that taps, at the drive's frequency, as measured"),
+    "lag": Column("<f8", "rad", "of a lever that taps, of the deflection behind the drive, as measured"),
 }
 
 
@@ -85,6 +87,9 @@ def _converted(name: str, values: ArrayLike) -> NDArray[Any]:
         raise InvalidValue(f"column {name!r} must hold integers from 0 to {np.iinfo(converted.dtype).max}")
     return converted
 
+
+TAPPING = ("amplitude", "lag")
+"""columns of a session in mode tapping, and of no other"""
 
 SIDEWAYS = tuple(name for name in COLUMNS if name.endswith(("_x", "_y")))
 """columns of a rig whose master has more than one axis or whose lever gives way sideways, and of no other"""

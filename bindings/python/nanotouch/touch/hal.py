@@ -40,10 +40,10 @@ class Channel(NamedTuple):
 
     name: str
     unit: str
-    """``"m"`` or ``"N"``"""
+    """``"m"`` or ``"N"``; of drive and lock-in amplifier ``"m"``, ``"rad"`` or ``"Hz"``"""
     driven: bool = False
     axis: int = 2
-    """0, 1, 2: x, y, z"""
+    """0, 1, 2: x, y, z; 3: of drive or lock-in amplifier"""
     minimum: float = -math.inf
     maximum: float = math.inf
     step: float = 0.0
@@ -71,6 +71,8 @@ class Capabilities(NamedTuple):
     """a slave owns its z servo; what is written is its set-point"""
     event_driven: bool = False
     """readings come when something happens, and a heartbeat every period"""
+    taps: bool = False
+    """a slave's lever is driven, and a lock-in amplifier reads amplitude and lag"""
     channels: Sequence[Channel] = ()
 
 
@@ -90,6 +92,8 @@ class Half(NamedTuple):
     event_driven: bool
     slow: bool
     """its calls are not real-time safe"""
+    taps: bool
+    """its lever is driven, and a lock-in amplifier reads amplitude and lag"""
     channels: tuple[Channel, ...]
 
     def channel(self, name: str) -> Channel:
@@ -139,6 +143,10 @@ class Reading(NamedTuple):
     """of ``emergency_stop``, ``limit_switch``, ``invalid``, ``saturated``, ``device_lost``"""
     buttons: int = 0
     """of a master, bit by bit"""
+    amplitude: float = math.nan
+    """of a slave that taps: of the deflection at the drive's frequency [m]"""
+    lag: float = math.nan
+    """of a slave that taps: of the deflection behind the drive [rad]"""
 
 
 class Action(NamedTuple):
@@ -151,6 +159,10 @@ class Action(NamedTuple):
     """RUN, HOLD, RETRACT or LATCHED"""
     target: tuple[float, float, float]
     """master: motor force [N]; slave: x, y and travel towards the sample [m]"""
+    drive_amplitude: float = 0.0
+    """slave that taps: that its lever shall have far from the sample; 0: no drive [m]"""
+    drive_frequency: float = 0.0
+    """slave that taps [Hz]"""
 
 
 class _Half:

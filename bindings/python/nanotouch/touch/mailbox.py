@@ -38,6 +38,10 @@ class Request(NamedTuple):
     """master: motor force, 0 unless armed [N]; slave: x, y and travel, NaN: stay [m]"""
     lift: float
     """slave: how far to lift at the least, once nobody drives any more [m]"""
+    drive_amplitude: float
+    """slave that taps: that its lever shall have far from the sample; 0: no drive [m]"""
+    drive_frequency: float
+    """slave that taps [Hz]"""
 
 
 class Device(Closing):
@@ -85,8 +89,8 @@ class Device(Closing):
 
     def ask(self) -> Request:
         """What the session wants now; not armed if there is none, or if it was silent for the timeout."""
-        armed, state, tick, time, target, lift = self._mailbox.ask()
-        return Request(armed, STATES[state], tick, time, target, lift)
+        armed, state, *rest = self._mailbox.ask()
+        return Request(armed, STATES[state], *rest)
 
     def now(self) -> int:
         """The clock of both sides: ``time.monotonic_ns()`` on Linux [ns]."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contact mode through the hal: a session whose height servo holds the force goes along the lines of a raster. The
-slave half may be simulated, a rig file's converters, or any of your own (docs/scan.md)."""
+"""Images through the hal: a session whose height servo holds the force, or the amplitude of a lever that taps, goes
+along the lines of a raster. The slave half may be simulated, a rig file's converters, or any of your own
+(docs/scan.md)."""
 
 from __future__ import annotations
 
@@ -18,28 +19,32 @@ from nanotouch.touch.columns import STATES
 from nanotouch.touch.operator import Input, core_input
 from nanotouch.touch.session import Session
 
+MODES = {"contact": "topography", "tapping": "tapping"}
+"""of the session, for a mode of the z loop"""
 _SETTLE = 5.0  # time constants of the height servo before the first line
 
 
 def image(session: Session, scan: Scan) -> Image:
-    """An image in contact mode, taken by a session on its own rig.
+    """An image in contact or tapping mode, taken by a session on its own rig.
 
-    The session's height servo (``gains.height_gain``, K_I) holds ``zloop.set_force``; the raster is the scan's. Tilt,
-    drift and hysteresis are those of the rig, not of the raster. Trace and retrace are sorted into pixels by the
-    position that the slave has measured; a pixel is the mean of what falls into it.
+    The session's height servo (``gains.height_gain``, K_I) holds ``zloop.set_force``, or ``zloop.set_amplitude`` of the
+    session's own ``tap.free_amplitude``; the raster is the scan's. Tilt, drift and hysteresis are those of the rig, not
+    of the raster. Trace and retrace are sorted into pixels by the position that the slave has measured; a pixel is the
+    mean of what falls into it.
 
     Parameters
     ----------
     session : Session
-        In mode ``"topography"``, above the sample.
+        In mode ``"topography"`` for contact, ``"tapping"`` for tapping, above the sample.
     scan : Scan
-        ``zloop.mode`` is contact; half a line has at least two ticks of the session for each pixel.
+        ``zloop.mode`` is contact or tapping; half a line has at least two ticks of the session for each pixel.
 
     Returns
     -------
     Image
         Heights of the stage as measured, from where the session began; deflection, error and force as measured. The
-        lateral force is that of a lever that shows it (``probe.lateral_stiffness``), 0 of others.
+        lateral force is that of a lever that shows it (``probe.lateral_stiffness``), 0 of others. Tapping: amplitude,
+        error and lag as measured; the peak force, which no rig measures, is NaN, and the lateral force 0.
 
     Raises
     ------
@@ -51,9 +56,10 @@ def image(session: Session, scan: Scan) -> Image:
     raster, loop = scan.raster, scan.zloop
     lines, pixels = int(raster.lines), int(raster.pixels)
     ticks = round(0.5 * session.rate / raster.line_rate)
-    if session.mode != "topography" or loop.mode != "contact":
+    if MODES.get(str(loop.mode)) != session.mode:
         raise InvalidValue(
-            f"session.mode = {session.mode}, zloop.mode = {loop.mode}: a scan through the hal needs topography, contact"
+            f"session.mode = {session.mode}, zloop.mode = {loop.mode}: a scan through the hal needs topography with "
+            "contact, or tapping with tapping"
         )
     if ticks < 2 * pixels:
         raise InvalidValue(
@@ -61,8 +67,9 @@ def image(session: Session, scan: Scan) -> Image:
             f"ticks of the session in each of {pixels} pixels"
         )
     _check_range(session, scan)
-    if session.settings["gains.set_point"] != loop.set_force:
-        session.change("settings", "gains.set_point", loop.set_force)
+    kept, field = ("gains.set_point", "set_force") if loop.mode == "contact" else ("tap.set_amplitude", "set_amplitude")
+    if session.settings[kept] != scan[f"zloop.{field}"]:
+        session.change("settings", kept, scan[f"zloop.{field}"])
     ways = _ways(session, scan, ticks)
     for _, _, way in ways:
         session.core.check(core_input(way))
@@ -73,14 +80,17 @@ def image(session: Session, scan: Scan) -> Image:
             if back is not None:
                 out[back, :, line] = _sorted(session, rows, scan)
     size = raster.height / lines, raster.width / pixels
-    return Image(Channels(*out[0]), Channels(*out[1]), size, "contact")
+    return Image(Channels(*out[0]), Channels(*out[1]), size, str(loop.mode))
 
 
 def _ways(session: Session, scan: Scan, ticks: int) -> list[tuple[int, int | None, Input]]:
     """Down to the surface, then there (0) and back (1) on each line, and over to the next one (None)."""
     raster, rate = scan.raster, session.rate
     lines, ends = int(raster.lines), _ends(scan)
-    settle = 2.0 * session.clearance * session.rig["probe.spring_constant"] / scan.zloop.set_force
+    error = session.settings["tap.free_amplitude"] - _set_amplitude(session, scan)  # beyond the surface [m]
+    if scan.zloop.mode == "contact":
+        error = scan["zloop.set_force"] / session.rig["probe.spring_constant"]
+    settle = 2.0 * session.clearance / error
     down = (settle + _SETTLE) / session.settings["gains.height_gain"]
     ways: list[tuple[int, int | None, Input]] = [(0, None, Input(0.0, ends[0], raster.y, down))]
     for line in range(lines):
@@ -90,6 +100,10 @@ def _ways(session: Session, scan: Scan, ticks: int) -> list[tuple[int, int | Non
             over = Input(0.0, ends[0], y + raster.height / lines, ticks / rate / scan.raster.pixels)
             ways.append((line, None, over))
     return ways
+
+
+def _set_amplitude(session: Session, scan: Scan) -> float:
+    return float(scan["zloop.set_amplitude"] * session.settings["tap.free_amplitude"])
 
 
 def _check_range(session: Session, scan: Scan) -> None:
@@ -133,17 +147,15 @@ def _sorted(session: Session, rows: Columns, scan: Scan) -> Floats:
     pixel = scan["raster.width"] / pixels
     which = np.clip(((rows["x"] - _ends(scan)[0]) / pixel).astype(int), 0, pixels - 1)
     count = np.bincount(which, minlength=pixels)
-    stiffness = session.rig["probe.spring_constant"]
-    sideways = session.rig["probe.lateral_stiffness"] * rows.get("deflection_x", np.zeros(which.size))
-    force = rows["slave_force"]
-    values = {
-        0: -rows["stage_position"], 1: (scan["zloop.set_force"] - force) / stiffness,
-        2: rows["deflection"], 5: -sideways,
-    }  # fmt: skip
     out = np.zeros((6, pixels))
-    peak = np.full(pixels, -math.inf)
-    np.maximum.at(peak, which, force)
-    out[4] = peak
+    if scan.zloop.mode == "contact":
+        values = _of_contact(session, rows, scan)
+        out[4] = -math.inf
+        np.maximum.at(out[4], which, rows["slave_force"])
+    else:
+        error = _set_amplitude(session, scan) - rows["amplitude"]
+        values = {0: -rows["stage_position"], 1: error, 2: rows["amplitude"], 3: rows["lag"]}
+        out[4] = math.nan
     for row, value in values.items():
         out[row] = np.bincount(which, value, pixels) / np.maximum(count, 1)
     seen = np.flatnonzero(count)
@@ -151,3 +163,11 @@ def _sorted(session: Session, rows: Columns, scan: Scan) -> Floats:
     for row in range(6):
         out[row, missed] = np.interp(missed, seen, out[row, seen])
     return out
+
+
+def _of_contact(session: Session, rows: Columns, scan: Scan) -> dict[int, Floats]:
+    """What is a mean over a pixel, by its place in Channels."""
+    stiffness = session.rig["probe.spring_constant"]
+    sideways = session.rig["probe.lateral_stiffness"] * rows.get("deflection_x", np.zeros(rows["x"].size))
+    error = (scan["zloop.set_force"] - rows["slave_force"]) / stiffness
+    return {0: -rows["stage_position"], 1: error, 2: rows["deflection"], 5: -sideways}

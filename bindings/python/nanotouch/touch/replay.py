@@ -16,7 +16,7 @@ from nanotouch.scene import Rig, Settings
 from nanotouch.touch._control import CONTROLS, ControlLaw
 from nanotouch.touch._path import MODES, core_mode
 from nanotouch.touch._recorder import REWINDS_BEFORE, ROWS, rewinds
-from nanotouch.touch.columns import SIDEWAYS
+from nanotouch.touch.columns import SIDEWAYS, TAPPING
 from nanotouch.touch.record import Recording
 
 MEASURED = (
@@ -58,7 +58,9 @@ def replay(recording: Recording, control: ControlLaw | None = None) -> Recording
         raise InvalidValue(f"the recording was made with {law_is}")
     law: Any = control if name == "own" else _resolved(name, rig)
     columns = {
-        column: recording.columns[column] for column in (*MEASURED, *SIDEWAYS, "master_age") if column in recording
+        column: recording.columns[column]
+        for column in (*MEASURED, *SIDEWAYS, *TAPPING, "master_age")
+        if column in recording
     }
     found = _core.replay(rig.core, settings.core, law, start, columns)
     return Recording(recording.columns | found, metadata)

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
 from nanotouch.errors import InvalidValue
-from nanotouch.touch._rig_table import Table
+from nanotouch.touch._rig_table import AXES, Table, keys_of, unit_of
 from nanotouch.touch.hal import Mailbox, SharedObject
 from nanotouch.units import key_spellings
 
@@ -39,12 +39,6 @@ HALVES = ("master", "slave")
 ELSEWHERE = {"shared_object": ("path", "option"), "mailbox": ("name",)}
 """backends that a program of its own makes, with their keys"""
 BACKENDS = ("spidev", "iio", *ELSEWHERE, "simulated")
-AXES = ("x", "y", "z")
-QUANTITIES = {
-    "master": {"position": "position", "force": "felt", "motor": "driven"},
-    "slave": {"position": "position", "deflection": "felt", "travel": "driven"},
-}
-"""tables of a half, with what the library calls them"""
 MOST_DEBOUNCE = 0.1
 """of the limit switch [s], as nt_gpio_open has it"""
 LINES = ("emergency_stop", "limit_switch", "laser_enable", "watchdog", "convert")
@@ -161,10 +155,10 @@ def _check_wires(half: str, setup: Mapping[str, Any], names: Sequence[str]) -> N
     """Each output drives one thing, each input measures one."""
     for is_driven in (True, False):
         wires = {
-            f"[{half}.{word}_{axis}]": f"channel {one['channel']} of {names[one['converter']]}"
-            for word, name in QUANTITIES[half].items()
+            f"[{half}.{key}]": f"channel {one['channel']} of {names[one['converter']]}"
+            for name, keys in keys_of(half).items()
             if (name == "driven") == is_driven
-            for axis, one in zip(AXES, setup[name], strict=True)
+            for key, one in zip(keys, setup[name], strict=True)
             if one
         }
         _refuse_twice(wires, "wire")
@@ -195,14 +189,13 @@ def _half(half: str, table: Table, backend: str) -> Converters:
     if not chips:
         raise InvalidValue(f"[{half}.chips] is empty: it needs a table for each chip")
     calibrated: dict[str, datetime.date] = {}
+    keys = keys_of(half)
     setup: dict[str, Any] = {"half": half, "axes": axes, "chips": list(chips.values())} | context
-    for word, name in QUANTITIES[half].items():
-        unit = "N" if half == "master" and word != "position" else "m"
+    setup["keys"] = list(keys.values())
+    for name, tables in keys.items():
         setup[name] = [
-            _channel(table.table(f"{word}_{axis}", ""), list(chips), unit, calibrated)
-            if f"{word}_{axis}" in table.left
-            else None
-            for axis in AXES
+            _channel(table.table(key, ""), list(chips), unit_of(half, key), calibrated) if key in table.left else None
+            for key in tables
         ]
     needed = ("position_z",) if half == "master" else ("position_z", "deflection_z", "travel_z")
     for key in needed:
@@ -217,7 +210,7 @@ def _half(half: str, table: Table, backend: str) -> Converters:
         setup["lines"] = None
     table.done()
     _check_wires(half, setup, list(chips))
-    _core.rigs.check_converters(setup)
+    setup["amplitude_step"] = _core.rigs.check_converters(setup)
     return Converters(setup, calibrated)
 
 
@@ -248,7 +241,7 @@ def _taken(half: str, tables: dict[str, Any], folder: Path) -> RealHalf | None:
     backend = given["backend"]
     if backend not in BACKENDS:
         raise InvalidValue(f"[{half}] backend = {backend!r}: valid are {', '.join(BACKENDS)}")
-    channels = {f"{word}_{axis}" for word in QUANTITIES[half] for axis in AXES}
+    channels = {key for keys in keys_of(half).values() for key in keys}
     context = {"context"} if backend == "iio" else set()
     own = {"backend", *ELSEWHERE.get(backend, {"axes", "chips", "lines"} | channels | context)}
     rest = {key: value for key, value in given.items() if key not in own}
@@ -288,11 +281,14 @@ def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> 
         lever = {"sensitivity": (abs(deflection["gain"]), "m/V"), "sensitivity_sigma": (deflection["uncertainty"], "")}
         left["probe"] = _known(left.get("probe", {}), lever)
         ways = {"travel_sigma": "driven", "position_sigma": "position"}
-        sigmas = {key: (max(axis["uncertainty"] for axis in setup[name] if axis), "") for key, name in ways.items()}
+        sigmas = {key: (max(axis["uncertainty"] for axis in setup[name][:3] if axis), "") for key, name in ways.items()}
         only = {"axes": (1, "")} if setup["axes"] == 1 else {}
         left["stage"] = _known(left.get("stage", {}), sigmas | only)
         if only and isinstance(left["stage"], Mapping) and left["stage"]["axes"] != 1:
             raise InvalidValue(f"[stage] axes = {left['stage']['axes']!r}: its half has one, [slave] axes = 1")
+        if any(setup["lock_in"]):
+            noise, step = setup["lock_in"][0]["noise"], setup["amplitude_step"]
+            left["tap"] = _known(left.get("tap", {}), {"noise": (noise, "m"), "resolution": (step, "m")})
     return RigFile(left, found["master"], found["slave"])
 
 

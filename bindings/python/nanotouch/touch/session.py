@@ -54,9 +54,10 @@ class Session(Runs, Frozen):
         What is touched, and with what; the paper's by default.
     surface : Surface, optional
         The (dilated) surface; without it a flat at z = 0.
-    mode : {"point", "scan", "topography", "approach", "curve"}
+    mode : {"point", "scan", "topography", "approach", "curve", "tapping"}
         Touch at a point; touch along a path; follow the path at constant force and feel the height only; find the
-        surface and hold the set-point there; a force-distance curve.
+        surface and hold the set-point there; a force-distance curve; follow the path at constant amplitude of a driven
+        lever, as ``settings.tap`` says.
     path : sequence of (x, y), optional
         Where the tip goes [m]: at least two points for ``"scan"`` and ``"topography"``, one otherwise. By default the
         middle of the surface, or a line across it at mid-height.
