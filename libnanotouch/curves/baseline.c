@@ -10,6 +10,12 @@
 
 static const double far_part = 0.5;   /* of the travel, taken for the first line */
 static const double margin = 0.05;    /* of the travel, kept between an event and the baseline that judges it */
+static const double of_largest = 0.1; /* deviation: a baseline bends by less */
+static const double deep = 8.0;       /* times what is seen: where a cone or sphere reaches that, */
+static const double least_deep = 3.0; /* or this where the force does not go on as far, */
+static const double of_load = 0.8;    /* of the largest force at most */
+static const double of_foot = 1.3;    /* tells where its contact began, a third of the way further out for sureness */
+static const double most_foot = 0.25; /* of the travel: what is longer is no foot, but bends */
 static const double correlated = 5.0; /* of white noise this ratio is 1 +- 0.45 */
 
 /* The points with z >= far or z > start. */
@@ -40,17 +46,29 @@ static double off_line(const nt_curve_segment *segment, const nt_curve_baseline 
     return segment->force[i] - line->force - line->slope * (segment->z[i] - line->z_mean);
 }
 
-/* z beyond which the line explains every point; -infinity if it explains all. */
-static double outermost_event(const nt_curve_segment *segment, const nt_curve_baseline *line, double noise)
+/* z beyond which the line explains every point, the foot of a soft contact and a margin left out; -infinity if it
+ * explains all. Force over depth^2, the slowest of tips, grows from L to r L over (sqrt(r) - 1) of the foot's length.
+ */
+static double free_from(const nt_curve_segment *segment, const nt_curve_baseline *line, double noise, double travel)
 {
-    double largest = 0.0, start = -INFINITY;
+    double largest = 0.0, start = -INFINITY, shallow = -INFINITY, strong = -INFINITY;
     for (long i = 0; i < segment->count; i++)
         largest = larger(largest, fabs(off_line(segment, line, i)));
-    const double limit = fmax(NT_CURVE_EVENT * noise, NT_CURVE_SCATTERED * line->scatter) + 0.1 * largest;
-    for (long i = 0; i < segment->count; i++)
-        if (fabs(off_line(segment, line, i)) > limit)
-            start = larger(start, segment->z[i]);
-    return start;
+    const double seen = NT_CURVE_EVENT * fmax(noise, line->scatter); /* smeared noise scatters more than it steps */
+    const double ratio = fmin(deep, of_load * largest / seen), deeper = ratio * seen;
+    const double event = fmax(NT_CURVE_EVENT * noise, NT_CURVE_SCATTERED * line->scatter) + of_largest * largest;
+    const double least = fmin(seen, event);
+    for (long i = 0; i < segment->count; i++) {
+        const double off = off_line(segment, line, i), z = segment->z[i];
+        if (!(fabs(off) > least))
+            continue;
+        start = fabs(off) > event ? larger(start, z) : start;
+        shallow = off > seen ? larger(shallow, z) : shallow; /* repulsion alone: attraction ends at once */
+        strong = off > deeper ? larger(strong, z) : strong;
+    }
+    const double beyond = start + margin * travel;
+    const double foot = shallow + of_foot / (sqrt(fmax(ratio, least_deep)) - 1.0) * (shallow - strong);
+    return ratio >= least_deep && foot > beyond && foot < start + most_foot * travel ? foot : beyond;
 }
 
 static nt_curve_baseline straight(const nt_curve_segment *segment, double noise, double *work, nt_curve_free *free)
@@ -60,12 +78,12 @@ static nt_curve_baseline straight(const nt_curve_segment *segment, double noise,
     *free = outside(segment, far, INFINITY, work);
     nt_curve_baseline first = nt_curve_rough_line(free);
     nt_curve_refine_line(free, &first);
-    const double start = outermost_event(segment, &first, noise);
+    const double start = free_from(segment, &first, noise, travel);
     if (!isfinite(start)) {
         nt_curve_judge(free, &first);
         return first;
     }
-    *free = outside(segment, far, start + margin * travel, work);
+    *free = outside(segment, far, start, work);
     return nt_curve_line(free);
 }
 
@@ -77,6 +95,7 @@ static nt_curve_baseline constant(const nt_curve_segment *segment, double *work)
     for (long i = 0; i < free.count; i++)
         free.scratch[i] = free.force[i];
     nt_curve_baseline found = {.force = nt_curve_median(free.scratch, free.count), .z_mean = free.z_mean};
+    found.nearest = free.z_mean + nt_curve_lowest(free.x, free.count);
     for (long i = 0; i < free.count; i++)
         free.rest[i] = free.force[i] - found.force;
     found.scatter = NT_MAD_SIGMA * nt_curve_median_size(free.rest, free.count, free.scratch);

@@ -1,104 +1,183 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * White and 1/f (flicker) noise of a record, told apart by how its means scatter.
+ * White and 1/f (flicker) noise of a record, told apart by its spectrum.
  *
- * Half the mean squared difference of neighbouring means of m points is the Allan variance, w/m of white noise and a
- * constant of flicker noise, which no number of points averages away. Both are fitted to the octaves of m by maximum
- * likelihood (for Gaussian noise each difference is one draw), coarse ones only: in fine ones the electronics have
- * their say. */
+ * The cosine coefficients of equal blocks' means are independent (nearly so of 1/f noise), and that of k half periods
+ * has the variance w + a/k (Whittle 1953, "Estimation and information in stationary time series"). The slowest count
+ * one by one, the others together. Fast ones are left out: there the electronics have their say. What is told is the
+ * mean over all ratios of 1/f to white noise, by their likelihoods: a short record cannot exclude some. */
+#include "curves/flicker.h"
+
 #include <math.h>
-#include <string.h>
 
 #include "curves/robust.h"
-#include "nanotouch/curves.h"
 
 enum {
-    FINEST = 8, /* points of a mean: what is smeared over fewer counts as white */
-    FEWEST = 4, /* differences of an octave */
-    OCTAVES = 5,
-    BLOCKS = 20,  /* of residuals, whose means show how they hang together */
-    RATIOS = 121, /* of flicker to white noise in the first octave that are tried, least .. most: */
-    COARSE = 8    /* every so many of them, and then all about the best */
+    SPECTRUM_BLOCKS = 64,
+    FINEST = 8,  /* points of a block: what is smeared over fewer counts as white */
+    FEWEST = 4,  /* blocks */
+    RATIOS = 31, /* of 1/f to white noise that are tried */
+    BLOCKS = 20  /* of residuals, whose means show how they hang together */
 };
-static const double least_ratio = 1e-3, most_ratio = 1e3;
-static const double evident = 1.0;     /* gain in ln L: white noise passes for flicker once in 20 to 30 records */
-static const double of_the_mean = 0.6; /* variance of a mean over Allan's, of flicker noise about a line */
-static const double correlated = 1.2;  /* variance of a mean over that of independent points; of white noise 1 +- 0.2 */
+static const double least_ratio = 0.1, most_ratio = 1e4; /* in the slowest wave; all are as likely beforehand, */
+static const double odds_of_white = 1.0;                 /* and together this many times less than white noise alone */
+static const double of_the_mean =
+    0.83; /* variance of a mean over a, per point: 2 ln 2 (Allan's) times 0.6 for a line */
+static const double contradiction = 6.0; /* loss in ln L: two records of the same noise lose as much once in 400 */
+static const double correlated = 1.2; /* variance of a mean over that of independent points; of white noise 1 +- 0.2 */
 static const double hang_together = 2.0;    /* the same of residuals; of white noise 1 +- 0.3 */
 static const double all_but_largest = 0.99; /* of the differences, where most are 0 */
 
-typedef struct octave {
-    double size, count, variance; /* points of a mean, differences, size times the Allan variance [N^2] */
-} octave;
+static const double pi = 3.14159265358979323846;
 
-/* The coarsest octaves; `means` is used up. Returns how many. */
-static int octaves_of(double means[], long count, octave octaves[OCTAVES])
+/* Sum of b[i] cos((i + 1/2) angle), by Clenshaw's recurrence. */
+static double cosine_sum(const double b[], int count, double angle)
 {
-    int found = 0;
-    for (long size = 1; count >= 2 * FEWEST; size *= 2) {
-        double squares = 0.0;
-        count /= 2;
-        for (long i = 0; i < count; i++) {
-            const double one = means[2 * i], other = means[2 * i + 1];
-            squares += (one - other) * (one - other);
-            means[i] = 0.5 * (one + other);
-        }
-        if (size < FINEST)
-            continue;
-        if (found == OCTAVES)
-            memmove(octaves, octaves + 1, (size_t)--found * sizeof *octaves);
-        octaves[found++] = (octave){(double)size, (double)count, 0.5 * (double)size * squares / (double)count};
+    const double twice = 2.0 * cos(angle);
+    double last = 0.0, before = 0.0;
+    for (int i = count - 1; i >= 0; i--) {
+        const double next = b[i] + twice * last - before;
+        before = last;
+        last = next;
     }
+    return (last - before) * cos(0.5 * angle);
+}
+
+nt_curve_spectrum nt_curve_spectrum_of(const double rest[], long count)
+{
+    const int blocks = count / FINEST < SPECTRUM_BLOCKS ? (int)(count / FINEST) : SPECTRUM_BLOCKS;
+    nt_curve_spectrum found = {.points = (double)count};
+    double mean[SPECTRUM_BLOCKS], middle = 0.0, inverse = 0.0;
+    if (blocks < FEWEST)
+        return found;
+    for (int b = 0; b < blocks; b++) {
+        const long first = b * count / blocks, end = (b + 1) * count / blocks;
+        double sum = 0.0;
+        for (long i = first; i < end; i++)
+            sum += rest[i];
+        mean[b] = sum / (double)(end - first);
+        middle += mean[b] / blocks;
+    }
+    for (int b = 0; b < blocks; b++)
+        found.fast += (mean[b] - middle) * (mean[b] - middle);
+    const double scale = 2.0 / blocks;
+    found.slow = blocks - 2 < NT_CURVE_SLOW ? blocks - 2 : NT_CURVE_SLOW;
+    for (int k = 1; k < found.slow + 2; k++) { /* the first is the line's */
+        const double sum = cosine_sum(mean, blocks, pi * k / blocks), energy = scale * sum * sum;
+        found.fast -= energy;
+        if (k > 1)
+            found.energy[k - 2] = energy * (double)count / blocks;
+    }
+    found.fast = fmax(found.fast, 0.0) * (double)count / blocks;
+    for (int k = found.slow + 2; k < blocks; k++)
+        inverse += 1.0 / k;
+    found.many = blocks - 2 - found.slow;
+    found.place = found.many / inverse;
     return found;
 }
 
-/* The likeliest white variance at a ratio of flicker to white noise in the first octave, and its ln L. */
+/* Of some records of the same noise: likeliest white variance at a ratio a/w, and its ln L. */
 typedef struct likely {
-    double white, likelihood, ratio;
-    int place; /* among the ratios */
+    double white, likelihood;
 } likely;
 
-static likely likely_at(const octave octaves[], int count, double ratio)
+static likely likely_at(const nt_curve_spectrum spectra[], int records, double ratio)
 {
-    double sum = 0.0, counts = 0.0, logarithms = 0.0;
-    for (int i = 0; i < count; i++) {
-        const double shape = 1.0 + ratio * octaves[i].size / octaves[0].size;
-        sum += octaves[i].count * octaves[i].variance / shape;
-        counts += octaves[i].count;
-        logarithms += octaves[i].count * log(shape);
+    double sum = 0.0, count = 0.0, logarithms = 0.0;
+    for (int record = 0; record < records; record++) {
+        const nt_curve_spectrum *one = spectra + record;
+        double product = 1.0;
+        for (int i = 0; i < one->slow; i++) {
+            const double shape = 1.0 + ratio * one->points / (i + 2);
+            sum += one->energy[i] / shape;
+            product *= shape;
+        }
+        logarithms += log(product);
+        count += one->slow + one->many;
+        if (one->many == 0)
+            continue;
+        const double shape = 1.0 + ratio * one->points / one->place;
+        sum += one->fast / shape;
+        logarithms += one->many * log(shape);
     }
-    const double white = sum / counts;
-    return (likely){white, -0.5 * (counts * log(white) + logarithms), ratio, 0};
+    return (likely){sum / count, -0.5 * (count * log(sum / count) + logarithms)};
 }
 
-/* The likeliest of the ratios from .. to, every so many. */
-static likely likeliest(const octave octaves[], int count, likely best, const int range[3])
+/* The mean over the ratios by their likelihoods, and the greatest of these; the latter -infinity without any. */
+static likely weigh_ratios(const nt_curve_spectrum spectra[], int records, double *flicker)
 {
-    for (int i = range[0] > 0 ? range[0] : 0; i <= range[1] && i < RATIOS; i += range[2]) {
-        const double ratio = least_ratio * pow(most_ratio / least_ratio, (double)i / (RATIOS - 1));
-        const likely tried = likely_at(octaves, count, ratio);
-        best = tried.likelihood > best.likelihood ? (likely){tried.white, tried.likelihood, ratio, i} : best;
+    likely tried[RATIOS + 1];
+    double ratio[RATIOS + 1], total = 0.0, best, white = 0.0;
+    const double longest = records > 1 ? fmax(spectra[0].points, spectra[1].points) : spectra[0].points;
+    const double factor = pow(most_ratio / least_ratio, 1.0 / (RATIOS - 1));
+    *flicker = 0.0;
+    for (int record = 0; record < records; record++)
+        if (spectra[record].slow == 0)
+            return (likely){0.0, -INFINITY};
+    ratio[0] = 0.0;
+    ratio[1] = least_ratio / longest;
+    tried[0] = likely_at(spectra, records, 0.0);
+    if (!(tried[0].white > 0.0))
+        return (likely){0.0, -INFINITY};
+    best = tried[0].likelihood;
+    for (int i = 1; i <= RATIOS; i++) {
+        ratio[i] = i > 1 ? factor * ratio[i - 1] : ratio[i];
+        tried[i] = likely_at(spectra, records, ratio[i]);
+        best = fmax(best, tried[i].likelihood);
     }
-    return best;
+    for (int i = 0; i <= RATIOS; i++) {
+        const double weight = (i ? 1.0 : odds_of_white * RATIOS) * exp(tried[i].likelihood - best);
+        total += weight;
+        white += weight * tried[i].white;
+        *flicker += weight * of_the_mean * ratio[i] * tried[i].white;
+    }
+    *flicker /= total;
+    return (likely){white / total, best};
 }
 
-nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scatter, double *work)
+nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scatter)
 {
-    octave octaves[OCTAVES];
-    nt_curve_noise noise = {scatter * scatter, 0.0};
-    memcpy(work, rest, (size_t)count * sizeof *work);
-    const int found = octaves_of(work, count, octaves);
-    if (found < 2)
-        return noise;
-    const likely alone = likely_at(octaves, found, 0.0);
-    if (alone.white == 0.0)
-        return noise;
-    likely best = likeliest(octaves, found, alone, (int[]){0, RATIOS - 1, COARSE});
-    best = likeliest(octaves, found, best, (int[]){best.place - COARSE + 1, best.place + COARSE - 1, 1});
-    if (!(best.likelihood - alone.likelihood > evident))
-        best = alone;
-    noise.white = fmax(noise.white, best.white);
-    noise.flicker = of_the_mean * best.white * best.ratio / octaves[0].size;
+    const nt_curve_spectrum spectrum = nt_curve_spectrum_of(rest, count);
+    nt_curve_noise noise;
+    const likely found = weigh_ratios(&spectrum, 1, &noise.flicker);
+    noise.white = fmax(scatter * scatter, found.white);
     return noise;
+}
+
+/* The noise of two records together; 0 where they contradict that. */
+static int pool(const nt_curve_spectrum spectra[2], nt_curve_noise *noise)
+{
+    double ignored;
+    const likely both = weigh_ratios(spectra, 2, &noise->flicker);
+    noise->white = both.white;
+    return both.white > 0.0 &&
+           !(weigh_ratios(spectra, 1, &ignored).likelihood + weigh_ratios(spectra + 1, 1, &ignored).likelihood >
+             both.likelihood + contradiction);
+}
+
+void nt_curve_share_noise(const nt_curve_segment *const segments[2], nt_curve_baseline baselines[2], double *work)
+{
+    nt_curve_spectrum spectra[2];
+    for (int i = 0; i < 2; i++) {
+        const nt_curve_segment *segment = segments[i];
+        double *level = work, *rest = work + segment->count;
+        long count = 0;
+        nt_curve_baseline_of(baselines + i, segment->z, segment->count, level);
+        for (long k = 0; k < segment->count; k++)
+            if (segment->z[k] >= baselines[i].nearest)
+                rest[count++] = segment->force[k] - level[k];
+        spectra[i] = nt_curve_spectrum_of(rest, count);
+    }
+    nt_curve_noise shared;
+    if (!pool(spectra, &shared))
+        return;
+    for (int i = 0; i < 2; i++) {
+        nt_curve_baseline *baseline = baselines + i;
+        const double before = baseline->noise.white + spectra[i].points * baseline->noise.flicker;
+        baseline->noise = (nt_curve_noise){fmax(baseline->scatter * baseline->scatter, shared.white), shared.flicker};
+        const double now = baseline->noise.white + spectra[i].points * baseline->noise.flicker;
+        baseline->force_variance *= now / before;
+        baseline->slope_variance *= now / before;
+    }
 }
 
 double nt_curve_point_noise(const double force[], long count, double *work)

@@ -363,8 +363,7 @@ static void take_off_film(const outside *out, long free, nt_curve_reading *readi
 /* Whether all points of the retraction's own baseline lie beyond the last rupture. */
 static int is_free(const nt_curve_baseline *own, const outside *out, long free)
 {
-    const double end = out->z[out->count - 1], start = own->z_mean - (end - own->z_mean);
-    return free == 0 || out->z[free] < start;
+    return free == 0 || out->z[free] < own->nearest;
 }
 
 void nt_curve_join(const nt_curve *curve, double *room, nt_curve_reading *reading)

@@ -64,8 +64,9 @@ static int has_settled(const nt_curve_free *free, long step, double before, cons
 nt_curve_baseline nt_curve_rough_line(nt_curve_free *free)
 {
     const long step = step_of(free);
-    nt_curve_baseline line = {.z_mean = free->z_mean};
-    free->travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
+    const double nearest = nt_curve_lowest(free->x, free->count);
+    nt_curve_baseline line = {.z_mean = free->z_mean, .nearest = free->z_mean + nearest};
+    free->travel = nt_curve_highest(free->x, free->count) - nearest;
     move_line(free, step, 0.0, &line);
     line.scatter = look(free, step, &line, of_sample);
     for (int round = 0; round < ROUNDS && line.scatter > 0.0; round++) {
@@ -105,7 +106,7 @@ void nt_curve_judge(nt_curve_free *free, nt_curve_baseline *baseline)
     double spread = 0.0;
     for (long i = 0; i < free->count; i++)
         spread += free->x[i] * free->x[i];
-    baseline->noise = nt_curve_split_noise(free->rest, free->count, baseline->scatter, free->scratch);
+    baseline->noise = nt_curve_split_noise(free->rest, free->count, baseline->scatter);
     const double worth = baseline->noise.white + count * baseline->noise.flicker;
     baseline->force_variance = worth / count;
     baseline->slope_variance = worth / fmax(spread, smallest_spread);

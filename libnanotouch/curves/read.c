@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "curves/bend.h"
+#include "curves/flicker.h"
 #include "curves/joint.h"
 #include "curves/line.h"
 #include "curves/parts.h"
@@ -50,23 +51,46 @@ nt_status nt_curve_segment_check(const nt_curve_segment *segment, nt_problem *pr
     return NT_E_RANGE;
 }
 
-nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, double *work, nt_curve_reading *reading,
-                        nt_problem *problem)
+/* Baselines of both branches first, since they share their noise; *free: behind what is kept of the work. */
+static nt_status read_branches(const nt_curve *curve, const nt_curve_choice *choice, double **free,
+                               nt_curve_reading *reading, nt_problem *problem)
 {
     const nt_curve_segment *segments[2] = {&curve->approach, &curve->retract};
     nt_curve_branch *branches[2] = {&reading->approach, &reading->retract};
-    double *free = work;
-    *reading = (nt_curve_reading){.contact_point = {NAN, NAN}};
+    nt_curve_baseline baselines[2];
+    double noise[2];
+    int read = 0;
     for (int i = 0; i < 2; i++) {
         if (segments[i]->count < NT_CURVE_FEWEST)
             continue;
         nt_status status = nt_curve_segment_check(segments[i], problem);
-        if (status == NT_OK)
-            status = nt_curve_read_branch(segments[i], choice, free, branches[i], problem);
         if (status != NT_OK)
             return status;
-        free += 2 * segments[i]->count;
+        noise[i] = nt_curve_point_noise(segments[i]->force, segments[i]->count, *free);
+        status = nt_curve_baseline_over(segments[i], choice, noise[i], *free, baselines + i, problem);
+        if (status != NT_OK)
+            return status;
+        read++;
     }
+    if (choice->kind == NT_CURVE_AUTO && read == 2)
+        nt_curve_share_noise(segments, baselines, *free);
+    for (int i = 0; i < 2; i++) {
+        if (segments[i]->count < NT_CURVE_FEWEST)
+            continue;
+        nt_curve_read_events(segments[i], baselines + i, noise[i], *free, branches[i]);
+        *free += 2 * segments[i]->count;
+    }
+    return NT_OK;
+}
+
+nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, double *work, nt_curve_reading *reading,
+                        nt_problem *problem)
+{
+    double *free = work;
+    *reading = (nt_curve_reading){.contact_point = {NAN, NAN}};
+    const nt_status status = read_branches(curve, choice, &free, reading, problem);
+    if (status != NT_OK)
+        return status;
     reading->offset = reading->offset_sigma = NAN;
     reading->pull_off_sigma = reading->retract.count ? reading->retract.dip.sigma : (double)NAN;
     reading->pull_off_least = reading->pull_off_most =

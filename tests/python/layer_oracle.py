@@ -72,17 +72,17 @@ def force(shape: str, depth: Any, modulus: float, size: float, thickness: float 
 
 
 def measured(
-    law: Any, k: float, depth: float, rng: Any, errors: tuple[float, float], noise: Any
+    law: Any, k: float, depth: float, rng: Any, errors: tuple[float, float], noise: Any, points: int = 1500
 ) -> nt.curves.ForceCurve:
     """A curve as an instrument shows it whose sensitivity and spring constant err; law: force over indentation."""
     contact = 3e-7 + 1e-9 * rng.random()
     fine = np.linspace(0.0, 2.0 * depth, 20001)
     travel, load = fine + law(fine) / k, law(fine)
-    z = np.linspace(contact + 1.5e-6, contact - float(np.interp(depth, fine, travel)), 1500)
+    z = np.linspace(contact + 1.5e-6, contact - float(np.interp(depth, fine, travel)), points)
     tilt, drift, segments = 1e-5 * rng.standard_normal(), 2e-13 * rng.standard_normal(), []
     for place, role in enumerate(("approach", "retract")):
         here = z if role == "approach" else z[::-1]
-        time = (place * z.size + np.arange(z.size)) * 5e-4
+        time = (place * z.size + np.arange(z.size)) * 0.75 / points
         pushed = np.where(contact - here > 0.0, np.interp(contact - here, travel, load), 0.0)
         shown = pushed + 1e-10 + tilt * (here - contact) + drift * time + noise[place * z.size :][: z.size]
         deflection = shown / k * errors[0]

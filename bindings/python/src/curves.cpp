@@ -7,7 +7,7 @@
 // A baseline crosses as the row of its numbers, in the order of the struct.
 constexpr std::size_t baseline_terms = sizeof(nt_curve_baseline) / sizeof(double);
 using Terms = std::array<double, baseline_terms>;
-static_assert(sizeof(nt_curve_baseline) == 15 * sizeof(double), "nanotouch.curves.Baseline has these terms");
+static_assert(sizeof(nt_curve_baseline) == 16 * sizeof(double), "nanotouch.curves.Baseline has these terms");
 
 static Terms terms_of(const nt_curve_baseline &baseline)
 {
@@ -144,9 +144,7 @@ static Array baseline_at(const Terms &terms, const Array &z)
 
 static std::pair<double, double> split_noise(const Array &rest, double scatter)
 {
-    std::vector<double> work(static_cast<std::size_t>(rest.size()));
-    const nt_curve_noise noise =
-        nt_curve_split_noise(rest.data(), static_cast<long>(rest.size()), scatter, work.data());
+    const nt_curve_noise noise = nt_curve_split_noise(rest.data(), static_cast<long>(rest.size()), scatter);
     return {noise.white, noise.flicker};
 }
 

@@ -51,11 +51,11 @@ typedef struct nt_curve_noise {
  * from all but the largest hundredth. work: count doubles. */
 NT_API double nt_curve_point_noise(const double force[], long count, double *work);
 
-/* White and 1/f noise of residuals in the order of time, by the Allan variances of their means (Allan 1966): w/m of
- * white noise in means of m points and a constant of flicker noise, fitted by maximum likelihood to the five coarsest
- * octaves of m >= 8. `scatter`: their robust standard deviation, which white is no less than [N]. work: count doubles.
- */
-NT_API nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scatter, double *work);
+/* White and 1/f noise of residuals in the order of time, whose line is taken off: the mean over all ratios of one to
+ * the other by the likelihood of the residuals' spectrum (Whittle 1953), white noise alone being as likely beforehand
+ * as 1/f noise. The spectrum is that of at most 64 means of 8 points or more. `scatter`: their robust standard
+ * deviation, which white is no less than [N]. */
+NT_API nt_curve_noise nt_curve_split_noise(const double rest[], long count, double scatter);
 
 /* Standard deviation of one of `count` points such that the mean of independent ones would scatter as theirs does [N]:
  * (max(point_noise^2, white) + count flicker)^(1/2); 0 where the free cantilever does not show that they are not
@@ -86,9 +86,11 @@ typedef struct nt_curve_baseline {
     double force;                          /* at z_mean [N] */
     double slope;                          /* [N/m] */
     double z_mean;                         /* mean of the points it was fitted to [m] */
+    double nearest;                        /* least z of these [m] */
     double scatter;                        /* robust standard deviation of these about it [N] */
     double force_variance, slope_variance; /* [N^2], [N^2/m^2]; flicker noise included */
-    nt_curve_noise noise;                  /* of the free cantilever */
+    nt_curve_noise noise;                  /* of the free cantilever; with NT_CURVE_AUTO that of both branches,
+                                              unless they contradict each other */
     nt_curve_wave wave;
     nt_curve_bend bend; /* of an approach beside its retraction */
 } nt_curve_baseline;

@@ -56,12 +56,14 @@ class Baseline:
         Tilt [N/m].
     z_mean : float
         Mean z of the points it was fitted to [m].
+    nearest : float
+        Least z of these [m].
     scatter : float
         Robust standard deviation of those points about the baseline [N].
     variance : tuple of float
         Variances of `force` [N^2] and `slope` [N^2/m^2], flicker noise included.
     noise : Noise
-        White and flicker noise of those points [N^2].
+        White and flicker noise [N^2]: that of both branches where both are there and do not contradict each other.
     wave : Wave or None
         Of interference.
     bend : Bend or None
@@ -71,6 +73,7 @@ class Baseline:
     force: float
     slope: float
     z_mean: float
+    nearest: float
     scatter: float
     variance: tuple[float, float]
     noise: Noise
@@ -80,16 +83,17 @@ class Baseline:
     @classmethod
     def of(cls, terms: tuple[float, ...]) -> Baseline:
         """From the numbers of the C library."""
-        force, slope, z_mean, scatter, level, tilt, white, flicker, period, cosine, sine, *bent = terms
+        force, slope, z_mean, nearest, scatter, level, tilt, white, flicker, period, cosine, sine, *bent = terms
         bend = Bend(*bent)
         wave = Wave(period, cosine, sine) if cosine or sine else None
         noise = Noise(white, flicker)
-        return cls(force, slope, z_mean, scatter, (level, tilt), noise, wave, bend if bend.film or bend.bow else None)
+        kept = bend if bend.film or bend.bow else None
+        return cls(force, slope, z_mean, nearest, scatter, (level, tilt), noise, wave, kept)
 
     def _terms(self) -> tuple[float, ...]:
         wave = self.wave or Wave(1.0, 0.0, 0.0)
         return (
-            self.force, self.slope, self.z_mean, self.scatter, *self.variance, *self.noise,
+            self.force, self.slope, self.z_mean, self.nearest, self.scatter, *self.variance, *self.noise,
             wave.period, wave.cosine, wave.sine, *(self.bend or Bend(0.0, 0.0, 0.0, 0.0)),
         )  # fmt: skip
 
