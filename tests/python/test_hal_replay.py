@@ -69,3 +69,8 @@ def test_a_rig_may_not_claim_more(touched: nt.Recording) -> None:
     columns = {name: values for name, values in touched.columns.items() if name not in ("master_x", "master_y")}
     with pytest.raises(InvalidValue, match="axes"):
         Session(rig=Rig(master={"axes": 3}), master=nt.hal.Replay(nt.Recording(columns)))
+
+
+def test_what_is_no_recording_is_named() -> None:
+    with pytest.raises(TypeError, match="Replay: int is no recording"):
+        nt.Session(slave=nt.hal.Replay(3))

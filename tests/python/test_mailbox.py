@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -178,3 +179,34 @@ def test_wrong_names_of_a_session() -> None:
         nt.hal.rehearse(Mailbox("x" * 65))
     with pytest.raises(DeviceError, match="programs that serve this mailbox = 0"):
         nt.hal.rehearse(Mailbox("nobody-has-this-name"))
+
+
+def test_a_session_may_be_opened_beside_the_device_in_one_program(name: str) -> None:
+    """Arming waits for a reading; other threads go on meanwhile."""
+    with Device(name, hand()) as device:
+        stopped = threading.Event()
+
+        def serve() -> None:
+            while not stopped.wait(5e-4):
+                device.ask()
+                device.publish(Reading(position=(math.nan, math.nan, 0.0)))
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        try:
+            rig = nt.Rig(master={"gauge": "no", "max_force": 3.0, "rate": 1000.0})
+            session = nt.Session(rig=rig, master=Mailbox(name), clearance=1e-6, preflight=False)
+            assert session.state == "RUN"
+            del session
+        finally:
+            stopped.set()
+            thread.join()
+
+
+@pytest.mark.skipif(not Path("/dev/shm").is_dir(), reason="shared memory has no files here")
+def test_a_mailbox_of_another_version_is_named(name: str) -> None:
+    with Device(name, hand()):
+        os.truncate(f"/dev/shm/nanotouch.mailbox.{name}", 512)
+        with pytest.raises(DeviceError, match="another version of nanotouch made it"):
+            nt.Session(rig=nt.Rig(master={"gauge": "no"}), master=Mailbox(name))
+        os.truncate(f"/dev/shm/nanotouch.mailbox.{name}", 4096)

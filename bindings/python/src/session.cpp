@@ -118,7 +118,10 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     take_halves(*made, setup, options);
     setup.say = say_line;
     nt_problem problem{};
-    const nt_status status = nt_session_open(&made->handle, &setup, &problem);
+    const nt_status status = [&] {
+        const py::gil_scoped_release release; // arming may wait for a device, or for a stage on its way
+        return nt_session_open(&made->handle, &setup, &problem);
+    }();
     made->rethrow(); // it has been tried
     raise_on(status, problem, "session");
     learn_amounts(*made);

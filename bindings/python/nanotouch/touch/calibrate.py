@@ -34,6 +34,8 @@ LONGEST_DELAY = 8.0
 """that is sought [periods]"""
 BLOCKS = 50
 """of a run, whose sums are taken to be independent"""
+FEW = 4
+"""such blocks of a run of a few dozen points"""
 _STEP = 12.0**-0.5  # standard deviation of what is rounded, over the step
 
 
@@ -175,6 +177,19 @@ def _solved(
     return found.x, alone * np.outer(spread, spread)
 
 
+def _linear(columns: Floats, values: Floats, blocks: int, least: float = 0.0) -> tuple[Floats, Floats]:
+    """A linear fit and the standard deviations of what it finds, `least` at least of a residual. Where noise drifts
+    slowly the residuals of neighbours are alike: as in :func:`_solved`, by sums over blocks."""
+    found, *_ = np.linalg.lstsq(columns, values, rcond=None)
+    rest = values - columns @ found
+    free = rest.size - found.size
+    inverse = np.linalg.inv(columns.T @ columns)
+    alone = max(float(rest @ rest) / free, least**2) * inverse
+    sums = np.add.reduceat(columns * rest[:, None], np.arange(0, rest.size, max(1, rest.size // blocks)))
+    together = inverse @ (sums.T @ sums) @ inverse * len(sums) / (len(sums) - found.size)
+    return found, np.sqrt(np.maximum(np.diag(alone), np.diag(together)))
+
+
 def stage_gain(run: Driven, rig: Rig, *, stroke: float, steps: int = 20) -> dict[str, Value]:
     """Gain of the travel and hysteresis, from a :func:`staircase` without a sample.
 
@@ -188,10 +203,7 @@ def stage_gain(run: Driven, rig: Rig, *, stroke: float, steps: int = 20) -> dict
     down = np.where(np.arange(told.size) < steps, -1.0, 1.0)  # away from the sample first
     shape = down * (1.0 - ((told - middle) / half) ** 2)
     columns = np.stack([np.ones_like(told), told - middle, shape], axis=1)
-    found, *_ = np.linalg.lstsq(columns, position, rcond=None)
-    rest = position - columns @ found
-    variance = max(float(rest @ rest) / (told.size - 3), (_STEP * rig.stage.resolution) ** 2)
-    sigma = np.sqrt(np.diag(variance * np.linalg.inv(columns.T @ columns)))
+    found, sigma = _linear(columns, position, FEW, _STEP * rig.stage.resolution)
     # down lags above: the branch towards the sample stands short of it
     opening = rig.stage.travel / stroke**2
     hysteresis = -2.0 * float(found[2]) * opening
@@ -308,10 +320,8 @@ def contact_slope(run: Driven, *, least: float = 0.2, most: float = 0.95) -> Val
     if np.count_nonzero(inside & ~branch) < 8 or np.count_nonzero(inside & branch) < 8:
         raise InvalidValue("too few points in contact: press more slowly, or deeper")
     columns = np.stack([~branch & inside, branch & inside, felt], axis=1)[inside].astype(float)
-    found, *_ = np.linalg.lstsq(columns, run.position[inside], rcond=None)
-    rest = run.position[inside] - columns @ found
-    variance = float(rest @ rest) / (rest.size - 3)
-    return Value(float(found[2]), math.sqrt(variance * float(np.linalg.inv(columns.T @ columns)[2, 2])), "")
+    found, sigma = _linear(columns, run.position[inside], 2 * FEW)
+    return Value(float(found[2]), float(sigma[2]), "")
 
 
 def sensitivity(hard: Value, rig: Rig, *, position_sigma: float = 0.0, sample_stiffness: float = math.inf) -> Value:

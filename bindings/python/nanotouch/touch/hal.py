@@ -259,6 +259,8 @@ class Replay:
 
     def rows(self, half: str) -> tuple[int, NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Axes; time (n,) [s]; position (n, 3) [m]; force [N] or deflection [m] (n, 3), NaN where none was measured."""
+        if not hasattr(self.recording, "columns"):
+            raise TypeError(f"Replay: {type(self.recording).__name__} is no recording, as nt.record.read gives one")
         if not len(self.recording):
             raise InvalidValue("Replay: the recording has no row")
         position, felt = REPLAYED[half]
