@@ -78,8 +78,7 @@ def add_parser(subparsers: Any) -> None:
     results = parser.add_argument_group("results")
     output.add_options(results)
     results.add_argument("--verbose", action="store_true", help="tell models, error bounds and limits in full, too")
-    results.add_argument("--no-pictures", action="store_true", help="record and tell, but draw nothing, which takes most "
-                         "of a short touch")  # fmt: skip
+    results.add_argument("--no-pictures", action="store_true", help="record and tell, but draw nothing")
     results.add_argument("--no-window", action="store_true", help="do not open the 3-D view where there is a display")
 
 

@@ -187,7 +187,7 @@ def _linear(columns: Floats, values: Floats, blocks: int, least: float = 0.0) ->
     alone = max(float(rest @ rest) / free, least**2) * inverse
     sums = np.add.reduceat(columns * rest[:, None], np.arange(0, rest.size, max(1, rest.size // blocks)))
     together = inverse @ (sums.T @ sums) @ inverse * len(sums) / (len(sums) - found.size)
-    return found, np.sqrt(np.maximum(np.diag(alone), np.diag(together)))
+    return np.asarray(found), np.asarray(np.sqrt(np.maximum(np.diag(alone), np.diag(together))))
 
 
 def stage_gain(run: Driven, rig: Rig, *, stroke: float, steps: int = 20) -> dict[str, Value]:
