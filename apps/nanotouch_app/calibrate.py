@@ -153,7 +153,7 @@ def _lever(bench: Bench) -> None:
 
 def _thermal(bench: Bench) -> None:
     file, averages = bench.needed("spectrum", "averages")
-    if file.suffix == ".tnd":
+    if file.suffix.lower() == ".tnd":
         from nanotouch.curves.thermal_file import thermal_spectrum
 
         found = thermal_spectrum(file)

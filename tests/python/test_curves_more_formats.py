@@ -87,6 +87,27 @@ def test_a_folder_of_pairs_is_fitted_without_the_halves_that_hold_heights(tmp_pa
     assert [file.name for file in files._without(files.files_of([tmp_path]), ())] == [NAMES[0]]
 
 
+@pytest.mark.parametrize("untrusted", [False, True])
+def test_endings_in_capitals_and_hdf5(tmp_path: Path, untrusted: bool) -> None:
+    """As old Windows disks write them; afmformats knows small letters alone."""
+    small = synthetic.write_ibw_curve(tmp_path / "a.ibw", KNOWN)
+    (expected,) = curves.read(small)
+    curves.write(tmp_path / "b.hdf5", [expected])
+    segments = [("extend", KNOWN.approach_z, KNOWN.approach_force), ("retract", KNOWN.retract_z, KNOWN.retract_force)]
+    synthetic.write_jpk(tmp_path / "C.JPK-FORCE", segments)
+    for name in (small.rename(tmp_path / "A.IBW").name, "b.hdf5", "C.JPK-FORCE"):
+        (found,) = curves.read(tmp_path / name, untrusted=untrusted)
+        assert found.name == name
+        if name != "C.JPK-FORCE":
+            np.testing.assert_allclose(found.retract.force, expected.retract.force, rtol=1e-12)  # type: ignore
+
+
+def test_a_wave_without_a_note_says_what_may_be_missing(tmp_path: Path) -> None:
+    (write_pair(tmp_path)).rename(tmp_path / "alone.ibw")
+    with pytest.raises(ReadError, match=r"ZSnsr\.ibw, both must lie in one folder"):
+        curves.read(tmp_path / "alone.ibw")
+
+
 def test_an_archive_is_the_curves_of_its_files(tmp_path: Path) -> None:
     pieces = [curves.ForceCurve((curves.Segment("approach", KNOWN.approach_z * 0, KNOWN.approach_z, "height (measured)",
                                                 KNOWN.approach_force * factor),), {"spring constant": K})

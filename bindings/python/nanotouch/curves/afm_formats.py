@@ -8,8 +8,12 @@ approach is refused.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import islice, pairwise
 from pathlib import Path
+from shutil import copyfile
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -24,33 +28,58 @@ from .curve import ForceCurve, Role, Segment
 NAME = "afmformats"
 _HEADER_LINES = 100  # of a Chiaro file, at most
 PAUSE_TRAVEL = 0.1  # a segment over which the base moves less than this, of the whole travel, is a pause
+_SPELLINGS = {".hdf5": ".h5"}
 _Z_CHANNELS = ("height (measured)", "height (piezo)")  # a sensor before a voltage times a constant
 
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """All curves with the file's own calibration; `calibration` only where the file states none."""
-    return [_converted(data, file, number) for number, data in enumerate(_loaded(file, calibration))]
-
-
-def _loaded(file: Path, calibration: Calibration) -> list[Any]:
-    afmformats = require("afmformats", "curves")
-    known = sorted(afmformats.formats.supported_extensions)
-    if file.suffix not in known:
+    known = sorted(require("afmformats", "curves").formats.supported_extensions)
+    ending = _SPELLINGS.get(file.suffix.lower(), file.suffix.lower())
+    if ending not in known:
         raise ReadError(f"{file}: not a force curve file that afmformats reads ({', '.join(known)}){_other(file)}")
+    with _under(file, ending) as link:
+        return [_converted(data, file, number) for number, data in enumerate(_loaded(file, link, calibration))]
+
+
+@contextmanager
+def _under(file: Path, ending: str) -> Iterator[Path]:
+    """A name for the file with this ending: afmformats knows small letters alone."""
+    if file.suffix == ending:
+        yield file
+        return
+    with TemporaryDirectory() as folder:
+        link = Path(folder) / (file.stem + ending)
+        try:
+            link.symlink_to(file.resolve())
+        except OSError:  # Windows lets not everybody make links
+            copyfile(file, link)
+        yield link
+
+
+def _loaded(file: Path, link: Path, calibration: Calibration) -> list[Any]:
+    afmformats = require("afmformats", "curves")
     given = calibration.given
     try:
-        return list(afmformats.load_data(file))
+        return list(afmformats.load_data(link))
     except (afmformats.errors.FileFormatNotSupportedError, UnicodeDecodeError):
         raise ReadError(f"{file}: its content is not that of a {file.suffix} force curve file") from None
     except afmformats.errors.MissingMetaDataError as error:
         missing = [key for key in error.meta_keys if given.get(key) is None]
         if missing:
             raise ReadError(f"{file}: states no {' and no '.join(missing)}; give it") from None
-        return list(afmformats.load_data(file, meta_override={key: given[key] for key in error.meta_keys}))
+        return list(afmformats.load_data(link, meta_override={key: given[key] for key in error.meta_keys}))
+    except KeyError as error:
+        if link.suffix != ".ibw":
+            raise
+        raise ReadError(
+            f"{file}: its note lacks {error}, which a force curve of Asylum Research states; of a pair of files, "
+            "...Defl.ibw and ...ZSnsr.ibw, both must lie in one folder under their own names"
+        ) from None
 
 
 def _other(file: Path) -> str:
-    return ", but of thermal spectra: curves.thermal_spectrum reads it" if file.suffix == ".tnd" else ""
+    return ", but of thermal spectra: curves.thermal_spectrum reads it" if file.suffix.lower() == ".tnd" else ""
 
 
 def _converted(data: Any, file: Path, number: int) -> ForceCurve:

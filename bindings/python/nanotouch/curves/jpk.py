@@ -111,7 +111,7 @@ class Archive:
             "enum": enum,
             "path": self.file,
             "software": "JPK",
-            "format": f"JPK ({self.file.suffix})",
+            "format": f"JPK ({self.file.suffix.lower()})",
         }
         start, count = 0.0, 0
         left_out: Counter[str] = Counter()

@@ -113,7 +113,7 @@ def stream(
     The arguments are those of :func:`read`.
     """
     file = checked_path(path)
-    if file.suffix not in jpk.ENDINGS or registered_for(file, head_of(file), "curves") is not None:
+    if file.suffix.lower() not in jpk.ENDINGS or registered_for(file, head_of(file), "curves") is not None:
         return None
     found = Stream(file, _over_table(Calibration(spring_constant, sensitivity), calibration, file))
     if not len(found):
@@ -143,7 +143,7 @@ def _loaded(file: Path, given: Calibration) -> tuple[str, list[ForceCurve]]:
     if head.startswith(nanoscope.SIGNATURES):
         with guarded(file, nanoscope.NAME):
             return nanoscope.NAME, nanoscope.read(file, given)
-    if file.suffix in jpk.ENDINGS:
+    if file.suffix.lower() in jpk.ENDINGS:
         with guarded(file, jpk.NAME):
             return jpk.NAME, jpk.read(file, given)
     if nanonis.recognises(file, head):
