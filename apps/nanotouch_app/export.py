@@ -45,7 +45,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="of curves, in place of the file's, as 8N/m")
     parser.add_argument("--sensitivity", metavar="SENSITIVITY", help="of curves, in place of the file's, as 40nm/V")
-    parser.add_argument("--channel", metavar="NAME", help="channel of an image, for .gsf")
+    parser.add_argument("--channel", metavar="NAME", help="channel of an image or a map, for .gsf")
     parser.add_argument("--pixel-size", metavar="LENGTH", help="of an image that does not state it, for .gsf, as 10nm")
     output.add_overwrite(parser)
     parser.add_argument(
@@ -95,6 +95,8 @@ def _picked(found: Sequence[curves.ForceCurve], args: argparse.Namespace) -> Seq
 
 def _export_image(args: argparse.Namespace, ending: str) -> str:
     """All channels of an image or a map as .gwy, one as .gsf."""
+    if args.file.suffix == ".nc":
+        return _export_map(args, ending)
     if ending == ".gsf":
         size = None if args.pixel_size is None else parse_quantity(args.pixel_size, "m")
         topography = images.read(args.file, args.channel, pixel_size=size, untrusted=args.untrusted)
@@ -103,15 +105,26 @@ def _export_image(args: argparse.Namespace, ending: str) -> str:
         return f"{topography.channel or 'heights'}, {nx} x {ny} pixels"
     if args.untrusted:
         raise InvalidValue("--untrusted: all channels of a file are read in this process; export one as .gsf")
-    left_out: list[str] = []
-    if args.file.suffix == ".nc":
-        found = maps.planes(maps.read(args.file))
-    else:
-        found, left_out = images.planes(args.file)
+    found, left_out = images.planes(args.file)
     images.write_planes(args.out, found)
     for text in left_out:
         print(f"nanotouch export: left out {text}", file=sys.stderr)
-    return f"{len(found)} channel{'s' if len(found) > 1 else ''}: {', '.join(plane.name for plane in found)}"
+    return _named(found)
+
+
+def _export_map(args: argparse.Namespace, ending: str) -> str:
+    """As _export_image; of one channel the first if none is named."""
+    found = maps.planes(maps.read(args.file))
+    if ending == ".gsf":
+        found = [plane for plane in found if args.channel in (None, plane.name)][:1]
+        if not found:
+            raise InvalidValue(f"--channel {args.channel}: {args.file} determines no such quantity")
+    images.write_planes(args.out, found)
+    return _named(found)
+
+
+def _named(planes: Sequence[images.Plane]) -> str:
+    return f"{len(planes)} channel{'s' if len(planes) > 1 else ''}: {', '.join(plane.name for plane in planes)}"
 
 
 def _export_recording(file: Path, out: Path, as_csv: bool, progress: Callable[[float], None]) -> str:

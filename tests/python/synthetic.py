@@ -302,6 +302,7 @@ def write_nanoscope(
     sensitivity: float = 41e-9,
     spring_constant: float = 0.999,
     version: str = "0x08150305",
+    scan: str = "",
 ) -> Path:
     """Bruker's NanoScope 8 force file: deflections [V] of (approach, retraction), both from the deepest outwards."""
     near, far = (len(branch) for branch in curves[0])
@@ -312,7 +313,7 @@ def write_nanoscope(
     lines = [
         "*Force file list", f"Version: {version}", "Date: 01:06:11 PM Wed Oct 09 2019", f"Data length: {offset}",
         "*Scanner list", f"@Sens. Zsens: V {piezo * 1e9:.5f} nm/V",
-        "*Ciao scan list", f"@Sens. DeflSens: V {sensitivity * 1e9:.5f} nm/V",
+        "*Ciao scan list", *([f"Scan Size: {scan}"] if scan else []), f"@Sens. DeflSens: V {sensitivity * 1e9:.5f} nm/V",
         "*Ciao force list", f"Forward vel.: {4 * volts}", f"Reverse vel.: {2 * volts}", "Ramp delay: 0",
         "Reverse delay: 0", f"force/line: {max(1, int(len(curves) ** 0.5))} 0",
         "*Ciao force image list", f"Data offset: {offset}", f"Data length: {len(data)}", f"Bytes/pixel: {kind[2]}",

@@ -235,6 +235,16 @@ def test_a_map_to_gwy(tmp_path: Path) -> None:
     assert container["/0/mask"].data[::-1][1, 2] == 1.0
     assert container["/0/mask"].data.sum() == 1.0
     assert field.data[::-1][3, 4] == 20.0
+    data.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
+    assert run(tmp_path / "map.nc", "--out", tmp_path / "map.gsf") == 0
+    content = (tmp_path / "map.gsf").read_bytes()
+    facts = dict(line.split(" = ") for line in content[: content.index(0)].decode().splitlines()[1:])
+    assert (facts["ZUnits"], facts["Title"], float(facts["XReal"])) == ("Pa", "effective_modulus", pytest.approx(1e-6))
+    back = np.frombuffer(content[-80:], "<f4").reshape(4, 5)[::-1]
+    assert np.isnan(back[1, 2])
+    assert back[3, 4] == 20.0
+    with pytest.raises(InvalidValue, match="determines no such quantity"):
+        run(tmp_path / "map.nc", "--channel", "thickness", "--out", tmp_path / "other.gsf")
 
 
 @pytest.mark.skipif(not (DATA / "corpus").is_dir(), reason="without the corpus of real files")

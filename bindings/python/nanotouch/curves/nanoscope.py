@@ -64,10 +64,11 @@ def read(file: Path, calibration: Calibration | None = None) -> list[ForceCurve]
         notes += (f"{counted(len(raw) - len(enough), 'curve')} of {len(raw)} without data left out",)
     meta |= way.meta | ({"notes": notes + way.notes} if notes + way.notes else {})
     line = _line(found) if len(raw) > 1 else 1
+    size = header.scan_size(found)
     return [
         ForceCurve(
             _segments(way, way.z[min(n, len(way.z) - 1)], deflection[n], known[n], meta.get("spring constant")),
-            meta | _place(n, line, len(raw)),
+            meta | _place(n, line, len(raw), size),
             printable(file.name),
         )
         for n in enough
@@ -143,11 +144,14 @@ def _line(found: list[Section]) -> int:
     return header.section(found, "Ciao force list").counts("force/line")[0]
 
 
-def _place(number: int, line: int, count: int) -> dict[str, Any]:
+def _place(number: int, line: int, count: int, size: tuple[float, float] | None) -> dict[str, Any]:
+    """In the map. Its size is left out where the pixels would not be square: a scan that was stopped, for one."""
     place: dict[str, Any] = {"enum": number}
     if line > 0 and count > 1 and count % line == 0:
         place |= {"grid index x": number % line, "grid index y": number // line}
         place |= {"grid shape x": line, "grid shape y": count // line}
+        if size is not None and count // line == round(line * size[1] / size[0]):
+            place |= {"grid size x": size[0], "grid size y": size[1]}
     return place
 
 

@@ -18,6 +18,7 @@ _HEADER_LIMIT = 1 << 20  # byte; those seen have 80 KiB
 _UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "µm/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 _SCALED = re.compile(rf"V\s*\[Sens\. ([^\]]+)\]\s*\({_NUMBER}\s*(m?V)/LSB\)\s*{_NUMBER}\s*(m?V)")
+_SIZE = re.compile(rf"{_NUMBER}(?:\s+{_NUMBER})?\s+(nm|um|µm|~m|pm|mm)")
 _SENSITIVITY = re.compile(rf"V {_NUMBER}\s*(\S*)")
 
 
@@ -127,3 +128,16 @@ def piezo(found: list[Section], name: str) -> float:
     if known is None:
         raise ReadError(f"{found[0].file}: its header states no sensitivity {name!r} in metres per volt")
     return known[0]
+
+
+def scan_size(found: list[Section]) -> tuple[float, float] | None:
+    """Along the fast and the slow axis [m], as the picture of a map states it, or its scan; None if neither does."""
+    for name in ("Ciao image list", "Ciao scan list"):
+        for one in found:
+            match = _SIZE.fullmatch(one.get("scan size", "")) if one.name == name else None
+            if match and (match[2] or one.get("aspect ratio", "1:1") == "1:1"):
+                unit = _UNITS[match[3] + "/V"]
+                size = float(match[1]) * unit, float(match[2] or match[1]) * unit
+                if min(size) > 0.0:
+                    return size
+    return None

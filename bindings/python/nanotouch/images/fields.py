@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several channels in one file of Gwyddion's own format, each with its unit and its mask."""
+"""Several channels in one file of Gwyddion's own format, or one as its Simple Field, each with its unit and its mask."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from .._io.writing import replacing
 from ..errors import InvalidValue, ReadError, require
+from . import gsf
 from .channel import Plane
 from .checks import LENGTHS
 from .reading import reader_of
@@ -37,8 +38,8 @@ def planes(path: str | os.PathLike[str]) -> tuple[list[Plane], list[str]]:
 
 
 def write_planes(path: str | os.PathLike[str], fields: Sequence[Plane]) -> Path:
-    """Write channels as ``.gwy``; lengths in metres, other units as they are. Where a value is not finite it is masked,
-    and the median stands there.
+    """Write channels as ``.gwy``, or one as ``.gsf``; lengths in metres, other units as they are. Where a value is not
+    finite it is masked, and the median stands there; in a ``.gsf``, which has no mask, it stays NaN.
 
     Raises
     ------
@@ -46,10 +47,14 @@ def write_planes(path: str | os.PathLike[str], fields: Sequence[Plane]) -> Path:
         If there is no channel, the ending is another, or a channel has no finite value.
     """
     file = Path(path)
-    if file.suffix.lower() != ".gwy":
-        raise InvalidValue(f"{file}: several channels are written as .gwy")
     if not fields:
         raise InvalidValue(f"{file}: no channel to write")
+    if file.suffix.lower() == ".gsf" and len(fields) == 1:
+        with replacing(file) as part:
+            gsf.write(part, fields[0])
+        return file
+    if file.suffix.lower() != ".gwy":
+        raise InvalidValue(f"{file}: several channels are written as .gwy, one as .gwy or .gsf")
     gwyfile = require("gwyfile", "images").objects
     container = gwyfile.GwyContainer()
     for number, field in enumerate(fields):

@@ -47,6 +47,26 @@ def read(file: Path, channel: str | None) -> Plane:
     return Plane(facts.get("Title", "Data"), values, facts.get("ZUnits"), pixel_size, NAME)
 
 
+def write(file: Path, field: Plane, offset: tuple[float, float] | None = None) -> None:
+    """One channel: a length in metres, another unit as it is; NaN where there is no value.
+
+    A header of text, 1 to 4 zeros up to a multiple of four bytes, floats; `offset` of the lower left corner, (y, x) [m].
+    """
+    ny, nx = field.values.shape
+    dy, dx = field.pixel_size or (1.0, 1.0)
+    facts = {"XRes": nx, "YRes": ny, "XReal": repr(float(dx * nx)), "YReal": repr(float(dy * ny))}
+    if offset is not None:
+        facts |= {"XOffset": repr(offset[1]), "YOffset": repr(-(offset[0] + dy * ny))}
+    unit = "m" if field.unit in LENGTHS else field.unit or ""
+    facts |= {"XYUnits": "m" if field.pixel_size else "", "ZUnits": unit, "Title": " ".join(field.name.split())}
+    text = SIGNATURE.decode() + "".join(f"{key} = {value}\n" for key, value in facts.items() if value != "")
+    header = text.encode("utf-8", "backslashreplace")
+    values = field.values * LENGTHS.get(field.unit or "", 1.0)
+    with file.open("wb") as stream:
+        stream.write(header + b"\0" * (4 - len(header) % 4))
+        stream.write(np.ascontiguousarray(values[::-1]).astype("<f4").tobytes())
+
+
 def _header(file: Path) -> tuple[dict[str, str], int]:
     with file.open("rb") as stream:
         content = stream.read(_HEADER_LIMIT)

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Error, InvalidValue, require
-from . import hdf5
+from . import gsf, hdf5
+from .channel import Plane
 from .topography import Topography
 
 Offset = tuple[float, float] | None
@@ -95,17 +96,7 @@ def _write_gwy(file: Path, topography: Topography, title: str, offset: Offset) -
 
 
 def _write_gsf(file: Path, topography: Topography, title: str, offset: Offset) -> None:
-    """A header of text, 1 to 4 zeros up to a multiple of four bytes, little-endian floats; the first row is the top."""
-    (ny, nx), (height, width) = topography.shape, topography.size
-    facts = {"XRes": nx, "YRes": ny, "XReal": repr(width), "YReal": repr(height)}
-    if offset is not None:
-        facts |= {"XOffset": repr(offset[1]), "YOffset": repr(-(offset[0] + height))}
-    facts |= {"XYUnits": "m", "ZUnits": "m", "Title": " ".join(title.split())}
-    text = "Gwyddion Simple Field 1.0\n" + "".join(f"{key} = {value}\n" for key, value in facts.items())
-    header = text.encode("utf-8", "backslashreplace")
-    with file.open("wb") as stream:
-        stream.write(header + b"\0" * (4 - len(header) % 4))
-        stream.write(np.ascontiguousarray(topography.heights[::-1]).astype("<f4").tobytes())
+    gsf.write(file, Plane(title, topography.heights, "m", topography.pixel_size, gsf.NAME), offset)
 
 
 _WRITERS: dict[str, Writer] = {".gwy": _write_gwy, ".gsf": _write_gsf, ".h5": hdf5.write, ".hdf5": hdf5.write}
