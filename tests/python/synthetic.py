@@ -313,7 +313,7 @@ def write_nanoscope(
     lines = [
         "*Force file list", f"Version: {version}", "Date: 01:06:11 PM Wed Oct 09 2019", f"Data length: {offset}",
         "*Scanner list", f"@Sens. Zsens: V {piezo * 1e9:.5f} nm/V",
-        "*Ciao scan list", *([f"Scan Size: {scan}"] if scan else []), f"@Sens. DeflSens: V {sensitivity * 1e9:.5f} nm/V",
+        "*Ciao scan list", *([f"Scan Size: {scan}"] * bool(scan)), f"@Sens. DeflSens: V {sensitivity * 1e9:.5f} nm/V",
         "*Ciao force list", f"Forward vel.: {4 * volts}", f"Reverse vel.: {2 * volts}", "Ramp delay: 0",
         "Reverse delay: 0", f"force/line: {max(1, int(len(curves) ** 0.5))} 0",
         "*Ciao force image list", f"Data offset: {offset}", f"Data length: {len(data)}", f"Bytes/pixel: {kind[2]}",

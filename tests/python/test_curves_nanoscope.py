@@ -97,7 +97,9 @@ def test_a_force_volume_is_a_list_of_curves_with_their_places(tmp_path: Path) ->
         assert -depth <= curve.retract.deflection.min() <= -depth + RAMP / N + LSB * SENSITIVITY
 
 
-@pytest.mark.parametrize(("scan", "size"), [("2000 nm", 2e-6), ("1.5 1.5 ~m", 1.5e-6), ("2 1 ~m", None), ("0 nm", None)])
+@pytest.mark.parametrize(
+    ("scan", "size"), [("2000 nm", 2e-6), ("1.5 1.5 ~m", 1.5e-6), ("2 1 ~m", None), ("0 nm", None)]
+)
 def test_a_force_volume_says_how_large_it_is(tmp_path: Path, scan: str, size: float | None) -> None:
     """Where the pixels are square: a scan that was stopped covers less than it says."""
     path = synthetic.write_nanoscope(tmp_path / "a.003", [(volts(0.2), volts(0.3))] * 4, scan=scan)

@@ -171,7 +171,15 @@ def test_what_lies_under_the_dots_is_said(under: object, said: str) -> None:
 def test_noise_alone_is_said() -> None:
     heights = 1e-9 * np.random.default_rng(1).standard_normal((N, N))
     with pytest.warns(UserWarning, match="times the noise of a pixel"):
-        images.grains(topography(heights))
+        images.grains(topography(heights), "otsu")
+
+
+def test_in_noise_alone_nothing_is_found() -> None:
+    """Otsu parts noise in two halves; a faint particle in it is found alone."""
+    heights = 1e-9 * np.random.default_rng(2).standard_normal((N, N))
+    assert len(images.grains(topography(heights))) == 0
+    heights[20:26, 20:26] += 8e-9
+    assert len(images.grains(topography(heights))) == 1
 
 
 def test_the_sizes_are_those_of_whole_particles() -> None:

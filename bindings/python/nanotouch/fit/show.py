@@ -87,7 +87,7 @@ def between(low: float, high: float, unit: str) -> str:
 
 def newton(force: float) -> str:
     """A force without its uncertainty."""
-    return with_sigma(force, 0.0, "N")
+    return "unknown" if np.isnan(force) else with_sigma(force, 0.0, "N")
 
 
 def as_text(page: Page) -> str:

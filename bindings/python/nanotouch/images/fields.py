@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several channels in one file of Gwyddion's own format, or one as its Simple Field, each with its unit and its mask."""
+"""Several channels in one file of Gwyddion's own format, or one as its Simple Field, with units and masks."""
 
 from __future__ import annotations
 

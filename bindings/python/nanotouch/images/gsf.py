@@ -50,7 +50,7 @@ def read(file: Path, channel: str | None) -> Plane:
 def write(file: Path, field: Plane, offset: tuple[float, float] | None = None) -> None:
     """One channel: a length in metres, another unit as it is; NaN where there is no value.
 
-    A header of text, 1 to 4 zeros up to a multiple of four bytes, floats; `offset` of the lower left corner, (y, x) [m].
+    A header of text, 1 to 4 zeros up to a multiple of four bytes, floats; `offset` of the lower left corner (y, x) [m].
     """
     ny, nx = field.values.shape
     dy, dx = field.pixel_size or (1.0, 1.0)

@@ -94,8 +94,7 @@ class GrainTable:
     def columns(self) -> dict[str, NDArray[Any]]:
         """The columns by name, with their units: ``"height_m"``, ..."""
         units = {"area": "_m2", "volume": "_m3", "pixels": "", "border": ""}
-        names = [f.name for f in fields(self)][:9]
-        return {name + units.get(name, "_m"): getattr(self, name) for name in names}
+        return {f.name + units.get(f.name, "_m"): getattr(self, f.name) for f in fields(self)[:9]}
 
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table, one line per particle, SI."""
@@ -148,8 +147,8 @@ def grains(
         ``"flat"``: five standard deviations of the flat; base is the most frequent height, and the half of the heights
         below it, which particles do not reach, gives the standard deviation. ``"otsu"``, for grains so dense that there
         is no flat: what parts the heights best into two classes (Otsu 1979); base is the median of the lower one.
-        ``"auto"``: ``"flat"`` if the highest pixel in a thousand stands ten standard deviations over it, else
-        ``"otsu"``.
+        ``"auto"``: ``"flat"`` if the highest pixel in a thousand stands ten standard deviations over it, or if Otsu's
+        height is below two of a pixel's noise, else ``"otsu"``.
     smallest : int
         Particles of fewer pixels are noise.
     split : bool
@@ -166,18 +165,18 @@ def grains(
     if smallest < 1:
         raise InvalidValue(f"smallest: {smallest} pixels, expected 1 or more")
     z = -topography.heights if pits else topography.heights
-    base, noise, least = _base(z[~topography.mask], threshold)
+    jitter = pixel_noise(z)
+    base, noise, least = _base(z[~topography.mask], threshold, jitter)
     bands = _bands(z, topography.mask, base, noise) if threshold in ("auto", "flat") else np.zeros((1, 1))
     if bands.any():
         z = z - bands
-        base, noise, least = _base(z[~topography.mask], threshold)
+        base, noise, least = _base(z[~topography.mask], threshold, jitter)
     cv2 = require("cv2", "images")
     over = z - base
     count, labels = cv2.connectedComponents((over > least).astype(np.uint8), connectivity=8)
     if split and count > 1:
-        labels = _parted(over, labels, _STANDARD_DEVIATIONS * pixel_noise(z))
+        labels = _parted(over, labels, _STANDARD_DEVIATIONS * jitter)
     labels = _numbered(over, labels, smallest)
-    jitter = pixel_noise(z)
     doubts = _doubts(labels, least / jitter if jitter > 0.0 else np.inf, pits)
     if np.ptp(bands) > least:
         doubts += (
@@ -230,18 +229,17 @@ def _flat(z: Floats) -> tuple[float, float]:
     return (float(np.median(near)) if near.size else base), noise
 
 
-def _base(z: Floats, threshold: float | str) -> tuple[float, float, float]:
-    """Height of the base, standard deviation about it, and the height over it from which a pixel counts."""
+def _base(z: Floats, threshold: float | str, jitter: float) -> tuple[float, float, float]:
+    """Height of the base, standard deviation about it, height over it from which a pixel counts; jitter: a pixel's."""
     base, noise = _flat(z)
     if threshold == "auto":
-        threshold = "flat" if np.quantile(z, 0.999) - base >= _STANDS_OUT * noise else "otsu"
+        stands_out = np.quantile(z, 0.999) - base >= _STANDS_OUT * noise
+        threshold = "flat" if stands_out or _parting(z)[1] < _NOISY * jitter else "otsu"
     if threshold == "flat":
         return base, noise, max(_STANDARD_DEVIATIONS * noise, 1e-3 * float(np.ptp(z)))
     if threshold == "otsu":
-        parting = _otsu(z)
-        lower = z[z <= parting]
-        base = float(np.median(lower))
-        return base, float(lower.std()), parting - base
+        lower, least = _parting(z)
+        return float(np.median(lower)), float(lower.std()), least
     if isinstance(threshold, str) or not 0.0 < threshold < np.inf:
         raise InvalidValue(f"threshold: {threshold!r}, expected a positive height [m], 'auto', 'flat' or 'otsu'")
     return base, noise, float(threshold)
@@ -263,11 +261,16 @@ def _bands(z: Floats, missing: NDArray[np.bool_], base: float, noise: float) -> 
     return np.asarray(bands[:, None] if float(np.std(middle)) > _BANDED * within else np.zeros((len(z), 1)))
 
 
+def _parting(z: Floats) -> tuple[Floats, float]:
+    """The lower class of heights, and how far over its median the upper one begins [m]."""
+    lower = z[z <= (parting := _otsu(z))]
+    return lower, parting - float(np.median(lower))
+
+
 def _otsu(z: Floats) -> float:
     """The height that leaves the least variance within the two classes it makes."""
     histogram, edges = np.histogram(z, _BINS)
-    share = histogram / z.size
-    middle = 0.5 * (edges[1:] + edges[:-1])
+    share, middle = histogram / z.size, 0.5 * (edges[1:] + edges[:-1])
     below, moment = np.cumsum(share), np.cumsum(share * middle)
     with np.errstate(divide="ignore", invalid="ignore"):
         between = (moment[-1] * below - moment) ** 2 / (below * (1.0 - below))
