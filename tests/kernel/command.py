@@ -20,7 +20,7 @@ from nanotouch_app.main import main as nanotouch
 
 RIG = Path(__file__).parents[2] / "docs/examples/rig/rig.toml"
 SPEED, RATE = 0.1e-6, 1e3  # [m/s], [Hz]: a tick is a step of 0.1 nm
-LOOP = "[gains]\nrate_kHz = 1\napproach_speed_um_per_s = 0.1\ncurve_length_nm = 200\n"
+LOOP = "[gains]\nrate_kHz = 1\napproach_speed_um_per_s = 0.1\ncurve_length_nm = 80\n"
 SCAN = (
     '[zloop]\nmode = "contact"\nset_force_nN = 50\n[raster]\nx_um = 0.5\ny_um = 0.5\nwidth_um = 1\nheight_um = 0.2\n'
     "pixels = 16\nlines = 4\nline_rate_Hz = 2\n"
