@@ -105,6 +105,7 @@ typedef struct spoiler {
     long reads;
     long from; /* read from which it is spoilt */
     double held;
+    double deepest; /* gap that the tip has come to [m] */
 } spoiler;
 
 static spoiler probe;
@@ -122,6 +123,7 @@ static nt_status read_spoilt(void *context, nt_reading *reading)
     spoiler *s = context;
     const nt_status status = nt_sim_slave_backend()->read(&s->slave, reading);
     reading->amplitude *= s->gain;
+    s->deepest = smaller(s->deepest, s->slave.truth.deepest_gap);
     if (++s->reads < s->from) {
         s->held = reading->amplitude;
         return status;
@@ -281,6 +283,30 @@ static void another_drive_latches(void **state)
     nt_session_close(session);
 }
 
+/* In air, on the way down, at first touch and at the set point: it lifts or goes on, and never digs in. */
+static void any_fault_at_any_time(void **state)
+{
+    (void)state;
+    static const long when[] = {1, 100, 400, 700, 1000, 2500};
+    double worst = HUGE_VAL, force = 0.0;
+    for (int how = DRIVE_GONE; how <= ABSURD; how++)
+        for (size_t i = 0; i < sizeof when / sizeof *when; i++) {
+            nt_problem problem = {0};
+            nt_session *session = spoil((spoilt)how, 1.0, when[i], &problem);
+            assert_non_null(session);
+            probe.deepest = HUGE_VAL;
+            run(session, records, TICKS);
+            for (long k = 0; k < TICKS; k++)
+                force = larger(force, fabs(records[k].slave_force));
+            worst = smaller(worst, probe.deepest);
+            const uint32_t ends = records[TICKS - 1].state;
+            assert_true(ends >= NT_RETRACT || how == INVALID_ONCE || how == DRIVE_DOUBLED || how == STUCK);
+            nt_session_close(session);
+        }
+    print_message("any fault: deepest gap %.2f nm, largest mean force %.0f nN\n", 1e9 * worst, 1e9 * force);
+    assert_true(worst > -4e-9);
+}
+
 static void a_free_amplitude_that_is_off_is_refused(void **state)
 {
     (void)state;
@@ -306,6 +332,7 @@ int main(void)
         cmocka_unit_test(a_fault_lifts_and_is_never_zero_force),
         cmocka_unit_test(a_dead_amplifier_is_found_on_the_way_down),
         cmocka_unit_test(another_drive_latches),
+        cmocka_unit_test(any_fault_at_any_time),
         cmocka_unit_test(a_free_amplitude_that_is_off_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,12 +14,13 @@ import numpy as np
 from nanotouch._arrays import Floats
 from nanotouch.errors import DeviceError, InvalidValue
 from nanotouch.scan.scanner import Channels, Image, Scan
+from nanotouch.touch._path import Mode
 from nanotouch.touch._play import BLOCK_TICKS, Columns, joined, played
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.operator import Input, core_input
 from nanotouch.touch.session import Session
 
-MODES = {"contact": "topography", "tapping": "tapping"}
+MODES: dict[str, Mode] = {"contact": "topography", "tapping": "tapping"}
 """of the session, for a mode of the z loop"""
 _SETTLE = 5.0  # time constants of the height servo before the first line
 
