@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Balance of six forces and torques as a minimum. With limits and directions held for a step, bristles have a convex
- * cost, whose gradient is their pull (Simo and Hughes 1998, return map as a minimum); with the energies of the contacts
- * it is a function of the motion that falls in each of Newton's steps, also through a jump. */
+ * Forces and torques of particles and tip as derivatives of one function. With limits and directions held for a step,
+ * bristles have a convex cost, whose gradient is their pull (Simo and Hughes 1998, return map as a minimum); with the
+ * energies of contacts and lever it is a function of the motion. */
 #include "manipulation/balance.h"
 
 #include <math.h>
@@ -10,16 +10,16 @@
 #include "manipulation/bristle.h"
 #include "manipulation/vector.h"
 
-#define ITERATIONS 5000
-#define FAINT 1e-13 /* [N]: bristles of a contact that is about to open have no scale of their own */
-#define HALVINGS 4
-#define DAMPING 1e-10 /* of all stiffnesses: least, and most */
-#define DAMPING_MAX 1e10
-#define EXACT 1e-11 /* of the forces' sizes: the particle's place, 1e-16 of R, times a contact's stiffness is 1e-12 */
-#define ENOUGH 1e-7 /* where the energy, 1e-16 of it, cannot show a smaller force */
+enum { LOCAL = 2 * FREEDOMS }; /* of a link: of its particle, then of the other body */
 
-/* Unit vector from the tip to the centre, and how deep they overlap; a cone's flank has one elevation. */
-static double tip_indentation(const nt_particle *particle, const double centre[3], const double tip[3], double n[3])
+void balance_count(balance *step)
+{
+    step->freedoms = FREEDOMS * step->particles;
+    for (int i = 0; i < 3; ++i)
+        step->tip_freedom[i] = step->lever[i] > 0.0 ? step->freedoms++ : -1;
+}
+
+double balance_tip_indentation(const nt_particle *particle, const double centre[3], const double tip[3], double n[3])
 {
     const double away[3] = {centre[0] - tip[0], centre[1] - tip[1], centre[2] - tip[2] - particle->tip_radius};
     const double distance = norm(away), sine = sin(particle->tip_half_angle), cosine = cos(particle->tip_half_angle);
@@ -35,255 +35,256 @@ static double tip_indentation(const nt_particle *particle, const double centre[3
     return particle->radius + particle->tip_radius - dot(away, n);
 }
 
-static nt_status contact_at(const nt_pushing *pushing, int which, int attached, double indentation, nt_law_value *value)
+nt_status balance_contact(const nt_particle_laws *laws, int attached, double indentation, nt_law_value *value)
 {
     const nt_branch branch = attached ? NT_BRANCH_STABLE : NT_BRANCH_APPROACH;
-    return nt_contact_law_eval(&pushing->laws[which].normal, indentation, branch, value);
+    return nt_contact_law_eval(&laws->normal, indentation, branch, value);
 }
 
-nt_status balance_contacts(const nt_pushing *pushing, nt_particle_state *state)
+/* How far a body moves, and turns. */
+static void motion_of(const balance *step, const double motion[], int body, double out[FREEDOMS])
 {
-    const nt_particle *particle = &pushing->particle;
-    const double depths[] = {particle->radius - state->position[2],
-                             tip_indentation(particle, state->position, state->tip, state->normal)};
-    nt_law_value rest = {0};
-    const nt_particle_laws *substrate = &pushing->laws[NT_AT_SUBSTRATE];
-    nt_status status = nt_contact_law_eval(&substrate->normal, substrate->rest_indentation, NT_BRANCH_STABLE, &rest);
-    state->stored = -rest.U;
-    for (int i = 0; i < NT_PARTICLE_CONTACTS && status == NT_OK; ++i) {
-        nt_law_value *contact = &state->contacts[i];
-        status = contact_at(pushing, i, state->attached[i], depths[i], contact);
-        state->attached[i] = contact->a > 0.0 || contact->F != 0.0;
-        state->stored += contact->U;
-        for (int j = 0; j < NT_BRISTLES; ++j)
-            state->stored += bristle_stored(&state->bristles[i][j]);
+    memset(out, 0, sizeof(double[FREEDOMS]));
+    if (body >= 0)
+        memcpy(out, motion + FREEDOMS * body, sizeof(double[FREEDOMS]));
+    for (int i = 0; i < 3 && body == BODY_TIP; ++i)
+        out[i] = step->tip_freedom[i] >= 0 ? motion[step->tip_freedom[i]] : step->base[i] - step->tip[i];
+}
+
+/* How motions of both bodies stretch a bristle: the surfaces against each other, or the turn of one against the other,
+ * across or along the normal. */
+static void stretch_of(const double n[3], int bristle, const double motion[LOCAL], double way[3])
+{
+    const double *of = motion, *other = motion + FREEDOMS;
+    double moved[3], turned[3];
+    for (int i = 0; i < 3; ++i) {
+        moved[i] = bristle == NT_SLIDING ? of[i] - other[i] : of[3 + i] - other[3 + i];
+        turned[i] = of[3 + i] + other[3 + i];
     }
-    return status;
-}
-
-/* How a motion stretches a bristle: the surface against the other body, or the turn across or along the normal. */
-static void stretch_of(const double n[3], int bristle, const double motion[FREEDOMS], double way[3])
-{
-    double moved[3];
-    memcpy(moved, motion + 3, sizeof moved);
     if (bristle == NT_SLIDING) {
-        cross(motion + 3, n, moved);
+        double rolled[3];
+        cross(turned, n, rolled);
         for (int i = 0; i < 3; ++i)
-            moved[i] = motion[i] - moved[i];
+            moved[i] -= rolled[i];
     }
     const double along = dot(moved, n);
     for (int i = 0; i < 3; ++i)
         way[i] = bristle == NT_SPINNING ? along * n[i] : moved[i] - along * n[i];
 }
 
-/* Adds a bristle's pull to the forces on the particle's freedoms. */
-static void add_pull(const double n[3], int bristle, const double pull[3], double gradient[FREEDOMS])
+/* Adds a force, and a torque over R, on the freedoms of a body; of the tip what it feels. */
+static void add_to(const balance *step, int body, int particle, const double force[3], const double torque[3],
+                   balance_value *value)
 {
-    double torque[3];
-    memcpy(torque, pull, sizeof torque);
-    if (bristle == NT_SLIDING)
-        cross(pull, n, torque);
-    for (int i = 0; i < 3; ++i) {
-        gradient[i] += bristle == NT_SLIDING ? pull[i] : 0.0;
-        gradient[3 + i] += torque[i];
+    for (int i = 0; i < 3 && body >= 0; ++i) {
+        value->gradient[FREEDOMS * body + i] += force[i];
+        value->gradient[FREEDOMS * body + 3 + i] += torque[i];
+    }
+    for (int i = 0; i < 3 && body == BODY_TIP; ++i) {
+        value->tip_shares[particle][i] -= force[i];
+        if (step->tip_freedom[i] >= 0)
+            value->gradient[step->tip_freedom[i]] += force[i];
     }
 }
 
-static void bristles_at(const balance *step, int which, const double motion[FREEDOMS], balance_value *value)
+/* Adds a bristle's pull to the forces on both bodies. */
+static void add_pull(const balance *step, const balance_link *link, int bristle, const double pull[3],
+                     balance_value *value)
 {
-    const double *n = step->normals[which];
+    const int slides = bristle == NT_SLIDING;
+    double torque[3], force[3], back[3], turn[3];
+    memcpy(torque, pull, sizeof torque);
+    if (slides)
+        cross(pull, link->normal, torque);
+    for (int i = 0; i < 3; ++i) {
+        force[i] = slides ? pull[i] : 0.0;
+        back[i] = -force[i];
+        turn[i] = slides ? torque[i] : -torque[i];
+    }
+    add_to(step, link->particle, link->particle, force, torque, value);
+    add_to(step, link->other, link->particle, back, turn, value);
+}
+
+static void local_motion(const balance *step, const balance_link *link, const double motion[], double local[LOCAL])
+{
+    motion_of(step, motion, link->particle, local);
+    motion_of(step, motion, link->other, local + FREEDOMS);
+}
+
+static void bristles_at(const balance *step, int which, const double motion[], balance_value *value)
+{
+    const balance_link *link = &step->link[which];
+    double local[LOCAL];
+    local_motion(step, link, motion, local);
     for (int j = 0; j < NT_BRISTLES; ++j) {
-        const nt_bristle *bristle = &step->from->bristles[which][j];
-        double *stretch = value->stretches[which][j], pull[3], relative[FREEDOMS];
-        memcpy(relative, motion, sizeof relative);
-        for (int i = 0; i < 3 && which == NT_AT_TIP; ++i)
-            relative[i] -= step->tip[i] - step->from->tip[i];
-        stretch_of(n, j, relative, stretch);
+        const nt_bristle *bristle = &link->bristles[j];
+        double *stretch = value->link[which].stretches[j], pull[3];
+        stretch_of(link->normal, j, local, stretch);
         if (!(bristle->stiffness > 0.0))
             continue;
         for (int i = 0; i < 3; ++i)
             stretch[i] += bristle->pull[i] / bristle->stiffness;
-        value->cost += bristle_cost(bristle, step->limits[which][j], stretch, pull);
+        value->cost += bristle_cost(bristle, link->limits[j], stretch, pull);
         value->scale += norm(pull);
-        add_pull(n, j, pull, value->gradient);
+        add_pull(step, link, j, pull, value);
     }
 }
 
-static nt_status value_at(const balance *step, const double motion[FREEDOMS], balance_value *value, double n[3])
+/* Unit vector from the other body to the particle, and how deep they overlap. */
+static double indentation_of(const balance *step, const balance_link *link, double (*centres)[3], const double tip[3],
+                             double n[3])
 {
-    const nt_particle *particle = &step->pushing->particle;
-    double centre[3];
-    memset(value, 0, sizeof *value);
+    const nt_particle *particle = step->particle;
+    const double *centre = centres[link->particle];
+    if (link->other == BODY_TIP)
+        return balance_tip_indentation(particle, centre, tip, n);
+    if (link->other == BODY_SUBSTRATE) {
+        n[0] = n[1] = 0.0;
+        n[2] = 1.0;
+        return particle->radius - centre[2];
+    }
+    const double *other = centres[link->other];
+    double away[3];
     for (int i = 0; i < 3; ++i)
-        centre[i] = step->from->position[i] + motion[i];
-    const double depths[] = {particle->radius - centre[2], tip_indentation(particle, centre, step->tip, n)};
-    for (int which = NT_AT_TIP; which >= NT_AT_SUBSTRATE; --which) {
-        nt_law_value *contact = &value->contacts[which];
-        const nt_status status = contact_at(step->pushing, which, step->attached[which], depths[which], contact);
+        away[i] = centre[i] - other[i];
+    const double distance = norm(away);
+    for (int i = 0; i < 3; ++i)
+        n[i] = distance > 0.0 ? away[i] / distance : (double)(i == 0);
+    return 2.0 * particle->radius - distance;
+}
+
+static nt_status add_link(const balance *step, int which, double (*centres)[3], const double motion[],
+                          balance_value *value)
+{
+    static const double none[3] = {0.0, 0.0, 0.0};
+    const balance_link *link = &step->link[which];
+    nt_law_value *contact = &value->link[which].contact;
+    double *n = value->link[which].normal, force[3], back[3];
+    const double indentation = indentation_of(step, link, centres, value->tip, n);
+    const nt_status status = balance_contact(link->laws, link->attached, indentation, contact);
+    if (status != NT_OK)
+        return status;
+    value->cost += contact->U;
+    value->scale += fabs(contact->F);
+    for (int i = 0; i < 3; ++i) {
+        force[i] = -contact->F * n[i];
+        back[i] = -force[i];
+    }
+    add_to(step, link->particle, link->particle, force, none, value);
+    add_to(step, link->other, link->particle, back, none, value);
+    bristles_at(step, which, motion, value);
+    return NT_OK;
+}
+
+static void begin(const balance *step, const double motion[], balance_value *value)
+{
+    double moved[FREEDOMS];
+    value->cost = value->scale = 0.0;
+    memset(value->gradient, 0, (size_t)step->freedoms * sizeof value->gradient[0]);
+    memset(value->tip_force, 0, sizeof value->tip_force);
+    memset(value->tip_shares, 0, sizeof value->tip_shares);
+    motion_of(step, motion, BODY_TIP, moved);
+    for (int i = 0; i < 3; ++i)
+        value->tip[i] = step->tip_freedom[i] >= 0 ? step->tip[i] + moved[i] : step->base[i];
+}
+
+nt_status balance_value_at(const balance *step, const double motion[], balance_value *value)
+{
+    double centres[NT_PARTICLES][3];
+    begin(step, motion, value);
+    for (int p = 0; p < step->particles; ++p)
+        for (int i = 0; i < 3; ++i)
+            centres[p][i] = step->from[p][i] + motion[FREEDOMS * p + i];
+    for (int which = 0; which < step->links; ++which) {
+        const nt_status status = add_link(step, which, centres, motion, value);
         if (status != NT_OK)
             return status;
-        value->cost += contact->U;
-        value->scale += fabs(contact->F);
-        for (int i = 0; i < 3; ++i)
-            value->gradient[i] -= contact->F * (which == NT_AT_TIP ? n[i] : (double)(i == 2));
-        bristles_at(step, which, motion, value);
-        if (which == NT_AT_TIP)
-            memcpy(value->tip_force, value->gradient, sizeof value->tip_force);
+    }
+    for (int i = 0; i < 3; ++i) {
+        for (int p = 0; p < step->particles; ++p)
+            value->tip_force[i] += value->tip_shares[p][i];
+        if (step->tip_freedom[i] < 0)
+            continue;
+        const double bent = value->tip[i] - step->base[i], pull = step->lever[i] * bent;
+        value->cost += 0.5 * pull * bent;
+        value->scale += fabs(pull);
+        value->gradient[step->tip_freedom[i]] += pull;
     }
     return NT_OK;
 }
 
-/* B^T D B of a bristle, B its stretch per unit of each freedom. */
-static void add_tangent(const balance *step, int which, int j, const balance_value *value,
-                        double hessian[FREEDOMS][FREEDOMS])
+/* The freedoms of a link: which of its own, and where in the motion. */
+typedef struct freedoms {
+    int count;
+    int local[LOCAL], place[LOCAL];
+} freedoms;
+
+static freedoms freedoms_of(const balance *step, const balance_link *link)
 {
-    const nt_bristle *bristle = &step->from->bristles[which][j];
-    const double *n = step->normals[which];
-    double projector[3][3], tangent[3][3], columns[FREEDOMS][3];
+    freedoms of = {0};
+    for (int i = 0; i < LOCAL; ++i) {
+        const int body = i < FREEDOMS ? link->particle : link->other, k = i % FREEDOMS;
+        const int place = body >= 0 ? FREEDOMS * body + k : body == BODY_TIP && k < 3 ? step->tip_freedom[k] : -1;
+        if (place < 0)
+            continue;
+        of.local[of.count] = i;
+        of.place[of.count++] = place;
+    }
+    return of;
+}
+
+/* B^T D B, B the columns of what moves per unit of each freedom; the lower half. */
+static void add_tangent(const balance_link *link, const freedoms *of, int j, double (*stretches)[3],
+                        balance_matrix hessian)
+{
+    const nt_bristle *bristle = &link->bristles[j];
+    const double *n = link->normal;
+    double projector[3][3], tangent[3][3], columns[LOCAL][3];
     if (!(bristle->stiffness > 0.0))
         return;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
             projector[i][k] = j == NT_SPINNING ? n[i] * n[k] : (double)(i == k) - n[i] * n[k];
-    bristle_tangent(bristle, step->limits[which][j], value->stretches[which][j], projector, tangent);
-    for (int i = 0; i < FREEDOMS; ++i) {
-        double unit[FREEDOMS] = {0};
-        unit[i] = 1.0;
+    bristle_tangent(bristle, link->limits[j], stretches[j], projector, tangent);
+    for (int i = 0; i < of->count; ++i) {
+        double unit[LOCAL] = {0};
+        unit[of->local[i]] = 1.0;
         stretch_of(n, j, unit, columns[i]);
     }
-    for (int i = 0; i < FREEDOMS; ++i)
-        for (int k = 0; k < FREEDOMS; ++k)
-            for (int m = 0; m < 3; ++m)
-                hessian[i][k] += columns[i][m] * dot(tangent[m], columns[k]);
-}
-
-/* Positive: a law's negative stiffness counts by its size, so that each step goes down. */
-static void hessian_at(const balance *step, const balance_value *value, const double n[3],
-                       double hessian[FREEDOMS][FREEDOMS])
-{
-    const double up[3] = {0.0, 0.0, 1.0};
-    memset(hessian, 0, sizeof(double[FREEDOMS][FREEDOMS]));
-    for (int which = 0; which < NT_PARTICLE_CONTACTS; ++which) {
-        const nt_law_value *contact = &value->contacts[which];
-        const double least = 1e-3 * step->pushing->laws[which].normal.maugis.contact.effective_modulus * contact->a;
-        const double k = fmax(fabs(contact->k), least), *along = which == NT_AT_TIP ? n : up;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                hessian[i][j] += k * along[i] * along[j];
-        for (int j = 0; j < NT_BRISTLES; ++j)
-            add_tangent(step, which, j, value, hessian);
+    for (int k = 0; k < of->count; ++k) {
+        const double pulled[3] = {dot(tangent[0], columns[k]), dot(tangent[1], columns[k]),
+                                  dot(tangent[2], columns[k])};
+        for (int i = 0; i < of->count; ++i)
+            if (of->place[k] <= of->place[i])
+                hessian[of->place[i]][of->place[k]] += dot(columns[i], pulled);
     }
 }
 
-/* x = -(H + damping tr(H))^-1 g by Cholesky; 0 where that is not positive. */
-static int solve(double hessian[FREEDOMS][FREEDOMS], double damping, const double g[FREEDOMS], double x[FREEDOMS])
+static void add_normal(const balance_link *link, const freedoms *of, const balance_link_value *value,
+                       balance_matrix hessian)
 {
-    double h[FREEDOMS][FREEDOMS], trace = 0.0;
-    memcpy(h, hessian, sizeof h);
-    for (int i = 0; i < FREEDOMS; ++i)
-        trace += h[i][i];
-    for (int i = 0; i < FREEDOMS; ++i)
-        h[i][i] += damping * trace;
-    for (int i = 0; i < FREEDOMS; ++i)
-        for (int j = 0; j <= i; ++j) {
-            double sum = h[i][j];
-            for (int k = 0; k < j; ++k)
-                sum -= h[i][k] * h[j][k];
-            if (i == j && !(sum > 0.0))
-                return 0;
-            h[i][j] = i == j ? sqrt(sum) : sum / h[j][j];
+    const double least = 1e-3 * link->laws->normal.maugis.contact.effective_modulus * value->contact.a;
+    const double k = fmax(fabs(value->contact.k), least);
+    for (int i = 0; i < of->count; ++i)
+        for (int j = 0; j < of->count; ++j) {
+            const int a = of->local[i], b = of->local[j];
+            if (a % FREEDOMS < 3 && b % FREEDOMS < 3 && of->place[j] <= of->place[i])
+                hessian[of->place[i]][of->place[j]] +=
+                    (a / FREEDOMS == b / FREEDOMS ? k : -k) * value->normal[a % FREEDOMS] * value->normal[b % FREEDOMS];
         }
-    for (int i = 0; i < FREEDOMS; ++i) {
-        x[i] = -g[i];
-        for (int k = 0; k < i; ++k)
-            x[i] -= h[i][k] * x[k];
-        x[i] /= h[i][i];
-    }
-    for (int i = FREEDOMS - 1; i >= 0; --i) {
-        for (int k = i + 1; k < FREEDOMS; ++k)
-            x[i] -= h[k][i] * x[k];
-        x[i] /= h[i][i];
-    }
-    return 1;
 }
 
-static double largest(const double gradient[FREEDOMS])
+void balance_hessian(const balance *step, const balance_value *value, balance_matrix hessian)
 {
-    double most = 0.0;
-    for (int i = 0; i < FREEDOMS; ++i)
-        most = fmax(most, fabs(gradient[i]));
-    return most;
-}
-
-/* What the forces need not be closer to 0 than: places are known to 1e-16 of R, a motion to 1e-16 of it; and 1 aN. */
-static double finest(const balance *step, const double motion[FREEDOMS], const balance_value *value)
-{
-    double rounding = 0.0;
-    for (int i = 0; i < NT_PARTICLE_CONTACTS; ++i) {
-        rounding += step->pushing->particle.radius * fabs(value->contacts[i].k);
+    for (int i = 0; i < step->freedoms; ++i)
+        memset(hessian[i], 0, (size_t)step->freedoms * sizeof hessian[i][0]);
+    for (int which = 0; which < step->links; ++which) {
+        const freedoms of = freedoms_of(step, &step->link[which]);
+        add_normal(&step->link[which], &of, &value->link[which], hessian);
         for (int j = 0; j < NT_BRISTLES; ++j)
-            rounding += largest(motion) * step->from->bristles[i][j].stiffness;
+            add_tangent(&step->link[which], &of, j, (double (*)[3])value->link[which].stretches, hessian);
     }
-    return 4e-15 * rounding + 1e-18;
-}
-
-/* Along Newton's direction until the cost has fallen. 0: it does not. */
-static int go_down(const balance *step, double motion[FREEDOMS], const double direction[FREEDOMS], balance_value *value,
-                   double n[3])
-{
-    const nt_particle *particle = &step->pushing->particle;
-    const double reach = 0.05 * fmin(particle->radius, particle->tip_radius); /* not through the tip */
-    double slope = 0.0, share = 1.0;
-    if (!(norm(direction) <= reach))
-        return 0;
-    for (int i = 0; i < FREEDOMS; ++i)
-        slope += value->gradient[i] * direction[i];
-    for (int tries = 0; tries < HALVINGS; ++tries, share *= 0.5) {
-        double to[FREEDOMS], there[3];
-        balance_value found;
-        for (int i = 0; i < FREEDOMS; ++i)
-            to[i] = motion[i] + share * direction[i];
-        if (value_at(step, to, &found, there) != NT_OK)
-            continue;
-        const double size = fabs(found.contacts[0].U) + fabs(found.contacts[1].U);
-        const double rounding = 1e-15 * (size + found.scale * particle->radius);
-        const int closer = largest(found.gradient) < 0.9 * largest(value->gradient);
-        if (found.cost <= value->cost + 1e-4 * share * slope || (closer && found.cost <= value->cost + rounding)) {
-            memcpy(motion, to, sizeof to);
-            memcpy(n, there, sizeof there);
-            *value = found;
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* Newton's step, and if it does not go down, a shorter and steeper one (Levenberg). 0: none does. */
-static int improve(balance *step, double motion[FREEDOMS], balance_value *value, double n[3], double *damping)
-{
-    double hessian[FREEDOMS][FREEDOMS], direction[FREEDOMS];
-    hessian_at(step, value, n, hessian);
-    for (*damping = fmax(*damping / 100.0, DAMPING); *damping < DAMPING_MAX; *damping *= 4.0)
-        if (solve(hessian, *damping, value->gradient, direction) && go_down(step, motion, direction, value, n))
-            return 1;
-    return 0;
-}
-
-nt_status balance_find(balance *step, double motion[FREEDOMS], balance_value *value)
-{
-    double n[3], damping = DAMPING;
-    memset(motion, 0, sizeof(double[FREEDOMS]));
-    const nt_status status = value_at(step, motion, value, n);
-    if (status != NT_OK)
-        return status;
-    for (int i = 0; i < ITERATIONS; ++i) {
-        if (largest(value->gradient) <= EXACT * value->scale + finest(step, motion, value))
-            return NT_OK;
-        if (!improve(step, motion, value, n, &damping))
-            break;
-        for (int which = 0; which < NT_PARTICLE_CONTACTS; ++which)
-            step->attached[which] |= value->contacts[which].a > 0.0;
-    }
-    const double enough = ENOUGH * value->scale + finest(step, motion, value) + FAINT;
-    return largest(value->gradient) <= enough ? NT_OK : NT_E_NO_CONVERGENCE;
+    for (int i = 0; i < 3; ++i)
+        if (step->tip_freedom[i] >= 0)
+            hessian[step->tip_freedom[i]][step->tip_freedom[i]] += step->lever[i];
 }

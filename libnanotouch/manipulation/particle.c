@@ -2,9 +2,10 @@
  * A particle as it is described, its contacts made ready, and the particle at rest: see particle.h. */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "core/problem.h"
-#include "manipulation/balance.h"
+#include "manipulation/set.h"
 #include "nanotouch/material.h"
 
 /* For the dotted names. */
@@ -15,23 +16,13 @@ struct described {
 _Static_assert(sizeof(struct described) == sizeof(nt_particle), "the names are those of the fields");
 
 #define FIELD(path, ...) NT_FIELD(struct described, path, __VA_ARGS__)
-#define CONTACT(side, of)                                                                                              \
-    FIELD(side.model, "hertz|dmt|jkr|maugis", 0.0, 3.0, "contact law " of),                                            \
-        FIELD(side.effective_modulus, "Pa", 1e2, 1e13, "E* " of),                                                      \
-        FIELD(side.work_of_adhesion, "J/m^2", 0.0, 10.0, "w " of),                                                     \
-        FIELD(side.cohesive_stress, "Pa", 0.0, 1e12, "sigma0 " of ", for maugis"),                                     \
-        FIELD(side.effective_shear_modulus, "Pa", 1.0, 1e13, "G* " of ", 1/G* = sum of (2 - nu)/G"),                   \
-        FIELD(side.shear_strength, "Pa", 0.0, 1e12, "tau " of ", friction per contact area"),                          \
-        FIELD(side.coefficient, "", 0.0, 100.0, "alpha " of ", friction per load inside the contact"),                 \
-        FIELD(side.rolling_distance, "m", 0.0, 1e-3, "xi " of ", way that it rolls before it gives way")
-
 static const nt_field particle_fields[] = {
     FIELD(radius, "m", 1e-9, 1e-3, "R of the particle"),
     FIELD(tip_radius, "m", 1e-9, 1e-3, "of the tip where it touches"),
     FIELD(tip_half_angle, "rad", 0.0, 1.5, "psi of the tip's cone"),
     FIELD(step, "m", 1e-13, 1e-6, "largest step of the tip"),
-    CONTACT(substrate, "with the substrate"),
-    CONTACT(tip, "with the tip"),
+    PARTICLE_CONTACT(struct described, substrate, "with the substrate"),
+    PARTICLE_CONTACT(struct described, tip, "with the tip"),
 };
 
 enum { PARTICLE_FIELDS = (int)(sizeof particle_fields / sizeof particle_fields[0]) };
@@ -79,6 +70,13 @@ static nt_status check_adhesion(const nt_particle_contact *contact, double radiu
     return nt_problem_set(problem, name, "J/m^2", contact->work_of_adhesion, 0.0, most);
 }
 
+nt_status particle_check_contact(const nt_particle_contact *contact, double radius, const char *const names[2],
+                                 nt_problem *problem)
+{
+    const nt_status status = check_shear(contact, names[0], problem);
+    return status == NT_OK ? check_adhesion(contact, radius, names[1], problem) : status;
+}
+
 static double reduced_radius(const nt_particle *particle, int which)
 {
     const double R = particle->radius, r = particle->tip_radius;
@@ -90,47 +88,9 @@ nt_status nt_particle_check(const nt_particle *particle, nt_problem *problem)
     static const char *const names[][2] = {{"substrate.effective_shear_modulus", "substrate.work_of_adhesion"},
                                            {"tip.effective_shear_modulus", "tip.work_of_adhesion"}};
     nt_status status = nt_field_check(particle_fields, PARTICLE_FIELDS, particle, problem);
-    for (int i = 0; i < NT_PARTICLE_CONTACTS && status == NT_OK; ++i) {
-        status = check_shear(&particle->contacts[i], names[i][0], problem);
-        if (status == NT_OK)
-            status = check_adhesion(&particle->contacts[i], reduced_radius(particle, i), names[i][1], problem);
-    }
+    for (int i = 0; i < NT_PARTICLE_CONTACTS && status == NT_OK; ++i)
+        status = particle_check_contact(&particle->contacts[i], reduced_radius(particle, i), names[i], problem);
     return status;
-}
-
-static nt_status rest(nt_particle_laws *laws)
-{
-    const nt_contact *contact = &laws->normal.maugis.contact;
-    nt_law_value value = {0};
-    nt_status status = NT_OK;
-    laws->rest_indentation = 0.0;
-    if (laws->normal.model == NT_DMT)
-        laws->rest_indentation = nt_dmt_indentation(contact, 0.0);
-    else if (laws->normal.model == NT_JKR)
-        status = nt_jkr_indentation(contact, 0.0, NT_BRANCH_STABLE, &laws->rest_indentation);
-    else if (laws->normal.model == NT_MAUGIS)
-        status = nt_maugis_indentation(&laws->normal.maugis, 0.0, NT_BRANCH_STABLE, &laws->rest_indentation, NULL);
-    if (status == NT_OK)
-        status = nt_contact_law_eval(&laws->normal, laws->rest_indentation, NT_BRANCH_STABLE, &value);
-    laws->rest_radius = value.a;
-    return status;
-}
-
-static nt_status init_contact(nt_particle_laws *laws, const nt_particle_contact *given, double radius)
-{
-    const double compliance = 1.0 / given->effective_shear_modulus - 2.0 / given->effective_modulus;
-    *laws = (nt_particle_laws){
-        .friction = {given->effective_shear_modulus, 0.0, given->shear_strength, given->coefficient},
-        .torsion_modulus = 1.0 / compliance, /* (2 - nu)/G - (1 - nu)/G = 1/G, summed over both bodies */
-        .reduced_radius = radius,
-        .rolling_distance = given->rolling_distance,
-    };
-    const nt_contact contact = {radius, given->effective_modulus, given->work_of_adhesion, given->cohesive_stress};
-    nt_status status = nt_contact_law_init(&laws->normal, (nt_model)given->model, &contact);
-    if (status != NT_OK)
-        return status;
-    laws->pull_off = nt_contact_law_pull_off_force(&laws->normal);
-    return rest(laws);
 }
 
 nt_status nt_pushing_init(nt_pushing *pushing, const nt_particle *particle, nt_problem *problem)
@@ -141,7 +101,7 @@ nt_status nt_pushing_init(nt_pushing *pushing, const nt_particle *particle, nt_p
         return status;
     const char *names[] = {"substrate.cohesive_stress", "tip.cohesive_stress"};
     for (int i = 0; i < NT_PARTICLE_CONTACTS; ++i) {
-        status = init_contact(&made.laws[i], &particle->contacts[i], reduced_radius(particle, i));
+        status = particle_laws(&made.laws[i], &particle->contacts[i], reduced_radius(particle, i));
         if (status != NT_OK) /* all else has been checked */
             return nt_problem_set(problem, names[i], "Pa", particle->contacts[i].cohesive_stress, 1e-3, 1e12);
     }
@@ -149,23 +109,70 @@ nt_status nt_pushing_init(nt_pushing *pushing, const nt_particle *particle, nt_p
     return NT_OK;
 }
 
+nt_particle_state particle_at_rest(const nt_pushing *pushing, double x, double y)
+{
+    const nt_particle_laws *substrate = &pushing->laws[NT_AT_SUBSTRATE];
+    return (nt_particle_state){.position = {x, y, pushing->particle.radius - substrate->rest_indentation},
+                               .attached = {1, 0},
+                               .modes = NT_PARTICLE_APART};
+}
+
+/* As a set of one under a tip that is held. */
+static nt_particles_state set_of(const nt_particle_state *state)
+{
+    nt_particles_state set = {.count = 1,
+                              .particles = {*state},
+                              .stored = state->stored,
+                              .dissipated = state->dissipated,
+                              .work = state->work};
+    memcpy(set.base, state->tip, sizeof set.base);
+    memcpy(set.tip, state->tip, sizeof set.tip);
+    memcpy(set.force, state->force, sizeof set.force);
+    return set;
+}
+
+static nt_particle_state state_of(const nt_particles_state *set)
+{
+    nt_particle_state state = set->particles[0];
+    state.stored = set->stored;
+    state.dissipated = set->dissipated;
+    state.work = set->work;
+    return state;
+}
+
 nt_status nt_particle_place(const nt_pushing *pushing, double x, double y, const double tip[3],
                             nt_particle_state *state)
 {
-    const nt_particle_laws *substrate = &pushing->laws[NT_AT_SUBSTRATE];
-    nt_particle_state made = {.position = {x, y, pushing->particle.radius - substrate->rest_indentation},
-                              .tip = {tip[0], tip[1], tip[2]},
-                              .attached = {1, 0}};
-    if (!isfinite(x) || !isfinite(y) || !isfinite(tip[0]) || !isfinite(tip[1]) || !isfinite(tip[2]))
-        return NT_E_NOT_FINITE;
-    if (tip[2] < 0.0)
+    const nt_particles alone = {.pushing = *pushing};
+    nt_particles_state set;
+    nt_status status = nt_particles_begin(&alone, tip, &set);
+    if (status == NT_OK)
+        status = nt_particles_lay(&alone, &set, 0, (double[2]){x, y});
+    if (status == NT_E_STATE)
         return NT_E_RANGE;
-    nt_status status = balance_contacts(pushing, &made);
-    if (status == NT_OK && made.attached[NT_AT_TIP])
-        status = NT_E_RANGE;
-    if (status != NT_OK)
-        return status;
-    made.modes = NT_PARTICLE_APART;
-    *state = made;
+    if (status == NT_OK)
+        *state = state_of(&set);
+    return status;
+}
+
+nt_status nt_particle_advance(const nt_pushing *pushing, nt_particle_state *state, const double tip[3])
+{
+    const nt_particles alone = {.pushing = *pushing};
+    nt_particles_state set = set_of(state);
+    const nt_status status = nt_particles_advance(&alone, &set, tip);
+    if (status == NT_OK)
+        *state = state_of(&set);
+    return status;
+}
+
+nt_status nt_particle_run_n(const nt_pushing *pushing, nt_particle_state *state, const double (*tips)[3],
+                            nt_particle_state *states, long count)
+{
+    for (long i = 0; i < count; ++i) {
+        const nt_status status = nt_particle_advance(pushing, state, tips[i]);
+        if (status != NT_OK)
+            return status;
+        states[i] = *state;
+    }
     return NT_OK;
 }

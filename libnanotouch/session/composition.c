@@ -18,7 +18,7 @@ nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *
     if (!(composition->setup.minimum_margin > 0.0) && judged.control.choice == NT_CONTROL_OWN)
         judged.control.law = NULL;
     const nt_rig *rig = &composition->touch.rig;
-    const double stiffness = nt_terrain_plan(composition->terrain)->maximum_stiffness;
+    const double stiffness = nt_composition_stiffness(composition);
     judged.gains.alpha_f *= nt_margins_projected(rig, settings, stiffness, &composition->grip);
     const nt_verdict along_z = nt_margins_judge(rig, &judged, stiffness, mode, margins);
     if (mode != NT_MODE_TOUCH || !composition->touch.feels_sideways || !rig->master.motor)
@@ -38,14 +38,21 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
 {
     const nt_session_setup *setup = &made->setup;
     if (setup->rig.probe.lateral_stiffness > 0.0)
-        made->grip = nt_grip_of(nt_terrain_plan(made->terrain), made->reach.slope, setup->settings.limits.force);
+        made->grip =
+            nt_grip_of(nt_terrain_plan(made->terrain), nt_composition_slope(made), setup->settings.limits.force);
     const nt_verdict verdict = nt_composition_judge(made, &setup->settings, setup->mode);
     if (!nt_composition_allows(made, verdict.margin))
         return nt_problem_set(problem, verdict.field, "", verdict.margin, setup->minimum_margin, INFINITY);
     const nt_plan *plan = nt_terrain_plan(made->terrain);
     const double clearance = setup->preflight ? setup->clearance : HUGE_VAL;
-    const nt_hazard hazard = nt_hazard_of(plan, &setup->rig, &setup->settings, made->reach.slope, clearance);
+    nt_hazard hazard = nt_hazard_of(plan, &setup->rig, &setup->settings, nt_composition_slope(made), clearance);
+    nt_composition_add_particles(made, &hazard);
     made->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
+    if (made->pushes) { /* sideways they give way: no slope does */
+        hazard.slope = made->reach.slope;
+        made->guarantee.lateral_force = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard).lateral_force +
+                                        nt_composition_resistance(made, made->guarantee.force);
+    }
     return NT_OK;
 }
 
@@ -125,6 +132,33 @@ static int keeps_terrain(const nt_session_setup *setup, const nt_composition *be
            has_same_scene(setup, &before->setup);
 }
 
+/* Those of the first one stay. */
+static nt_status take_particles(nt_composition *made, const nt_composition *before, nt_problem *problem)
+{
+    const nt_session_setup *setup = &made->setup;
+    if (before) {
+        made->pushes = before->pushes;
+        made->particles = before->particles;
+        return NT_OK;
+    }
+    if (!setup->particles)
+        return NT_OK;
+    const nt_surface *surface = nt_terrain_surface(made->terrain);
+    const nt_particle *particle = &setup->particles->pushing.particle;
+    const double R = setup->scene.tip.radius, psi = setup->scene.tip.half_angle;
+    made->pushes = 1;
+    made->particles = *setup->particles;
+    if (surface && (surface->height_minimum != 0.0 || surface->height_maximum != 0.0))
+        return nt_problem_set(problem, "surface (particles lie on a flat)", "m",
+                              surface->height_maximum - surface->height_minimum, 0.0, 0.0);
+    if (particle->tip_radius != R)
+        return nt_problem_set(problem, "particles.tip_radius (that of the scene)", "m", particle->tip_radius, R, R);
+    if (particle->tip_half_angle != psi)
+        return nt_problem_set(problem, "particles.tip_half_angle (that of the scene)", "rad", particle->tip_half_angle,
+                              psi, psi);
+    return NT_OK;
+}
+
 nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const nt_composition *before,
                      nt_problem *problem)
 {
@@ -138,6 +172,8 @@ nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const
     else if (status == NT_OK)
         status = make_terrain(next, before, problem);
     next->ground = before ? before->ground : next->terrain;
+    if (status == NT_OK)
+        status = take_particles(next, before, problem);
     if (status == NT_OK)
         set_borders(next);
     if (before)

@@ -55,7 +55,8 @@ static nt_sim_setup sim_setup_of(const nt_session *session)
                           .delay = setup->settings.gains.delay,
                           .probe_model = setup->probe_model,
                           .substep = setup->substep,
-                          .faults = setup->faults};
+                          .faults = setup->faults,
+                          .particles = session->now->pushes ? &session->now->particles : NULL};
 }
 
 /* The one that the setup names, or a simulated one. */

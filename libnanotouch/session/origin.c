@@ -18,6 +18,7 @@ static const nt_field origin_fields[] = {
     FIELD(preflight, "no|yes", "before the first tick"),
     FIELD(path, "", "check sum of its points"),
     FIELD(faults, "", "check sum of those from switching on"),
+    FIELD(particles, "", "check sum of what they are like"),
 };
 
 /* FNV-1a over the bytes of numbers. */
@@ -45,6 +46,25 @@ static double check_sum_of_faults(const nt_faults *faults)
     return sum;
 }
 
+static double check_sum_of_particles(const nt_particles *particles)
+{
+    if (!particles)
+        return 0.0;
+    const nt_particle_contact *contacts[] = {&particles->pushing.particle.contacts[NT_AT_SUBSTRATE],
+                                             &particles->pushing.particle.contacts[NT_AT_TIP], &particles->between};
+    const nt_particle *of = &particles->pushing.particle;
+    const double own[] = {of->radius, of->tip_radius, of->tip_half_angle, of->step};
+    double sum = check_sum(2166136261.0, own, 4);
+    for (int i = 0; i < 3; ++i) {
+        const nt_particle_contact *c = contacts[i];
+        const double numbers[] = {c->model,           c->effective_modulus,       c->work_of_adhesion,
+                                  c->cohesive_stress, c->effective_shear_modulus, c->shear_strength,
+                                  c->coefficient,     c->rolling_distance};
+        sum = check_sum(sum, numbers, 8);
+    }
+    return sum;
+}
+
 nt_origin nt_origin_of(const nt_session_setup *setup)
 {
     return (nt_origin){.seed = setup->seed,
@@ -58,7 +78,8 @@ nt_origin nt_origin_of(const nt_session_setup *setup)
                        .substep = setup->substep,
                        .preflight = setup->preflight != 0,
                        .path = check_sum(2166136261.0, setup->path, setup->path ? 2 * setup->path_count : 0),
-                       .faults = check_sum_of_faults(setup->faults)};
+                       .faults = check_sum_of_faults(setup->faults),
+                       .particles = check_sum_of_particles(setup->particles)};
 }
 
 static nt_status differ(nt_problem *problem, const char *field, const char *unit, double kept, double own)

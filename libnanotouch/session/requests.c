@@ -45,6 +45,15 @@ static void aim_hand(nt_session *session, const double value[4])
     nt_sim_aim_hand(&session->sim.master, &target);
 }
 
+static nt_status lay(nt_session *session, const nt_event *event)
+{
+    const int number = event->field < NT_PARTICLES ? (int)event->field : NT_PARTICLES;
+    const nt_status status = nt_sim_lay(&session->sim.slave, number, event->value);
+    if (status == NT_OK)
+        nt_session_show_particles(session);
+    return status;
+}
+
 static nt_status apply_event(nt_session *session, const nt_event *event)
 {
     nt_touch_state *state = &session->touch_state;
@@ -73,9 +82,12 @@ static nt_status apply_event(nt_session *session, const nt_event *event)
         return NT_OK; /* the swap is all */
     case NT_EVENT_UNDENT:
         return nt_dents_undo(&session->sim.slave.dents) ? NT_OK : NT_E_STATE;
+    case NT_EVENT_LAY:
+        return lay(session, event);
     case NT_EVENT_REWIND:
     case NT_EVENT_INDEX:
     case NT_EVENT_DENT:
+    case NT_EVENT_PUSHED:
     case NT_EVENT_KINDS:
         break;
     }

@@ -200,8 +200,14 @@ static nt_status run_tick(nt_session *session, nt_record *record)
     nt_status kept = keep(session, record);
     if (kept == NT_OK)
         kept = nt_session_write(session, tick, &command);
-    return kept == NT_OK && session->simulates[NT_HALF_SLAVE] && session->sim.slave.left > 0 ? keep_dents(session)
-                                                                                             : kept;
+    if (kept != NT_OK || !session->simulates[NT_HALF_SLAVE])
+        return kept;
+    const nt_sim_slave *slave = &session->sim.slave;
+    if (slave->pushed.state.count > 0)
+        nt_session_show_particles(session);
+    if (slave->pushed.left != 0u)
+        return nt_session_keep_pushed(session);
+    return slave->left > 0 ? keep_dents(session) : NT_OK;
 }
 
 nt_status nt_session_tick(nt_session *session)

@@ -31,6 +31,7 @@ static nt_status make_rings(nt_session *session, const nt_session_setup *setup)
         (setup->ring_capacity > 0 && !session->records))
         return NT_E_NO_MEMORY;
     nt_mailbox_init(&session->mailbox, session->mailbox_memory, sizeof(nt_input));
+    nt_mailbox_init(&session->shown, session->shown_memory, sizeof(nt_session_particles));
     nt_status status = nt_ring_init(&session->events, session->event_memory, sizeof(nt_event), NT_SESSION_EVENTS);
     if (status == NT_OK)
         status = nt_ring_init(&session->calls, session->call_memory, sizeof(nt_call), NT_SESSION_CALLS);
@@ -57,6 +58,8 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
     session->touch_state = nt_touch_start(&session->now->touch, session->master_start, setup->x, setup->y);
     session->comes_back = !session->simulates[NT_HALF_MASTER];
     session->origin = nt_origin_of(setup);
+    if (session->now->pushes)
+        nt_session_show_particles(session);
     session->opened = nt_clock_now();
     session->master_travel = setup->rig.master.travel;
     session->master_axes = setup->rig.master.axes;

@@ -18,6 +18,8 @@ typedef struct nt_composition {
     nt_terrain *ground;  /* the first one, which owns the surface of all that follow */
     nt_reach reach;
     nt_sideways_contact grip;
+    int pushes; /* 1: there may be particles */
+    nt_particles particles;
     nt_margins margins;
     nt_sideways_margins sideways;
     nt_guarantee guarantee;
@@ -65,6 +67,9 @@ struct nt_session {
     atomic_ullong dropped;
     nt_mailbox mailbox;
     nt_input mailbox_memory[3];
+    nt_mailbox shown; /* particles, for who asks */
+    nt_session_particles shown_memory[3];
+    nt_session_particles newest; /* of who asks */
     nt_ring ring, events, calls, clients;
     nt_record *records; /* NULL: nothing is recorded */
     nt_record unkept;   /* the last one that had no place in the ring */
@@ -107,6 +112,20 @@ void nt_composition_close(nt_composition *composition, const nt_composition *oth
 int nt_composition_allows(const nt_composition *composition, double margin);
 /* Of these settings in a mode at the stiffest contact of the plan: margins and sideways. */
 nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *settings, nt_mode mode);
+
+/* --- pushing.c --- */
+
+/* What is stiffest of sample and particles [N/m]. */
+double nt_composition_stiffness(const nt_composition *composition);
+/* The steepest slope, that of particles too [-]. */
+double nt_composition_slope(const nt_composition *composition);
+/* What particles add to what the sample may do. */
+void nt_composition_add_particles(const nt_composition *composition, nt_hazard *hazard);
+/* What they resist a push sideways with, under a load [N]; 0 where there are none. */
+double nt_composition_resistance(const nt_composition *composition, double load);
+void nt_session_show_particles(nt_session *session);
+/* Those that the tip has left elsewhere in this period. */
+nt_status nt_session_keep_pushed(nt_session *session);
 
 /* --- halves.c --- */
 

@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "python"))
 
-from nanotouch.manipulation import Bench, Pushed, push
+from nanotouch.manipulation import Bench, Particles, Pushed, push
 from nanotouch.manipulation.pushing import Operator, World, world_of
 from test_manipulation_push import latex
 
@@ -51,7 +51,7 @@ class Naive(Operator):
 def naive(seed: int) -> Pushed:
     """The same task."""
     particle = latex()
-    world = world_of(Imaged, particle, Bench(), (0.0, 0.0), seed)
+    world = world_of(Imaged, Particles(particle), Bench(), [(0.0, 0.0)], seed)
     return Naive(world, np.zeros(2), np.array((5e-6, 0.0)), 0.5 * particle.radius).work((0.0, 0.0), 30e-9, 200)
 
 

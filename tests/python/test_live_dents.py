@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A sample that keeps dents in the live view: the drawn law beside the session's frames, the section beside Hertz, the
-surface as it was edited, undo and rewind; balls of a task that the tip pushes."""
+surface as it was edited, undo and rewind."""
 
 from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import Any, cast
 
-import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import plasticity
@@ -19,7 +18,6 @@ from nanotouch_app.live.seen import Seen
 from nanotouch_app.live.subject import PRESETS, felt, of_preset
 from nanotouch_app.training import named
 from nanotouch_app.training.ideal import Operator
-from nanotouch_app.training.push import Push, Pushed
 
 GOLD = plasticity.Indentation(30e-9, 77e9, 0.35e9)
 
@@ -207,59 +205,6 @@ def test_each_task_of_the_menu_has_a_key() -> None:
     from nanotouch_app.live.window import FUNCTION_KEYS  # it loads VTK
 
     assert len(FUNCTION_KEYS) >= len(board.MENU)
-
-
-def test_a_ball_that_is_pushed_beside_its_middle_turns_away() -> None:
-    particle = nt.manipulation.latex(500e-9, 50e-9)
-    for aside in (0.0, 100e-9):
-        ball = Pushed(particle, np.zeros(2))
-        x = np.arange(-1.2e-6, 0.3e-6, 4e-9)
-        event = ball.follow(np.stack([x, np.full_like(x, aside), np.full_like(x, 20e-9)], axis=1))
-        assert (event, ball.touched) == ("snap", True)
-        assert (abs(ball.place[1]) > 50e-9) == (aside > 0.0)
-        assert ball.follow(np.array([[-0.5e-6, 0.0, 20e-9]])) == "tear"
-        assert ball.losses == 1
-
-
-def test_a_ball_that_is_nowhere_near_its_ring_does_not_pass() -> None:
-    watched = Watched("latex_on_glass")
-    watched.advance(0.05)
-    watched.answer({"do": "task", "name": "push", "seed": 1})
-    assert watched.host.trainer is not None
-    exercise = watched.host.trainer.exercise
-    assert isinstance(exercise, Push)
-    exercise.particles[0].touched = True
-    watched.answer({"do": "choose", "number": 0})
-    assert "take the tip away" in watched.told[-1]["why"]
-    exercise.particles[0].touched = False
-    watched.answer({"do": "choose", "number": 0})
-    result = watched.host.trainer.result
-    watched.host.close()
-    assert result is not None
-    assert (result.passed, result.score) == (False, 0.0)
-    assert result.figures["largest error"][0] == pytest.approx(2e-6, rel=1e-6)
-
-
-def test_a_tip_that_presses_on_the_glass_or_begins_inside_a_ball_ends_no_session() -> None:
-    watched = Watched("latex_on_glass")
-    watched.advance(0.05)
-    frame = watched.observer.newest()
-    watched.answer({"do": "move", "way": (0.35 * 10e-6 - float(frame["tip_position"][0]), 0.0, 0.0)})
-    watched.advance(0.5)
-    watched.answer({"do": "task", "name": "push", "seed": 1})
-    watched.answer({"do": "press", "on": True})
-    watched.advance(1.0)
-    assert watched.host.trainer is not None
-    exercise = watched.host.trainer.exercise
-    assert isinstance(exercise, Push)
-    before = exercise.particles[0].place.copy()
-    watched.advance(0.5)
-    np.testing.assert_array_equal(exercise.particles[0].place, before)
-    watched.answer({"do": "press", "on": False})
-    watched.answer({"do": "move", "way": (2e-6, 0.0, 0.0)})
-    watched.advance(1.0)
-    assert np.isfinite(exercise.particles[0].place).all()
-    watched.host.close()
 
 
 def test_another_tip_lays_a_fresh_sample(watched: Watched) -> None:

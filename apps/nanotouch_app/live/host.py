@@ -22,7 +22,7 @@ from nanotouch.touch.session import settings_for_path
 
 from nanotouch_app.live import files, places, refusals
 from nanotouch_app.live.hand import Hand, felt_scale, rig_of, settings_of
-from nanotouch_app.live.left import Left, keeps
+from nanotouch_app.live.left import Left, Pushes, keeps
 from nanotouch_app.live.remote import Lease
 from nanotouch_app.live.subject import Subject, of_preset
 from nanotouch_app.live.tasks import Tasks
@@ -75,7 +75,8 @@ class Host(Tasks):
         self.session = nt.Session(
             self.scene, rig_of(self.rig, settings, extent, way_down), surface=surface, settings=settings, mode="scan",
             path=[middle, (0.6 * width, 0.5 * height)], clearance=self.subject.clearance(),
-            recorded=self.out is not None or keeps(self.scene), relative_accuracy=self.subject.accuracy,
+            recorded=self.out is not None or self._keeps(self.scene), relative_accuracy=self.subject.accuracy,
+            **self._particles(),
         )  # fmt: skip
         self.name = f"live-{os.getpid()}-{next(_NUMBERS)}"
         self.session.publish(self.name)
@@ -86,12 +87,20 @@ class Host(Tasks):
         self.known = (self.session.scene, self.session.settings)
         self.hand = Hand(self.session)
         self.left = Left(self.session, self.tell)
+        self.pushes = Pushes(self.session)
         if self.out is not None and self.writer is None:
             self.writer = record.Writer(self.out, self.session.metadata())
         if not self.stepped:
             self.session.start("wall")
             self.session.set_speed(self.speed)
             self.session.pause(self.paused)
+
+    def _particles(self) -> dict[str, Any]:
+        return {} if self.subject.particles is None else {"particles": self.subject.particles(self.scene)}
+
+    def _keeps(self, scene: nt.Scene) -> bool:
+        """Whether what the tip leaves is known from the session's events."""
+        return keeps(scene) or self.subject.particles is not None
 
     def close(self) -> None:
         """End the session; what was recorded is written."""
@@ -107,7 +116,7 @@ class Host(Tasks):
         self.files.close()
 
     def _drain(self) -> None:
-        while self.writer is not None or keeps(self.session.scene):
+        while self.writer is not None or self._keeps(self.session.scene):
             block = self.session.read(5000)
             if not len(block["time"]):
                 return
@@ -157,7 +166,7 @@ class Host(Tasks):
             "scene": session.scene.to_dict(), "rig": session.rig.to_dict(), "settings": session.settings.to_dict(),
             "stiffness": self.hand.stiffness, "bound": plan.bound, "law": plan.contact_law,
             "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
-            "force": session.guarantee().force, "undo": len(self.done) or len(self.left.dents),
+            "force": session.guarantee().force, "undo": len(self.done) or len(self.left.dents) or len(self.pushes.done),
             "redo": len(self.undone), "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
             "relative_accuracy": session.relative_accuracy, "zero": self.hand.zero,
             "size": list(map(float, self.subject.topography.size)),
@@ -322,6 +331,8 @@ class Host(Tasks):
             self.undone.append((what, field, old, new))
         elif self.left.dents:
             self.left.undo()
+        elif self.pushes.done:
+            self.pushes.undo()
         self.tell(self.world())
 
     def _do_redo(self, message: Message) -> None:

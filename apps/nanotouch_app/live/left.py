@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a tip leaves in a sample that keeps dents while a person touches it: told to the picture, and taken back."""
+"""What a tip leaves while a person touches: dents in a sample that keeps them, told to the picture, and particles where
+they were pushed to; both can be taken back."""
 
 from __future__ import annotations
 
@@ -52,3 +53,34 @@ class Left:
             return
         rows = [[*dent.imprint, dent.load, -1 if dent.before is None else dent.before] for dent in self.dents]
         self.tell({"tell": "dents", "dents": rows})
+
+
+class Pushes:
+    """Of the particles of one session that keeps its events."""
+
+    def __init__(self, session: nt.Session) -> None:
+        self.session = session
+        self.done: list[tuple[int, int, tuple[float, float]]] = []  # tick, number, where it lay before
+        self.seen = 0
+
+    def look(self) -> None:
+        """At what has happened since."""
+        events = self.session.metadata()["events"]
+        for tick, name, numbers in events[self.seen :]:
+            if name == "pushed":
+                self.done.append((tick, numbers[0], (numbers[1], numbers[2])))
+            elif name == "rewind":
+                self.done = [one for one in self.done if one[0] < numbers[0]]
+        self.seen = len(events)
+
+    def forget(self) -> None:
+        """They have been laid anew."""
+        self.look()
+        self.done.clear()
+
+    def undo(self) -> None:
+        """The last push: all that it has moved goes back, while the tip touches none of them."""
+        last = [one for one in self.done if one[0] == self.done[-1][0]]
+        for _, number, place in last:
+            self.session.lay(number, place)
+        self.done = self.done[: -len(last)]

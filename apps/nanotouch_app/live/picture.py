@@ -216,12 +216,32 @@ class Picture:
     def _proxy(self, painter: Painter) -> None:
         """The ring is where the hand is; the band to the tip is as long as what would be felt."""
         seen, palette = self.seen, self.palette
-        x, y = self.stage.pixel(self.stage.apex(seen))
-        length = BAND * self.layout.view[3] * float(np.clip(seen.force / max(seen.load, 1e-15), -1.5, 1.5))
+        apex = self.stage.apex(seen)
+        x, y = self.stage.pixel(apex)
+        full = BAND * self.layout.view[3] / max(seen.load, 1e-15)
+        length = float(np.clip(full * seen.force, *self._longest))
+        across, along = self._sideways(apex, full)
         colour = palette.repulsion if length >= 0.0 else palette.attraction
-        if abs(length) > 1.0:
-            painter.line([[x, y], [x, y - length]], colour, 3.0)
-        painter.ring(x, y - length, RING, palette.quiet if seen.stale else palette.ink, 2.5)
+        if np.hypot(across, along - length) > 1.0:
+            painter.line([[x, y], [x + across, y + along - length]], colour, 3.0)
+        painter.ring(x + across, y + along - length, RING, palette.quiet if seen.stale else palette.ink, 2.5)
+
+    @property
+    def _longest(self) -> tuple[float, float]:
+        """Of the band, either way [px]."""
+        longest = 1.5 * BAND * self.layout.view[3]
+        return -longest, longest
+
+    def _sideways(self, apex: Any, full: float) -> tuple[float, float]:
+        """What holds the tip sideways stretches the band, as it is seen: the ring is ahead of it."""
+        force = self.seen.sideways
+        size = float(np.linalg.norm(force))
+        if not size > 0.0:
+            return 0.0, 0.0
+        ahead = np.append(-force / size, 0.0)
+        seen = self.stage.pixel(apex + 1e-3 * ahead) - self.stage.pixel(apex)
+        length = min(full * size, self._longest[1]) / max(float(np.hypot(*seen)), 1e-12)
+        return float(length * seen[0]), float(length * seen[1])
 
     def _scales(self, painter: Painter) -> None:
         """A bar at the depth of what the camera looks at, and how much heights are drawn larger."""

@@ -272,13 +272,21 @@ class Seen:
         force = float(self.frame["tip_force"][2])
         return force if np.isfinite(force) else 0.0
 
+    @property
+    def sideways(self) -> Floats:
+        """On the tip, x and y [N]; 0 where nothing may be felt, or nobody knows."""
+        if self.frame is None or self.stale:
+            return np.zeros(2)
+        return np.asarray(np.nan_to_num(np.array(self.frame["tip_force"][:2], dtype=float)))
+
     def feel(self) -> Feel:
         """What a hand is to feel now; each snap and tear once. Nothing where the newest frame is too old."""
         events = [kind for _, kind in self.snaps]
         self.snaps.clear()
         if self.stale or self.clock["paused"]:
             return Feel()
-        level = min(abs(self.force) / max(self.load, 1e-15), 1.0) if self.world else 0.0
+        force = float(np.hypot(self.force, np.linalg.norm(self.sideways)))
+        level = min(force / max(self.load, 1e-15), 1.0) if self.world else 0.0
         return Feel(level, events[-1] if events else "")
 
     def section(self, r: Floats) -> view.Section | None:

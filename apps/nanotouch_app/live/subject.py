@@ -9,9 +9,11 @@ from dataclasses import dataclass
 import nanotouch as nt
 import numpy as np
 from nanotouch import presets
+from nanotouch.manipulation import latex
 
 from nanotouch_app import surfaces
 from nanotouch_app.live import samples
+from nanotouch_app.training.push import RADIUS
 
 LEAST_CLEARANCE = 20e-9  # [m]
 
@@ -33,6 +35,8 @@ class Subject:
     """what the tip touches; None: the topography, dilated by it"""
     accuracy: float = 0.01
     """what its forces are planned for"""
+    particles: Callable[[nt.Scene], nt.Particles] | None = None
+    """that a task may lay there, and the tip of a scene pushes"""
 
     def touched(self, scene: nt.Scene) -> nt.Surface:
         """The surface for the tip of a scene."""
@@ -62,6 +66,8 @@ class Preset:
     """what the hand feels, of a scene of its own"""
     accuracy: float = 0.01
     """of its forces: where a slider leads to what is less well known, a little less is asked"""
+    particles: Callable[[nt.Scene], nt.Particles] | None = None
+    """that a task may lay there"""
 
 
 def felt(name: str) -> str:
@@ -88,9 +94,14 @@ def latex_on_glass() -> tuple[nt.Scene, nt.Rig]:
         sample={"youngs_modulus": 70e9, "poisson_ratio": 0.22},
         medium={"relative_humidity": 0.0},
         adhesion={"work_of_adhesion": 0.01, "hamaker_constant": 3e-20},
-        range={"maximum_load": 200e-9},
+        range={"maximum_load": 100e-9},
     )
     return scene, nt.Rig(probe={"spring_constant": 10.0})
+
+
+def balls(scene: nt.Scene) -> nt.Particles:
+    """Of polystyrene, under the tip of a scene."""
+    return nt.Particles(latex(RADIUS, float(scene.tip.radius), float(scene.tip.half_angle)))
 
 
 def glass() -> nt.Topography:
@@ -155,7 +166,8 @@ PRESETS: dict[str, Preset] = {
     ),
     "latex_on_glass": Preset(
         "Glass for latex balls", glass, "T: push a ball into its ring, or five into a pattern.", made=latex_on_glass,
-        felt="Smooth and hard; a ball that is pushed rolls, and clicks when the tip touches or loses it.",
+        felt="Smooth and hard; a ball resists until it rolls, and clicks when the tip touches or loses it.",
+        particles=balls,
     ),
     "cell_in_liquid": Preset(
         "A living cell", surfaces.OF_SCENE["cell_in_liquid"],
@@ -170,4 +182,4 @@ def of_preset(name: str) -> Subject:
     of = known.scene or name
     scene, rig = (known.made or getattr(presets, of))()
     return Subject(name, known.title, scene, rig, known.surface(), felt(name), known.hint,
-                   accuracy=known.accuracy)  # fmt: skip
+                   accuracy=known.accuracy, particles=known.particles)  # fmt: skip

@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import Any
 
 import nanotouch as nt
+from nanotouch.errors import Error
 
-from nanotouch_app.live.left import Left
+from nanotouch_app.live.left import Left, Pushes
 from nanotouch_app.live.subject import Subject
 from nanotouch_app.live.trainer import Trainer
 from nanotouch_app.training import named
+from nanotouch_app.training.push import Push
 
+ASIDE = -50e-6  # where the tip cannot go [m]
 Message = dict[str, Any]
 
 
@@ -23,6 +26,7 @@ class Tasks:
     subject: Subject
     session: nt.Session
     left: Left
+    pushes: Pushes
     folder: Path | None
     tell: Callable[[Message], None]
     trainer: Trainer | None = None
@@ -43,17 +47,38 @@ class Tasks:
         if not message["name"]:
             return
         task = named(message["name"])
-        if message.get("lay") and (task.preset != self.subject.name or self.session.scene != self.subject.scene):
+        lacks = issubclass(task, Push) and self.subject.particles is None
+        if lacks or (
+            message.get("lay") and (task.preset != self.subject.name or self.session.scene != self.subject.scene)
+        ):
             self._do_preset({"name": task.preset})
         self.trainer = Trainer(
             message["name"], self.world(), self._change_for_task, self.tell, self.folder, message.get("seed")
         )
-        self.trainer.exercise.dents = self.left.dents
+        exercise = self.trainer.exercise
+        exercise.dents = self.left.dents
+        if exercise.lays is not None:
+            self._lay_particles(exercise.lays)
+
+    def _lay_particles(self, places: Any) -> None:
+        """Anew: those that lie there are put aside first."""
+        try:
+            for number in range(len(self.session.particles.losses)):
+                self.session.lay(number, (ASIDE * (number + 1), ASIDE))
+            for number, place in enumerate(places):
+                self.session.lay(number, place)
+        except Error as error:
+            self._end_task()
+            raise Error("the tip is where a particle shall lie, or touches one: move it away first") from error
+        self.pushes.forget()
 
     def _look_on(self) -> None:
         """What has happened since, for the task."""
         if self.left.look() and self.trainer is not None:
             self.trainer.exercise.dents = self.left.dents
+        self.pushes.look()
+        if self.trainer is not None and self.trainer.exercise.lays is not None:
+            self.trainer.exercise.take(self.session.particles)
         if self.trainer is not None:
             self.trainer.look()
 

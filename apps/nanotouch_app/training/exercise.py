@@ -12,9 +12,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 from nanotouch.errors import InvalidValue
+from nanotouch.manipulation import Laid
 from nanotouch.plasticity import Dent
 from nanotouch.touch.record import replacing
 from nanotouch.units import parse_quantity
+from numpy.typing import NDArray
 
 from nanotouch_app.training.facts import Facts
 
@@ -114,6 +116,12 @@ class Exercise:
     def locked(self) -> bool:
         """Nothing may be touched yet."""
         return False
+
+    lays: NDArray[np.float64] | None = None
+    """where it wants particles, x and y [m]; None: nowhere"""
+
+    def take(self, laid: Laid) -> None:
+        """What lies there now, of a task with particles."""
 
     def judge(self, frames: Any) -> None:
         """Look at new frames; set the result when it is done."""

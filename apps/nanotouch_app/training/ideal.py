@@ -4,6 +4,7 @@ and asks as a person asks: by the wheel, by moves, by choices. They know nothing
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import permutations
 from typing import Any, Protocol
@@ -12,7 +13,7 @@ import numpy as np
 
 from nanotouch_app.training.dent import Dent, Scratch
 from nanotouch_app.training.exercise import Exercise, touching
-from nanotouch_app.training.push import ALLOWED, Push
+from nanotouch_app.training.push import ALLOWED, RADIUS, Push
 from nanotouch_app.training.steady import TARGET
 from nanotouch_app.training.stiffer import LOAD, Stiffer
 
@@ -176,18 +177,25 @@ def push(operator: Operator) -> None:
     """Around a ball to its far side, against its middle, back, and look again; each ball to a ring that is near."""
     exercise = operator.exercise
     assert isinstance(exercise, Push)
-    goals, balls = exercise.goals, exercise.particles
-    far = np.array([[np.linalg.norm(goal - ball.place[:2]) for goal in goals] for ball in balls])
-    _, best = min((sum(far[range(len(balls)), order]), order) for order in permutations(range(len(goals))))
-    for ball, goal in zip(balls, goals[list(best)], strict=True):
-        while np.linalg.norm(way := goal - ball.place[:2]) > 0.5 * ALLOWED:
-            length = float(np.linalg.norm(way))
-            reach = ball.reach(float(operator.seen[-1]["tip_position"][2]) if operator.seen else 0.0)
-            behind = ball.place[:2] - 1.5 * reach * way / length
-            _go_around(operator, behind, [other.place[:2] for other in balls], 1.4 * reach)
-            _go(operator, ball.place[:2] + way - reach * way / length, 10e-9)
+    goals, count = exercise.goals, exercise.count
+    far = np.linalg.norm(goals[None] - exercise.places[:, None, :2], axis=2)
+    _, best = min((sum(far[range(count), order]), order) for order in permutations(range(count)))
+    for one, goal in enumerate(goals[list(best)]):
+        while np.linalg.norm(way := goal - exercise.places[one, :2]) > 0.5 * ALLOWED:
+            length, place = float(np.linalg.norm(way)), exercise.places[one, :2]
+            reach = _reach(operator)
+            behind = place - 1.5 * reach * way / length
+            _go_around(operator, behind, list(exercise.places[:, :2]), 1.4 * reach)
+            _go(operator, place + way - reach * way / length, 10e-9)
             _go(operator, behind)
     operator.rig.answer({"do": "choose", "number": 0})
+
+
+def _reach(operator: Operator) -> float:
+    """From the middle of a ball to the apex of a tip that touches with its flank, at its height now [m]."""
+    tip, height = operator.exercise.facts.scene.tip, float(operator.rig.observer.newest()["tip_position"][2])
+    up = RADIUS - tip.radius - height
+    return float((RADIUS + tip.radius + up * math.sin(tip.half_angle)) / math.cos(tip.half_angle))
 
 
 def _go(operator: Operator, to: Any, step: float = 100e-9) -> None:

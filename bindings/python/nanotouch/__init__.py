@@ -25,6 +25,7 @@ _HOMES = {
     "Interaction": "scene.interaction",
     "Particle": "manipulation",
     "ParticleContact": "manipulation",
+    "Particles": "manipulation",
     "Plan": "scene.plan",
     "Rig": "scene",
     "Scan": "scan.scanner",

@@ -29,6 +29,7 @@ from nanotouch.friction import Friction as Friction
 from nanotouch.images import Topography as Topography
 from nanotouch.manipulation import Particle as Particle
 from nanotouch.manipulation import ParticleContact as ParticleContact
+from nanotouch.manipulation import Particles as Particles
 from nanotouch.scan import flow as flow
 from nanotouch.scan import scanner as scanner
 from nanotouch.scan import steady as steady
@@ -87,6 +88,7 @@ __all__ = [
     "Interaction",
     "Particle",
     "ParticleContact",
+    "Particles",
     "Plan",
     "Recording",
     "Rig",

@@ -186,7 +186,8 @@ static nt_status request(Replay &replay, const std::string &name, const py::list
         nt_touch_clutch(&state, n[0].cast<bool>());
         return NT_OK;
     }
-    if (name == "scene" || name == "stop" || name == "dent" || name == "dent_size" || name == "undent")
+    if (name == "scene" || name == "stop" || name == "dent" || name == "dent_size" || name == "undent" ||
+        name == "lay" || name == "pushed")
         return NT_OK;
     if (name == "index") {
         nt_touch_index(&state, number(0));

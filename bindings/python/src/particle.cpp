@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// particle.h: a sphere on a substrate, and the tip that pushes it
+// particle.h, particles.h: spheres on a substrate, and the tip that pushes them
 #include <array>
 #include <cstring>
 #include <memory>
@@ -73,8 +73,100 @@ static py::tuple row_of(const nt_particle_state &state)
     return py::make_tuple(std::vector<double>(row, row + COLUMNS), std::vector<double>(state.tip, state.tip + 3));
 }
 
+// The fields of both tables, one after the other.
+static std::unique_ptr<nt_particles> make_set(const std::vector<double> &values)
+{
+    int count = 0, more = 0;
+    const nt_field *fields = nt_particle_fields(&count), *others = nt_particles_fields(&more);
+    if (static_cast<int>(values.size()) != count + more)
+        throw std::invalid_argument("particles: one value for each field");
+    nt_particles_setup setup = nt_particles_defaults();
+    for (int i = 0; i < count; ++i)
+        nt_field_set(&fields[i], &setup.particle, values[i]);
+    for (int i = 0; i < more; ++i)
+        nt_field_set(&others[i], &setup, values[count + i]);
+    auto made = std::make_unique<nt_particles>();
+    nt_problem problem{};
+    raise_on(nt_particles_init(made.get(), &setup, &problem), problem, "particles");
+    return made;
+}
+
+static nt_particles_state begin(const nt_particles &self, const std::array<double, 3> &base)
+{
+    nt_particles_state state{};
+    raise_on(nt_particles_begin(&self, base.data(), &state), "particles: the tip begins above the substrate");
+    return state;
+}
+
+static nt_particles_state lay(const nt_particles &self, nt_particles_state state, int number,
+                              const std::array<double, 2> &place)
+{
+    raise_on(nt_particles_lay(&self, &state, number, place.data()),
+             "particles: a place on the substrate that neither the tip nor another one touches");
+    return state;
+}
+
+enum { SET_TIP = 0, SET_FORCE = 3, SET_ENERGIES = 6, SET_COLUMNS = 9, ONE_COLUMNS = 11 };
+
+// Of the tip, then of each particle: place, turns, force on the tip, whether the tip touches, modes.
+static void put_set(const nt_particles_state &state, double *row)
+{
+    const double energies[] = {state.stored, state.dissipated, state.work};
+    std::memcpy(row + SET_TIP, state.tip, sizeof state.tip);
+    std::memcpy(row + SET_FORCE, state.force, sizeof state.force);
+    std::memcpy(row + SET_ENERGIES, energies, sizeof energies);
+    for (int i = 0; i < state.count; ++i) {
+        const nt_particle_state &of = state.particles[i];
+        double *one = row + SET_COLUMNS + ONE_COLUMNS * i;
+        std::memcpy(one, of.position, sizeof of.position);
+        std::memcpy(one + 3, of.turned, sizeof of.turned);
+        std::memcpy(one + 6, of.force, sizeof of.force);
+        one[9] = of.attached[NT_AT_TIP];
+        one[10] = of.modes;
+    }
+}
+
+static py::tuple run_set(const nt_particles &self, nt_particles_state state, const Array &bases)
+{
+    const py::ssize_t count = bases.size() / 3, columns = SET_COLUMNS + ONE_COLUMNS * state.count;
+    Array rows(std::vector<py::ssize_t>{count, columns});
+    double *row = rows.mutable_data();
+    const double *base = bases.data();
+    nt_status status = NT_OK;
+    {
+        py::gil_scoped_release release;
+        for (py::ssize_t i = 0; i < count && status == NT_OK; ++i, row += columns) {
+            status = nt_particles_advance(&self, &state, base + 3 * i);
+            put_set(state, row);
+        }
+    }
+    raise_on(status, "particles");
+    return py::make_tuple(state, rows);
+}
+
+static std::vector<double> row_of_set(const nt_particles_state &state)
+{
+    std::vector<double> row(SET_COLUMNS + ONE_COLUMNS * state.count);
+    put_set(state, row.data());
+    return row;
+}
+
+static void bind_set(py::module_ &module)
+{
+    py::class_<nt_particles_state>(module, "ParticlesState")
+        .def("read", &row_of_set)
+        .def_property_readonly(
+            "base", [](const nt_particles_state &self) { return std::vector<double>(self.base, self.base + 3); });
+    py::class_<nt_particles, std::shared_ptr<nt_particles>>(module, "Particles")
+        .def(py::init(&make_set))
+        .def("begin", &begin)
+        .def("lay", &lay)
+        .def("run", &run_set);
+}
+
 void bind_particle(py::module_ &module)
 {
+    bind_set(module);
     py::class_<nt_particle_state>(module, "ParticleState").def("read", &row_of);
     py::class_<nt_pushing>(module, "Pushing")
         .def(py::init(&make))

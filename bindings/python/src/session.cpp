@@ -107,6 +107,8 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.substep = options["substep"].cast<double>();
     const nt_faults faults = faults_of(options["faults"]);
     setup.faults = &faults;
+    const auto particles = options["particles"].cast<std::shared_ptr<nt_particles>>(); // None: null
+    setup.particles = particles.get();
     setup.seed = options["seed"].cast<uint64_t>();
     setup.ring_capacity = options["ring_capacity"].cast<long>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();

@@ -42,3 +42,4 @@ template <class Call> auto alone(Session &self, Call call)
 }
 
 void bind_session_run(py::module_ &module, py::class_<Session> &type);
+void bind_session_left(py::class_<Session> &type);

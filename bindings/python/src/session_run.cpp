@@ -147,6 +147,10 @@ static py::tuple tuple_of(const nt_event &event)
         return as(event.field == 0 ? "dent" : "dent_size", take(4));
     case NT_EVENT_UNDENT:
         return as("undent", numbers);
+    case NT_EVENT_LAY:
+    case NT_EVENT_PUSHED:
+        numbers.append(event.field);
+        return as(event.kind == NT_EVENT_LAY ? "lay" : "pushed", take(event.kind == NT_EVENT_LAY ? 2 : 4));
     case NT_EVENT_KINDS:
         break;
     }
@@ -302,45 +306,12 @@ static py::dict described_half(const Session &self, int half)
                     py::arg("channels") = channels);
 }
 
-// The dents so far, the oldest first: [start x, start y, end x, end y, radius, depth, load, before].
-static py::list dents_of(Session &self)
-{
-    nt_dents dents{};
-    alone(self, [&](nt_session *h) {
-        if (const nt_dents *found = nt_session_dents(h))
-            dents = *found;
-        return NT_OK;
-    });
-    py::list out;
-    for (int i = 0; i < dents.count; ++i) {
-        const nt_imprint &of = dents.made[i].imprint;
-        out.append(py::make_tuple(of.start[0], of.start[1], of.end[0], of.end[1], of.radius, of.depth,
-                                  dents.made[i].load, dents.made[i].before));
-    }
-    return out;
-}
-
-static void undent(Session &self)
-{
-    const nt_status status = alone(self, [](nt_session *h) { return nt_session_undent(h); });
-    if (status == NT_E_STATE)
-        raise(status, "undent: there is no dent, or the tip touches the sample");
-    if (status == NT_E_UNSUPPORTED)
-        raise(status, "undent: the sample keeps no dents (scene: sample.dents)");
-    raise_on(status, "undent");
-}
-
-static void bind_dents(py::class_<Session> &type)
-{
-    type.def("dents", &dents_of).def("undent", &undent);
-}
-
 void bind_session_run(py::module_ &module, py::class_<Session> &type)
 {
     bind_frame(module);
     py::class_<Snapshot>(module, "Snapshot");
     bind_thread(type);
-    bind_dents(type);
+    bind_session_left(type);
     type.def("advance", &advance_session)
         .def("step", &step_session, py::arg("input").none(true))
         .def("read", &read_records)

@@ -18,11 +18,22 @@ typedef struct probe_context {
     nt_interaction_state *interaction;
     nt_dents *dents;
     const nt_place *place;
-    double gap; /* of the last answer [m] */
+    nt_sim_slave *slave;
+    nt_particles_state *pushed; /* of the last answer; NULL: there are no particles */
+    double surface;             /* z_s under the tip [m] */
+    double gap;                 /* of the last answer [m] */
     nt_law_value law;
     double peak, deepest; /* |F| and h on the way [N], [m] */
     int parted;           /* 1: there was no contact on the way */
 } probe_context;
+
+/* The particles' force beside the surface's. */
+static void add_particles(probe_context *probe, double gap)
+{
+    const nt_status status = nt_sim_push_particles(probe->slave, gap + probe->surface, probe->pushed);
+    probe->law.F = status == NT_OK ? probe->law.F + probe->pushed->force[NT_Z] : (double)NAN;
+    probe->law.k += probe->pushed->resistance;
+}
 
 static nt_law_value force_at(void *context, double gap)
 {
@@ -31,13 +42,27 @@ static nt_law_value force_at(void *context, double gap)
         probe->gap = gap;
         probe->law = probe->plan->dents ? nt_dents_eval(&probe->plan->indentation, probe->dents, gap)
                                         : nt_interaction_eval_gap(probe->plan, probe->interaction, probe->place, gap);
+        if (probe->pushed)
+            add_particles(probe, gap);
     }
     return probe->law;
+}
+
+/* A last step of Newton's that is too small to matter is not asked again. */
+static void keep_particles(probe_context *probe, double gap)
+{
+    nt_status status = NT_OK;
+    if (!(fabs(gap - probe->gap) <= SAME_LAW * probe->plan->length))
+        status = nt_sim_push_particles(probe->slave, gap + probe->surface, probe->pushed);
+    if (status == NT_OK)
+        nt_sim_keep_particles(probe->slave, probe->pushed);
 }
 
 static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
+    if (probe->pushed)
+        keep_particles(probe, gap);
     if (!probe->plan->dents) {
         nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
         return;
@@ -159,15 +184,20 @@ void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
     slave->tap.table = (nt_flow_table){.cell = {{.is_made = 0}}};
 }
 
-/* A sample that keeps dents has one contact everywhere: the slope alone turns its force aside. */
+/* Of slopes and particles. A sample that keeps dents has one contact everywhere: the slope alone turns its force aside.
+ */
 static void sides_of(const nt_sim_slave *slave, double gap, double force, double sides[2])
 {
-    if (!slave->plan->dents) {
-        nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, force, sides);
-        return;
+    const double *pushed = slave->pushed.state.force;
+    double slopes[2] = {0.0, 0.0}; /* of a flat */
+    if (slave->plan->surface && slave->plan->dents) {
+        slopes[NT_X] = -force * slave->place.surface.zx;
+        slopes[NT_Y] = -force * slave->place.surface.zy;
+    } else if (slave->plan->surface) {
+        nt_plan_sides(slave->plan, &slave->interaction, &slave->place, gap, force, slopes);
     }
-    sides[NT_X] = -force * slave->place.surface.zx;
-    sides[NT_Y] = -force * slave->place.surface.zy;
+    sides[NT_X] = slopes[NT_X] + pushed[NT_X];
+    sides[NT_Y] = slopes[NT_Y] + pushed[NT_Y];
 }
 
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
@@ -178,14 +208,22 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
     if (nt_sim_taps(slave))
         return nt_sim_tap_step(slave, base, surface);
-    const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties);
+    const int lie = slave->pushed.state.count > 0, pushes = lie && is_elsewhere;
+    const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties) && !pushes;
+    nt_particles_state pushed;
     probe_context context = {.plan = slave->plan,
                              .interaction = &slave->interaction,
                              .dents = &slave->dents,
                              .place = &slave->place,
+                             .slave = slave,
+                             .pushed = lie ? &pushed : NULL,
+                             .surface = surface,
                              .gap = knows ? slave->law_gap : (double)NAN, /* another place: nothing is known there */
                              .law = slave->law,
                              .deepest = HUGE_VAL};
+    slave->pushed.left = 0;
+    if (lie)
+        pushed = slave->pushed.state;
     const nt_force_field field = {force_at, slave->dynamic ? passed : moved_to, &context, slave->plan->length};
     const nt_status status = slave->dynamic
                                  ? nt_cantilever_step(&slave->cantilever_model, &slave->cantilever, &field, base,
@@ -195,9 +233,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     const nt_law_value law = law_there(&context, gap);
     slave->law = law;
     slave->law_gap = gap;
-    double sides[2] = {0.0, 0.0}; /* of a flat */
-    if (slave->plan->surface)
-        sides_of(slave, gap, law.F, sides);
+    double sides[2];
+    sides_of(slave, gap, law.F, sides);
     slide(slave, context.parted, gap);
     if (slave->plan->dents)
         plough(slave);
@@ -213,7 +250,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
                               .dent_heat = slave->dents.dissipated,
                               .friction_stored = friction->stored,
                               .friction_heat = friction->dissipated};
-    return status == NT_OK && slave->dents.full ? NT_E_DEVICE : status;
+    const int fails = slave->dents.full || (lie && status != NT_OK); /* a reading that is none stops the touch */
+    return fails ? NT_E_DEVICE : status;
 }
 
 int nt_sim_needs_dynamics(const nt_plan *plan, const nt_rig *rig, double period)

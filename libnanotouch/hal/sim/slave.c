@@ -42,6 +42,8 @@ static void moment_now(const nt_sim_slave *slave, double moment[2])
 
 static int is_dynamic(const nt_sim_slave *slave, nt_probe_model model)
 {
+    if (slave->pushed.can)
+        return 0;
     return model == NT_PROBE_DYNAMIC ||
            (model == NT_PROBE_AUTO && nt_sim_needs_dynamics(slave->plan, &slave->link.rig, slave->link.period));
 }
@@ -83,6 +85,8 @@ nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup)
     status = nt_sim_link_init(&made.link, setup, 0.0);
     if (status == NT_OK)
         status = init_models(&made);
+    if (status == NT_OK)
+        status = nt_sim_begin_particles(&made, setup);
     if (status == NT_OK)
         status = begin(&made, setup);
     if (status == NT_OK)

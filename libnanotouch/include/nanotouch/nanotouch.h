@@ -26,6 +26,7 @@
 #include "nanotouch/maugis_table.h"
 #include "nanotouch/observer.h"
 #include "nanotouch/particle.h"
+#include "nanotouch/particles.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/plasticity.h"
 #include "nanotouch/rig.h"

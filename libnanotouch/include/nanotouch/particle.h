@@ -55,6 +55,7 @@ typedef struct nt_particle_laws {
     double pull_off;         /* F_c [N] */
     double rest_indentation; /* without load [m] */
     double rest_radius;      /* a0, of the contact without load [m] */
+    double rest_energy;      /* of the contact without load [J] */
     double rolling_distance; /* xi [m] */
 } nt_particle_laws;
 

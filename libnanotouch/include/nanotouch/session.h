@@ -42,9 +42,11 @@ typedef struct nt_session_setup {
                               [-] */
     int preflight;         /* 1: a real stage goes to the start, tare, sign test (preflight.h); 0: it jumps there */
     nt_probe_model probe_model;
-    double substep;          /* of the dynamic cantilever, 0: 0.25 [rad] */
-    const nt_faults *faults; /* of the simulated halves from their switching on, before preflight; NULL: none */
-    nt_hal_choice master;    /* backend NULL: simulated */
+    double substep;                /* of the dynamic cantilever, 0: 0.25 [rad] */
+    const nt_particles *particles; /* that can be laid on a flat at z = 0, and are pushed by this tip; simulated, with a
+                                      quasi-static cantilever; copied, NULL: none */
+    const nt_faults *faults;       /* of the simulated halves from their switching on, before preflight; NULL: none */
+    nt_hal_choice master;          /* backend NULL: simulated */
     nt_hal_choice slave;
     const char *master_option, *slave_option;     /* for the backends' configure; NULL: "" */
     void (*say)(void *context, const char *text); /* takes the lines of backends for the user; NULL: nobody does */
@@ -110,6 +112,9 @@ typedef enum nt_event_kind {
                         events. Field 0: x, y of its start, x, y of its end [m]; field 1: radius, depth [m], load [N], the
                         number of the dent that it has grown from or -1; of the last one: it takes its place */
     NT_EVENT_UNDENT, /* the last dent is taken back; no value */
+    NT_EVENT_LAY,    /* a particle is laid at rest; field: its number; x, y [m] */
+    NT_EVENT_PUSHED, /* nobody asks for it: the tip has let go, and a particle lies elsewhere; field: its number; x, y
+                        before, x, y now [m] */
     NT_EVENT_KINDS
 } nt_event_kind;
 typedef struct nt_event {
@@ -161,6 +166,10 @@ NT_API nt_status nt_session_change(nt_session *session, nt_event_kind kind, cons
 /* Takes the last dent of a sample that keeps them back, while the tip touches nothing. NT_E_STATE where there is none,
  * or the tip touches; NT_E_UNSUPPORTED where no such sample is simulated. */
 NT_API nt_status nt_session_undent(nt_session *session);
+/* Lays particle `number`, 0 .. how many lie there, at rest at (x, y) [m]; one that lies there already is taken away
+ * from where it was. NT_E_UNSUPPORTED: the setup has no particles; NT_E_CAPACITY: more than NT_PARTICLES, or one left
+ * out; NT_E_STATE: the tip or another one touches it, here or there; NT_E_NOT_FINITE. */
+NT_API nt_status nt_session_lay(nt_session *session, int number, const double place[2]);
 /* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED
  * where none is simulated, NT_E_STATE while the session runs in its thread. */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
@@ -248,6 +257,19 @@ NT_API void nt_snapshot_close(nt_snapshot *snapshot);
 /* What a simulated sample keeps of its touches (scene: sample.dents), the oldest first; NULL where none is simulated.
  * Valid until the next tick. */
 NT_API const nt_dents *nt_session_dents(const nt_session *session);
+/* Particles after the newest tick that has been run. */
+typedef struct nt_session_particles {
+    int count;
+    double radius; /* R of each [m] */
+    uint64_t tick;
+    double position[NT_PARTICLES][NT_AXES]; /* of the centre [m] */
+    double force[NT_PARTICLES][NT_AXES];    /* on the tip [N] */
+    uint32_t touches[NT_PARTICLES];         /* how often the tip has touched it ... */
+    uint32_t losses[NT_PARTICLES];          /* ... and lost it */
+    double stored, dissipated;              /* in their contacts; heat so far [J] */
+} nt_session_particles;
+/* From the thread that makes requests, also while the session runs. NT_E_UNSUPPORTED: the setup has no particles. */
+NT_API nt_status nt_session_read_particles(nt_session *session, nt_session_particles *particles);
 /* Is the cantilever computed as dynamic (1) or quasi-static (0)? 0 where the slave is not simulated. */
 NT_API int nt_session_is_dynamic(const nt_session *session);
 /* What a half can do. */

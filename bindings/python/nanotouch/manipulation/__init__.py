@@ -3,21 +3,25 @@
 
 from __future__ import annotations
 
-from .lever import Lever, LeverPath, LeverState
-from .particle import Particle, ParticleContact, ParticlePath, ParticleState, latex
+from .lever import Lever, LeverPath
+from .particle import Particle, ParticleContact, ParticlePath, ParticlesState, ParticleState, latex
+from .particles import Laid, Particles, ParticlesPath
 from .pushing import Bench, Lost, Pushed, Track, arrange, push
 from .rod import Rod, RodPath, RodState, turning_point
 
 __all__ = [
     "Bench",
+    "Laid",
     "Lever",
     "LeverPath",
-    "LeverState",
     "Lost",
     "Particle",
     "ParticleContact",
     "ParticlePath",
     "ParticleState",
+    "Particles",
+    "ParticlesPath",
+    "ParticlesState",
     "Pushed",
     "Rod",
     "RodPath",

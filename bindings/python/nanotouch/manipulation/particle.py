@@ -24,6 +24,7 @@ SIDES: tuple[Side, ...] = get_args(Side)
 MOTIONS: tuple[Motion, ...] = get_args(Motion)
 MODES = (*MOTIONS, *(f"tip {motion}" for motion in MOTIONS), "lifted", "apart")
 """names of the bits of ``ParticlePath.modes``, from the lowest"""
+OF_TIP, OF_EACH = 9, 11  # columns of a set: of the tip, then of each particle
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,28 @@ class ParticleState:
         return tip[0], tip[1], tip[2]
 
 
+@dataclass(frozen=True)
+class ParticlesState:
+    """Where tip and particles are, and what they remember: enough to go on from."""
+
+    _core: _core.ParticlesState = field(repr=False)
+
+    @property
+    def base(self) -> Floats:
+        """where the tip's apex would be without a force: x, y, z [m]"""
+        return np.array(self._core.base)
+
+    @property
+    def tip(self) -> Floats:
+        """its apex: x, y, z [m]"""
+        return np.array(self._core.read()[:3])
+
+    @property
+    def positions(self) -> Floats:
+        """of their centres, one row each: x, y, z [m]"""
+        return np.array(self._core.read()[OF_TIP:]).reshape(-1, OF_EACH)[:, :3]
+
+
 class ParticlePath(NamedTuple):
     """What happens along a path of the tip; one row per point."""
 
@@ -156,8 +179,11 @@ class Particle:
 
     @cached_property
     def _core(self) -> _core.Pushing:
+        return _core.Pushing(self._all())
+
+    def _all(self) -> list[float]:
         values = [self.radius, self.tip_radius, self.tip_half_angle, self.step]
-        return _core.Pushing([*map(float, values + self.substrate._values() + self.tip._values())])
+        return [*map(float, values + self.substrate._values() + self.tip._values())]
 
     def pull_off(self, side: Side) -> float:
         """F_c of a contact [N]."""
@@ -192,11 +218,7 @@ class Particle:
         state : ParticleState, optional
             Go on from here. Without it the particle rests at x = y = 0, and the tip comes from the first point.
         """
-        columns = {"x": x, "y": y, "z": z}
-        points = np.broadcast_arrays(*(np.atleast_1d(as_floats(value, name)) for name, value in columns.items()))
-        if points[0].ndim != 1 or points[0].size == 0:
-            raise InvalidValue("x, y, z: at least one point, in one dimension")
-        tips = np.stack(points, axis=1)
+        tips = path_of(x, y, z)
         begun = state or self.place(0.0, 0.0, (float(tips[0, 0]), float(tips[0, 1]), float(tips[0, 2])))
         last, rows = self._core.run(begun._core, tips)
         position, turned, force = rows[:, :3], rows[:, 3:6], rows[:, 6:9]
@@ -204,6 +226,15 @@ class Particle:
         modes = rows[:, 22].astype(np.uint8)
         ends = rows[:, 12:16:2], rows[:, 13:16:2], rows[:, 16:22], modes, ParticleState(last)
         return ParticlePath(position, turned, force, stored, dissipated, work, *ends)
+
+
+def path_of(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Floats:
+    """Points of a path, one row each [m]."""
+    columns = [np.atleast_1d(as_floats(value, name)) for name, value in zip("xyz", (x, y, z), strict=True)]
+    points = np.stack(np.broadcast_arrays(*columns), axis=-1)
+    if points.ndim != 2 or not len(points) or not np.isfinite(points).all():
+        raise InvalidValue("x, y, z: valid are numbers in one dimension, one point at least")
+    return np.ascontiguousarray(points)
 
 
 def latex(radius: float, tip_radius: float | None = None, tip_half_angle: float = 0.26) -> Particle:

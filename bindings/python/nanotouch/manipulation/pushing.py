@@ -17,7 +17,9 @@ import numpy as np
 from nanotouch._arrays import Floats, check_between
 from nanotouch.errors import Error, InvalidValue
 
-from .particle import Particle, ParticleState
+from .lever import Lever, low_of, needed, reach_of
+from .particle import Particle, ParticlesState
+from .particles import Particles
 
 _SHOWN = 8  # points of a push in the track
 
@@ -101,17 +103,29 @@ class Pushed(NamedTuple):
 
 @dataclass
 class World:
-    """What is true: particle, drift, time. The operator's coordinates are those of the stage."""
+    """What is true: particles, drift, time. The operator's coordinates are those of the stage."""
 
-    particle: Particle
+    laid: Particles
     bench: Bench
     random: np.random.Generator
-    state: ParticleState
+    state: ParticlesState
+    number: int = 0
+    """the particle that is worked on"""
     time: float = 0.0
     lines: int = 0
     drifted: Floats = field(default_factory=lambda: np.zeros(2))
     heading: float = 0.0
     rows: list[Floats] = field(default_factory=list)
+
+    @property
+    def particle(self) -> Particle:
+        """What each is like."""
+        return self.laid.particle
+
+    @property
+    def place(self) -> Floats:
+        """Where the one that is worked on lies, x and y on the sample [m]."""
+        return np.asarray(self.state.positions[self.number, :2])
 
     def wait(self, duration: float) -> None:
         """The direction of the drift wanders by 3 degrees in a second (root of time)."""
@@ -124,19 +138,20 @@ class World:
     def move(self, points: Floats) -> None:
         """Along points x, y, z of the stage; the sample drifts under each part of the way."""
         off = self.bench.position_noise * self.random.standard_normal(2)
-        last = np.array(self.state.tip) + np.array([*self.drifted, 0.0])
+        last = self.state.base + np.array([*self.drifted, 0.0])
         for point in points:
             self.wait(float(np.linalg.norm(point - last)) / self.bench.speed)
             x, y = point[:2] - self.drifted + off
-            path = self.particle.run(x, y, point[2], state=self.state)
+            path = self.laid.run(x, y, point[2], state=self.state)
             self.state, last = path.state, point
-            self.rows.append(np.array([self.time, x, y, point[2], *path.position[-1], *path.force[-1]]))
-        if path.happened("lifted")[-1]:
+            there = path.position[-1, self.number]
+            self.rows.append(np.array([self.time, *path.tip[-1], *there, *path.force[-1]]))
+        if path.happened("lifted")[-1].any():
             raise Lost("the particle hangs on the tip, which holds it more than the substrate does")
 
-    def track(self) -> Track:
-        """Of all moves so far."""
-        rows = np.array(self.rows).reshape(-1, 10)
+    def track(self, first: int = 0) -> Track:
+        """Of all moves so far, from a row on."""
+        rows = np.array(self.rows[first:]).reshape(-1, 10)
         return Track(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:])
 
     def heights(self, centre: Floats, axis: int, at: Floats) -> tuple[Floats, Floats]:
@@ -184,6 +199,7 @@ def push(
     bench: Bench | None = None,
     tolerance: float = 30e-9,
     longest: float | None = None,
+    lever: Lever | None = None,
     most: int = 200,
     seed: int = 0,
 ) -> Pushed:
@@ -202,6 +218,9 @@ def push(
         Distance that the operator is content with [m].
     longest : float, optional
         Of one push [m]; half the radius of the particle if left out.
+    lever : Lever, optional
+        On which the tip hangs. It is left out where it gives less than a tenth of the tolerance (``lever.give``), and
+        the tip held.
     most : int
         Pushes before it gives up; `believed` is then above the tolerance.
     seed : int
@@ -216,16 +235,19 @@ def push(
     check_between("most", most, "", above=0)
     longest = longest if longest is not None else 0.5 * particle.radius
     check_between("longest", longest, "m", above=0.0)
-    world = world_of(World, particle, bench or Bench(), start, seed)
+    laid = Particles(particle, lever=needed(lever, particle, tolerance))
+    world = world_of(World, laid, bench or Bench(), [start], seed)
     mark = np.array([start[0], start[1] - 10.0 * particle.radius])
     return Operator(world, mark, np.array(target), longest).work(seen or start, tolerance, most)
 
 
-def world_of(kind: type[World], particle: Particle, bench: Bench, start: tuple[float, float], seed: int) -> World:
-    """With the tip high above the particle."""
+def world_of(
+    kind: type[World], laid: Particles, bench: Bench, starts: Sequence[tuple[float, float]], seed: int
+) -> World:
+    """With the tip high above the first of them."""
     random = np.random.default_rng(seed)
-    state = particle.place(*start, (start[0], start[1], 4.0 * particle.radius))
-    return kind(particle, bench, random, state, heading=2.0 * np.pi * random.uniform())
+    state = laid.place(starts, (*starts[0], 4.0 * laid.particle.radius))
+    return kind(laid, bench, random, state, heading=2.0 * np.pi * random.uniform())
 
 
 @dataclass
@@ -237,10 +259,11 @@ class Operator:
     target: Floats
     longest: float
     ahead: Floats = field(default_factory=lambda: np.zeros(2))
+    drift: Floats = field(default_factory=lambda: np.zeros(2))
 
     def work(self, seen: tuple[float, float], tolerance: float, most: int) -> Pushed:
-        world = self.world
-        drift = self.drift_of(np.zeros(2))
+        world, begun = self.world, (self.world.lines, self.world.time, len(self.world.rows))
+        drift = self.drift_of(self.drift)
         found = self._find(np.array(seen) + drift)
         looks, pushes = [found - drift], 0
         while (left := float(np.linalg.norm(self.target - looks[-1]))) > tolerance and pushes < most:
@@ -251,17 +274,19 @@ class Operator:
             found = self._find(guess)
             self._learn(looks[-1], found - drift)
             looks.append(found - drift)
-        position = np.array(world.state.position[:2])
+        self.drift = drift
+        position = world.place
         error = float(np.linalg.norm(position - self.target))
-        spun = float(world.particle.run(*world.state.tip, state=world.state).turned[-1, 2])
-        return Pushed(position, error, left, pushes, world.lines, world.time, np.array(looks), spun, world.track())
+        spun = float(world.laid.run(*world.state.base, state=world.state).turned[-1, world.number, 2])
+        lines, duration = world.lines - begun[0], world.time - begun[1]
+        return Pushed(position, error, left, pushes, lines, duration, np.array(looks), spun, world.track(begun[2]))
 
     def drift_of(self, drift: Floats) -> Floats:
         """What the mark shows; the last one helps to find it."""
         return self.world.look(self.mark + drift, self.mark) - self.mark
 
     def _find(self, guess: Floats) -> Floats:
-        return self.world.look(guess, np.array(self.world.state.position[:2]))
+        return self.world.look(guess, self.world.place)
 
     def _wanted(self, found: Floats) -> Floats:
         """The way of the next push; what it springs back by is added."""
@@ -280,20 +305,12 @@ class Operator:
         """Down behind the particle, against it, back, and up. Of the stage."""
         particle, way = self.world.particle, self._wanted(found - drift)
         length = float(np.linalg.norm(way))
-        behind, low, high = -self._reach() - 0.3 * particle.radius, self._height(), 4.0 * particle.radius
-        against = np.linspace(behind, length - self._reach(), _SHOWN + 1)[1:]
+        low, high = low_of(particle), 4.0 * particle.radius
+        reach = reach_of(particle, low)
+        behind = -reach - 0.3 * particle.radius
+        against = np.linspace(behind, length - reach, _SHOWN + 1)[1:]
         points = [(behind, high), (behind, low), *((along, low) for along in against), (behind, low), (behind, high)]
         self.world.move(np.array([[*(found + along * way / length), z] for along, z in points]))
-
-    def _height(self) -> float:
-        return 0.3 * self.world.particle.radius
-
-    def _reach(self) -> float:
-        """From the middle of the particle to the tip's apex when its flank touches, at the height of the push."""
-        particle = self.world.particle
-        psi, both = particle.tip_half_angle, particle.radius + particle.tip_radius
-        up = particle.radius - particle.tip_radius - self._height()
-        return float((both + up * np.sin(psi)) / np.cos(psi))
 
 
 def arrange(
@@ -303,21 +320,29 @@ def arrange(
     *,
     bench: Bench | None = None,
     tolerance: float = 30e-9,
+    lever: Lever | None = None,
     seed: int = 0,
 ) -> list[Pushed]:
     """Push up to six particles into a pattern, each to the target that keeps all ways short and clear of the others.
 
-    The order is found by trying. On each way the others stay two diameters away, or the pattern is refused.
+    The order is found by trying. On each way the others stay two diameters away, or the pattern is refused. All lie
+    there all the time: what drift or a slip brings into the way is pushed, too. `lever` as in :func:`push`.
     """
     if not 1 <= len(starts) <= 6 or len(starts) != len(targets):
         raise InvalidValue(f"{len(starts)} starts, {len(targets)} targets: valid are as many, 1 .. 6")
+    check_between("tolerance", tolerance, "m", above=0.0)
     plan = _clear_plan(np.array(starts, float), np.array(targets, float), 4.0 * particle.radius)
-    done: list[Pushed | None] = [None] * len(starts)
+    laid = Particles(particle, lever=needed(lever, particle, tolerance))
+    world = world_of(World, laid, bench or Bench(), starts, seed)
+    low, left = min(y for _, y in starts), min(x for x, _ in starts)
+    operator = Operator(world, np.array([left, low - 10.0 * particle.radius]), np.zeros(2), 0.5 * particle.radius)
+    done: dict[int, Pushed] = {}
     for one, goal in plan:
-        done[one] = push(
-            particle, targets[goal], start=starts[one], bench=bench, tolerance=tolerance, seed=seed * 6 + one
-        )
-    return [one for one in done if one is not None]
+        world.number, operator.target, operator.ahead = one, np.array(targets[goal]), np.zeros(2)
+        done[one] = operator.work(starts[one], tolerance, 200)
+    ends, goals = world.state.positions[:, :2], dict(plan)
+    errors = [float(np.linalg.norm(ends[one] - targets[goals[one]])) for one in sorted(done)]
+    return [done[one]._replace(position=ends[one], error=error) for one, error in enumerate(errors)]
 
 
 def _clear_plan(starts: Floats, targets: Floats, room: float) -> list[tuple[int, int]]:

@@ -6,10 +6,12 @@ from __future__ import annotations
 import json
 import math
 import re
+from operator import index
 from typing import Any, NoReturn, TypeVar
 
 from nanotouch import _core
 from nanotouch.errors import DeviceError, InvalidValue
+from nanotouch.manipulation import Laid
 from nanotouch.plasticity import Dent
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.touch.options import PACES, Pace, Progress
@@ -125,6 +127,16 @@ class Runs:
     def undent(self) -> None:
         """Take the last dent back, while the tip touches nothing."""
         self.core.undent()
+
+    def lay(self, number: int, place: tuple[float, float]) -> None:
+        """Lay particle ``number`` at rest at x, y [m]: the next one, or one that lies there already, which the tip does
+        not touch. Of a session that was opened with ``particles``."""
+        self.core.lay(index(number), float(place[0]), float(place[1]))
+
+    @property
+    def particles(self) -> Laid:
+        """What lies on the surface, after the newest tick; also while the session runs."""
+        return Laid(**self.core.particles())
 
     def rewind(self, duration: float) -> None:
         """Take a running simulation back by a time [s], to the last quarter of a second before that moment."""

@@ -12,6 +12,7 @@ from nanotouch import _core
 from nanotouch._arrays import check_between
 from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
+from nanotouch.manipulation import Particles
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import margins
@@ -71,6 +72,9 @@ class Options(TypedDict, total=False):
     20 000 of them in a period [rad]"""
     faults: Faults
     """what fails in the simulated halves, and when"""
+    particles: Particles
+    """what :meth:`Session.lay` may lay on a flat at z = 0, to be pushed: its tip has the scene's radius and half
+    angle, the lever is the rig's (docs/manipulation.md)"""
     master: Master | SharedObject | Mailbox | Replay | Converters | None
     """one's own half instead of the simulated hand and master (:mod:`nanotouch.touch.hal`, docs/hal.md)"""
     slave: Slave | SharedObject | Mailbox | Replay | Converters | None

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import closing
+from dataclasses import asdict
 from typing import Any, Literal, Unpack
 
 import numpy as np
@@ -103,7 +104,7 @@ class Session(Runs, Frozen):
         self.rate = float(wanted.gains.rate)
         """of the force loop [Hz]"""
         self._events: list[tuple[int, str, list[Any]]] = []
-        faults = options.get("faults")
+        faults, particles = options.get("faults"), options.get("particles")
         parts = (None, None, None) if surface is None else surface.parts
         with self._scene.naming_terms():
             self.core = _core.Session(
@@ -116,6 +117,7 @@ class Session(Runs, Frozen):
                     "master": options.get("master"), "slave": options.get("slave"),
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
                     **plant_options(options.get("probe_model", "auto"), options.get("substep"), faults),
+                    "particles": None if particles is None else particles._core,
                 },
             )  # fmt: skip
         described = {"scene": self._scene, "rig": self.rig, "settings": self._settings}
@@ -123,6 +125,7 @@ class Session(Runs, Frozen):
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts).to_dict()
         margin = self.stability_margin
         self._opened_with |= {"mode": mode, "stability_margin": margin if math.isfinite(margin) else None}
+        self._opened_with |= {} if particles is None else {"particles": asdict(particles)}
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
         own = options.get("master") or options.get("slave")
