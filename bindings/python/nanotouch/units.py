@@ -24,7 +24,7 @@ def _scaled(symbol: str, prefixes: str, rest: str = "") -> dict[str, float]:
 
 
 #: the prefixes that pictures use, by their power of ten
-PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 #: spellings accepted for each SI unit of the field tables, with their factor
 UNITS: dict[str, dict[str, float]] = {
     "": {"": 1.0, "%": 0.01, "percent": 0.01},

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-_PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+from nanotouch.units import PREFIXES
+
 MEANING = {
     "effective_modulus": "E*, of tip and sample together",
     "youngs_modulus": "E of the sample",
@@ -52,7 +53,7 @@ def with_sigma(value: float, sigma: float, unit: str) -> str:
     """``(15.34 +- 0.12) kPa``: a common prefix, two digits of sigma; without sigma if that is 0."""
     power = _power(max(abs(value), sigma) if np.isfinite(sigma) else abs(value), unit)
     shown, spread = value / 10.0**power, sigma / 10.0**power
-    unit = f" {_PREFIXES[power]}{unit}" if unit else ""
+    unit = f" {PREFIXES[power]}{unit}" if unit else ""
     if sigma == 0.0:
         return f"{shown:.4g}{unit}"
     if not np.isfinite(spread):
@@ -66,7 +67,7 @@ def _power(larger: float, unit: str) -> int:
     """Of ten, of the prefix."""
     if not unit or larger == 0.0 or not np.isfinite(larger):
         return 0
-    return min(max(3 * int(np.floor(np.log10(larger) / 3)), min(_PREFIXES)), max(_PREFIXES))
+    return min(max(3 * int(np.floor(np.log10(larger) / 3)), min(PREFIXES)), max(PREFIXES))
 
 
 def between(low: float, high: float, unit: str) -> str:
@@ -79,7 +80,7 @@ def between(low: float, high: float, unit: str) -> str:
         return f"below {with_sigma(high, 0.0, unit)}"
     power = _power(max(abs(low), abs(high)), unit)
     digits = max(0, 2 - int(np.floor(np.log10(max(high - low, 1e-3 * high) / 10.0**power))))
-    shown = f" {_PREFIXES[power]}{unit}" if unit else ""
+    shown = f" {PREFIXES[power]}{unit}" if unit else ""
     if high > 100.0 * low:
         return f"from {with_sigma(low, 0.0, unit)} to {with_sigma(high, 0.0, unit)}"
     return f"from {low / 10.0**power:.{digits}f} to {high / 10.0**power:.{digits}f}{shown}"
