@@ -13,6 +13,7 @@ import numpy as np
 from nanotouch import plasticity, record
 from nanotouch.errors import InvalidValue, require
 from nanotouch.plots import new_figure, saved
+from nanotouch.units import in_words
 
 from nanotouch_app import output, scenes
 from nanotouch_app.quantity import parse_quantity, whole_number
@@ -20,6 +21,7 @@ from nanotouch_app.quantity import parse_quantity, whole_number
 FILES = ("recording.mcap", "indent.json", "indent.png")
 PIXELS, REACH = 161, 3.0  # of the drawn dent: to so many of its radii
 ROOM = 1.25  # the largest planned load, over that which is asked for
+SIGMAS = 5.0  # of the lever's noise, that a load has to exceed
 
 
 def add_parser(subparsers: Any) -> None:
@@ -43,8 +45,7 @@ def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
     load, displacement = parse_quantity(args.load, "N"), plasticity.Displacement(piled_up=args.piled_up)
     scene, rig = _scene(args)
-    if not load > 0.0:
-        raise InvalidValue(f"LOAD {args.load}: valid is above 0 N")
+    _check(args.load, load, rig)
     scene.range.maximum_load = ROOM * load
     with output.folder(args, FILES) as out:
         session = nt.Session(scene, rig, mode="curve", path=[(0.0, 0.0)], seed=args.seed)
@@ -76,6 +77,14 @@ def _scene(args: argparse.Namespace) -> tuple[nt.Scene, nt.Rig]:
     scene.adhesion.work_of_adhesion = scene.adhesion.hamaker_constant = scene.adhesion.contact_potential = 0.0
     scene.medium.relative_humidity = 0.0
     return scene, rig
+
+
+def _check(told: str, load: float, rig: nt.Rig) -> None:
+    """A load below the noise of the lever would end the way down before the tip has touched."""
+    noise = float(rig.probe.spring_constant * rig.probe.sensitivity * rig.probe.noise) / 6.0
+    if not load > SIGMAS * noise:
+        why = f", {SIGMAS:.0f} times the noise of the lever" if noise > 0.0 else ""
+        raise InvalidValue(f"LOAD {told}: valid is above {in_words(SIGMAS * noise, 'N', 3)}{why}")
 
 
 def facts_of(session: nt.Session, recording: nt.Recording) -> dict[str, float]:

@@ -17,7 +17,7 @@ from nanotouch.errors import InvalidValue, MissingExtra, require
 from nanotouch.plots import new_figure, saved
 
 from nanotouch_app import output, scan_rig, scenes, stop, surfaces
-from nanotouch_app.quantity import parse_quantity
+from nanotouch_app.quantity import parse_quantity, whole_number
 
 FILES = ("scan.gwy", "surface.gwy", "scan.json", "scan.png")
 MODES = ("contact", "tapping", "phase")
@@ -51,7 +51,8 @@ def add_parser(subparsers: Any) -> None:
     how.add_argument("--gain", metavar="RATE", help="K_I of the z loop, as 50Hz (default: as advised)")
     how.add_argument("--steady", metavar="ACCURACY", nargs="?", const="5%", help="the image of an infinitely slow "
                      "scan: the loop has settled at each pixel; forces within 5%%, or as told")  # fmt: skip
-    how.add_argument("--seed", type=int, default=1, metavar="N", help="of the noise (default: %(default)s)")
+    how.add_argument("--seed", type=whole_number(0, 2**64 - 1, "2^64 - 1"), default=1, metavar="N",
+                     help="of the noise (default: %(default)s)")  # fmt: skip
     how.add_argument("--forecast", action="store_true", help="tell what the scan would do, and end")
     output.add_options(parser)
 

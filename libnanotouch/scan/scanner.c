@@ -101,15 +101,21 @@ static double play(double hysteresis, double stroke, double share)
     return 2.0 * hysteresis * stroke * share * (1.0 - share);
 }
 
-nt_pose nt_scanner_at(const nt_scanner *scanner, long line, double share, int back, double time)
+/* Also between two lines. */
+static nt_pose pose_at(const nt_scanner *s, double line, double share, int back, double time)
 {
-    const nt_raster *raster = &scanner->scan.raster;
-    const double along = (back ? 1.0 - share : share) - 0.5 / raster->pixels, across = (double)line / raster->lines;
+    const nt_raster *raster = &s->scan.raster;
+    const double along = (back ? 1.0 - share : share) - 0.5 / raster->pixels, across = line / raster->lines;
     const double lag = play(raster->hysteresis, raster->width, along);
     const double x = raster->x + along * raster->width + (back ? lag : -lag);
     const double y = raster->y + across * raster->height - play(raster->hysteresis, raster->height, across);
     return (nt_pose){x - raster->drift_x * time, y - raster->drift_y * time,
                      raster->tilt_x * x + raster->tilt_y * y + raster->drift * time};
+}
+
+nt_pose nt_scanner_at(const nt_scanner *scanner, long line, double share, int back, double time)
+{
+    return pose_at(scanner, (double)line, share, back, time);
 }
 
 /* The sample there, as the scanner holds it. */
@@ -192,7 +198,8 @@ nt_status nt_scanner_engage(const nt_scanner *scanner, nt_scanner_state *state, 
 {
     if (scanner == NULL || state == NULL)
         return NT_E_ARGUMENT;
-    nt_scanner_state made = {.time = 2.0 * (double)(line * scanner->ticks) * scanner->period,
+    nt_scanner_state made = {.line = line,
+                             .time = 2.0 * (double)(line * scanner->ticks) * scanner->period,
                              .noise = nt_noise_of(seed, (uint32_t)line)};
     const nt_pose at = nt_scanner_at(scanner, line, 0.0, 0, made.time);
     const nt_place place = place_at(scanner, &at);
@@ -260,11 +267,34 @@ static nt_status half_line(const nt_scanner *s, nt_scanner_state *state, long li
     return NT_OK;
 }
 
+/* From the beginning of the line where the tip stands to that of another one, no faster than along a line, but within
+ * half a line's time. In one tick a slope across the lines would be a step, which the tip hits. No time of the image.
+ */
+static nt_status turn(const nt_scanner *s, nt_scanner_state *state, long line)
+{
+    const nt_raster *raster = &s->scan.raster;
+    const double lines = (double)(line - state->line), time = state->time,
+                 way = fabs(lines) * raster->height / raster->lines;
+    const long ticks = (long)ceil((double)s->ticks * fmin(1.0, way / raster->width));
+    for (long i = 1; i <= ticks; i++) {
+        const nt_pose at = pose_at(s, (double)state->line + lines * (double)i / (double)ticks, 0.0, 0, time);
+        reading lost;
+        const nt_status status = tick(s, state, &at, &lost);
+        if (status != NT_OK)
+            return status;
+    }
+    state->time = time;
+    state->line = line;
+    return NT_OK;
+}
+
 nt_status nt_scanner_line(const nt_scanner *scanner, nt_scanner_state *state, long line, nt_scan_row *trace,
                           nt_scan_row *retrace)
 {
     if (scanner == NULL || state == NULL || trace == NULL || retrace == NULL)
         return NT_E_ARGUMENT;
-    const nt_status status = half_line(scanner, state, line, 0, trace);
+    nt_status status = turn(scanner, state, line);
+    if (status == NT_OK)
+        status = half_line(scanner, state, line, 0, trace);
     return status == NT_OK ? half_line(scanner, state, line, 1, retrace) : status;
 }

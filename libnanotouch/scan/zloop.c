@@ -16,7 +16,7 @@ enum { FREQUENCIES = 2000 };
 static const nt_field scan_fields[] = {
     FIELD(zloop.mode, "contact|tapping|phase", 0.0, 2.0,
           "what the loop keeps: the deflection, or in tapping mode the amplitude or the phase"),
-    FIELD(zloop.set_force, "N", -1e-5, 1e-4, "set point of contact mode"),
+    FIELD(zloop.set_force, "N", 1e-12, 1e-4, "set point of contact mode: force of the deflection, which is 0 far out"),
     FIELD(zloop.set_amplitude, "", 0.05, 0.99, "set point of tapping mode, over the free amplitude"),
     FIELD(zloop.set_phase, "rad", 0.1, 1.5, "set point of phase feedback: lag of a tip that is repelled, below pi/2"),
     FIELD(zloop.integral, "1/s", 0.0, 1e7,

@@ -102,6 +102,29 @@ static void a_tilted_flat(void **state)
     }
 }
 
+/* On the way to the next line the loop follows: the step of 2.5 nm between two lines is no blow. */
+static void a_slope_across_the_lines(void **state)
+{
+    (void)state;
+    make_plan(NULL);
+    for (int mode = 0; mode < 2; mode++) {
+        nt_scan scan = quiet(mode);
+        scan.zloop.set_force = 20e-9;
+        scan.raster.tilt_y = 0.05;
+        scan.raster.height = 200e-9;
+        scan.raster.lines = 4.0;
+        const nt_scanner scanner = made(&scan);
+        nt_scan_row trace = {.height = trace_height, .peak_force = peak}, back = {.height = back_height};
+        nt_scanner_state at;
+        assert_int_equal(nt_scanner_engage(&scanner, &at, 0, 1), NT_OK);
+        for (long line = 0; line < 3; line++)
+            assert_int_equal(nt_scanner_line(&scanner, &at, line, &trace, &back), NT_OK);
+        assert_true(fabs(peak[0] / peak[100] - 1.0) < 0.1);
+        assert_true(fabs(trace_height[0] - trace_height[100]) < 20e-12);
+        assert_true(fabs(at.time - 6.0 * (double)scanner.ticks * scanner.period) < 1e-6);
+    }
+}
+
 /* The advised gain has the margins that it is advised for, and beyond its gain margin the loop is refused. */
 static void margins_of_the_loop(void **state)
 {
@@ -278,6 +301,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tilted_flat),
+        cmocka_unit_test(a_slope_across_the_lines),
         cmocka_unit_test(margins_of_the_loop),
         cmocka_unit_test(margins_are_those_of_the_simulation),
         cmocka_unit_test(a_slow_lock_in_amplifier_counts),

@@ -103,6 +103,25 @@ def test_the_force_up_a_flank_is_forecast(mode: Any) -> None:
     assert "keeps the tip at the surface" in str(told)
 
 
+def test_the_force_in_a_hollow_is_forecast() -> None:
+    """Tapping in a groove, as wide a contact as that of a tip twice as large: largest force of a slow scan within 5 %,
+    beyond those over a flat and up the flanks."""
+    x = np.arange(128) / 128 * 400e-9
+    groove = images.Topography(np.tile(12e-9 * np.cos(2e7 * np.pi * x), (64, 1)), (x[1], x[1]))
+    scene = rubbed()
+    surface = nt.Surface.touched_by(scene, groove)
+    settings = nt.Scan(
+        zloop={"noise": 0.0},
+        raster={"x": 0.1e-6, "y": 0.1e-6, "width": 0.2e-6, "height": 10e-9, "pixels": 64, "lines": 1, "line_rate": 0.1},
+    )
+    scanner = nt.Scanner(scene.plan(0.1, surface=surface), settings, rig(spring_constant=40.0))
+    told = scan.forecast(scanner, scene, surface)
+    force = scanner.run().trace.peak_force[0].max()
+    assert told.hollow_force == pytest.approx(force, rel=0.05)
+    assert told.hollow_force > 1.1 * max(told.flank_force, told.motions[0].peak_force)
+    assert "in the narrowest one" in str(told)
+
+
 def test_a_scan_through_the_hal() -> None:
     """Contact mode by a session on the simulated rig, with its noise, stage and supervisor: what the tip sees."""
     x = np.arange(64) / 64 * 2e-6

@@ -651,7 +651,7 @@ class ScanZloop(Section):
     mode: Literal["contact", "tapping", "phase"]
     """what the loop keeps: the deflection, or in tapping mode the amplitude or the phase"""
     set_force: float
-    """set point of contact mode [N], -1e-05 .. 0.0001"""
+    """set point of contact mode: force of the deflection, which is 0 far out [N], 1e-12 .. 0.0001"""
     set_amplitude: float
     """set point of tapping mode, over the free amplitude [-], 0.05 .. 0.99"""
     set_phase: float

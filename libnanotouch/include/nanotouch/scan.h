@@ -19,7 +19,7 @@ typedef enum nt_zloop_mode { NT_ZLOOP_CONTACT, NT_ZLOOP_TAPPING, NT_ZLOOP_PHASE 
  * degrees as A0 (2 - sin(phi)): far from the surface it reads A0, so that rules and gain are those of the amplitude. */
 typedef struct nt_zloop {
     nt_zloop_mode mode;   /* "contact|tapping|phase" */
-    double set_force;     /* of contact mode [N] */
+    double set_force;     /* of contact mode, above 0: at 0 and below nothing brings the tip down [N] */
     double set_amplitude; /* of tapping mode, over the free amplitude [-] */
     double set_phase;     /* of phase feedback [rad] */
     double integral;      /* K_I; 0: nt_scan_gain's [1/s] */
@@ -110,6 +110,7 @@ typedef struct nt_scanner_state {
     double measured; /* amplitude behind the lock-in, or deflection [m] */
     double lag;      /* phase behind the lock-in [rad] */
     double time;     /* since the beginning [s] */
+    long line;       /* where the tip stands */
     nt_noise noise;
 } nt_scanner_state;
 /* Comes down from above at the beginning of a line, until the loop holds its set point. */
@@ -129,7 +130,8 @@ typedef struct nt_scan_row {
     double *
         lateral; /* force of the lever on the tip along x: against friction (friction.h) and up slopes; 0 tapping [N] */
 } nt_scan_row;
-/* There and back. NT_E_NOT_FINITE, or what nt_cantilever_settle says. */
+/* To the line's beginning at the speed of a line; there and back. NT_E_NOT_FINITE, or what nt_cantilever_settle says.
+ */
 NT_API nt_status nt_scanner_line(const nt_scanner *scanner, nt_scanner_state *state, long line, nt_scan_row *trace,
                                  nt_scan_row *retrace);
 

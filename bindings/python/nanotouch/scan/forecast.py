@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nanotouch._arrays import Floats
 from nanotouch.errors import SolverError
 from nanotouch.scan.scanner import LoopMargins, Scanner
 from nanotouch.scan.steady import Steady, SteadyMotion
@@ -78,6 +79,9 @@ class Forecast(NamedTuple):
     least force for the same [N]; NaN where none does"""
     noise: float
     """standard deviation of the heights by the noise of the reading [m]"""
+    hollow_force: float
+    """tapping: peak force in the narrowest hollow of the surface, where the contact is widest [N]; inf: it no longer
+    taps there; 0 without a hollow, and in contact mode"""
 
     def __str__(self) -> str:
         return "\n".join([*map(self._motion, self.motions), self._safe(), *self._loop()])
@@ -124,6 +128,7 @@ class Forecast(NamedTuple):
                 f"{in_words(1e-9 * self.speed / self.speed_limit, 'm', 2)}"
             )
             lines.append(self._flank())
+            lines += self._hollow()
             lines.append(
                 f"parachuting: after a step down by {in_words(self.height, 'm', 3)} the tip flies "
                 f"{in_words(self.parachute, 'm', 3)} far"
@@ -146,6 +151,14 @@ class Forecast(NamedTuple):
         )
         return f"flanks: {climbs}; down it {point} keeps the tip at the surface"
 
+    def _hollow(self) -> list[str]:
+        if not self.hollow_force > 0.0:
+            return []
+        if math.isinf(self.hollow_force):
+            return ["hollows: in the narrowest one the sample may hold the tip, which no longer taps"]
+        over = "; a tap is harder still where the lever goes over to the repulsive motion" * (len(self.motions) > 1)
+        return [f"hollows: peak force {in_words(self.hollow_force, 'N', 3)} in the narrowest one{over}"]
+
 
 def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> Forecast:
     """What a scanner will do to the sample of a scene: forces over a flat, to 2 % by the cheapest tier that keeps that
@@ -159,7 +172,7 @@ def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> 
         motions, limit, reason, safe, scanner.margins, scanner.integral, scanner.advised_integral, scanner.speed, slope,
         scanner.speed_limit(slope, 1e-9) if slope > 0.0 else math.inf, height,
         scanner.parachute(height) if height > 0.0 else 0.0, mode, flank, _largest_set_point(scanner, lag),
-        scanner.noise,
+        scanner.noise, _hollow_force(scanner, scene, surface, lag),
     )  # fmt: skip
 
 
@@ -175,12 +188,35 @@ def _largest_set_point(scanner: Scanner, lag: float) -> float:
 
 def steepest(scanner: Scanner, surface: Surface) -> tuple[float, float]:
     """The steepest slope along a line, and the range of heights [m], of what is scanned."""
+    x, y = _places(scanner, surface)
+    z = np.asarray(surface.height(x[None, :], y[:, None])) + scanner.scan.raster.tilt_x * x
+    return float(np.abs(np.diff(z, axis=1)).max() / (x[1] - x[0])), float(np.ptp(z, axis=1).max())
+
+
+def _places(scanner: Scanner, surface: Surface) -> tuple[Floats, Floats]:
+    """x along a line and y of up to 64 lines [m]."""
     raster = scanner.scan.raster
     pixel = min(surface.topography.pixel_size[1], raster.width / raster.pixels)
     x = np.linspace(raster.x, raster.x + raster.width, min(int(4 * raster.width / pixel), 20000) + 2)
-    y = raster.y + (np.arange(min(int(raster.lines), 64)) + 0.5) * raster.height / min(int(raster.lines), 64)
-    z = np.asarray(surface.height(x[None, :], y[:, None])) + raster.tilt_x * x
-    return float(np.abs(np.diff(z, axis=1)).max() / (x[1] - x[0])), float(np.ptp(z, axis=1).max())
+    lines = min(int(raster.lines), 64)
+    return x, raster.y + (np.arange(lines) + 0.5) * raster.height / lines
+
+
+def _hollow_force(scanner: Scanner, scene: Scene, surface: Surface | None, lag: float) -> float:
+    """Where a sphere lies in a hollow its contact is that of a larger one: the widest of what is scanned, at the
+    reading of a loop that lags."""
+    if scanner.scan.zloop.mode == "contact" or surface is None or surface.tip_radius is None:
+        return 0.0
+    x, y = _places(scanner, surface)
+    widest = float(np.max(surface.radius_map.radius(x[None, :], y[:, None]).radius))
+    if widest <= scene["tip.radius"]:
+        return 0.0
+    hollow = scene.copy()
+    hollow.tip.radius = widest
+    steady, wanted = Steady(hollow.plan(), scanner.rig, scanner.drive, accuracy=_ACCURACY), _wanted(scanner)
+    readings = [one for one in (wanted, wanted - lag / float(scanner.drive["drive.free_amplitude"])) if one > 0.0]
+    found = [_of_reading(scanner, steady, one, lifted) for one in readings for lifted in (False, True)]
+    return max((_most(one) for one in found if one is not None), default=math.inf)
 
 
 def _limit(scene: Scene) -> tuple[float, str]:
