@@ -18,28 +18,12 @@
 #define UNDER 0.637     /* u E* sqrt(2 R l)/F, at most: 2/pi, of a pressure that is even over l */
 #define WIDER 0.3       /* u grows by so much e */
 #define HALF 0.55       /* of F, in deep contact */
-#define GAPS 1.1        /* ratio of gaps that are looked at */
+#define DEEPER_BY 1.1   /* ratio of indentations that are looked at */
 #define NEAREST 1e-13   /* [m] */
 #define FARTHEST 1e-2   /* [m] */
 #define DEEPER 1.05     /* than the largest load */
 #define INSIDE_FOLD 0.2 /* of the range of adhesion: nearer, the loss over that range tells more */
 #define MOST_OF_W 0.5   /* share of w that may be wrong */
-
-nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap)
-{
-    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0};
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
-        if (!nt_term_rows[term]->pressure) /* does not press on the sample, as a charge in it */
-            continue;
-        const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
-        s.F += value.F;
-        s.k += value.k;
-        s.all_F += fabs(value.F);
-        s.all_k += fabs(value.k);
-        s.pulls |= value.F < 0.0;
-    }
-    return s;
-}
 
 static double number_of(const nt_plan *plan, const nt_elastic_sum *s)
 {
@@ -78,30 +62,22 @@ double nt_plan_jump_gap(const nt_plan *plan)
 {
     double gap = FARTHEST;
     while (gap > NEAREST) {
-        const nt_elastic_sum s = nt_elastic_sum_at(plan, gap / GAPS);
+        const double next = nt_elastic_nearer(plan, gap);
+        const nt_elastic_sum s = nt_elastic_sum_at(plan, next);
         if (isinf(share_of(plan, &s)))
             break;
-        gap /= GAPS;
+        gap = next;
     }
     return gap;
 }
 
-double nt_elastic_hold(const nt_plan *plan)
-{
-    double hold = 0.0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
-        if (nt_plan_full_form(plan, term) != NT_FORM_OFF)
-            hold = fmax(hold, nt_plan_hold_gap(plan, term));
-    return hold;
-}
-
 /* By how much the pressure around a contact moves the surface there, at most [m]; of the force just outside it. */
-static double under(const nt_plan *plan, nt_law_value value)
+static double under(const nt_plan *plan, nt_law_value most)
 {
-    if (value.F == 0.0 || value.k == 0.0)
+    if (most.F == 0.0 || most.k == 0.0)
         return 0.0;
-    const double width = sqrt(2.0 * plan->contact.radius * fabs(value.F / value.k));
-    return UNDER * fabs(value.F) / (plan->contact.effective_modulus * width);
+    const double width = sqrt(2.0 * plan->contact.radius * (most.F / most.k));
+    return UNDER * most.F / (plan->contact.effective_modulus * width);
 }
 
 /* The sum of that over the terms; with tails or without [m]. Under the apex, where contact takes hold, it grows with e,
@@ -109,15 +85,15 @@ static double under(const nt_plan *plan, nt_law_value value)
 static double under_all(const nt_plan *plan, int tails)
 {
     double u = 0.0;
-    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0};
+    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         if (!nt_term_rows[term]->pressure || (nt_term_rows[term]->words.tail && !tails))
             continue;
         const double hold = nt_plan_hold_gap(plan, term) * (1.0 + 1e-12);
-        const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), hold);
-        u += under(plan, value);
-        s.all_F += fabs(value.F);
-        s.all_k += fabs(value.k);
+        const nt_law_value most = nt_elastic_sizes(plan, term, hold);
+        u += under(plan, most);
+        s.all_F += most.F;
+        s.all_k += most.k;
     }
     return u * sqrt(bluntest(plan)) * (1.0 + WIDER * number_of(plan, &s) * sqrt(bluntest(plan)));
 }
@@ -136,7 +112,7 @@ static double radius_before_contact(const nt_plan *plan, double gap)
     double u = 0.0;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (nt_term_rows[term]->pressure)
-            u += under(plan, nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap));
+            u += under(plan, nt_elastic_sizes(plan, term, gap));
     return radius_at(plan, u * sqrt(bluntest(plan)) - gap);
 }
 
@@ -158,7 +134,7 @@ static double error_in_contact(const nt_plan *plan)
     double worst = 0.0;
     if (plan->demand.quantity == NT_QUANTITY_RADIUS)
         return radius_at(plan, u);
-    for (double d = NEAREST; d < plan->largest_indentation && u > 0.0; d *= GAPS) {
+    for (double d = NEAREST; d < plan->largest_indentation && u > 0.0; d *= DEEPER_BY) {
         const nt_law_value contact = nt_plan_contact_eval(plan, nt_plan_contact_form(plan), d);
         const double lost = fmin(sqrt(ratio) * contact.k * u, HALF * ratio * touching.all_F);
         const double error = plan->demand.quantity == NT_QUANTITY_STIFFNESS
@@ -196,7 +172,7 @@ static double more_of_w(const nt_plan *plan)
 /* Laws around a contact that are no tail: where they are held, and their net force at a gap [N]. */
 static nt_elastic_sum others_at_hold(const nt_plan *plan)
 {
-    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0};
+    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
         if (!nt_term_rows[term]->words.tail && nt_term_rows[term]->pressure) {
             const double F = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), 0.0).F;
@@ -362,7 +338,7 @@ double nt_plan_rigid_error(nt_plan *plan, const nt_scene *scene)
     const int is_radius = plan->demand.quantity == NT_QUANTITY_RADIUS && plan->source == NT_ADHESION_NONE;
     int touches = plan->source == NT_ADHESION_NONE && nearest <= 0.0;
     for (double gap = FARTHEST; gap > last && touches >= 0;) {
-        double next = fmax(gap / GAPS, last);
+        double next = fmax(nt_elastic_nearer(plan, gap), last);
         if (nt_elastic_sum_at(plan, next).F > load) { /* closer than any load comes */
             reached = next = where_force_is(plan, load, next, gap);
             touches = -1;

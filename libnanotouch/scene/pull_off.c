@@ -30,6 +30,7 @@ nt_status nt_plan_laws_at(nt_plan *plan, const nt_scene *scene, double work_of_a
 typedef struct sought {
     nt_plan *plan;
     const nt_scene *scene;
+    double measured; /* [N] */
 } sought;
 
 /* Pull-off force of the whole less the measured one [N]. Where the tail leaves nothing of w, w is too small. */
@@ -37,30 +38,42 @@ static double excess(double work_of_adhesion, const void *context)
 {
     const sought *in = context;
     const nt_status status = nt_plan_laws_at(in->plan, in->scene, work_of_adhesion, NULL);
-    const double measured = in->scene->adhesion.pull_off_force;
     if (status == NT_E_RANGE) /* 0 would be a root */
-        return -fmax(measured, DBL_MIN);
-    return status == NT_OK ? in->plan->pull_off_force - measured : (double)NAN;
+        return -fmax(in->measured, DBL_MIN);
+    return status == NT_OK ? in->plan->pull_off_force - in->measured : (double)NAN;
 }
 
-/* What can be measured goes from or up to `limit`. */
+/* The pull-off force of the largest w, or of the least that the tail leaves anything of [N]; NaN where neither is
+ * known. */
+static double extreme(const sought *in, int largest)
+{
+    const sought any = {in->plan, in->scene, 0.0};
+    double w = largest ? WORK_MAX : WORK_MIN;
+    if (excess(w, &any) < 0.0 && nt_root_find(excess, &any, (double[]){WORK_MIN, WORK_MAX}, &w, NULL) == NT_OK)
+        w *= 1.0 + JUST;
+    return excess(w, &any);
+}
+
+/* What can be measured goes from or up to `limit`; to its other end from there. */
 static nt_status refuse(const sought *in, double limit, nt_problem *problem)
 {
     int count = 0;
     const nt_field *field = nt_scene_fields(&count);
     while (strcmp(field->name, "adhesion.pull_off_force") != 0)
         ++field;
-    const double measured = in->scene->adhesion.pull_off_force;
+    const double measured = in->measured;
     const int less = measured < limit;
-    if (problem)
-        *problem = (nt_problem){field->name, field->unit, measured, less ? limit * (1.0 + MET) : field->minimum,
-                                less ? field->maximum : limit * (1.0 - MET)};
+    if (problem) {
+        const double other = extreme(in, less), least = less ? limit : other, most = less ? other : limit;
+        *problem = (nt_problem){field->name, field->unit, measured, fmax(least * (1.0 + MET), field->minimum),
+                                fmin(most * (1.0 - MET), field->maximum)};
+    }
     return NT_E_RANGE;
 }
 
 static nt_status find(const sought *in, nt_problem *problem)
 {
-    const double measured = in->scene->adhesion.pull_off_force;
+    const double measured = in->measured;
     double w = fmin(fmax(measured / (2.0 * NT_PI * in->scene->tip.radius), WORK_MIN), WORK_MAX); /* rigid */
     double bracket[2] = {w, w};
     while (excess(bracket[1], in) < 0.0 && bracket[1] < WORK_MAX)
@@ -81,7 +94,7 @@ static nt_status find(const sought *in, nt_problem *problem)
 
 nt_status nt_plan_adhere(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
 {
-    const sought in = {plan, scene};
+    const sought in = {plan, scene, scene->adhesion.pull_off_force};
     nt_status status;
     if (scene->adhesion.given != NT_ADHESION_GIVEN_PULL_OFF || nt_scene_adhesion_source(scene) == NT_ADHESION_NONE)
         status = nt_plan_laws_at(plan, scene, 0.0, problem);

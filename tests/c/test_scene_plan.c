@@ -318,10 +318,14 @@ static void measured_pull_off_is_that_of_the_whole(void **state)
     const nt_plan_inputs inputs = {.scene = &scene};
     assert_int_equal(nt_plan_make(&plan, &inputs, &problem), NT_E_RANGE);
     assert_string_equal(problem.field, "adhesion.pull_off_force");
-    scene.adhesion.pull_off_force = problem.minimum;
+    const double ends[] = {problem.minimum, problem.maximum};
+    scene.adhesion.pull_off_force = ends[0];
+    assert_int_equal(make(&plan, &scene, &exact), NT_OK);
+    scene.adhesion.pull_off_force = ends[1];
     assert_int_equal(make(&plan, &scene, &exact), NT_OK);
     scene.adhesion.pull_off_force = 0.9; /* w beyond any solid's */
     assert_int_equal(nt_plan_make(&plan, &inputs, &problem), NT_E_RANGE);
+    assert_true(fabs(problem.minimum / ends[0] - 1.0) < 1e-6 && fabs(problem.maximum / ends[1] - 1.0) < 1e-6);
     scene.adhesion.pull_off_force = problem.maximum;
     assert_int_equal(make(&plan, &scene, NULL), NT_OK);
     for (int tail = 0; tail < 2; ++tail) { /* a bridge always pulls: none was measured is no answer */

@@ -78,6 +78,7 @@ static void add_numbers(const nt_plan &plan, py::dict &out)
     out["least_radius"] = plan.radii ? plan.radii->minimum : plan.contact.radius;
     out["largest_radius"] = plan.radii ? plan.radii->maximum : plan.contact.radius;
     out["curvature_error"] = plan.curvature_error;
+    out["of_each_radius"] = plan.relief.count > 0; /* tables of a sample that yields */
     out["properties"] = properties_of(plan);
 }
 

@@ -85,11 +85,17 @@ static int is_done(const maker *m)
     return pressed || m->last.h <= m->range->nearest;
 }
 
-/* Whether a step passes over much of the gap under the apex: a law of short range could hide there. */
+/* Whether a step passes over much of the gap under the apex: a law of short range could hide there, or a narrow part of
+ * one's own. */
 static int leaps(const maker *m, const nt_yield_point *next)
 {
+    const nt_yield_sample *sample = m->solver.sample;
     const double centre = m->last.centre;
-    return m->hold != NT_YIELD_CONTACT && centre > -m->solver.sample->pole && next->centre < KEPT * centre;
+    if (m->hold == NT_YIELD_CONTACT)
+        return 0;
+    if (sample->reach && next->centre < sample->reach(sample->context, centre))
+        return 1;
+    return centre > -sample->pole && next->centre < KEPT * centre;
 }
 
 /* Where the solver comes to no end, a surface that rises to meet the tip jumps: no finer table passes it. */

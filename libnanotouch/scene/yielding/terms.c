@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The pressures of all terms of a plan, summed, and what yields to them. */
+ * The pressures of all terms of a plan, summed, and what yields to them; the terms themselves on undeformed bodies. */
 #include <math.h>
 
 #include "scene/terms/term.h"
@@ -7,6 +7,78 @@
 
 #define STEP 1e-4  /* of a gap: differences */
 #define FADED 1e-6 /* of what a law is at half the gap: it ends without a kink */
+#define GAPS 1.1   /* ratio of gaps that are looked at */
+#define PARTS 4.0  /* of a piece of a law of one's own */
+#define PIECES 4   /* of such a law, which one step of a table may pass: its narrowest part has more */
+
+/* The piece of a law of one's own that a gap lies in, of which it is the end or within: its ends [m]. */
+static int piece_of(const nt_plan *plan, int term, double gap, double ends[2])
+{
+    const nt_term_row *row = nt_term_rows[term];
+    const double *gaps = NULL;
+    const int count = row->edges ? row->edges(nt_term_law(plan, term), &gaps) : 0;
+    int low = 0, high = count - 1;
+    if (count < 2 || !(gap > gaps[low] && gap <= gaps[high]))
+        return 0;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        *(gap > gaps[middle] ? &low : &high) = middle;
+    }
+    ends[0] = gaps[low];
+    ends[1] = gaps[high];
+    return 1;
+}
+
+double nt_elastic_nearer(const nt_plan *plan, double gap)
+{
+    double nearer = gap / GAPS, ends[2];
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (piece_of(plan, term, gap, ends)) {
+            const double part = (ends[1] - ends[0]) / PARTS;
+            nearer = fmax(nearer, ends[0] + (ceil((gap - ends[0]) / part - STEP) - 1.0) * part);
+        }
+    return nearer;
+}
+
+nt_law_value nt_elastic_sizes(const nt_plan *plan, int term, double gap)
+{
+    const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
+    nt_law_value most = {.F = fabs(value.F), .k = fabs(value.k)};
+    double ends[2];
+    if (piece_of(plan, term, gap, ends)) {
+        most.F = fmax(most.F, nt_plan_law_limit(plan, term, ends[1], NT_QUANTITY_FORCE));
+        most.k = fmax(most.k, nt_plan_law_limit(plan, term, ends[1], NT_QUANTITY_STIFFNESS));
+    }
+    return most;
+}
+
+nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap)
+{
+    nt_elastic_sum s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        if (!nt_term_rows[term]->pressure) /* does not press on the sample, as a charge in it */
+            continue;
+        const nt_law_value value = nt_plan_law_eval(plan, term, nt_plan_full_form(plan, term), gap);
+        const nt_law_value most = nt_elastic_sizes(plan, term, gap);
+        s.F += value.F;
+        s.k += value.k;
+        s.here_F += fabs(value.F);
+        s.here_k += fabs(value.k);
+        s.all_F += most.F;
+        s.all_k += most.k;
+        s.pulls |= value.F < 0.0 || value.k < 0.0;
+    }
+    return s;
+}
+
+double nt_elastic_hold(const nt_plan *plan)
+{
+    double hold = 0.0;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (nt_plan_full_form(plan, term) != NT_FORM_OFF)
+            hold = fmax(hold, nt_plan_hold_gap(plan, term));
+    return hold;
+}
 
 /* Whether a law is one of the tip and not of flats. */
 static int is_of_tip(const nt_plan *plan, int term, double gap)
@@ -48,6 +120,23 @@ static nt_pressure terms_at(const void *context, double gap)
     return all;
 }
 
+/* The gap under the apex that a step from a gap may reach: as far inwards as it passes few pieces of a law. */
+static double reach(const void *context, double gap)
+{
+    const nt_yield_terms *in = context;
+    double nearest = -INFINITY;
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
+        const double *gaps = NULL;
+        const nt_term_row *row = nt_term_rows[term];
+        int i = acts(in, term) && row->edges ? row->edges(nt_term_law(in->plan, term), &gaps) : 0;
+        while (i > 0 && gaps[i - 1] >= gap + in->hold)
+            --i;
+        if (i >= PIECES)
+            nearest = fmax(nearest, gaps[i - PIECES] - in->hold);
+    }
+    return nearest;
+}
+
 /* Where a term ends, as a brush does, and does not only fade, from where the bodies touch [m]; 0 if it goes on. */
 static double end_of(const nt_yield_terms *in, int term)
 {
@@ -75,10 +164,11 @@ nt_yield_sample nt_yield_sample_of(const nt_yield_terms *in, const nt_scene *sce
                               .poisson_ratio = s->poisson_ratio,
                               .share = compliance * plan->contact.effective_modulus,
                               .law = terms_at,
+                              .reach = reach,
                               .context = in,
                               .pole = -in->hold};
     const nt_elastic_sum far = nt_elastic_sum_at(plan, farthest);
-    sample.length = far.all_F / far.all_k;
+    sample.length = far.here_F / far.here_k;
     for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
         const double end = end_of(in, term);
         if (end > 0.0 && sample.end_count < NT_YIELD_ENDS)

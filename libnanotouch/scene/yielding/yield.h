@@ -25,6 +25,7 @@ typedef struct nt_yield_sample {
     double share;         /* of the compliance 1/E* that is the layer's, the rest is the tip's [-] */
     nt_pressure_law *law;
     const void *context;
+    double (*reach)(const void *context, double gap); /* how far in a step from a gap may go; NULL: anywhere [m] */
     double length;              /* over which the law falls where the sample begins to yield [m] */
     double pole;                /* the gap where the law diverges, <= 0; contact is at gap 0 [m] */
     double ends[NT_YIELD_ENDS]; /* gaps where the law has a kink, as where a brush ends [m] */
@@ -247,16 +248,23 @@ nt_yield_sample nt_yield_sample_of(const nt_yield_terms *in, const nt_scene *sce
 /* yield_adhere.c: adds the contact with all that acts around it to the table of a surrounded contact. */
 nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yield_range *range);
 
-/* elastic.c: all terms beside contact at a gap of undeformed bodies. */
+/* yield_terms.c: all terms beside contact at a gap of undeformed bodies. */
 typedef struct nt_elastic_sum {
-    double F, k;         /* net [N, N/m] */
-    double all_F, all_k; /* of the sizes */
+    double F, k;           /* net [N, N/m] */
+    double here_F, here_k; /* of the sizes there */
+    double all_F, all_k;   /* of nt_elastic_sizes */
     int pulls;
 } nt_elastic_sum;
 nt_elastic_sum nt_elastic_sum_at(const nt_plan *plan, double gap);
-/* What rigid bodies err by there, as a share of the demand. */
-double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s);
+/* Sizes of F and k of one of them. The pressure of a law of one's own need not fall with the gap, and is felt nearer,
+ * too: so they are the largest from there on. */
+nt_law_value nt_elastic_sizes(const nt_plan *plan, int term, double gap);
+/* The next gap inwards that is to be looked at: a tenth nearer, or less where a law of one's own may change before [m].
+ */
+double nt_elastic_nearer(const nt_plan *plan, double gap);
 /* The largest gap inside which one of them keeps its force [m]. */
 double nt_elastic_hold(const nt_plan *plan);
+/* elastic.c: what rigid bodies err by there, as a share of the demand. */
+double nt_elastic_error(const nt_plan *plan, const nt_elastic_sum *s);
 
 #endif

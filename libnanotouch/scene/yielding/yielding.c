@@ -6,7 +6,6 @@
 #include "scene/terms/term.h"
 #include "scene/yielding/yield.h"
 
-#define GAPS 1.1           /* ratio of gaps that are looked at */
 #define SEAM 0.1           /* of the tolerance: where the table begins */
 #define PARTS 2.5          /* a table's bound over its tolerance */
 #define ROUGHEST 8.6177e-3 /* tolerances of a table: so that there is one for each power of ten of the demand */
@@ -38,8 +37,8 @@ static double where_rigid(const nt_plan *plan, double hold, double error)
     double low = fmax(hold, nt_elastic_hold(plan)) * (1.0 + 1e-12),
            high = NT_YIELD_FARTHEST; /* held, they have no length */
     nt_elastic_sum s = nt_elastic_sum_at(plan, low);
-    const double length = s.all_F / s.all_k;
-    for (double gap = NT_YIELD_FARTHEST; gap > low; gap /= GAPS) {
+    const double length = s.here_F / s.here_k;
+    for (double gap = NT_YIELD_FARTHEST; gap > low; gap = nt_elastic_nearer(plan, gap)) {
         s = nt_elastic_sum_at(plan, gap);
         if (nt_elastic_error(plan, &s) > error) {
             low = gap;

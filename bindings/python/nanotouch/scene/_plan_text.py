@@ -107,7 +107,7 @@ def _term(term: Term, facts: dict[str, Any]) -> str:
 def _surface(contact: Term, facts: dict[str, Any]) -> str:
     least, largest, own = (in_words(facts[name], "m") for name in ("least_radius", "largest_radius", "radius"))
     radii, error = f"{least} to {largest}", _percent(facts["curvature_error"])
-    if contact.form.startswith("local"):
+    if contact.form.startswith("local") or facts["of_each_radius"]:
         return f"surface: curved, effective radius {radii}; the tip's own {own} everywhere would err by {error}"
     return f"surface: curvature left out, the tip's own {own} in place of {radii}, which errs by {error}"
 
