@@ -148,15 +148,17 @@ def _functional(material: Floats) -> dict[str, Parameter]:
 
 
 def _core(material: Floats, share: Floats) -> tuple[float, float, float, float]:
-    """Top and bottom of the core [m] and their material ratios: the flattest secant over 40 % of the material, drawn to
-    0 and 100 %."""
+    """Top and bottom of the core [m] and their material ratios. The flattest secant over 40 % of the material, the
+    first of several, says where; the line of least squares through that part is drawn to 0 and 100 % (ISO 13565-2)."""
     starts = np.linspace(share[0], share[-1] - _CORE, 601) if share[-1] - share[0] > _CORE else share[:1]
     left, right = (np.interp(at, share, material) for at in (starts, starts + _CORE))
-    slopes = (left - right) / _CORE
-    flattest = np.flatnonzero(slopes <= slopes.min() * (1.0 + 1e-9))
-    k = flattest[flattest.size // 2]
-    top = float(left[k] + slopes[k] * starts[k])
-    bottom = float(top - slopes[k])
+    slopes = (right - left) / _CORE
+    start = starts[np.flatnonzero(slopes >= slopes.max() - 1e-9 * abs(slopes.max()))[0]]
+    part = (share >= start) & (share <= start + _CORE)
+    x, z = share[part] - share[part].mean(), material[part] - material[part].mean()
+    slope = float(x @ z / (x @ x)) if np.count_nonzero(part) > 1 else float(slopes.max())
+    top = float(material[part].mean() - slope * share[part].mean())
+    bottom = top + slope
     return top, bottom, float(np.mean(material > top)), float(np.mean(material >= bottom))
 
 
