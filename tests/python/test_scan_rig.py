@@ -16,7 +16,7 @@ from nanotouch_app import scenes
 from nanotouch_app.main import main
 from test_scan_lateral import Bench
 
-FILE = Path(__file__).parents[2] / "docs/examples/rig/rig.toml"
+FILE = Path(__file__).parents[2] / "docs/examples/rig/tapping.toml"
 RASTER = ["--set-point", "50nN", "--area", "0.6um,0.5um,0.8um,0.1um", "--pixels", "16", "--lines", "4"]
 
 
@@ -34,7 +34,9 @@ class Ranged(Bench):
 @pytest.fixture
 def rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> type[Ranged]:
     """A rig file whose half is played by a device in Python."""
-    text = FILE.read_text().replace("[stage]\naxes = 1", "[stage]\naxes = 3")
+    text = FILE.read_text().replace("spring_constant_N_per_m = 40", "spring_constant_N_per_m = 8")
+    for table in ("drive", "tap", "zloop", "slave.drive_amplitude", "slave.amplitude", "slave.lag"):  # contact mode
+        text = re.sub(rf"\[{re.escape(table)}\][^\[]*(?=\[)", "", text)
     (tmp_path / "rig.toml").write_text(text + "\n[medium]\nrelative_humidity_percent = 0\n")
     monkeypatch.chdir(tmp_path)
 

@@ -96,6 +96,8 @@ nt_status nt_sim_tap_step(nt_sim_slave *slave, double base, double surface)
     const nt_flow_value now = flow_on(slave, &over, &peak);
     if (!isfinite(now.amplitude))
         return NT_E_NOT_FINITE;
+    const nt_interaction_state free = {.attached = 0}; /* gap and contact are told of the lowest point */
+    const nt_law_value deepest = nt_interaction_eval_gap(slave->plan, &free, &place, now.lowest_gap);
     const double share = tap->lock_in.time > 0.0 ? -expm1(-slave->link.period / tap->lock_in.time) : 1.0;
     tap->amplitude += share * (now.amplitude - tap->amplitude);
     tap->lag += share * (now.phase - tap->lag);
@@ -105,6 +107,7 @@ nt_status nt_sim_tap_step(nt_sim_slave *slave, double base, double surface)
                               .tip_force = {0.0, 0.0, tap->lever.spring_constant * tap->flow.mean},
                               .peak_force = peak,
                               .deepest_gap = now.lowest_gap,
+                              .contact_radius = deepest.a,
                               .surface_height = surface,
                               .tip_height = slave->cantilever.tip_height + surface,
                               .friction_heat = slave->slide.friction.dissipated};
