@@ -101,7 +101,7 @@ IIO_TEST = $(if $(shell pkg-config --exists libiio && echo here),test_hal_iio)
 conformance:  ## what each backend keeps of the rules in docs/hal.md, as a table
 	@tools/setup.sh test
 	@cmake --preset release --log-level WARNING >/dev/null
-	@cmake --build --preset release --target test_hal_conformance test_hal_mailbox test_hal_spi test_hal_spi_fuse $(IIO_TEST) >/dev/null
+	@cmake --build --preset release --target test_hal_conformance test_hal_mailbox test_hal_spi test_hal_spi_fuse test_session_tapping_converters $(IIO_TEST) >/dev/null
 	@$(VENV)/python tools/conformance.py build/release/tests/c $(IIO_TEST:%=build/release/tests/c/%)
 
 bench:  ## what one call costs on this machine; JSON in build/release/tests/bench

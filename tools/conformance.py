@@ -11,7 +11,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-TESTS = ("test_hal_conformance", "test_hal_mailbox", "test_hal_spi", "test_hal_spi_fuse")
+TESTS = (
+    "test_hal_conformance", "test_hal_mailbox", "test_hal_spi", "test_hal_spi_fuse", "test_session_tapping_converters"
+)  # fmt: skip
 RULES = ("rehearsal", "at rest before arm", "close", "disarm", "no number", "silence", "loss")
 
 
