@@ -70,7 +70,8 @@ static nt_status attach(nt_mailbox_half *half, nt_half wanted, nt_problem *probl
             status = NT_E_UNSUPPORTED;
     }
     if (status == NT_E_UNSUPPORTED)
-        (void)nt_problem_set(problem, "mailboxes of this version (another version of nanotouch made it)", "", 0.0, 1.0, 1.0);
+        (void)nt_problem_set(problem, "mailboxes of this version (another version of nanotouch made it)", "", 0.0, 1.0,
+                             1.0);
     if (status == NT_E_DEVICE)
         (void)nt_problem_set(problem, "programs that serve this mailbox", "", 0.0, 1.0, 1.0);
     if (status == NT_E_STATE)
