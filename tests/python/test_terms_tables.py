@@ -193,3 +193,29 @@ def test_a_sample_yields_to_a_narrow_part_far_out(
     true = np.array([getattr(state, quantity) for state in states])
     error = np.abs((value.F if quantity == "force" else value.k)[1:] - true) / np.maximum(np.abs(true), plan.scale)
     assert error.max() <= plan.bound
+
+
+@pytest.mark.parametrize("centre", [25.0e-9, 26.1e-9, 27.3e-9])
+def test_a_narrow_part_whose_energy_cancels_is_seen(centre: float) -> None:
+    """A bell up and one down within 1.5 % of their gap leave no energy: cells beside them were true at all their samples."""
+    width, apart = 0.08e-9, 0.4e-9
+
+    def bells(gap: float) -> tuple[float, float, float]:
+        at = [(gap - centre) / width, (gap - centre - apart) / width]
+        U = 5e-14 * width * math.sqrt(math.pi) / 2.0 * (math.erfc(at[0]) - math.erfc(at[1]))
+        bell = [5e-14 * math.exp(-(z**2)) for z in at]
+        return U, bell[0] - bell[1], 2.0 / width * (at[0] * bell[0] - at[1] * bell[1])
+
+    def far(gap: float) -> float:
+        return 3e-12 * math.exp(-gap / 55e-9)
+
+    nt.scene.register(
+        "pair", parameters={}, units={}, energy=lambda gap: 55e-9 * far(gap) + bells(gap)[0],
+        force=lambda gap: far(gap) + bells(gap)[1], stiffness=lambda gap: far(gap) / 55e-9 + bells(gap)[2],
+        bound=lambda gap: far(gap) + (5e-14 if gap < 30e-9 else 0.0),
+    )  # fmt: skip
+    scene = stiff_scene("pair")
+    scene.tip.radius, scene.range.maximum_load = 0.4e-6, 2e-12
+    gaps = centre + np.linspace(-3.0 * width, apart + 3.0 * width, 200)
+    truth = np.array([scene.term_force("pair", gap) for gap in gaps])
+    assert scene.plan(0.1).law("pair", gaps).F == pytest.approx(truth, abs=1e-5 * truth.max())

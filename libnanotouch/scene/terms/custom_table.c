@@ -18,8 +18,9 @@
 #define TABLED 2.0       /* the error oscillates within a cell: what was sampled may be half of it */
 #define BOUND_HOLDS 1e-9 /* a bound may be this share too small, by rounding */
 #define REACHED 1e1      /* times the largest load: a force beyond it is felt only where more pulls, which S is then */
+#define LOST 1e-3        /* of a force: where the table is off by more, it has not seen a part of the law */
 #define BEYOND 1.1       /* ratio of gaps at which it is held to its bound beyond the table */
-enum { INSIDE = 3 };     /* samples inside a cell */
+enum { INSIDE = 3, LOOKS = 2048 }; /* samples inside a cell; of all the law */
 
 /* The law at both ends of a cell and inside, and how far the polynomial is off. */
 typedef struct cell {
@@ -127,10 +128,9 @@ static int worst(const builder *b)
     return found;
 }
 
-static nt_status split(builder *b, int i)
+static nt_status split(builder *b, int i, double middle)
 {
     nt_custom_table *table = b->table;
-    const double middle = sqrt(table->gap[i] * table->gap[i + 1]);
     for (int j = table->count; j > i; --j) {
         table->gap[j + 1] = table->gap[j];
         b->ends[j + 1] = b->ends[j];
@@ -146,6 +146,40 @@ static nt_status split(builder *b, int i)
     if (status == NT_OK)
         status = measure(b, i);
     return status == NT_OK ? measure(b, i + 1) : status;
+}
+
+/* Splits the worst cells until none is worth it, or there are so many. */
+static nt_status refine(builder *b, int most)
+{
+    nt_status status = NT_OK;
+    for (int i = worst(b); i >= 0 && b->table->count < most && status == NT_OK; i = worst(b))
+        status = split(b, i, sqrt(b->table->gap[i] * b->table->gap[i + 1]));
+    return status;
+}
+
+/* A narrow part of the law may lie between all samples: looks more closely, and splits a cell where it is. What a cell
+ * is off by at its own samples is left to be split for that. */
+static nt_status look(builder *b)
+{
+    nt_custom_table *table = b->table;
+    const double first = table->gap[0], ratio = table->gap[table->count] / first;
+    const cell all = largest(b, b->felt);
+    nt_status status = NT_OK;
+    for (int n = 0; n < LOOKS && status == NT_OK && table->count < NT_CUSTOM_CELLS; ++n) {
+        const double gap = first * pow(ratio, (n + 0.5) / LOOKS);
+        const int i = nt_custom_cell(table, gap);
+        nt_law_value truth;
+        status = i < 0 ? NT_OK : sample(b, gap, &truth);
+        if (i < 0 || status != NT_OK)
+            continue;
+        const double start = table->gap[i], w = table->gap[i + 1] - start, t = (gap - start) / w, *c = table->U[i];
+        const double F = -(c[1] + t * (2.0 * c[2] + t * (3.0 * c[3] + t * (4.0 * c[4] + t * 5.0 * c[5])))) / w;
+        const double off = fabs(F - truth.F), narrowest = NARROWEST * start;
+        const double felt = fmax(LOST * fmax(fabs(truth.F), SMALL * all.force), TABLED * b->cells[i].force_error);
+        if (off > felt && fmin(gap - start, w) > narrowest)
+            status = split(b, i, gap);
+    }
+    return status;
 }
 
 /* Cells of even ratio from the hold to where the bound has fallen off, then split. */
@@ -172,12 +206,10 @@ static nt_status build(builder *b, double hold)
         if (status != NT_OK)
             return status;
     }
-    for (int i = worst(b); i >= 0 && table->count < NT_CUSTOM_CELLS; i = worst(b)) {
-        const nt_status status = split(b, i);
-        if (status != NT_OK)
-            return status;
-    }
-    return NT_OK;
+    nt_status status = refine(b, NT_CUSTOM_CELLS / 2); /* room for what is not seen yet */
+    if (status == NT_OK)
+        status = look(b);
+    return status == NT_OK ? refine(b, NT_CUSTOM_CELLS) : status;
 }
 
 /* Energy, force and stiffness are one law: cells err little in F, and most of them in k (a force may have kinks). */
