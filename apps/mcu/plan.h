@@ -8,7 +8,7 @@
  * contact: Maugis-Dugdale table, lambda 0.0401; adhesion by a water meniscus, w = 140.9 mJ/m2 beside van der Waals;
  * Hertz would err by 86 %, DMT would err by 23 %, JKR would err by 26 %
  * van der Waals: in Derjaguin's form, at most 393.6 pN, 2.2 % of the pull-off; this form errs by 0.1 %
- * force within 0.11 % of the larger of itself and 17.98 nN, the pull-off; folds within 0.029 pm, bound from 0.2 pm
+ * force within 0.11 % of the larger of itself and 17.98 nN, the pull-off; folds within 29 fm, bound from 2e+02 fm
  * beside them on; cost 1.9 Hertz evaluations (1.75 where each waits for the last), everything exact 6.5
  * pull-off 17.98 nN; the force jumps in, whatever the spring; stiffest contact 665 N/m
  */
@@ -176,6 +176,16 @@ static const ntf_touch plan_touch = {
             1.50000000e+00f, /* gauge_drift */
         }, /* limits */
         {
+            1, /* at */
+            0.00000000e+00f, /* frequency */
+            1.99999999e-08f, /* free_amplitude */
+            1.00000001e-01f, /* tolerance */
+            6.99999988e-01f, /* set_amplitude */
+            1.99999995e-05f, /* lock_in */
+            1.99999999e-11f, /* noise */
+            0.00000000e+00f, /* resolution */
+        }, /* tap */
+        {
             (ntf_control_choice)0, /* choice */
             0, /* none */
             0, /* none */
@@ -198,6 +208,8 @@ static const ntf_touch plan_touch = {
     1.99999994e-09f, /* stage_step */
     4.99999987e-05f, /* stage_end */
     2.00000003e-01f, /* motor_step */
+    0.00000000e+00f, /* drive_amplitude */
+    0.00000000e+00f, /* drive_frequency */
     1.93022114e-08f, /* spike */
     {
         2.50000012e-04f, /* dead_zone */
@@ -267,6 +279,15 @@ static const ntf_touch plan_touch = {
             5.00000000e-01f, /* gauge_bias */
             1.50000000e+00f, /* gauge_drift */
         }, /* limits */
+        {
+            0.00000000e+00f, /* lost */
+            0.00000000e+00f, /* most */
+            0u, /* settling */
+            {
+                0.00000000e+00f, /* distance */
+                0.00000000e+00f, /* noise */
+            }, /* stuck */
+        }, /* amplitude */
     }, /* supervisor */
 };
 
