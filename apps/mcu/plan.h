@@ -8,7 +8,7 @@
  * contact: Maugis-Dugdale table, lambda 0.0401; adhesion by a water meniscus, w = 140.9 mJ/m2 beside van der Waals;
  * Hertz would err by 86 %, DMT would err by 23 %, JKR would err by 26 %
  * van der Waals: in Derjaguin's form, at most 393.6 pN, 2.2 % of the pull-off; this form errs by 0.1 %
- * force within 0.11 % of the larger of itself and 17.98 nN, the pull-off; folds within 29 fm, bound from 2e+02 fm
+ * force within 0.11 % of the larger of itself and 17.98 nN, the pull-off; folds within 0.029 pm, bound from 0.2 pm
  * beside them on; cost 1.9 Hertz evaluations (1.75 where each waits for the last), everything exact 6.5
  * pull-off 17.98 nN; the force jumps in, whatever the spring; stiffest contact 665 N/m
  */

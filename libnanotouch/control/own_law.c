@@ -147,7 +147,9 @@ static nt_status amounts_at(const nt_rig *rig, const nt_settings *settings, doub
     gains.velocity_feedforward = fmin(fmax(0.0, share), LARGEST_FEEDFORWARD); /* rounded */
     gains.alpha_f = fmax(alpha_f, LEAST_ALPHA_F);
     gains.alpha_f_approach = gains.alpha_f_retract = 1.0; /* the largest region has been tried */
-    *amounts = (nt_settings){.gains = gains, .limits = settings->limits, .control = {.choice = NT_CONTROL_DEFAULT}};
+    *amounts = *settings;
+    amounts->gains = gains;
+    amounts->control = (nt_control){.choice = NT_CONTROL_DEFAULT};
     return NT_OK;
 }
 

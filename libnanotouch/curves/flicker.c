@@ -199,7 +199,7 @@ double nt_curve_point_noise(const double force[], long count, double *work)
 double nt_curve_correlated_noise(double point_noise, const nt_curve_noise *free, long count)
 {
     const double least = point_noise * point_noise;
-    if (free->flicker == 0.0 && free->white < correlated * least)
+    if (free->white + (double)count * free->flicker < correlated * least)
         return 0.0;
     return sqrt(fmax(least, free->white) + (double)count * free->flicker);
 }

@@ -20,7 +20,7 @@ from nanotouch_app.devices.nanonis_link import LinkError
 
 PATIENCE = 20.0  # with a machine that is busy [s]
 GUARD = 100e-9
-NOBODY = nt.mailbox.Request(False, "RUN", 0, 0, (math.nan,) * 3, 0.0)
+NOBODY = nt.mailbox.Request(False, "RUN", 0, 0, (math.nan,) * 3, 0.0, 0.0, 0.0)
 
 
 @pytest.fixture

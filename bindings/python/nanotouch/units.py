@@ -91,12 +91,17 @@ def parse_quantity(text: str, unit: str) -> float:
     return value
 
 
+def least_power(unit: str) -> int:
+    """Of ten, of the smallest prefix: works go down to aJ, all else to p (lengths of a few fm are no lengths here)."""
+    return min(PREFIXES) if unit.startswith("J") else -12
+
+
 def engineering(unit: str, values: ArrayLike) -> tuple[str, float]:
     """The SI prefix that suits the largest magnitude: ``engineering("m", [2e-7])`` is ``("nm", 1e9)``."""
     magnitudes = np.abs(np.asarray(values, dtype=float))
     largest = float(np.max(magnitudes, where=np.isfinite(magnitudes), initial=0.0))
     power = 3 * math.floor(math.log10(largest) / 3 + 1e-12) if largest > 0 else 0
-    power = min(max(power, min(PREFIXES)), max(PREFIXES))
+    power = min(max(power, least_power(unit)), max(PREFIXES))
     return PREFIXES[power] + unit, 10.0**-power
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nanotouch.units import PREFIXES
+from nanotouch.units import PREFIXES, least_power
 
 MEANING = {
     "effective_modulus": "E*, of tip and sample together",
@@ -67,7 +67,7 @@ def _power(larger: float, unit: str) -> int:
     """Of ten, of the prefix."""
     if not unit or larger == 0.0 or not np.isfinite(larger):
         return 0
-    return min(max(3 * int(np.floor(np.log10(larger) / 3)), min(PREFIXES)), max(PREFIXES))
+    return min(max(3 * int(np.floor(np.log10(larger) / 3)), least_power(unit)), max(PREFIXES))
 
 
 def between(low: float, high: float, unit: str) -> str:
