@@ -197,7 +197,7 @@ def test_a_sample_yields_to_a_narrow_part_far_out(
 
 @pytest.mark.parametrize("centre", [25.0e-9, 26.1e-9, 27.3e-9])
 def test_a_narrow_part_whose_energy_cancels_is_seen(centre: float) -> None:
-    """A bell up and one down within 1.5 % of their gap leave no energy: the cells beside them were true at all samples."""
+    """A bell up and one down within 1.5 % of their gap leave no energy: cells beside them were true at all samples."""
     width, apart = 0.08e-9, 0.4e-9
 
     def bells(gap: float) -> tuple[float, float, float]:
