@@ -25,6 +25,7 @@ FLIGHT = 0.03  # of the width after a step down by the whole height, where no li
 TICKS_OF_STAGE = 20.0  # per period of the stage's resonance, where no rate is given
 ACCURACIES = (0.01, 0.03, 0.1, 0.3)  # of forces, the first that the surface allows
 MOST_TICKS = 2e9
+FLAT = 6e-6  # side of a scan on a real rig, where nobody names an area or a surface [m]
 LEAST = 4  # pixels and lines of an image
 
 
@@ -62,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     scene, rig, tables = scenes.read(args.scene if args.scene else _preset(args.what))
     is_real = scan_rig.is_named(args) and not args.forecast
     with output.busy("reading the surface"):
-        surface = _surface(args, scene, tables, is_real)
+        surface = _surface(args, scene, tables)
     if is_real:
         return _on_rig(args, scene, tables, surface)
     plan = _plan(scene, surface, tables)
@@ -88,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _on_rig(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], surface: nt.Surface) -> int:
+def _on_rig(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], surface: nt.Surface | None) -> int:
     """With the real slave of a rig file, which moves by the clock."""
     args.mode = scan_rig.mode(args, tables)
     settings, drive = nt.Scan.from_tables(tables), nt.Drive.from_tables(tables)
@@ -145,11 +146,12 @@ def _preset(what: str | None) -> str | None:
     return what if what in scenes.PRESETS + scenes.PAPER else None
 
 
-def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], is_real: bool) -> nt.Surface:
+def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) -> nt.Surface | None:
+    """None: a flat without end, for what lies under a real probe is not known yet."""
     named = nt.SurfaceFile.from_tables(tables)
     preset = _preset(args.what)
-    if is_real and args.what is None and named is None:  # nobody knows yet
-        return nt.Surface.touched_by(scene, surfaces.BUILT_IN["flat"]())
+    if args.what is None and named is None and scan_rig.is_named(args):
+        return None
     if args.what is None or preset is not None:
         if named is not None:
             return named.touched_by(scene)
@@ -161,7 +163,7 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], 
     return nt.SurfaceFile(image=args.what).touched_by(scene)
 
 
-def _plan(scene: nt.Scene, surface: nt.Surface, tables: dict[str, Any]) -> nt.Plan:
+def _plan(scene: nt.Scene, surface: nt.Surface | None, tables: dict[str, Any]) -> nt.Plan:
     """As the file demands, else within 1 %, or what can be kept on sharp edges."""
     if "demand" in tables:
         return nt.Plan.make(scene, nt.Demand.from_tables(tables), surface=surface)
@@ -175,7 +177,7 @@ def _plan(scene: nt.Scene, surface: nt.Surface, tables: dict[str, Any]) -> nt.Pl
 
 
 def _scanner(
-    args: argparse.Namespace, plan: nt.Plan, rig: nt.Rig, tables: dict[str, Any], surface: nt.Surface
+    args: argparse.Namespace, plan: nt.Plan, rig: nt.Rig, tables: dict[str, Any], surface: nt.Surface | None
 ) -> nt.Scanner:
     """What file and options say; what neither says follows from the surface, the rig and the rules."""
     settings, drive = nt.Scan.from_tables(tables), nt.Drive.from_tables(tables)
@@ -190,7 +192,7 @@ def _scanner(
     elif not any(name.startswith("raster.line_rate") for name in told):
         settings["raster.line_rate"] = 1e-3
         trial = nt.Scanner(plan, settings, rig, drive)
-        height = scan.steepest(trial, surface)[1]
+        height = 0.0 if surface is None else scan.steepest(trial, surface)[1]
         flight = trial.parachute(height, 1.0)
         fastest = min(0.25 * settings["zloop.rate"] / settings["raster.pixels"], 1.0)
         rate = min(FLIGHT / (2.0 * flight), fastest) if flight > 0.0 else fastest
@@ -215,7 +217,7 @@ def _set_loop(args: argparse.Namespace, settings: nt.Scan, drive: nt.Drive) -> N
         drive["drive.free_amplitude"] = parse_quantity(args.free_amplitude, "m")
 
 
-def _set_raster(args: argparse.Namespace, settings: nt.Scan, surface: nt.Surface, is_told: bool) -> None:
+def _set_raster(args: argparse.Namespace, settings: nt.Scan, surface: nt.Surface | None, is_told: bool) -> None:
     raster = settings.raster
     if args.area is not None:
         parts = args.area.split(",")
@@ -223,13 +225,16 @@ def _set_raster(args: argparse.Namespace, settings: nt.Scan, surface: nt.Surface
             raise InvalidValue(f"--area {args.area}: write it like 1um,1um,2um,2um")
         raster.x, raster.y, raster.width, raster.height = (parse_quantity(part, "m") for part in parts)
     elif not is_told:
-        raster.x, raster.y, (raster.width, raster.height) = 0.0, 0.0, surface.size
+        raster.x, raster.y = 0.0, 0.0
+        raster.width, raster.height = (FLAT, FLAT) if surface is None else surface.size
     if args.pixels is not None:
         raster.pixels = raster.lines = float(args.pixels)
     if args.lines is not None:
         raster.lines = float(args.lines)
     if min(raster.pixels, raster.lines) < LEAST:  # before the scan: the file of an image needs them
         raise InvalidValue(f"{raster.pixels:g} pixels, {raster.lines:g} lines: an image has at least {LEAST} of each")
+    if surface is None:  # the range of the slave counts
+        return
     for axis, first, length, whole in zip(
         "xy", (raster.x, raster.y), (raster.width, raster.height), surface.size, strict=True
     ):

@@ -52,7 +52,7 @@ def _take_tap(wanted: nt.Settings, settings: nt.Scan, drive: nt.Drive, tables: d
 
 
 def opened(
-    args: argparse.Namespace, settings: nt.Scan, drive: nt.Drive, surface: nt.Surface, rate: float | None
+    args: argparse.Namespace, settings: nt.Scan, drive: nt.Drive, surface: nt.Surface | None, rate: float | None
 ) -> nt.Session:
     """The session that scans, armed; sets the line rate. ``rate``: that somebody gave [Hz]."""
     scene, rig, tables = scenes.read(args.scene)
@@ -70,6 +70,8 @@ def opened(
     if args.gain is not None:
         wanted.gains.height_gain = parse_quantity(args.gain, "Hz")
     servo = float(wanted.gains.height_gain)
+    if not servo > 0.0:
+        raise InvalidValue(f"K_I = {servo:g}/s of the height servo (--gain, gains.height_gain): valid is above 0/s")
     raster.line_rate = rate if rate is not None else float(f"{servo / (2.0 * SETTLES * raster.pixels):.2g}")
     mode = nt.raster.MODES[str(settings.zloop.mode)]
     session = nt.Session(scene, rig, settings=wanted, mode=mode, **what, **scenes.real_halves(args.scene))

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A live sensor shows its noise; none while z moves means that it is dead. How much it has is learnt from its first
- * samples, so that a sensor better than declared is not taken for a dead one, and one that has lost its gain is. */
+ * A live sensor shows its noise; none while the stage moves means that it is dead. A way sideways counts as one in z
+ * does: a servo whose reading has died at the set point leaves z where it is, and a scan goes on over the slopes. How
+ * much noise it has is learnt from its first samples, so that a sensor better than declared is not taken for a dead
+ * one, and one that has lost its gain is. */
 #include "control/stuck.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/clamp.h"
 
@@ -29,19 +32,30 @@ static void learn_noise(const nt_stuck_limits *limits, nt_stuck *stuck, double r
         stuck->band = BAND * lesser(stuck->noise, limits->noise);
 }
 
-/* The count stands at NT_STUCK_SAMPLES until z has moved, so that HOLD comes first. */
-nt_state nt_stuck_judge(const nt_stuck_limits *limits, nt_stuck *stuck, double reading, double position, int shows_none)
+/* By more than the distance, along any axis; x and y that nobody measures have not. */
+static int has_moved(const nt_stuck_limits *limits, const nt_stuck *stuck, const double position[NT_AXES])
+{
+    for (int i = 0; i < NT_AXES; ++i)
+        if (fabs(position[i] - stuck->position[i]) > limits->distance)
+            return 1;
+    return 0;
+}
+
+/* The count stands at NT_STUCK_SAMPLES until the stage has moved, so that HOLD comes first. */
+nt_state nt_stuck_judge(const nt_stuck_limits *limits, nt_stuck *stuck, double reading, const double position[NT_AXES],
+                        int shows_none)
 {
     if (limits->distance == 0.0)
         return NT_RUN;
+    const int is_first = stuck->noise_samples == 0 && stuck->run == 0;
     learn_noise(limits, stuck, reading);
-    if (shows_none || !(fabs(reading - stuck->value) <= stuck->band)) {
+    if (is_first || shows_none || !(fabs(reading - stuck->value) <= stuck->band)) {
         stuck->value = reading;
-        stuck->position = position;
+        memcpy(stuck->position, position, sizeof stuck->position);
         stuck->run = 0;
         return NT_RUN;
     }
-    const int moved = fabs(position - stuck->position) > limits->distance;
+    const int moved = has_moved(limits, stuck, position);
     if (stuck->run < NT_STUCK_SAMPLES || (moved && stuck->run < 2 * NT_STUCK_SAMPLES))
         ++stuck->run;
     if (stuck->run < NT_STUCK_SAMPLES || !moved)

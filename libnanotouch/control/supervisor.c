@@ -176,7 +176,7 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
                             int saturated)
 {
     const nt_stuck_limits limits = {supervisor->stuck_distance, supervisor->noise};
-    const double position = sample->stage_position[NT_Z];
+    const double *position = sample->stage_position;
     const nt_state verdict =
         worse(nt_stuck_judge(&limits, &state->deflection, sample->deflection[NT_Z], position, saturated),
               nt_stuck_judge(&supervisor->amplitude.stuck, &state->amplitude, sample->amplitude, position, 0));
@@ -313,7 +313,7 @@ nt_status nt_supervisor_arm(nt_supervisor_state *state, int confirmed)
     nt_supervisor_state fresh = nt_supervisor_start();
     fresh.deflection = state->deflection;
     fresh.deflection.run = 0;
-    fresh.deflection.position = 0.0;
+    fresh.deflection.position[NT_Z] = 0.0;
     fresh.amplitude = state->amplitude;
     fresh.amplitude.run = 0;
     fresh.surface = state->surface;

@@ -148,6 +148,10 @@ static nt_status take_particles(nt_composition *made, const nt_composition *befo
     const double R = setup->scene.tip.radius, psi = setup->scene.tip.half_angle;
     made->pushes = 1;
     made->particles = *setup->particles;
+    if (setup->mode == NT_MODE_TAPPING)
+        return nt_problem_set(problem, "particles in a session that taps", "no|yes", 1.0, 0.0, 0.0);
+    if (setup->probe_model == NT_PROBE_DYNAMIC)
+        return nt_problem_set(problem, "particles with a dynamic probe", "no|yes", 1.0, 0.0, 0.0);
     if (surface && (surface->height_minimum != 0.0 || surface->height_maximum != 0.0))
         return nt_problem_set(problem, "surface (particles lie on a flat)", "m",
                               surface->height_maximum - surface->height_minimum, 0.0, 0.0);

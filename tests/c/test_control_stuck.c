@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A sensor that shows no noise while z moves is dead; how much it shows is learnt from its first samples. */
+ * A sensor that shows no noise while the stage moves is dead; how much it shows is learnt from its first samples. */
 #include "larger.h"
 #include "supervisor_fixture.h"
 
@@ -35,6 +35,25 @@ static void a_stuck_sensor_is_found_while_z_moves(void **unused)
     assert_int_equal(step(&in), NT_RUN);
 }
 
+/* A reading that has died at the set point of a height servo: z stands still, a scan goes on over the slopes. */
+static void a_stuck_sensor_is_found_while_a_scan_goes_on(void **unused)
+{
+    (void)unused;
+    for (int axis = NT_X; axis <= NT_Y; axis++) {
+        input in = healthy(NT_RUN);
+        int tick = 0;
+        while (tick < 1000 && step(&in) < NT_HOLD) {
+            in.sample.stage_position[axis] += 1e-6 * touch.period;
+            tick++;
+        }
+        assert_in_range(tick, 50, 51);
+        while (tick < 1000 && step(&in) < NT_LATCHED)
+            tick++;
+        assert_in_range(tick, 98, 101);
+        assert_int_equal(in.history.reasons & NT_REASON_STUCK, NT_REASON_STUCK);
+    }
+}
+
 /* The noise is that of the quietest of the first blocks, and no more than is declared. */
 static void the_supervisor_learns_the_noise(void **unused)
 {
@@ -59,6 +78,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stuck_sensor_is_found_while_z_moves),
+        cmocka_unit_test(a_stuck_sensor_is_found_while_a_scan_goes_on),
         cmocka_unit_test(the_supervisor_learns_the_noise),
     };
     return cmocka_run_group_tests(tests, make_touch, NULL);

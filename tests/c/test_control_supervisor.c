@@ -54,7 +54,7 @@ static void stuck(input *in)
 {
     in->history.deflection.value = in->sample.deflection[NT_Z];
     in->history.deflection.run = 49;
-    in->history.deflection.position = in->sample.stage_position[NT_Z] - 6e-9; /* has moved by six steps */
+    in->history.deflection.position[NT_Z] = in->sample.stage_position[NT_Z] - 6e-9; /* has moved by six steps */
 }
 
 static void stuck_for_long(input *in)

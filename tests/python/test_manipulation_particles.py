@@ -129,5 +129,10 @@ def test_what_is_no_set_is_refused() -> None:
         set_.place([(0.0, 0.0), (0.5e-6, 0.0)], (-1e-6, 0.0, LOW))
     with pytest.raises(nt.Error, match=r"between\.effective_shear_modulus"):
         nt.Particles(ROUND, nt.ParticleContact(1e9, 1e9))
+    with pytest.raises(TypeError, match=r"valid is a set, nt\.Particles"):
+        nt.Session(particles=ROUND, minimum_margin=0.0)  # type: ignore[arg-type]
+    scene, path = nt.Scene(medium={"relative_humidity": 0.0}), [(0.0, 0.0), (1e-6, 0.0)]
+    with pytest.raises(nt.Error, match="particles in a session that taps"):
+        nt.Session(scene, mode="tapping", path=path, particles=set_, minimum_margin=0.0)
     with pytest.raises(nt.Error, match="without particles"):
         nt.Session(minimum_margin=0.0).lay(0, (0.0, 0.0))

@@ -70,11 +70,27 @@ def test_the_image_is_that_of_the_device(rig: type[Ranged], capsys: pytest.Captu
         (["--free-amplitude", "10nm"], "goes with --mode tapping"),
         ([*RASTER, "--set-point", "900nN"], r"set_point|limits\.force"),
         ([*RASTER, "--line-rate", "900Hz"], "valid is up to"),
+        ([*RASTER, "--gain", "0Hz"], "valid is above 0"),
+        (["--set-point", "50nN", "--area", "4um,0um,2um,1um"], r"travel x has 0 \.\. 5e-06 m"),
     ],
 )
 def test_refusals(rig: type[Ranged], given: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["scan", "--scene", "rig.toml", *given]) == 2
     assert re.search(words, capsys.readouterr().err)
+
+
+def test_a_forecast_is_told_for_the_same_area(rig: type[Ranged], capsys: pytest.CaptureFixture[str]) -> None:
+    """On a flat, where nobody names a surface: an area beyond that of the built-in ones, too."""
+    area = ["--area", "8um,8um,2um,2um", "--pixels", "16", "--set-point", "50nN", "--mode", "contact"]
+    assert main(["scan", "--scene", "rig.toml", *area, "--forecast"]) == 0
+    assert "scan takes" in capsys.readouterr().out
+
+
+def test_an_area_is_the_slaves(rig: type[Ranged], monkeypatch: pytest.MonkeyPatch) -> None:
+    """6 um are the flat's of the built-in surfaces, not the slave's."""
+    monkeypatch.setattr(Ranged, "last", 20e-6)
+    area = ["--set-point", "50nN", "--area", "9um,0.5um,0.8um,0.1um", "--pixels", "16", "--lines", "4"]
+    assert main(["scan", "--scene", "rig.toml", *area, "--out", "far"]) == 0
 
 
 def test_a_raster_beyond_the_range_of_the_stage(rig: type[Ranged], monkeypatch: pytest.MonkeyPatch) -> None:

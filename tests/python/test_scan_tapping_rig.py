@@ -26,7 +26,7 @@ RASTER = ["--area", "0.6um,0.5um,0.8um,0.1um", "--pixels", "16", "--lines", "4"]
 class Stairs(nt.hal.Slave):
     """A stage with x and y and a lever that taps on a staircase of 10 nm, 0.1 um below where it starts."""
 
-    gain, fails_at, lasts = 1.0, math.inf, math.inf
+    gain, fails_at, lasts, dies_at = 1.0, math.inf, math.inf, math.inf
 
     def open(self, host: Any) -> None:
         self.at, self.reads, self.drive, self.amplitude = np.zeros(3), 0, 0.0, 0.0
@@ -43,6 +43,7 @@ class Stairs(nt.hal.Slave):
         self.amplitude += 0.5 * (min(self.gain * drive, max(gap, 0.0)) - self.amplitude)
         noise = 2e-11 * math.sin(1.7 * self.reads)
         amplitude = math.nan if self.reads > self.fails_at else self.amplitude + noise
+        amplitude = amplitude if self.reads < self.dies_at else 12e-9
         felt = (math.nan, math.nan, max(-gap, 0.0) + 1e-11 * math.sin(2.3 * self.reads))
         return nt.hal.Reading(position=self.at, felt=felt, amplitude=amplitude, lag=0.8)
 
@@ -102,6 +103,14 @@ def test_what_fails_ends_the_scan(attribute: str, value: int) -> None:
     slave = Stairs()
     setattr(slave, attribute, value)
     with pytest.raises(DeviceError, match="the supervisor went to"):
+        nt.raster.image(opened(slave), scan())
+
+
+def test_an_amplifier_that_dies_at_the_set_point_ends_the_scan() -> None:
+    """z then stands still; that x goes on tells it."""
+    slave = Stairs()
+    slave.dies_at = 15_000
+    with pytest.raises(DeviceError, match="sensor stuck"):
         nt.raster.image(opened(slave), scan())
 
 

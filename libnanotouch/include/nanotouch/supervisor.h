@@ -84,14 +84,14 @@ typedef struct nt_supervisor {
 
 /* Of a sensor that may be dead: readings without noise while the stage moves. */
 typedef struct nt_stuck {
-    uint32_t run;           /* readings without noise in a row */
-    double value;           /* [m] */
-    double band;            /* within which a reading shows no noise [m]; from these: */
-    uint32_t noise_samples; /* that have been looked at */
-    double noise_sum;       /* of their differences, in this block [m] */
-    double noise;           /* of the quietest block: standard deviation [m] */
-    double last;            /* reading [m] */
-    double position;        /* x_s where they began [m] */
+    uint32_t run;             /* readings without noise in a row */
+    double value;             /* [m] */
+    double band;              /* within which a reading shows no noise [m]; from these: */
+    uint32_t noise_samples;   /* that have been looked at */
+    double noise_sum;         /* of their differences, in this block [m] */
+    double noise;             /* of the quietest block: standard deviation [m] */
+    double last;              /* reading [m] */
+    double position[NT_AXES]; /* of the stage, where they began [m] */
 } nt_stuck;
 
 typedef struct nt_supervisor_state {

@@ -160,6 +160,9 @@ def check_options(options: Mapping[str, Any]) -> None:
     for name in ("preflight", "recorded"):
         if not isinstance(options.get(name, True), bool):
             raise InvalidValue(f"{name} = {told(options[name])}: valid are True and False")
+    particles = options.get("particles")
+    if not isinstance(particles, Particles | None):
+        raise TypeError(f"particles = {told(particles)}: valid is a set, nt.Particles(one of them)")
 
 
 def _choose(settings: Settings, rate: float | None, gains: Gains | None, delay: float) -> None:

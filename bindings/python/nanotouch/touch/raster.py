@@ -18,7 +18,7 @@ from nanotouch.touch._path import Mode
 from nanotouch.touch._play import BLOCK_TICKS, Columns, joined, played
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.operator import Input, core_input
-from nanotouch.touch.session import Session
+from nanotouch.touch.session import REASONS, Session
 
 MODES: dict[str, Mode] = {"contact": "topography", "tapping": "tapping"}
 """of the session, for a mode of the z loop"""
@@ -137,7 +137,8 @@ def _rows(comes: Generator[tuple[Columns, float]], ticks: int, line: int) -> Col
         worst = int(block["state"].max())
         if worst > 0:
             reasons = int(block["reasons"][block["state"] == worst][0])
-            raise DeviceError(f"line {line}: the supervisor went to {STATES[worst]}, reasons {reasons:#x}: no image")
+            why = ", ".join(name for bit, name in enumerate(REASONS) if reasons >> bit & 1)
+            raise DeviceError(f"line {line}: the supervisor went to {STATES[worst]} ({why}): no image")
         blocks.append(block)
     return joined(blocks) if blocks else {}
 
