@@ -7,14 +7,43 @@
 
 #define OF_MEAN 1.5 /* Hertz' peak over his mean */
 
-/* Under the apex: that of the laws; in contact Hertz' 2 E* a/(pi R) and what a layer adds, on that of the laws where
- * the bodies touch. */
-double nt_yield_peak_of(const nt_yield_sample *sample, const nt_yield_point *point)
+enum { POINTS = 16 }; /* of a panel */
+
+/* What the pressures outside a contact come to under its apex, since the surface follows the tip in it: by Abel
+ * 2/pi Int_a p(r) a/(r sqrt(r^2 - a^2)) dr, which is 2/pi Int p dtheta over r = a/cos(theta). */
+static double from_outside(const nt_yield_mesh *mesh, const double *pressures)
 {
-    if (!(point->a > 0.0))
-        return sample->law(sample->context, fmax(point->centre, 0.0)).pressure;
-    const double hertz = 2.0 * sample->modulus * point->a / (NT_PI * sample->radius);
-    return hertz + point->layer_peak + fmax(sample->law(sample->context, 0.0).pressure, 0.0);
+    double sum = 0.0, from = 0.0;
+    for (int panel = 0; panel < mesh->panels; ++panel) {
+        const double to = atan(sqrt(mesh->edges[panel + 1]) / mesh->a), step = (to - from) / POINTS;
+        for (int i = 0; i < POINTS; ++i) {
+            const double y = mesh->a * tan(from + (i + 0.5) * step);
+            sum += step * nt_yield_mesh_at(mesh, pressures, y * y);
+        }
+        from = to;
+    }
+    return 2.0 / NT_PI * sum;
+}
+
+/* Under the apex: that of the laws; in contact Hertz' 2 E* a/(pi R), and what the laws around it and a layer add. */
+double nt_yield_peak_of(const nt_yield_solver *s, double centre)
+{
+    const nt_yield_mesh *m = &s->mesh;
+    double pressures[NT_YIELD_NODES], layer = m->under[0] + m->under[1] * s->h;
+    if (!(m->a > 0.0))
+        return nt_yield_law(s, fmax(centre, 0.0)).pressure;
+    for (int i = 0; i < m->count; ++i) {
+        pressures[i] = nt_yield_law(s, s->gap[i]).pressure;
+        layer += m->under_load[i] * pressures[i];
+    }
+    return 2.0 * s->sample->modulus * m->a / (NT_PI * s->sample->radius) + from_outside(m, pressures) + layer;
+}
+
+double nt_yield_peak_between(const nt_yield_node ends[2], double load)
+{
+    if (!(ends[0].F > 0.0 && ends[1].F > ends[0].F && load > 0.0 && ends[0].peak > 0.0 && ends[1].peak > 0.0))
+        return NAN;
+    return ends[0].peak * pow(ends[1].peak / ends[0].peak, log(load / ends[0].F) / log(ends[1].F / ends[0].F));
 }
 
 double nt_yield_peak_at(const nt_yield_table *table, const nt_yield_node *node)

@@ -202,11 +202,9 @@ static int report(nt_yield_solver *s, nt_yield_point *point)
     *point = (nt_yield_point){s->h, F, k, s->h + u0, 1.0 + u0_slope, a, 0.0};
     if (a > 0.0) {
         F += 2.0 * E * a * (-s->h - a * a / (3.0 * R)) + m->push[0] + m->push[1] * s->h;
-        double under = m->under[0] + m->under[1] * s->h;
-        for (int j = 0; j < n; ++j)
-            under += m->under_load[j] * p[j].pressure;
-        *point = (nt_yield_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a, under};
+        *point = (nt_yield_point){s->h, F, k + 2.0 * E * a - m->push[1], 0.0, 0.0, a, 0.0};
     }
+    point->peak = nt_yield_peak_of(s, point->centre);
     return isfinite(point->F) && isfinite(point->k);
 }
 

@@ -22,6 +22,7 @@
 #define JUMPS 3.0        /* times the pull at the jump: what a panel resolves, a tolerance of */
 #define NEARER 0.3       /* of a step that is too long for the solver: the next */
 #define WIDER 4.0        /* of the first radius of contact: the next */
+#define PEAKS 0.01       /* of the largest pressure, which nodes have to tell between them */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
 enum { CLIMB = 60, PARABOLAS = 12, FAILURES = 5, WIDENINGS = 2 };
@@ -39,8 +40,7 @@ typedef struct maker {
 static nt_yield_node node_of(const maker *m, int part, const nt_yield_point *point)
 {
     const double v = v_of(m->table, part, point->h);
-    const double peak = nt_yield_peak_of(m->solver.sample, point);
-    return (nt_yield_node){v, point->F, point->k * metric(part, v), point->k, 0.0, point->a, peak};
+    return (nt_yield_node){v, point->F, point->k * metric(part, v), point->k, 0.0, point->a, point->peak};
 }
 
 static double held(const maker *m, const nt_yield_point *point)
@@ -68,6 +68,9 @@ static double distance(const maker *m, const nt_yield_node ends[2], int part, co
         const double share = t / (ends[1].v - ends[0].v), a = ends[0].a + share * (ends[1].a - ends[0].a);
         error = fmax(error, over(a - between->a, between->a, range->radius_scale));
     }
+    const double peak = range->attracts ? (double)NAN : nt_yield_peak_between(ends, between->F);
+    if (between->peak > 0.0 && !isnan(peak))
+        error = fmax(error, range->tolerance * fabs(peak / between->peak - 1.0) / PEAKS);
     return error;
 }
 

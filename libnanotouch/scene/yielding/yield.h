@@ -75,13 +75,13 @@ typedef enum nt_yield_hold {
 
 /* One equilibrium. */
 typedef struct nt_yield_point {
-    double h;          /* gap of the undeformed bodies [m] */
-    double F;          /* on the tip, + repulsive [N] */
-    double k;          /* -dF/dh [N/m] */
-    double centre;     /* the gap under the apex [m] */
-    double slope;      /* d(centre)/dh; of contact 0 [-] */
-    double a;          /* radius of contact [m] */
-    double layer_peak; /* what a layer adds to the pressure under the apex [Pa] */
+    double h;      /* gap of the undeformed bodies [m] */
+    double F;      /* on the tip, + repulsive [N] */
+    double k;      /* -dF/dh [N/m] */
+    double centre; /* the gap under the apex [m] */
+    double slope;  /* d(centre)/dh; of contact 0 [-] */
+    double a;      /* radius of contact [m] */
+    double peak;   /* the largest pressure on the sample, without adhesion [Pa] */
 } nt_yield_point;
 
 typedef struct nt_yield_solver {
@@ -226,8 +226,10 @@ nt_bank_value nt_yield_relief_at(const nt_plan *plan, const nt_place *place, int
 double nt_yield_relief_fold(const nt_plan *plan, double radius, int attached);
 double nt_yield_relief_share(const nt_plan *plan, double radius, double *slope);
 
-/* peak.c: the largest pressure on the sample, of an equilibrium [Pa]. */
-double nt_yield_peak_of(const nt_yield_sample *sample, const nt_yield_point *point);
+/* peak.c: the largest pressure on the sample, of an equilibrium with a gap under the apex [Pa]. */
+double nt_yield_peak_of(const nt_yield_solver *s, double centre);
+/* Between two nodes of a table, at a load: a power of it; NaN where that is not defined. */
+double nt_yield_peak_between(const nt_yield_node ends[2], double load);
 /* Of a node of a table without adhesion: the largest pressure, the mean [Pa]. */
 typedef double nt_yield_pressure(const nt_yield_table *table, const nt_yield_node *node);
 nt_yield_pressure nt_yield_peak_at, nt_yield_mean_at;
