@@ -6,7 +6,6 @@
 #include "control/stuck.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "core/clamp.h"
 
@@ -51,7 +50,8 @@ nt_state nt_stuck_judge(const nt_stuck_limits *limits, nt_stuck *stuck, double r
     learn_noise(limits, stuck, reading);
     if (is_first || shows_none || !(fabs(reading - stuck->value) <= stuck->band)) {
         stuck->value = reading;
-        memcpy(stuck->position, position, sizeof stuck->position);
+        for (int i = 0; i < NT_AXES; ++i)
+            stuck->position[i] = position[i];
         stuck->run = 0;
         return NT_RUN;
     }
