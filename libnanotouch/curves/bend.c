@@ -199,21 +199,7 @@ typedef struct doubts {
     double variance; /* of the force, with what other likely laws differ by [N^2] */
     double film;     /* how likely there is a film, 0 to 1 */
     double squared;  /* its force, squared, times that [N^2] */
-    double bow;      /* variance of the bow [N^2] */
 } doubts;
-
-/* Of the bow about the chosen one, where a block's mean has the variance `block` [N^2]. */
-static double bow_variance(const shape *law, double chosen, double block)
-{
-    double factor[TERMS * TERMS], unit[TERMS] = {0.0};
-    if (!law->bow)
-        return chosen * chosen;
-    for (int i = 0; i < TERMS * TERMS; i++)
-        factor[i] = law->normal[i];
-    unit[BOW] = 1.0;
-    const double off = law->value[BOW] - chosen;
-    return nt_curve_solve(factor, unit, TERMS) ? off * off + unit[BOW] * block : off * off;
-}
 
 /* The likeliest law of the free part. */
 static shape judge(const means *m, doubts *left_open)
@@ -234,8 +220,7 @@ static shape judge(const means *m, doubts *left_open)
         }
     }
     const double there = at(&laws[chosen], m, m->foot);
-    const double bow = laws[chosen].bow ? laws[chosen].value[BOW] : 0.0;
-    *left_open = (doubts){0.0, 0.0, 0.0, 0.0};
+    *left_open = (doubts){0.0, 0.0, 0.0};
     for (int i = 0; i < many; i++) {
         const double weight = exp(0.5 * (closest - laws[i].squares / (least * worth) - doubt * terms[i]));
         if (i != chosen && !(weight > likely))
@@ -243,7 +228,6 @@ static shape judge(const means *m, doubts *left_open)
         const double off = at(&laws[i], m, m->foot) - there;
         left_open->variance += weight * (off * off + variance_at(&laws[i], m, m->foot) * least * worth);
         total += weight;
-        left_open->bow += weight * bow_variance(laws + i, bow, least * worth);
         if (laws[i].film) {
             left_open->film += weight;
             left_open->squared += weight * laws[i].value[FILM] * laws[i].value[FILM];
@@ -252,7 +236,6 @@ static shape judge(const means *m, doubts *left_open)
     left_open->variance /= total;
     left_open->film /= total;
     left_open->squared /= total;
-    left_open->bow /= total;
     return laws[chosen];
 }
 
@@ -315,43 +298,22 @@ static void take_off(const nt_curve_segment *segment, const shape *law, const me
     approach->force = kept + count;
 }
 
-/* Means of the part that is surely free; 0 where that is too short. */
-static int free_part(const nt_curve_branch *approach, means *m)
+void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room, nt_curve_branch *approach)
 {
     const long count = approach->count, seen = last_above(approach, approach->visible);
     const long deeper = last_above(approach, deep * approach->visible);
     long first = seen + 1;
     if (deeper < 0)
-        return 0;
+        return;
     const double step = approach->z[seen] - approach->z[deeper], foot = approach->z[seen] + foot_part * step;
     while (first < count && approach->z[first] < approach->z[seen] + clear_part * step)
         first++;
     const double all = approach->z[count - 1] - approach->z[0];
     if (count - first < LEAST_BLOCKS * BLOCK || approach->z[count - 1] - approach->z[first] < least_free * all)
-        return 0;
-    *m = means_of(approach, first);
-    m->foot = (foot - m->middle) / m->half;
-    return 1;
-}
-
-nt_curve_bow nt_curve_find_bow(const nt_curve_branch *approach)
-{
-    means m;
-    doubts left_open;
-    if (approach->dips || !free_part(approach, &m))
-        return (nt_curve_bow){.film = !approach->dips};
-    const shape chosen = judge(&m, &left_open);
-    const double scale = 1.0 / (m.half * m.half);
-    return (nt_curve_bow){chosen.bow ? chosen.value[BOW] * scale : 0.0, m.middle, sqrt(left_open.bow) * scale,
-                          left_open.film};
-}
-
-void nt_curve_unbend(const nt_curve_segment *segment, double *kept, double *room, nt_curve_branch *approach)
-{
-    means m;
-    doubts left_open;
-    if (!free_part(approach, &m))
         return;
+    means m = means_of(approach, first);
+    m.foot = (foot - m.middle) / m.half;
+    doubts left_open;
     const shape chosen = judge(&m, &left_open);
     approach->baseline.force_variance = fmax(approach->baseline.force_variance, left_open.variance);
     const int snaps_in = approach->dips;

@@ -5,16 +5,6 @@
 
 #include "nanotouch/curves.h"
 
-/* A bow of the baseline, even: the same on both branches. */
-typedef struct nt_curve_bow {
-    double size;   /* size (z - middle)^2 [N/m^2]; 0: none is evident */
-    double middle; /* z [m] */
-    double sigma;  /* of the size, doubt whether there is one included [N/m^2] */
-    double film;   /* how likely there is a squeeze film too, 0 to 1 */
-} nt_curve_bow;
-
-/* Of an approach that was read, from its free part. */
-nt_curve_bow nt_curve_find_bow(const nt_curve_branch *approach);
 /* Takes a bow of the baseline, and the repulsion of a squeeze film, off an approach that was read, where its free part
  * shows them: its baseline has them from then on. kept: where its arrays lie; room: 6
  * doubles for each point. */

@@ -5,11 +5,10 @@
 
 #include <math.h>
 
-enum { GRID = 8, TERMS = 3, BLOCKS = 200, OUTWARDS = 6 };
+enum { GRID = 8, TERMS = 3, BLOCKS = 200 };
 static const double nearest = 0.01, farthest = 0.35; /* of the free travel: distances of the pole */
 static const double evident = 9.0;                   /* gain of chi^2, correlation of the noise counted */
 static const double odd_least = 0.4, odd_most = 2.5; /* of minus the approach's strength, on the retraction */
-static const double unseen = 4.0; /* times the visible force: more of a film would be evident further out */
 
 /* Normal equations of a line and A/(z - pole), x from -1 to 1. */
 typedef struct sums {
@@ -147,44 +146,4 @@ int nt_curve_film_is_odd(const nt_curve_film *film, const double *z, const doubl
     const double sigma = sqrt(variance * left / (double)m.count), own = -value[TERMS - 1] * scale;
     const double doubt = 3.0 * sigma * scale;
     return own > odd_least * film->strength && own < odd_most * film->strength && own > doubt;
-}
-
-/* How much the approach repels from z on outwards, at most what a film could without being evident [N]. */
-static double repels(const nt_curve_branch *approach, double z)
-{
-    long low = 0, high = approach->count;
-    while (low < high) {
-        const long middle = low + (high - low) / 2;
-        if (approach->z[middle] < z)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    const long end = low + OUTWARDS < approach->count ? low + OUTWARDS : approach->count;
-    double sum = 0.0;
-    for (long i = low; i < end; i++)
-        sum += approach->force[i] / (double)(end - low);
-    return fmin(fmax(sum, 0.0), unseen * approach->visible);
-}
-
-double nt_curve_held_beyond_film(const nt_curve_reading *reading)
-{
-    const nt_curve_branch *approach = &reading->approach, *retract = &reading->retract;
-    const long block = retract->count / BLOCKS + 1;
-    const int last = reading->ruptures - 1;
-    long contact = 0;
-    for (long i = 0; i < approach->count; i++)
-        contact = approach->force[i] > approach->visible ? i : contact;
-    if (last >= 0 && reading->rupture[last].z < approach->z[contact])
-        return retract->dip.value;
-    double most = fmax(retract->dip.value - repels(approach, retract->z[retract->lowest]), 0.0);
-    for (int row = 0; row <= last; row++)
-        most = fmax(most, reading->rupture[row].force - repels(approach, reading->rupture[row].z));
-    for (long first = retract->lowest; first + block <= retract->count; first += block) {
-        double depth = 0.0;
-        for (long i = first; i < first + block; i++)
-            depth -= retract->force[i] / (double)block;
-        most = fmax(most, depth - repels(approach, retract->z[first]));
-    }
-    return most;
 }

@@ -19,8 +19,5 @@ nt_curve_film nt_curve_find_film(const nt_curve_branch *approach);
 double nt_curve_film_at(const nt_curve_film *film, double z);
 /* Whether the retraction beyond `start` shows the same with the other sign, as drag does and no force of surfaces. */
 int nt_curve_film_is_odd(const nt_curve_film *film, const double *z, const double *force, long count, double start);
-/* How deep the retraction lies below minus what the approach repels at the same z: a film does both, and holds nothing.
- * The depth itself where it is torn off within the approach's contact, which repels otherwise [N]. */
-double nt_curve_held_beyond_film(const nt_curve_reading *reading);
 
 #endif

@@ -186,14 +186,14 @@ def _notes(curve: ForceCurve, approach: Branch | None, retract: Branch | None) -
     ]
     notes += curve.meta.get("notes", ())
     if approach is not None and approach.baseline.bend is not None:
-        notes.append(_bend_note(approach, retract is not None and retract.baseline.bend is not None))
+        notes.append(_bend_note(approach))
     if retract is not None:
         notes += _baseline_notes(retract, curve.retract)
     return tuple(notes)
 
 
-def _bend_note(approach: Branch, both: bool) -> str:
-    """What was taken off the approach besides a line, where its free part shows it; `both`: off the retraction too."""
+def _bend_note(approach: Branch) -> str:
+    """What was taken off the approach besides a line, where its free part shows it."""
     baseline = approach.baseline
     bend = baseline.bend
     assert bend is not None
@@ -204,7 +204,6 @@ def _bend_note(approach: Branch, both: bool) -> str:
         middle = 0.25 * float(approach.z[-1] - baseline.z_mean) ** 2
         parts.append(f"a bow of the baseline of {1e12 * abs(bend.bow) * middle:.2g} pN over half of its travel")
     told = f"{' and '.join(parts)} {'are' if len(parts) > 1 else 'is'} taken off the approach"
-    told += ", the bow off the retraction too" * both
     return told + "; in contact the film is not measured: its force there counts as unknown" * bool(bend.film)
 
 
