@@ -179,7 +179,8 @@ static void what_cannot_be_laid_is_refused(void **state)
     nt_session_close(session);
     setup = glass(&particles);
     setup.probe_model = NT_PROBE_DYNAMIC;
-    assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_UNSUPPORTED);
+    assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_RANGE);
+    assert_string_equal(problem.field, "particles with a dynamic probe");
     setup = glass(&particles);
     setup.scene.tip.radius = 40e-9;
     assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_RANGE);
