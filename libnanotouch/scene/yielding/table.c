@@ -22,7 +22,7 @@
 #define JUMPS 3.0        /* times the pull at the jump: what a panel resolves, a tolerance of */
 #define NEARER 0.3       /* of a step that is too long for the solver: the next */
 #define WIDER 4.0        /* of the first radius of contact: the next */
-#define PEAKS 0.01       /* of the largest pressure, which nodes have to tell between them */
+#define PEAKS 0.01       /* of the largest pressure on a layer, which nodes have to tell between them */
 #define KEPT 0.6         /* of the gap under the apex, from point to point */
 
 enum { CLIMB = 60, PARABOLAS = 12, FAILURES = 5, WIDENINGS = 2 };
@@ -69,7 +69,7 @@ static double distance(const maker *m, const nt_yield_node ends[2], int part, co
         error = fmax(error, over(a - between->a, between->a, range->radius_scale));
     }
     const double peak = range->attracts ? (double)NAN : nt_yield_peak_between(ends, between->F);
-    if (between->peak > 0.0 && !isnan(peak))
+    if (m->table->layered && between->peak > 0.0 && !isnan(peak))
         error = fmax(error, range->tolerance * fabs(peak / between->peak - 1.0) / PEAKS);
     return error;
 }
