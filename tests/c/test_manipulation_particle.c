@@ -5,6 +5,7 @@
 #include "assertions.h"
 #include "larger.h"
 #include "nanotouch/particle.h"
+#include "particle_fixture.h"
 
 /* A tip that neither pulls nor rubs: its force goes through the centre. */
 static nt_particle smooth_tip(void)
@@ -39,12 +40,6 @@ static void push(const nt_pushing *pushing, nt_particle_state *state, double x, 
 {
     const double to[3] = {state->tip[0] + x, state->tip[1] + y, state->tip[2] + z};
     assert_int_equal(nt_particle_advance(pushing, state, to), NT_OK);
-}
-
-static double jkr_radius(const nt_particle_contact *contact, double R, double load)
-{
-    const double K = 4.0 / 3.0 * contact->effective_modulus, w = 3.0 * NT_PI * contact->work_of_adhesion * R;
-    return cbrt(R / K * (load + w + sqrt(2.0 * w * load + w * w)));
 }
 
 /* Sumer and Sitti 2008, polystyrene on glass: xi = 42, 84, 128 nm for R = 5, 10, 15 um. Torque: F R = 4 F_c (a/a0)^1.5

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Several particles beside closed forms, beside one alone, and beside the forces summed over the way. JKR's contact
- * radius is computed here (Johnson 1985, Eq. 5.47). */
+ * Several particles beside closed forms, beside one alone, and beside the forces summed over the way. */
 #include <string.h>
 
 #include "assertions.h"
 #include "larger.h"
 #include "nanotouch/particles.h"
 #include "nanotouch/random.h"
+#include "particle_fixture.h"
 
 #define LOW 1.5e-6 /* height of the tip over the substrate: its flank pushes [m] */
 
@@ -44,12 +44,6 @@ static void lead(const nt_particles *particles, nt_particles_state *state, doubl
 {
     const double to[3] = {state->base[0] + x, state->base[1] + y, state->base[2] + z};
     assert_int_equal(nt_particles_advance(particles, state, to), NT_OK);
-}
-
-static double jkr_radius(const nt_particle_contact *contact, double R, double load)
-{
-    const double K = 4.0 / 3.0 * contact->effective_modulus, w = 3.0 * NT_PI * contact->work_of_adhesion * R;
-    return cbrt(R / K * (load + w + sqrt(2.0 * w * load + w * w)));
 }
 
 /* Without friction between them each rolls by itself: F R = sum of 4 F_c (a/a0)^1.5 xi. The first bears what the flank

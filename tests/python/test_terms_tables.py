@@ -218,4 +218,5 @@ def test_a_narrow_part_whose_energy_cancels_is_seen(centre: float) -> None:
     scene.tip.radius, scene.range.maximum_load = 0.4e-6, 2e-12
     gaps = centre + np.linspace(-3.0 * width, apart + 3.0 * width, 200)
     truth = np.array([scene.term_force("pair", gap) for gap in gaps])
-    assert pytest.approx(truth, abs=1e-5 * truth.max()) == scene.plan(0.1).law("pair", gaps).F
+    found = scene.plan(0.1).law("pair", gaps).F
+    assert found == pytest.approx(truth, abs=1e-5 * truth.max())

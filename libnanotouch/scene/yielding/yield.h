@@ -33,7 +33,7 @@ typedef struct nt_yield_sample {
     double stress, range; /* sigma0, h0 of adhesion in contact, beside the law; 0: none [Pa, m] */
 } nt_yield_sample;
 
-/* yield_mesh.c: panels of x = r^2 - a^2, on each of which p is a polynomial, and what pressures at their nodes do. */
+/* mesh.c: panels of x = r^2 - a^2, on each of which p is a polynomial, and what pressures at their nodes do. */
 typedef struct nt_yield_mesh {
     int panels, count;
     double a;                                 /* radius of contact [m] */
@@ -59,14 +59,14 @@ double nt_yield_mesh_at(const nt_yield_mesh *mesh, const double *values, double 
 /* The last two Legendre coefficients of values on a panel, the larger. */
 double nt_yield_mesh_tail(const nt_yield_mesh *mesh, const double *values, int panel);
 
-/* yield_layer.c: wave numbers [1/m], and weights times X(k t) - 1, of a bonded layer. */
+/* layer.c: wave numbers [1/m], and weights times X(k t) - 1, of a bonded layer. */
 typedef struct nt_yield_spectrum {
     double k[NT_YIELD_WAVES], weight[NT_YIELD_WAVES];
 } nt_yield_spectrum;
 /* Adds what a layer answers; `waves`: Int cos(k t) q dt of each node, at each k, and as much room behind them. */
 void nt_yield_layer_add(nt_yield_mesh *mesh, const nt_yield_sample *sample, const nt_yield_spectrum *s, double *waves);
 
-/* yield_solve.c: what is held while the gaps are found. */
+/* solve.c: what is held while the gaps are found. */
 typedef enum nt_yield_hold {
     NT_YIELD_GAP,    /* h of the undeformed bodies */
     NT_YIELD_CENTRE, /* the gap under the apex, through the folds of an attraction, too */
@@ -126,14 +126,14 @@ typedef struct nt_yield_state {
 nt_yield_state nt_yield_keep(const nt_yield_solver *s);
 void nt_yield_restore(nt_yield_solver *s, const nt_yield_state *state);
 
-/* yield_contact.c: the sample has adhesion and touches over a radius [m]. */
+/* contact.c: the sample has adhesion and touches over a radius [m]. */
 nt_status nt_yield_begin_contact(nt_yield_solver *s, const nt_yield_sample *sample, double a);
 /* From a guess of where adhesion ends, r^2 - a^2 [m^2]. */
 nt_status nt_yield_settle_contact(nt_yield_solver *s, double a, double guess);
 int nt_yield_report_contact(nt_yield_solver *s, nt_yield_point *point);
 double nt_yield_energy_in_contact(const nt_yield_solver *s);
 
-/* yield_follow.c. */
+/* follow.c. */
 /* Edges in rising order, in the making. */
 typedef struct nt_yield_edges {
     double at[2 * NT_YIELD_PANELS + NT_YIELD_ENDS + 2];
@@ -153,7 +153,7 @@ nt_status nt_yield_go(nt_yield_solver *solver, nt_yield_hold hold, double value,
 
 #define NT_YIELD_STIFFER 0.05 /* of the tolerance: meshes of a stiffness, whose error grows beside a jump */
 
-/* yield_table.c: {U, F, k} over h, from `farthest` inwards until the force is `load` or the gap `nearest`. */
+/* table.c: {U, F, k} over h, from `farthest` inwards until the force is `load` or the gap `nearest`. */
 typedef struct nt_yield_range {
     double farthest, nearest; /* [m] */
     double centre;            /* above 0: ends where this gap is left under the apex, or in a jump before [m] */
@@ -238,7 +238,7 @@ nt_yield_pressure nt_yield_peak_at, nt_yield_mean_at;
 double nt_yield_table_pressure(const nt_yield_table *table, double load, nt_yield_pressure *of);
 double nt_yield_table_load(const nt_yield_table *table, double pressure, nt_yield_pressure *of);
 
-/* yield_terms.c: the pressures of all terms, at a gap that is counted from `hold` [m]. */
+/* terms.c: the pressures of all terms, at a gap that is counted from `hold` [m]. */
 typedef struct nt_yield_terms {
     const nt_plan *plan;
     double hold;
@@ -247,10 +247,10 @@ typedef struct nt_yield_terms {
 /* What yields to them; `farthest`: the gap where it begins to [m]. */
 nt_yield_sample nt_yield_sample_of(const nt_yield_terms *in, const nt_scene *scene, double farthest);
 
-/* yield_adhere.c: adds the contact with all that acts around it to the table of a surrounded contact. */
+/* adhere.c: adds the contact with all that acts around it to the table of a surrounded contact. */
 nt_status nt_plan_yield_hold(nt_plan *plan, const nt_scene *scene, const nt_yield_range *range);
 
-/* yield_terms.c: all terms beside contact at a gap of undeformed bodies. */
+/* terms.c: all terms beside contact at a gap of undeformed bodies. */
 typedef struct nt_elastic_sum {
     double F, k;           /* net [N, N/m] */
     double here_F, here_k; /* of the sizes there */
