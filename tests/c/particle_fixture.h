@@ -8,7 +8,7 @@
 #include "nanotouch/particle.h"
 #include "nanotouch/types.h"
 
-/* Johnson, Kendall and Roberts (Johnson 1985, Eq. 5.47): the radius of contact of a sphere of radius R under a load [m]. */
+/* Johnson, Kendall and Roberts (Johnson 1985, Eq. 5.47): the radius of contact of a sphere [m]. */
 static inline double jkr_radius(const nt_particle_contact *contact, double R, double load)
 {
     const double K = 4.0 / 3.0 * contact->effective_modulus, w = 3.0 * NT_PI * contact->work_of_adhesion * R;
