@@ -151,6 +151,31 @@ def test_set_points_that_somebody_else_changes_withdraw(controller: Controller, 
     assert controller.count("ZCtrl.Withdraw") > 0
 
 
+def test_what_was_asked_before_a_hang_is_not_done_after_it(controller: Controller) -> None:
+    """The bridge stands still in a round, and the watcher withdraws and gives the limits back. The old request neither
+    counts as somebody else's doing nor switches the servo on again."""
+    with Running(controller, patience=0.1) as run:
+        run.box.want(10e-9)
+        until(lambda: controller.tip.z == pytest.approx(-10e-9))
+        stale, asked = run.box.request, threading.Event()
+
+        def hang() -> nt.mailbox.Request:
+            asked.set()
+            time.sleep(1.2 * nanonis.SILENCE * run.bridge.setup.patience)
+            run.box.ask = lambda: NOBODY  # type: ignore[method-assign]
+            return stale
+
+        run.box.ask = hang  # type: ignore[method-assign]
+        assert asked.wait(PATIENCE)
+        controller.tip.low = -0.9e-6  # as a watcher does
+        switched = controller.count("ZCtrl.OnOffSet")
+        until(lambda: not run.bridge.is_ours)
+        assert run.thread.is_alive()
+        assert run.error == ""
+        assert controller.count("ZCtrl.OnOffSet") == switched
+        assert controller.count("ZCtrl.Withdraw") == 1
+
+
 @pytest.mark.parametrize(("lag", "flags"), [(0.05, []), (60.0, ["emergency_stop"])])
 def test_the_status_may_lag_behind_a_servo_that_goes_on(
     controller: Controller, lag: float, flags: list[str], monkeypatch: pytest.MonkeyPatch

@@ -29,7 +29,7 @@ from nanotouch.touch import mailbox
 from nanotouch.touch.hal import NONE, Capabilities, Channel, Reading
 
 from nanotouch_app.devices.nanonis_link import Address, Link, LinkError
-from nanotouch_app.devices.nanonis_watcher import PAUSE, Limits, Watcher, give_back, withdraw
+from nanotouch_app.devices.nanonis_watcher import PAUSE, SILENCE, Limits, Watcher, give_back, withdraw
 
 PERIOD = 20e-3
 """between two readings, at the latest [s]"""
@@ -78,6 +78,8 @@ class Bridge:
     """the servo is on at our request, so the tip may touch"""
     watcher: Watcher | None = None
     """that withdraws if we cannot; told each round where we stand"""
+    heard: float = math.inf
+    """when the watcher was last told where we stand [s]"""
     settled: float = 0.0
     """from this moment on a servo that is off is one that somebody has switched off [s]"""
 
@@ -131,6 +133,11 @@ class Bridge:
     def _tell(self) -> None:
         if self.watcher:
             self.watcher.tell(self.limits if self.is_ours else None)
+        self.heard = time.monotonic()
+
+    def _has_hung(self) -> bool:
+        """For longer than the watcher waits: it has withdrawn, and what was asked before is no longer true."""
+        return time.monotonic() - self.heard > SILENCE * self.setup.patience
 
     # --- what the controller is told ---
 
@@ -145,7 +152,9 @@ class Bridge:
         if math.isfinite(target[2]):
             self._limit(self.start - target[2])
         self._check()
-        if self.setup.axes == 3 and all(map(math.isfinite, target)):
+        if self.is_ours and self._has_hung():
+            self._withdraw(self.link)
+        if self.is_ours and self.setup.axes == 3 and all(map(math.isfinite, target)):
             self.link.call("FolMe.XYPosSet", "ddI", target[0], target[1], 0)
 
     def _limit(self, low: float) -> None:
@@ -157,7 +166,7 @@ class Bridge:
         """Is it as it was told? Somebody else may set limits and guard, or switch the limits off."""
         kept = Limits(*self.link.call("ZCtrl.LimitsGet", gives="ff"))
         (guard,) = self.link.call("ZCtrl.SetpntGet", gives="f")
-        if kept != self.told or guard != self.guard:
+        if (kept != self.told or guard != self.guard) and not self._has_hung():
             was, told = (f"z limits of {each.low:g} .. {each.high:g} m" for each in (kept, self.told))
             raise LinkError(
                 f"the controller has {was} and a set-point of {guard:g}, told were {told} and {self.guard:g}"
@@ -171,7 +180,8 @@ class Bridge:
         self._limit(self.start)
         self.link.call("ZCtrl.SetpntSet", "f", self.guard)
         self._check()
-        self.link.call("ZCtrl.OnOffSet", "I", 1)
+        if not self._has_hung():
+            self.link.call("ZCtrl.OnOffSet", "I", 1)
         self.settled = time.monotonic() + SETTLING
 
     def _start(self, z: float) -> float:
