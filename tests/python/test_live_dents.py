@@ -153,7 +153,9 @@ def test_the_section_is_continuous_and_hertz_around_the_contact() -> None:
 def test_the_surface_has_the_dents_and_leaves_out_what_is_finer_than_its_pixels() -> None:
     sample = made(200e-9, 1e-9)
     flat = np.zeros((256, 512))
-    heights = sample.heights(flat, (0.4e-9, 0.4e-9))
+    heights = sample.heights(flat, (0.4e-9, 0.4e-9), (0.0, 0.0))
+    moved = sample.heights(flat[10:, 20:], (0.4e-9, 0.4e-9), (8e-9, 4e-9))
+    np.testing.assert_allclose(moved, heights[10:, 20:], atol=1e-15)
     assert heights.min() == pytest.approx(-sample.dents[0].imprint.depth, rel=1e-2)
     assert np.unravel_index(heights.argmin(), heights.shape) == (pytest.approx(125, abs=1), pytest.approx(150, abs=1))
     assert not heights[:, 250:].any()

@@ -3,9 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from nanotouch_app.live.look import Colour, unit
+
+Floats = NDArray[np.float64]
 
 BALL: Colour = (232, 228, 220)
 RING: Colour = (20, 120, 60)
@@ -20,12 +26,13 @@ class Balls:
         self.balls: list[Any] = []
         self.rings: list[Any] = []
 
-    def show(self, message: dict[str, Any]) -> None:
-        """Where they are now."""
+    def show(self, message: dict[str, Any], origin: Sequence[float] | Floats = (0.0, 0.0)) -> None:
+        """Where they are now; ``origin`` is where the surface begins [m]."""
         if len(self.balls) != len(message["places"]) or len(self.rings) != len(message["targets"]):
             self._make(message)
         for actor, place in zip(self.balls, message["places"], strict=True):
-            actor.SetPosition(place[0] / self.length, place[1] / self.length, self.ground + place[2] / self.length)
+            x, y, z = (float(place[0] - origin[0]), float(place[1] - origin[1]), float(place[2]))
+            actor.SetPosition(x / self.length, y / self.length, self.ground + z / self.length)
 
     def _make(self, message: dict[str, Any]) -> None:
         for actor in (*self.balls, *self.rings):

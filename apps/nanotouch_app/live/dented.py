@@ -120,14 +120,15 @@ class Dented:
         a, deep = max(self.reached, 1e-15), float(dent.residual_depth)
         return np.where(r < a, -deep * (1.0 - (r / a) ** 2), 0.0)
 
-    def heights(self, flat: Floats, pixel_size: Sequence[float] | Floats) -> Floats:
-        """The surface with all dents and their ridges; one that is finer than its pixels is left out."""
+    def heights(self, flat: Floats, pixel_size: Sequence[float] | Floats, origin: Sequence[float] | Floats) -> Floats:
+        """The surface with all dents and their ridges, from its lower left corner on [m]; one that is finer than its
+        pixels is left out."""
         specimen = plasticity.Specimen(flat, (float(pixel_size[0]), float(pixel_size[1])))
         numbers: dict[int, int] = {}
         for number, dent in enumerate(self.dents):
             before = None if dent.before is None else numbers.get(dent.before)
             try:
-                specimen.take(dent._replace(before=before))
+                specimen.take(_moved(dent, origin)._replace(before=before))
             except InvalidValue:
                 continue
             numbers[number] = len(specimen.events) - 1
@@ -146,6 +147,13 @@ class Dented:
             return f"elastic up to {1e9 * self.law.yield_load:.3g} nN"
         depth, width = 1e9 * float(dent.residual_depth), 2e9 * self.reached
         return f"dent {depth:.3g} nm deep, {width:.3g} nm wide"
+
+
+def _moved(dent: Dent, origin: Sequence[float] | Floats) -> Dent:
+    """As seen from a corner."""
+    of, (x, y) = dent.imprint, (float(part) for part in origin)
+    ends = {"start_x": of.start_x - x, "start_y": of.start_y - y, "end_x": of.end_x - x, "end_y": of.end_y - y}
+    return dent._replace(imprint=of._replace(**ends))
 
 
 def _away(of: plasticity.Imprint, x: float, y: float) -> float:

@@ -5,7 +5,7 @@ they were pushed to; both can be taken back."""
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import nanotouch as nt
@@ -18,6 +18,12 @@ Message = dict[str, Any]
 def keeps(scene: nt.Scene) -> bool:
     """Whether the sample does."""
     return bool(scene.sample.dents == "yes")
+
+
+def told_of(dents: Sequence[Dent]) -> Message:
+    """As a picture hears them."""
+    rows = [[*dent.imprint, dent.load, -1 if dent.before is None else dent.before] for dent in dents]
+    return {"tell": "dents", "dents": rows}
 
 
 class Left:
@@ -51,8 +57,7 @@ class Left:
         """Tell the picture, which knows the world already."""
         if not keeps(self.session.scene):
             return
-        rows = [[*dent.imprint, dent.load, -1 if dent.before is None else dent.before] for dent in self.dents]
-        self.tell({"tell": "dents", "dents": rows})
+        self.tell(told_of(self.dents))
 
 
 class Pushes:

@@ -115,9 +115,9 @@ class Picture:
             self.dress(self.palette)
         if message["tell"] == "dents" and self.seen.dented is not None:
             dented = self.seen.dented
-            self.stage.reshape(dented.heights(self.heights, self.pixel_size), dented.relief)
+            self.stage.reshape(dented.heights(self.heights, self.pixel_size, self.stage.origin), dented.relief)
         if message["tell"] == "particles":
-            self.stage.balls.show(message)
+            self.stage.balls.show(message, self.stage.origin)
         if message["tell"] == "properties":
             with np.load(message["path"]) as stored:
                 self.stage.give({name: stored[name] for name in stored.files})

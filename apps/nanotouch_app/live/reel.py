@@ -9,9 +9,16 @@ from typing import Any
 
 import nanotouch as nt
 import numpy as np
+from nanotouch.errors import Error
+from nanotouch.manipulation import Recorded
+from nanotouch.plasticity import Dent, dents_of
 from nanotouch.touch.record import Recording
+from nanotouch.touch.replay import without_rewinds
+
+from nanotouch_app.live.left import keeps, told_of
 
 STEP = 1e-3  # of a single step [s]
+PIXELS = 256  # of the surface that is drawn, each way
 SPEEDS = (0.01, 0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 
 
@@ -41,7 +48,11 @@ class Reel:
     missed = 0
 
     def __init__(self, recording: Recording) -> None:
+        self.recording = recording = played(recording)
         self.frames = frames_of(recording)
+        self.particles = particles_of(recording)
+        self.dents: tuple[Dent, ...] = ()
+        self.keeps = keeps(nt.Scene(**recording.metadata["scene"]))
         self.length = float(self.frames["time"][-1] - self.frames["time"][0])
         self.at, self.speed, self.paused = 0.0, 1.0, False
         self.looked = time.monotonic()
@@ -84,10 +95,46 @@ class Reel:
                 place = SPEEDS.index(self.speed) + (1 if way == "faster" else -1)
                 self.speed = SPEEDS[min(max(place, 0), len(SPEEDS) - 1)]
 
-    def clock(self) -> dict[str, Any]:
-        """As a host tells it."""
-        return {"tell": "clock", "speed": self.speed, "paused": self.paused or self.at >= self.length, "slowdown": 1.0,
-                "recorded": False}  # fmt: skip
+    def told(self) -> list[dict[str, Any]]:
+        """What a host would tell now: the clock, particles, other dents than before."""
+        clock = {"tell": "clock", "speed": self.speed, "paused": self.paused or self.at >= self.length,
+                 "slowdown": 1.0, "recorded": False}  # fmt: skip
+        return [clock, *self._told_particles(), *self._told_dents()]
+
+    def _told_particles(self) -> list[dict[str, Any]]:
+        if self.particles is None or not self.shown:
+            return []
+        places = self.particles.at(self.shown - 1)
+        near = [place.tolist() for place in places if _lies(self.recording, place)]
+        return [{"tell": "particles", "radius": self.particles.radius, "places": near, "targets": [], "events": []}]
+
+    def _told_dents(self) -> list[dict[str, Any]]:
+        if not self.keeps:
+            return []
+        tick = (self.frames["time"][0] + self.at) * self.recording.parameter("loop_rate")
+        dents = dents_of([event for event in self.recording.metadata["events"] if event[0] <= tick])
+        changed, self.dents = dents != self.dents, dents
+        return [told_of(dents)] if changed else []
+
+
+def played(recording: Recording) -> Recording:
+    """Without what a rewind took back; as it is where it cannot be told."""
+    try:
+        return without_rewinds(recording)
+    except Error:
+        return recording
+
+
+def particles_of(recording: Recording) -> Recorded | None:
+    """Of a recording that holds them."""
+    return Recorded(recording) if "particles" in recording.metadata else None
+
+
+def _lies(recording: Recording, place: Any) -> bool:
+    """On the surface; a host puts aside what it does not need."""
+    width, height = recording.metadata.get("surface_size") or (np.inf, np.inf)
+    least = 0.0 if np.isfinite(width) else -np.inf
+    return bool(least <= place[0] <= width and least <= place[1] <= height)
 
 
 def surface_of(recording: Recording) -> tuple[nt.Topography, tuple[float, float]]:
@@ -95,11 +142,22 @@ def surface_of(recording: Recording) -> tuple[nt.Topography, tuple[float, float]
     none. And its lower left corner [m]."""
     x, y = (recording.columns[name] if name in recording else np.zeros(len(recording)) for name in ("x", "y"))
     height = recording.columns.get("surface_height", np.zeros(len(recording)))
-    size = 1.2 * max(float(np.ptp(x)), float(np.ptp(y)), 25.0 * float(recording.metadata["scene"]["tip"]["radius"]))
-    left, low = (0.5 * float(along.min() + along.max() - size) for along in (x, y))
-    line = np.interp(left + (np.arange(64) + 0.5) * size / 64, *_sorted(x, height))
-    met = nt.Topography(heights=np.tile(line, (64, 1)), pixel_size=(size / 64, size / 64), name="what was met")
-    return met, (left, low)
+    wide = np.concatenate([np.column_stack([x, y]), _around_particles(recording)])
+    least, most = wide.min(axis=0), wide.max(axis=0)
+    size = 1.2 * max(*map(float, most - least), 25.0 * float(recording.metadata["scene"]["tip"]["radius"]))
+    left, low = (float(middle) - 0.5 * size for middle in 0.5 * (least + most))
+    line = np.interp(left + (np.arange(PIXELS) + 0.5) * size / PIXELS, *_sorted(x, height))
+    pixel_size = (size / PIXELS, size / PIXELS)
+    return nt.Topography(np.tile(line, (PIXELS, 1)), pixel_size, name="what was met"), (left, low)
+
+
+def _around_particles(recording: Recording) -> Any:
+    """Corners around all that were laid on the surface [m]."""
+    particles = particles_of(recording)
+    places = [] if particles is None else [place for _, _, place in particles.laid if _lies(recording, place)]
+    around = np.reshape(np.array(places, dtype=float), (-1, 2))
+    reach = 0.0 if particles is None else particles.radius
+    return np.concatenate([around - reach, around + reach])
 
 
 def _sorted(x: Any, height: Any) -> tuple[Any, Any]:

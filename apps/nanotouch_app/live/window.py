@@ -126,7 +126,8 @@ class Window:
                 time.sleep(min(due - begun, 0.004))
                 continue
             if self.reel is not None:
-                self.picture.hear(self.reel.clock())
+                for message in self.reel.told():
+                    self.picture.hear(message)
             if self.observer is not None:
                 self.picture.seen.look(self.observer)
             self._hear_remote()

@@ -7,6 +7,7 @@ from .lever import Lever, LeverPath
 from .particle import Particle, ParticleContact, ParticlePath, ParticlesState, ParticleState, latex
 from .particles import Laid, Particles, ParticlesPath
 from .pushing import Bench, Lost, Pushed, Track, arrange, push
+from .recorded import Recorded
 from .rod import Rod, RodPath, RodState, turning_point
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "ParticlesPath",
     "ParticlesState",
     "Pushed",
+    "Recorded",
     "Rod",
     "RodPath",
     "RodState",
