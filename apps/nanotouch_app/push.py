@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from nanotouch import manipulation
 from nanotouch.errors import InvalidValue, require
+from nanotouch.manipulation.lever import give
 from nanotouch.plots import new_figure, saved
 from nanotouch.touch.record import write_csv
 
@@ -31,6 +32,8 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--drift", default="1nm/s", metavar="SPEED", help="of the sample (default: %(default)s)")
     parser.add_argument("--tolerance", default="30nm", metavar="LENGTH",
                         help="distance that the operator is content with (default: %(default)s)")  # fmt: skip
+    parser.add_argument("--lever", metavar="X,Y,Z",
+                        help="stiffness of the lever along x, y, z, as 20N/m,20N/m,2N/m (default: the tip is held)")  # fmt: skip
     parser.add_argument("--seed", type=whole_number(0, 2**32 - 1, "2^32 - 1"), default=1, metavar="N",
                         help="of noise and drift (default: %(default)s)")  # fmt: skip
     output.add_options(parser)
@@ -44,11 +47,13 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidValue(f"--radius {args.radius}: valid is 50nm .. 20um")
     if not 0.0 < np.hypot(*target) <= 1e3 * radius:
         raise InvalidValue(f"--to {args.to}: valid is a way of up to 1000 radii of the particle")
+    particle, lever = manipulation.latex(radius), None if args.lever is None else parse_lever(args.lever)
     with output.folder(args, FILES) as out:
         with output.busy("pushing"):
-            done = manipulation.push(manipulation.latex(radius), target, bench=manipulation.Bench(drift=drift),
-                                     tolerance=tolerance, seed=args.seed)  # fmt: skip
+            done = manipulation.push(particle, target, bench=manipulation.Bench(drift=drift), tolerance=tolerance,
+                                     lever=lever, seed=args.seed)  # fmt: skip
         facts = facts_of(done)
+        facts["lever_give_m"] = None if lever is None else give(lever, particle)
         write_track(done, out / "push.csv")
         output.write_json(out / "push.json", facts)
         with output.picture():
@@ -57,7 +62,16 @@ def run(args: argparse.Namespace) -> int:
     return int(done.believed > tolerance)
 
 
-def facts_of(done: manipulation.Pushed) -> dict[str, float]:
+def parse_lever(text: str) -> manipulation.Lever:
+    """``"20N/m,20N/m,2N/m"`` to the springs along x, y, z."""
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise InvalidValue(f"--lever {text}: valid are three stiffnesses, as 20N/m,20N/m,2N/m")
+    x, y, z = (parse_quantity(part, "N/m") for part in parts)
+    return manipulation.Lever((x, y, z))
+
+
+def facts_of(done: manipulation.Pushed) -> dict[str, float | None]:
     """The numbers, SI."""
     return {
         "error_m": done.error,
@@ -71,13 +85,15 @@ def facts_of(done: manipulation.Pushed) -> dict[str, float]:
     }
 
 
-def words(facts: dict[str, float]) -> str:
+def words(facts: dict[str, Any]) -> str:
     """The same in words."""
-    return (
+    told = (
         f"it lies {1e9 * facts['error_m']:.3g} nm from the target; the last look showed "
         f"{1e9 * facts['believed_m']:.3g} nm\n{facts['pushes']} pushes of {1e9 * facts['largest_push_N']:.3g} nN at "
         f"most, {facts['lines']} lines to look, {facts['bench_time_s']:.0f} s"
     )
+    gives = facts["lever_give_m"]
+    return told if gives is None else f"{told}\nthe lever gives way by {1e9 * gives:.3g} nm under a push, at most"
 
 
 def write_track(done: manipulation.Pushed, path: Path) -> None:

@@ -27,6 +27,18 @@ def test_push_tells_what_the_library_does(tmp_path: Path, capsys: pytest.Capture
     assert (out / "push.png").stat().st_size > 10_000
 
 
+def test_push_on_a_lever(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "hung"
+    assert main(["push", "--to", "0.4um,0um", "--seed", "3", "--lever", "1N/m,1N/m,0.5N/m", "--out", str(out)]) == 0
+    facts = json.loads((out / "push.json").read_text())
+    soft = manipulation.Lever((1.0, 1.0, 0.5))
+    done = manipulation.push(manipulation.latex(500e-9), (0.4e-6, 0.0), seed=3, lever=soft)
+    assert facts["error_m"] == done.error
+    push = float(abs(done.track.force[:, 0]).max())
+    assert facts["lever_give_m"] == pytest.approx(push / 1.0, rel=0.3)  # along x; z gives less than twice its force
+    assert "the lever gives way by" in capsys.readouterr().out
+
+
 def test_push_that_does_not_arrive_has_status_1(tmp_path: Path) -> None:
     """Closer than the noise of a look allows in 200 pushes."""
     assert main(["push", "--to", "0.2um,0um", "--tolerance", "1pm", "--out", str(tmp_path / "a")]) == 1
@@ -80,6 +92,8 @@ def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.C
         ("push --to 5um", ["1 lengths instead of 2"]),
         ("push --tolerance 0nm", ["tolerance"]),
         ("push --seed -1", ["'-1'", "0 .. 2^32 - 1"]),
+        ("push --lever 1N/m", ["--lever 1N/m", "three stiffnesses"]),
+        ("push --lever 1N/m,0N/m,1N/m", ["stiffness = 0 N/m"]),
         ("indent 0nN", ["LOAD 0nN", "above 11 nN"]),
         ("indent 3nN", ["LOAD 3nN", "times the noise of the lever"]),
         ("indent 10uN", ["range.maximum_load"]),
