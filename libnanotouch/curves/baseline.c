@@ -3,6 +3,7 @@
  * outermost point that this line cannot explain, so that it is hardly extrapolated to where it is needed. */
 #include <math.h>
 
+#include "core/variants.h"
 #include "curves/bend.h"
 #include "curves/line.h"
 #include "curves/parts.h"
@@ -22,50 +23,67 @@ static const double correlated = 5.0; /* of white noise this ratio is 1 +- 0.45 
 static nt_curve_free outside(const nt_curve_segment *segment, double far, double start, double *work)
 {
     const long n = segment->count;
-    nt_curve_free free = {work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, 0, 0.0, 0.0};
+    nt_curve_free free = {work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, 0, 0.0, 0.0, 0.0};
     for (long i = 0; i < n; i++) {
         if (!(segment->z[i] >= far || segment->z[i] > start))
             continue;
         free.x[free.count] = segment->z[i];
         free.force[free.count++] = segment->force[i];
-        free.z_mean += segment->z[i];
     }
-    free.z_mean /= (double)free.count;
+    free.nearest = nt_curve_lowest(free.x, free.count);
+    free.z_mean = nt_curve_sum(free.x, free.count) / (double)free.count;
     for (long i = 0; i < free.count; i++)
         free.x[i] -= free.z_mean;
     return free;
 }
 
-static double larger(double a, double b)
+/* What a line leaves of all points. */
+NT_VARIANTS static void leave(const nt_curve_segment *segment, const nt_curve_baseline *line, double *restrict off)
 {
-    return a > b ? a : b;
+    const double level = line->force, slope = line->slope, z_mean = line->z_mean, *z = segment->z,
+                 *force = segment->force;
+    for (long i = 0; i < segment->count; i++)
+        off[i] = force[i] - level - slope * (z[i] - z_mean);
 }
 
-static double off_line(const nt_curve_segment *segment, const nt_curve_baseline *line, long i)
+/* Largest z at which the size of off is above the first level, and off above the others; -infinity without any. */
+NT_VARIANTS static void last_beyond(const nt_curve_segment *segment, const double *off, const double level[3],
+                                    double last[3])
 {
-    return segment->force[i] - line->force - line->slope * (segment->z[i] - line->z_mean);
+    double start[NT_LANES], shallow[NT_LANES], strong[NT_LANES];
+    const double *z = segment->z, nowhere = -INFINITY;
+    const double event = level[0], seen = level[1], deeper = level[2];
+    for (int j = 0; j < NT_LANES; j++)
+        start[j] = shallow[j] = strong[j] = nowhere;
+    for (long i = 0; i < segment->count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, segment->count); j < n; j++) {
+            const double here = z[i + j], at = off[i + j];
+            const double a = fabs(at) > event ? here : nowhere, b = at > seen ? here : nowhere,
+                         c = at > deeper ? here : nowhere;
+            start[j] = a > start[j] ? a : start[j];
+            shallow[j] = b > shallow[j] ? b : shallow[j];
+            strong[j] = c > strong[j] ? c : strong[j];
+        }
+    last[0] = nt_lanes_highest(start);
+    last[1] = nt_lanes_highest(shallow);
+    last[2] = nt_lanes_highest(strong);
 }
 
 /* z beyond which the line explains every point, the foot of a soft contact and a margin left out; -infinity if it
  * explains all. Force over depth^2, the slowest of tips, grows from L to r L over (sqrt(r) - 1) of the foot's length.
- */
-static double free_from(const nt_curve_segment *segment, const nt_curve_baseline *line, double noise, double travel)
+ * off: count doubles. */
+static double free_from(const nt_curve_segment *segment, const nt_curve_baseline *line, double noise, double travel,
+                        double *off)
 {
-    double largest = 0.0, start = -INFINITY, shallow = -INFINITY, strong = -INFINITY;
-    for (long i = 0; i < segment->count; i++)
-        largest = larger(largest, fabs(off_line(segment, line, i)));
+    leave(segment, line, off);
+    const double highest = nt_curve_highest(off, segment->count), lowest = nt_curve_lowest(off, segment->count);
+    const double largest = highest > -lowest ? highest : -lowest;
     const double seen = NT_CURVE_EVENT * fmax(noise, line->scatter); /* smeared noise scatters more than it steps */
     const double ratio = fmin(deep, of_load * largest / seen), deeper = ratio * seen;
     const double event = fmax(NT_CURVE_EVENT * noise, NT_CURVE_SCATTERED * line->scatter) + of_largest * largest;
-    const double least = fmin(seen, event);
-    for (long i = 0; i < segment->count; i++) {
-        const double off = off_line(segment, line, i), z = segment->z[i];
-        if (!(fabs(off) > least))
-            continue;
-        start = fabs(off) > event ? larger(start, z) : start;
-        shallow = off > seen ? larger(shallow, z) : shallow; /* repulsion alone: attraction ends at once */
-        strong = off > deeper ? larger(strong, z) : strong;
-    }
+    double last[3];
+    last_beyond(segment, off, (double[3]){event, seen, deeper}, last);
+    const double start = last[0], shallow = last[1], strong = last[2];
     const double beyond = start + margin * travel;
     const double foot = shallow + of_foot / (sqrt(fmax(ratio, least_deep)) - 1.0) * (shallow - strong);
     return ratio >= least_deep && foot > beyond && foot < start + most_foot * travel ? foot : beyond;
@@ -78,7 +96,7 @@ static nt_curve_baseline straight(const nt_curve_segment *segment, double noise,
     *free = outside(segment, far, INFINITY, work);
     nt_curve_baseline first = nt_curve_rough_line(free);
     nt_curve_refine_line(free, &first);
-    const double start = free_from(segment, &first, noise, travel);
+    const double start = free_from(segment, &first, noise, travel, free->weight);
     if (!isfinite(start)) {
         nt_curve_judge(free, &first);
         return first;
@@ -95,7 +113,7 @@ static nt_curve_baseline constant(const nt_curve_segment *segment, double *work)
     for (long i = 0; i < free.count; i++)
         free.scratch[i] = free.force[i];
     nt_curve_baseline found = {.force = nt_curve_median(free.scratch, free.count), .z_mean = free.z_mean};
-    found.nearest = free.z_mean + nt_curve_lowest(free.x, free.count);
+    found.nearest = free.nearest;
     for (long i = 0; i < free.count; i++)
         free.rest[i] = free.force[i] - found.force;
     found.scatter = NT_MAD_SIGMA * nt_curve_median_size(free.rest, free.count, free.scratch);
@@ -162,13 +180,20 @@ double nt_curve_baseline_at(const nt_curve_baseline *baseline, double z)
            nt_curve_bend_at(&baseline->bend, z, x);
 }
 
+NT_VARIANTS static void straight_of(const nt_curve_baseline *baseline, const double z[], long count,
+                                    double *restrict force)
+{
+    const double level = baseline->force, slope = baseline->slope, z_mean = baseline->z_mean;
+    for (long i = 0; i < count; i++)
+        force[i] = level + slope * (z[i] - z_mean);
+}
+
 void nt_curve_baseline_of(const nt_curve_baseline *baseline, const double z[], long count, double force[])
 {
     const int straight = baseline->wave.cosine == 0.0 && baseline->wave.sine == 0.0 && baseline->bend.film == 0.0 &&
                          baseline->bend.bow == 0.0;
     if (straight) {
-        for (long i = 0; i < count; i++)
-            force[i] = baseline->force + baseline->slope * (z[i] - baseline->z_mean);
+        straight_of(baseline, z, count, force);
         return;
     }
     for (long i = 0; i < count; i++)

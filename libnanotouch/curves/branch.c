@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * What happens on one branch: snap-in or pull-off, the tearing-off, the work of adhesion, the slope in contact. */
 #include <math.h>
+#include <stdint.h>
 
 #include "core/same_bits.h"
+#include "core/variants.h"
 #include "curves/parts.h"
 #include "curves/robust.h"
 
@@ -30,10 +32,21 @@ static long lowest(const nt_curve_branch *branch)
 {
     const double last = branch->z[branch->count - 1];
     const long inner = first_from(branch, last - end_part * (last - branch->z[0]));
-    long found = 0;
-    for (long i = 1; i < inner; i++)
-        found = branch->force[i] < branch->force[found] ? i : found;
-    return found;
+    return nt_curve_place_of_lowest(branch->force, inner);
+}
+
+/* Least sum of NEIGHBOURS of count forces [N]; 0 where none is negative. */
+NT_VARIANTS static double lowest_sum(const double force[], long count)
+{
+    double deepest[NT_LANES] = {0.0};
+    const long sums = count - NEIGHBOURS + 1;
+    for (long i = 0; i < sums; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, sums); j < n; j++) {
+            const double *f = force + i + j;
+            const double depth = -(f[0] + f[1] + f[2] + f[3] + f[4]);
+            deepest[j] = depth > deepest[j] ? depth : deepest[j];
+        }
+    return -nt_lanes_highest(deepest);
 }
 
 static int dips(const nt_curve_branch *branch)
@@ -41,13 +54,7 @@ static int dips(const nt_curve_branch *branch)
     if (-branch->force[branch->lowest] > branch->visible)
         return 1;
     const long end = branch->lowest + NEIGHBOURS < branch->count ? branch->lowest + NEIGHBOURS : branch->count;
-    double smallest = 0.0;
-    for (long i = 0; i + NEIGHBOURS <= end; i++) {
-        double sum = 0.0;
-        for (long j = 0; j < NEIGHBOURS; j++)
-            sum += branch->force[i + j];
-        smallest = fmin(smallest, sum / NEIGHBOURS);
-    }
+    const double smallest = lowest_sum(branch->force, end) / NEIGHBOURS;
     return -smallest > fmax(NT_CURVE_EVENT / sqrt((double)NEIGHBOURS) * branch->noise,
                             NT_CURVE_SCATTERED * branch->baseline.scatter);
 }
@@ -68,9 +75,7 @@ static long torn(const nt_curve_branch *branch)
 
 static long repulsive(const nt_curve_branch *branch)
 {
-    long zero = 0;
-    for (long i = 1; i < branch->count; i++)
-        zero = branch->force[i] > branch->force[zero] ? i : zero;
+    long zero = nt_curve_place_of_highest(branch->force, branch->count);
     while (zero < branch->count && branch->force[zero] > 0.0)
         zero++;
     if (branch->dips)
@@ -105,18 +110,16 @@ static nt_curve_measured adhesion_work(const nt_curve_branch *branch)
 
 static nt_curve_measured contact_slope(const nt_curve_branch *branch)
 {
-    const double least = in_contact * nt_curve_highest(branch->force, branch->count);
+    const double load = nt_curve_highest(branch->force, branch->count), least = in_contact * load;
     double count = 0.0, z_mean = 0.0, mean = 0.0, spread = 0.0, product = 0.0, squares = 0.0;
-    long end = 0; /* after the last firm point */
-    for (long i = 0; i < branch->count; i++) {
-        if (!(branch->force[i] > least))
-            continue;
-        count += 1.0;
-        z_mean += branch->z[i];
-        mean += branch->force[i];
-        end = i + 1;
+    const long end = nt_curve_last_above(branch->force, branch->count, least) + 1;
+    for (long i = 0; i < end; i++) {
+        const double firm = branch->force[i] > least;
+        count += firm;
+        z_mean += firm * branch->z[i];
+        mean += firm * branch->force[i];
     }
-    if (least / in_contact <= branch->visible || count < 4.0)
+    if (load <= branch->visible || count < 4.0)
         return (nt_curve_measured){NAN, NAN};
     z_mean /= count;
     mean /= count;
@@ -134,14 +137,35 @@ static nt_curve_measured contact_slope(const nt_curve_branch *branch)
 }
 
 /* 1: z grows, -1: it falls, 0: neither. */
-static int order_of(const double z[], long count)
+NT_VARIANTS static int order_of(const double z[], long count)
 {
-    int grows = 1, falls = 1;
+    int64_t grows = 1, falls = 1;
     for (long i = 1; i < count; i++) {
         grows &= z[i - 1] <= z[i];
         falls &= z[i] < z[i - 1];
     }
-    return grows - falls;
+    return (int)(grows - falls);
+}
+
+/* The force of a branch over its baseline, which was put behind the room of both, from its last point to its first. */
+NT_VARIANTS static void reverse(const nt_curve_segment *segment, double *restrict work)
+{
+    const long n = segment->count;
+    const double *z = segment->z, *force = segment->force;
+    for (long i = 0; i < n; i++) {
+        work[i] = z[n - 1 - i];
+        work[n + i] = force[n - 1 - i] - work[2 * n + (n - 1 - i)];
+    }
+}
+
+NT_VARIANTS static void copy(const nt_curve_segment *segment, double *restrict work)
+{
+    const long n = segment->count;
+    const double *z = segment->z, *force = segment->force;
+    for (long i = 0; i < n; i++) {
+        work[i] = z[i];
+        work[n + i] = force[i] - work[2 * n + i];
+    }
 }
 
 /* z and force over the baseline into the first 2 count doubles of work, z growing. */
@@ -152,11 +176,7 @@ static void order_outwards(const nt_curve_segment *segment, const nt_curve_basel
     const int order = order_of(segment->z, n);
     nt_curve_baseline_of(baseline, segment->z, n, order ? level : work);
     if (order) {
-        for (long i = 0; i < n; i++) {
-            const long from = order > 0 ? i : n - 1 - i;
-            work[i] = segment->z[from];
-            work[n + i] = segment->force[from] - level[from];
-        }
+        (order > 0 ? copy : reverse)(segment, work);
         return;
     }
     nt_curve_point *points = (nt_curve_point *)(void *)level;

@@ -188,12 +188,10 @@ void nt_curve_find_contact(const nt_curve_branch *first, double spring_constant,
                            nt_curve_reading *reading)
 {
     const double level = first->dips ? 0.0 : first->visible;
-    long peak = 0;
+    const long peak = nt_curve_place_of_highest(first->force, first->count);
     for (int i = 0; i < NT_CURVE_METHODS; i++)
         reading->contact_points[i] = NAN;
     reading->contact_point = (nt_curve_measured){NAN, NAN};
-    for (long i = 1; i < first->count; i++)
-        peak = first->force[i] > first->force[peak] ? i : peak;
     long after = peak;
     while (after < first->count && first->force[after] > level)
         after++;

@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+#include "core/variants.h"
 #include "curves/robust.h"
 
 enum {
@@ -180,18 +181,21 @@ void nt_curve_share_noise(const nt_curve_segment *const segments[2], nt_curve_ba
     }
 }
 
-double nt_curve_point_noise(const double force[], long count, double *work)
+NT_VARIANTS static void differences(const double force[], long count, double *restrict size)
 {
     for (long i = 0; i + 1 < count; i++)
-        work[i] = fabs(force[i + 1] - force[i]);
+        size[i] = fabs(force[i + 1] - force[i]);
+}
+
+double nt_curve_point_noise(const double force[], long count, double *work)
+{
+    differences(force, count, work);
     double size = NT_MAD_SIGMA * nt_curve_median(work, count - 1);
     if (size == 0.0) {
+        differences(force, count, work);
         nt_curve_sort_values(work, count - 1);
         const long kept = (long)(all_but_largest * (double)(count - 1));
-        double squares = 0.0;
-        for (long i = 0; i < kept; i++)
-            squares += work[i] * work[i];
-        size = sqrt(squares / (double)kept);
+        size = sqrt(nt_curve_square_sum(work, kept) / (double)kept);
     }
     return size / sqrt(2.0);
 }

@@ -256,7 +256,7 @@ static nt_curve_baseline beside(const nt_curve_baseline *approach, double z_mean
 static nt_curve_baseline tail_line(const outside *out, long from, double *room)
 {
     const long n = out->count - from;
-    nt_curve_free tail = {room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n, n, 0.0, 0.0};
+    nt_curve_free tail = {room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n, n, 0.0, 0.0, 0.0};
     for (long i = 0; i < n; i++)
         tail.z_mean += out->z[from + i] / (double)n;
     for (long i = 0; i < n; i++) {

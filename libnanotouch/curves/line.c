@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "core/variants.h"
 #include "curves/robust.h"
 
 enum {
@@ -16,37 +17,64 @@ static const double of_sample = 0.25, of_all = 0.05; /* of the scatter: 2.5 of a
                                                         the last round moves it */
 static const double smallest_spread = 1e-300;
 
-/* Weighted least squares over every step-th point, by Tukey's weights of what the line leaves; scatter 0: all weigh the
- * same. The line's force is that at x = 0. */
-static void move_line(const nt_curve_free *free, long step, double scatter, nt_curve_baseline *line)
+/* Points that a line is moved to. */
+typedef struct points {
+    const double *x, *force;
+    long count;
+} points;
+
+/* Sums over the points of their weights, of weight times x, the force left by a line, x x and x times that force. */
+typedef struct sums {
+    double total, x, rest, squares, product;
+} sums;
+
+/* By Tukey's weights of what the line leaves, unit = 1/(4.685 scatter); unit 0: all weigh the same. */
+NT_VARIANTS static sums weigh_up(const points *of, const nt_curve_baseline *line, double unit)
 {
-    const double unit = scatter > 0.0 ? 1.0 / (NT_TUKEY * scatter) : 0.0;
-    double total = 0.0, x = 0.0, rest = 0.0, squares = 0.0, product = 0.0;
-    for (long i = 0; i < free->count; i += step) {
-        const double left = free->force[i] - line->force - line->slope * free->x[i];
-        const double u = left * unit, inside = 1.0 - u * u, root = inside > 0.0 ? inside : 0.0;
-        const double weight = root * root, weighted = weight * free->x[i];
-        total += weight;
-        x += weighted;
-        rest += weight * left;
-        squares += weighted * free->x[i];
-        product += weighted * left;
-    }
-    const double spread = squares - x * x / total;
-    const double slope = spread > 0.0 ? (product - x * rest / total) / spread : 0.0;
-    line->slope += slope;
-    line->force += (rest - slope * x) / total;
+    const double level = line->force, slope = line->slope, *at = of->x, *force = of->force;
+    double total[NT_LANES] = {0.0}, x[NT_LANES] = {0.0}, rest[NT_LANES] = {0.0}, squares[NT_LANES] = {0.0},
+           product[NT_LANES] = {0.0};
+    for (long i = 0; i < of->count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, of->count); j < n; j++) {
+            const double left = force[i + j] - level - slope * at[i + j];
+            const double u = left * unit, inside = 1.0 - u * u, root = inside > 0.0 ? inside : 0.0;
+            const double weight = root * root, weighted = weight * at[i + j];
+            total[j] += weight;
+            x[j] += weighted;
+            rest[j] += weight * left;
+            squares[j] += weighted * at[i + j];
+            product[j] += weighted * left;
+        }
+    return (sums){nt_lanes_sum(total), nt_lanes_sum(x), nt_lanes_sum(rest), nt_lanes_sum(squares),
+                  nt_lanes_sum(product)};
 }
 
-/* Residuals of every step-th point, and their robust standard deviation, which is the line's within a share of it. */
-static double look(nt_curve_free *free, long step, const nt_curve_baseline *line, double doubt)
+/* Weighted least squares; scatter 0: all weigh the same. The line's force is that at x = 0. */
+static void move_line(const points *of, double scatter, nt_curve_baseline *line)
 {
-    long found = 0;
-    for (long i = 0; i < free->count; i += step) {
-        free->rest[i] = free->force[i] - line->force - line->slope * free->x[i];
-        free->scratch[found++] = fabs(free->rest[i]);
+    const sums s = weigh_up(of, line, scatter > 0.0 ? 1.0 / (NT_TUKEY * scatter) : 0.0);
+    const double spread = s.squares - s.x * s.x / s.total;
+    const double slope = spread > 0.0 ? (s.product - s.x * s.rest / s.total) / spread : 0.0;
+    line->slope += slope;
+    line->force += (s.rest - slope * s.x) / s.total;
+}
+
+/* What a line leaves, and its size. */
+NT_VARIANTS static void leave(const points *of, const nt_curve_baseline *line, double *restrict rest,
+                              double *restrict size)
+{
+    const double level = line->force, slope = line->slope, *x = of->x, *force = of->force;
+    for (long i = 0; i < of->count; i++) {
+        rest[i] = force[i] - level - slope * x[i];
+        size[i] = fabs(rest[i]);
     }
-    return NT_MAD_SIGMA * nt_curve_median_near(free->scratch, found, line->scatter / NT_MAD_SIGMA, doubt);
+}
+
+/* Residuals in free->rest, and their robust standard deviation, which is the line's within a share of it. */
+static double look(const nt_curve_free *free, const points *at, const nt_curve_baseline *line, double doubt)
+{
+    leave(at, line, free->rest, free->scratch);
+    return NT_MAD_SIGMA * nt_curve_median_near(free->scratch, at->count, line->scatter / NT_MAD_SIGMA, doubt);
 }
 
 static long step_of(const nt_curve_free *free)
@@ -64,15 +92,20 @@ static int has_settled(const nt_curve_free *free, long step, double before, cons
 nt_curve_baseline nt_curve_rough_line(nt_curve_free *free)
 {
     const long step = step_of(free);
-    const double nearest = nt_curve_lowest(free->x, free->count);
-    nt_curve_baseline line = {.z_mean = free->z_mean, .nearest = free->z_mean + nearest};
-    free->travel = nt_curve_highest(free->x, free->count) - nearest;
-    move_line(free, step, 0.0, &line);
-    line.scatter = look(free, step, &line, of_sample);
+    double x[SAMPLE], force[SAMPLE];
+    points some = {x, force, 0};
+    for (long i = 0; i < free->count; i += step, some.count++) {
+        x[some.count] = free->x[i];
+        force[some.count] = free->force[i];
+    }
+    nt_curve_baseline line = {.z_mean = free->z_mean, .nearest = free->nearest};
+    free->travel = nt_curve_highest(free->x, free->count) - nt_curve_lowest(free->x, free->count);
+    move_line(&some, 0.0, &line);
+    line.scatter = look(free, &some, &line, of_sample);
     for (int round = 0; round < ROUNDS && line.scatter > 0.0; round++) {
         const double before = line.slope;
-        move_line(free, step, line.scatter, &line);
-        line.scatter = look(free, step, &line, of_sample);
+        move_line(&some, line.scatter, &line);
+        line.scatter = look(free, &some, &line, of_sample);
         if (has_settled(free, step, before, &line))
             break;
     }
@@ -81,15 +114,16 @@ nt_curve_baseline nt_curve_rough_line(nt_curve_free *free)
 
 void nt_curve_refine_line(nt_curve_free *free, nt_curve_baseline *line)
 {
-    line->scatter =
-        look(free, 1, line, of_sample); /* a sample's would do for white noise, not for residuals that hang together */
+    const points all = {free->x, free->force, free->count};
+    line->scatter = look(free, &all, line,
+                         of_sample); /* a sample's would do for white noise, not for residuals that hang together */
     for (int round = 0; round < ROUNDS && step_of(free) > 1 && line->scatter > 0.0; round++) {
         const double before = line->slope;
-        move_line(free, 1, line->scatter, line);
+        move_line(&all, line->scatter, line);
         if (has_settled(free, 1, before, line))
             break;
     }
-    line->scatter = look(free, 1, line, of_all);
+    line->scatter = look(free, &all, line, of_all);
 }
 
 nt_curve_baseline nt_curve_line(nt_curve_free *free)
@@ -103,9 +137,7 @@ nt_curve_baseline nt_curve_line(nt_curve_free *free)
 void nt_curve_judge(nt_curve_free *free, nt_curve_baseline *baseline)
 {
     const double count = (double)free->count;
-    double spread = 0.0;
-    for (long i = 0; i < free->count; i++)
-        spread += free->x[i] * free->x[i];
+    const double spread = nt_curve_square_sum(free->x, free->count);
     baseline->noise = nt_curve_split_noise(free->rest, free->count, baseline->scatter);
     const double worth = baseline->noise.white + count * baseline->noise.flicker;
     baseline->force_variance = worth / count;
@@ -119,10 +151,8 @@ double nt_curve_correlation(const nt_curve_free *free, double scatter)
         return 1.0;
     double squares = 0.0;
     for (long block = 0; block < BLOCKS; block++) {
-        double sum = 0.0;
-        for (long i = block * size; i < (block + 1) * size; i++)
-            sum += free->rest[i];
-        squares += (sum / (double)size) * (sum / (double)size);
+        const double mean = nt_curve_sum(free->rest + block * size, size) / (double)size;
+        squares += mean * mean;
     }
     return fmax(1.0, squares / BLOCKS * (double)size / (scatter * scatter));
 }

@@ -13,8 +13,9 @@ typedef struct nt_curve_free {
     double *weight, *rest, *scratch;
     double *room; /* 4 count + NT_WAVE_GRID */
     long count;
-    double z_mean; /* [m] */
-    double travel; /* that they cover [m]; of nt_curve_rough_line */
+    double z_mean;  /* [m] */
+    double nearest; /* least z of them, to the last bit [m] */
+    double travel;  /* that they cover [m]; of nt_curve_rough_line */
 } nt_curve_free;
 
 /* A robust line through a sample of them: iterated least squares with Tukey's weights. */

@@ -7,9 +7,9 @@
 
 #include "curves/robust.h"
 
-enum { LEAST_BLOCK = 4, FEWEST = 8 }; /* points of a block; blocks of a record */
-static const double price = 30.0;     /* of a piece: false ones are rarer than one in 1000 records of white noise */
-static const double exact = 1e-6;     /* of the span: least noise that is believed */
+enum { LEAST_BLOCK = 4, FEWEST = 8, GROUP = 8 }; /* points of a block; blocks of a record; of those looked at at once */
+static const double price = 30.0; /* of a piece: false ones are rarer than one in 1000 records of white noise */
+static const double exact = 1e-6; /* of the span: least noise that is believed */
 
 /* Sums over the blocks before each: of x, y, xx, xy, yy. */
 typedef struct sums {
@@ -51,26 +51,66 @@ static void sum_up(const double x[], const double y[], int blocks, sums *s)
     }
 }
 
+/* What a line leaves of the blocks from .. to - 1. */
+static double left_of(const sums *s, int from, int to)
+{
+    const double inverse = 1.0 / (to - from);
+    const double x = s->x[to] - s->x[from], y = s->y[to] - s->y[from];
+    const double xx = s->xx[to] - s->xx[from] - x * x * inverse, xy = s->xy[to] - s->xy[from] - x * y * inverse;
+    const double yy = s->yy[to] - s->yy[from] - y * y * inverse, left = xx > 0.0 ? yy - xy / xx * xy : yy;
+    return left > 0.0 ? left : 0.0;
+}
+
+/* Cost of the best cut before each block, and with a last piece from i on: what it was when it was last looked at, and
+ * it only grows with the piece's length. least_of: the least of each group. */
+typedef struct costs {
+    double best[NT_PIECE_BLOCKS + 1], least[NT_PIECE_BLOCKS + GROUP], least_of[NT_PIECE_BLOCKS / GROUP + 1];
+} costs;
+
+static void set_least(costs *c, int i, double value)
+{
+    c->least[i] = value;
+    c->least_of[i / GROUP] = value < c->least_of[i / GROUP] ? value : c->least_of[i / GROUP];
+}
+
+/* The best cut of the first j blocks with a last piece from this group on, if it is better. */
+static void try_group(const sums *s, int group, int j, double variance, costs *c, int *from)
+{
+    const int end = (group + 1) * GROUP < j - 1 ? (group + 1) * GROUP : j - 1;
+    for (int i = group * GROUP; i < end; i++) {
+        if (!(c->least[i] < c->best[j]))
+            continue;
+        c->least[i] = c->best[i] + price + left_of(s, i, j) / variance;
+        if (c->least[i] < c->best[j]) {
+            c->best[j] = c->least[i];
+            *from = i;
+        }
+    }
+    const double *least = c->least + group * GROUP;
+    double lowest = least[0];
+    for (int k = 1; k < GROUP; k++)
+        lowest = least[k] < lowest ? least[k] : lowest;
+    c->least_of[group] = lowest;
+}
+
 /* from[j]: where the last piece of the best cut of the first j blocks begins. */
 static void cut(const sums *s, int blocks, double variance, int from[NT_PIECE_BLOCKS + 1])
 {
-    double cost[NT_PIECE_BLOCKS + 1] = {0.0}, least[NT_PIECE_BLOCKS + 1] = {price}; /* least: cost with a last piece
-                                                                      from i on, which only grows with its length */
-    cost[1] = least[1] = INFINITY;
+    costs c;
+    for (int i = 0; i < NT_PIECE_BLOCKS + GROUP; i++)
+        c.least[i] = INFINITY;
+    for (int group = 0; group <= NT_PIECE_BLOCKS / GROUP; group++)
+        c.least_of[group] = INFINITY;
+    c.best[0] = 0.0;
+    c.best[1] = INFINITY;
+    set_least(&c, 0, price);
     from[1] = 0;
     for (int j = 2; j <= blocks; j++) {
-        double best = INFINITY;
-        for (int i = 0; i + 2 <= j; i++) {
-            if (!(least[i] < best))
-                continue;
-            least[i] = cost[i] + price + line_of(s, i, j).squares / variance;
-            if (least[i] < best) {
-                best = least[i];
-                from[j] = i;
-            }
-        }
-        cost[j] = best;
-        least[j] = best + price;
+        c.best[j] = INFINITY;
+        for (int group = 0; group * GROUP + 2 <= j; group++)
+            if (c.least_of[group] < c.best[j])
+                try_group(s, group, j, variance, &c, from + j);
+        set_least(&c, j, c.best[j] + price);
     }
 }
 

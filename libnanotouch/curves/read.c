@@ -25,10 +25,8 @@ const char *nt_curve_contact_method_name(nt_curve_contact_method method)
 
 static nt_status check_values(const double values[], long count, const nt_problem *column, nt_problem *problem)
 {
-    int bad = 0;
-    for (long i = 0; i < count; i++) /* without a branch, several at once */
-        bad |= !(fabs(values[i]) <= largest_value);
-    for (long i = 0; bad && i < count; i++)
+    const int good = nt_curve_all_within(values, count, largest_value);
+    for (long i = 0; !good && i < count; i++)
         if (!(fabs(values[i]) <= largest_value)) {
             *problem = (nt_problem){column->field, column->unit, values[i], -largest_value, largest_value};
             return isfinite(values[i]) ? NT_E_RANGE : NT_E_NOT_FINITE;

@@ -7,7 +7,12 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "core/variants.h"
+
 enum { SAMPLE = 63, MIDDLE = 10, MANY = 256 }; /* MIDDLE: 2.5 standard deviations of the rank of a sample's median */
+enum { FEW = 48, DRAWN = 4 }; /* values that are sorted out at once; times that ends are drawn closer */
+
+static const double closer = 1.5; /* times sqrt(n)/n of the values: three standard deviations of a middle rank */
 
 /* Those below the pivot, or equal to it, come first; returns how many. Without a branch, which noise makes a processor
  * mistake half of the time. */
@@ -47,48 +52,131 @@ static double select(double values[], long count, long k)
     return values[0];
 }
 
-double nt_curve_highest(const double values[], long count)
+NT_VARIANTS double nt_curve_highest(const double values[], long count)
 {
-    double highest[4] = {values[0], values[0], values[0], values[0]};
-    long i = 0;
-    for (; i + 4 <= count; i += 4) /* side by side */
-        for (int j = 0; j < 4; j++)
+    double highest[NT_LANES];
+    for (int j = 0; j < NT_LANES; j++)
+        highest[j] = values[0];
+    for (long i = 0; i < count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, count); j < n; j++)
             highest[j] = values[i + j] > highest[j] ? values[i + j] : highest[j];
-    for (; i < count; i++)
-        highest[0] = values[i] > highest[0] ? values[i] : highest[0];
-    for (int j = 1; j < 4; j++)
-        highest[0] = highest[j] > highest[0] ? highest[j] : highest[0];
-    return highest[0];
+    return nt_lanes_highest(highest);
 }
 
-double nt_curve_lowest(const double values[], long count)
+NT_VARIANTS double nt_curve_lowest(const double values[], long count)
 {
-    double lowest[4] = {values[0], values[0], values[0], values[0]};
-    long i = 0;
-    for (; i + 4 <= count; i += 4)
-        for (int j = 0; j < 4; j++)
-            lowest[j] = values[i + j] < lowest[j] ? values[i + j] : lowest[j];
-    for (; i < count; i++)
-        lowest[0] = values[i] < lowest[0] ? values[i] : lowest[0];
-    for (int j = 1; j < 4; j++)
-        lowest[0] = lowest[j] < lowest[0] ? lowest[j] : lowest[0];
-    return lowest[0];
+    double highest[NT_LANES]; /* of -values */
+    for (int j = 0; j < NT_LANES; j++)
+        highest[j] = -values[0];
+    for (long i = 0; i < count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, count); j < n; j++)
+            highest[j] = -values[i + j] > highest[j] ? -values[i + j] : highest[j];
+    return -nt_lanes_highest(highest);
 }
 
-/* Those from low to high come first; returns how many, and how many lie below. Without a branch. */
-static long gather(double values[], long count, const double ends[2], long *below)
+/* The first place of the highest of sign * values. */
+NT_VARIANTS static long place_of(const double values[], long count, double sign)
+{
+    double highest[NT_LANES];
+    int64_t place[NT_LANES];
+    for (int j = 0; j < NT_LANES; j++) {
+        highest[j] = -INFINITY;
+        place[j] = 0;
+    }
+    for (long i = 0; i < count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, count); j < n; j++) {
+            const double value = sign * values[i + j];
+            place[j] = value > highest[j] ? i + j : place[j];
+            highest[j] = value > highest[j] ? value : highest[j];
+        }
+    int best = 0;
+    for (int j = 1; j < NT_LANES; j++)
+        best = highest[j] > highest[best] || (highest[j] == highest[best] && place[j] < place[best]) ? j : best;
+    return (long)place[best];
+}
+
+long nt_curve_place_of_highest(const double values[], long count)
+{
+    return place_of(values, count, 1.0);
+}
+
+long nt_curve_place_of_lowest(const double values[], long count)
+{
+    return place_of(values, count, -1.0);
+}
+
+NT_VARIANTS int nt_curve_all_within(const double values[], long count, double limit)
+{
+    int64_t beyond = 0;
+    for (long i = 0; i < count; i++)
+        beyond |= !(fabs(values[i]) <= limit);
+    return !beyond;
+}
+
+NT_VARIANTS double nt_curve_sum(const double values[], long count)
+{
+    double sum[NT_LANES] = {0.0};
+    for (long i = 0; i < count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, count); j < n; j++)
+            sum[j] += values[i + j];
+    return nt_lanes_sum(sum);
+}
+
+NT_VARIANTS double nt_curve_square_sum(const double values[], long count)
+{
+    double sum[NT_LANES] = {0.0};
+    for (long i = 0; i < count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, count); j < n; j++)
+            sum[j] += values[i + j] * values[i + j];
+    return nt_lanes_sum(sum);
+}
+
+long nt_curve_last_above(const double values[], long count, double level)
+{
+    long end = count;
+    while (end > 0) {
+        const long first = end > NT_LANES ? end - NT_LANES : 0;
+        if (nt_curve_highest(values + first, end - first) > level)
+            break;
+        end = first;
+    }
+    while (end > 0 && !(values[end - 1] > level))
+        end--;
+    return end - 1;
+}
+
+/* How many lie from low to high, and how many below. */
+NT_VARIANTS static long count_between(const double values[], long count, const double ends[2], long *below)
 {
     const double low = ends[0], high = ends[1];
-    long inside = 0, lower = 0;
-    for (long i = 0; i < count; i++) {
-        const double value = values[i];
-        values[i] = values[inside];
-        values[inside] = value;
-        inside += (value >= low) & (value <= high);
-        lower += value < low;
+    int64_t lower[NT_LANES] = {0}, higher[NT_LANES] = {0};
+    for (long i = 0; i < count; i += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(i, count); j < n; j++) {
+            lower[j] += values[i + j] < low;
+            higher[j] += values[i + j] > high;
+        }
+    for (int j = 1; j < NT_LANES; j++) {
+        lower[0] += lower[j];
+        higher[0] += higher[j];
     }
-    *below = lower;
-    return inside;
+    *below = (long)lower[0];
+    return count - (long)(lower[0] + higher[0]);
+}
+
+/* Leaves those from low to high at the beginning, the others nowhere. Without a branch. */
+NT_VARIANTS static void gather(double values[], long count, const double ends[2])
+{
+    const double low = ends[0], high = ends[1];
+    int64_t is_inside[NT_LANES], inside = 0;
+    for (long i = 0; i < count; i += NT_LANES) {
+        const int n = nt_lanes_from(i, count);
+        for (int j = 0; j < n; j++)
+            is_inside[j] = (values[i + j] >= low) & (values[i + j] <= high);
+        for (int j = 0; j < n; j++) {
+            values[inside] = values[i + j];
+            inside += is_inside[j];
+        }
+    }
 }
 
 /* Two of a sample's ranks, between which the median of many values lies nearly always. */
@@ -101,35 +189,44 @@ static void sample_ends(const double values[], long count, double ends[2])
     ends[0] = select(sample, SAMPLE / 2 + MIDDLE, SAMPLE / 2 - MIDDLE);
 }
 
-static double median_of(double values[], long count)
-{
-    const double upper = select(values, count, count / 2);
-    return count % 2 ? upper : 0.5 * (nt_curve_highest(values, count / 2) + upper);
-}
-
-/* Of those between two ends, or of all where it does not lie there. */
+/* As long as it lies between the ends, which are drawn closer: where values are even, rank k of n is known to sqrt(n).
+ */
 static double median_between(double values[], long count, const double ends[2])
 {
-    long below;
-    const long inside = gather(values, count, ends, &below), rank = count / 2 - below;
-    if (rank < 1 || rank >= inside)
-        return median_of(values, count);
-    const double upper = select(values, inside, rank);
+    double low = ends[0], high = ends[1];
+    long left = count, rank = count / 2;
+    for (int i = 0; i < DRAWN && left >= FEW; i++) {
+        long below;
+        const double window[2] = {low, high};
+        const long inside = count_between(values, left, window, &below);
+        if (rank - below < 1 || rank - below >= inside)
+            break;
+        gather(values, left, window);
+        left = inside;
+        rank -= below;
+        const double width = high - low, middle = low + width * ((double)rank / (double)left);
+        const double half = width * closer / sqrt((double)left);
+        low = middle - half > low ? middle - half : low;
+        high = middle + half < high ? middle + half : high;
+    }
+    const double upper = select(values, left, rank);
     return count % 2 ? upper : 0.5 * (nt_curve_highest(values, rank) + upper);
 }
 
 double nt_curve_median(double values[], long count)
 {
     double ends[2];
-    if (count < MANY)
-        return median_of(values, count);
+    if (count < MANY) {
+        const double upper = select(values, count, count / 2);
+        return count % 2 ? upper : 0.5 * (nt_curve_highest(values, count / 2) + upper);
+    }
     sample_ends(values, count, ends);
     return median_between(values, count, ends);
 }
 
 double nt_curve_median_near(double values[], long count, double expected, double doubt)
 {
-    if (count < MANY || !(expected > 0.0))
+    if (count < FEW || !(expected > 0.0))
         return nt_curve_median(values, count);
     const double ends[2] = {expected * (1.0 - doubt), expected * (1.0 + doubt)};
     return median_between(values, count, ends);

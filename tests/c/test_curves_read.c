@@ -170,14 +170,45 @@ static void medians_of_many(void **state)
     nt_random random = nt_random_seed(2);
     for (int count = 250; count <= MANY; count += 45)
         for (int i = 0; i < 5; i++) {
-            double values[MANY], sorted[MANY];
+            double values[MANY], again[MANY], sorted[MANY];
             for (int k = 0; k < count; k++)
-                values[k] = sorted[k] = i < 4 ? fabs(nt_random_normal(&random)) : floor(nt_random_normal(&random));
+                values[k] = again[k] = sorted[k] =
+                    i < 4 ? fabs(nt_random_normal(&random)) : floor(nt_random_normal(&random));
             qsort(sorted, (size_t)count, sizeof *sorted, by_value);
             const double middle = 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
             assert_true(nt_curve_median_near(values, count, expected[i], 0.25) == middle);
-            assert_true(nt_curve_median(values, count) == middle);
+            assert_true(nt_curve_median(again, count) == middle);
         }
+}
+
+/* Ends, places and sums beside plain loops, for every length of the last block. */
+static void passes_over_all(void **state)
+{
+    (void)state;
+    nt_random random = nt_random_seed(3);
+    for (long count = 1; count < 100; count++) {
+        double values[100], sum = 0.0, squares = 0.0;
+        long lowest = 0, highest = 0, last = -1;
+        for (long i = 0; i < count; i++)
+            values[i] = floor(5.0 * nt_random_normal(&random));
+        for (long i = 0; i < count; i++) {
+            lowest = values[i] < values[lowest] ? i : lowest;
+            highest = values[i] > values[highest] ? i : highest;
+            last = values[i] > 7.0 ? i : last;
+            sum += values[i];
+            squares += values[i] * values[i];
+        }
+        assert_int_equal(nt_curve_place_of_lowest(values, count), lowest);
+        assert_int_equal(nt_curve_place_of_highest(values, count), highest);
+        assert_true(nt_curve_lowest(values, count) == values[lowest]);
+        assert_true(nt_curve_highest(values, count) == values[highest]);
+        assert_int_equal(nt_curve_last_above(values, count, 7.0), last);
+        assert_true(nt_curve_sum(values, count) == sum); /* whole numbers: exact in any order */
+        assert_true(nt_curve_square_sum(values, count) == squares);
+        assert_true(nt_curve_all_within(values, count, 40.0));
+        values[count / 2] = count % 2 ? (double)NAN : -41.0;
+        assert_false(nt_curve_all_within(values, count, 40.0));
+    }
 }
 
 static void linear_systems(void **state)
@@ -197,7 +228,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stiff_contact_is_read), cmocka_unit_test(tethers_are_found_to_their_end),
         cmocka_unit_test(bad_curves_are_refused),  cmocka_unit_test(medians_and_orders),
-        cmocka_unit_test(medians_of_many),         cmocka_unit_test(linear_systems),
+        cmocka_unit_test(medians_of_many),         cmocka_unit_test(passes_over_all),
+        cmocka_unit_test(linear_systems),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,14 +11,9 @@
 
 #include "contact/maugis/place.h"
 #include "core/strided.h"
+#include "core/variants.h"
 
-/* glibc resolves the variants at load time; sanitizers come too late for that. */
-#if !defined(NANOTOUCH_ONE_VARIANT) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 &&                   \
-    defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define VARIANTS __attribute__((target_clones("default", "arch=x86-64-v2", "arch=x86-64-v3", "arch=x86-64-v4")))
-#else
-#define VARIANTS
-#endif
+#define VARIANTS NT_TARGETS("default", "arch=x86-64-v2", "arch=x86-64-v3", "arch=x86-64-v4")
 
 #if defined(__has_builtin) && (defined(__x86_64__) || defined(__aarch64__))
 #if __has_builtin(__builtin_shufflevector)
