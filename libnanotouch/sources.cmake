@@ -91,6 +91,7 @@ set(nanotouch_sources_scene
     scene/plan.c
     scene/plastic.c
     scene/pull_off.c
+    scene/refusal.c
     scene/scene.c
     scene/sliding.c
     scene/terms/capillary.c

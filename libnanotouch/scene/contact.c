@@ -20,6 +20,20 @@ nt_form nt_plan_contact_form(const nt_plan *plan)
     return is_jkr_shape(plan) ? NT_FORM_JKR : NT_FORM_EXACT;
 }
 
+nt_form nt_plan_contact_truth(const nt_plan *plan)
+{
+    const nt_form form = nt_plan_contact_form(plan);
+    return form == NT_FORM_EXACT ? NT_FORM_POLISHED : form; /* as true, and ten times faster */
+}
+
+double nt_plan_contact_pull_off(const nt_plan *plan)
+{
+    const nt_form form = nt_plan_contact_form(plan);
+    return form == NT_FORM_EXACT ? nt_maugis_pull_off_force(&plan->maugis)
+           : form == NT_FORM_JKR ? nt_jkr_shape_pull_off_force(&plan->jkr)
+                                 : 0.0;
+}
+
 void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adhesion)
 {
     plan->source = nt_scene_adhesion_source(scene);
@@ -36,22 +50,10 @@ void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adh
         plan->capture_gap = 0.0;
 }
 
-/* The laws with adhesion; NaN where there is no contact. */
-static nt_law_value adhesive_eval(const nt_plan *plan, nt_form form, double indentation)
-{
-    nt_law_value value = {NAN, NAN, NAN, NAN};
-    const nt_tier tier = form == NT_FORM_POLISHED ? NT_TIER_POLISHED : NT_TIER_TABLE;
-    if (form == NT_FORM_JKR)
-        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
-    else if (form == NT_FORM_EXACT)
-        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
-    else
-        (void)nt_maugis_table_eval(&plan->table, tier, indentation, NT_BRANCH_STABLE, &value);
-    return value;
-}
-
+/* With no default: a form without its case does not compile. */
 nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation)
 {
+    nt_law_value value = {NAN, NAN, NAN, NAN}; /* where there is no contact */
     switch (form) {
     case NT_FORM_PARABOLOID:
         return nt_hertz_eval(&plan->contact, indentation);
@@ -61,9 +63,28 @@ nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double inde
         return nt_shape_eval(&plan->shape, plan->contact.effective_modulus, indentation);
     case NT_FORM_YIELDING: /* is in the table, with all that acts around it */
         return (nt_law_value){0.0, 0.0, 0.0, 0.0};
-    default:
-        return adhesive_eval(plan, form, indentation);
+    case NT_FORM_JKR:
+        (void)nt_jkr_shape_eval(&plan->jkr, indentation, NT_BRANCH_STABLE, &value);
+        return value;
+    case NT_FORM_TABLE:
+        (void)nt_maugis_table_eval(&plan->table, NT_TIER_TABLE, indentation, NT_BRANCH_STABLE, &value);
+        return value;
+    case NT_FORM_POLISHED:
+        (void)nt_maugis_table_eval(&plan->table, NT_TIER_POLISHED, indentation, NT_BRANCH_STABLE, &value);
+        return value;
+    case NT_FORM_EXACT:
+        (void)nt_maugis_eval(&plan->maugis, indentation, NT_BRANCH_STABLE, &value, NULL);
+        return value;
+    case NT_FORM_OFF: /* not of contact; of places: nt_plan_local_eval */
+    case NT_FORM_ON:
+    case NT_FORM_DERJAGUIN:
+    case NT_FORM_SPHERE:
+    case NT_FORM_TIP:
+    case NT_FORM_LOCAL:
+    case NT_FORM_LOCAL_EXACT:
+        break;
     }
+    return value;
 }
 
 int nt_plan_has_local_form(const nt_plan *plan)

@@ -12,12 +12,7 @@ double nt_plan_pick(nt_law_value value, nt_quantity quantity)
 /* What pulls on small forces: everything on, or contact alone, which repulsion may hide; 0 where nothing does. */
 static double pull_of(const nt_plan *plan)
 {
-    double alone = 0.0;
-    if (nt_plan_contact_form(plan) == NT_FORM_EXACT)
-        alone = nt_maugis_pull_off_force(&plan->maugis);
-    else if (nt_plan_contact_form(plan) == NT_FORM_JKR)
-        alone = nt_jkr_shape_pull_off_force(&plan->jkr);
-    return fmax(plan->contact_pull, alone);
+    return fmax(plan->contact_pull, nt_plan_contact_pull_off(plan));
 }
 
 /* What small forces are measured by where nothing pulls. */
@@ -71,8 +66,7 @@ typedef nt_law_value contact_law(const nt_plan *plan, double indentation);
 
 static nt_law_value full_at(const nt_plan *plan, double indentation)
 {
-    const nt_form form = nt_plan_contact_form(plan);
-    return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
+    return nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), indentation);
 }
 
 static nt_law_value hertz_at(const nt_plan *plan, double indentation)
@@ -121,7 +115,8 @@ static double difference(const nt_plan *plan, const rivals *laws, double indenta
 {
     const double scale = laws->quantity == plan->demand.quantity ? plan->scale : pull_of(plan);
     const double truth = nt_plan_pick(laws->truth(plan, indentation), laws->quantity);
-    return fabs(nt_plan_pick(other_at(plan, laws, indentation), laws->quantity) - truth) / fmax(fabs(truth), scale);
+    const double other = nt_plan_pick(other_at(plan, laws, indentation), laws->quantity);
+    return isnan(other) ? (double)INFINITY : fabs(other - truth) / fmax(fabs(truth), scale); /* it refuses */
 }
 
 /* The largest of it over all indentations from the release gap to the largest load; denser near the fold, where they
@@ -141,7 +136,9 @@ static double distance(const nt_plan *plan, const rivals *laws, double lowest)
 
 double nt_plan_contact_distance(const nt_plan *plan, nt_form form)
 {
-    return distance(plan, &(rivals){.truth = full_at, .quantity = plan->demand.quantity, .form = form}, -INFINITY);
+    const rivals laws = {.truth = full_at, .quantity = plan->demand.quantity, .form = form};
+    const double begins = nt_plan_away_from_folds(plan) - plan->release_gap;
+    return fmax(distance(plan, &laws, -INFINITY), difference(plan, &laws, begins));
 }
 
 double nt_plan_away_from_folds(const nt_plan *plan)

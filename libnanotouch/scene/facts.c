@@ -9,10 +9,8 @@
 static nt_law_value full_eval(const nt_plan *plan, int attached, double gap)
 {
     nt_law_value sum = {0.0, 0.0, 0.0, 0.0};
-    if (attached && !plan->yield.holds) {
-        const nt_form form = nt_plan_contact_form(plan);
-        sum = nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, -gap);
-    }
+    if (attached && !plan->yield.holds)
+        sum = nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), -gap);
     const nt_law_value around = nt_plan_around(plan, attached, gap);
     sum.U += around.U;
     sum.F += around.F;
@@ -141,8 +139,7 @@ static double steepest_pull(const nt_plan *plan)
 /* By which U in contact lies above that apart [J]. */
 static double energy_of_contact(const nt_plan *plan, double gap)
 {
-    const nt_form form = nt_plan_contact_form(plan) == NT_FORM_EXACT ? NT_FORM_POLISHED : NT_FORM_JKR;
-    const double contact = plan->yield.holds ? 0.0 : nt_plan_contact_eval(plan, form, -gap).U;
+    const double contact = plan->yield.holds ? 0.0 : nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), -gap).U;
     return contact + nt_plan_rise(plan, NULL, gap);
 }
 

@@ -3,6 +3,8 @@
 #ifndef NANOTOUCH_SCENE_PARTS_H
 #define NANOTOUCH_SCENE_PARTS_H
 
+#include <string.h>
+
 #include "nanotouch/interaction.h"
 #include "nanotouch/plan.h"
 
@@ -10,11 +12,39 @@
  */
 void nt_plan_contact_of(nt_plan *plan, const nt_scene *scene, double work_of_adhesion);
 nt_status nt_plan_contact_laws(nt_plan *plan, const nt_scene *scene);
-/* The fullest form of the scene's contact. */
+/* The fullest form of the scene's contact, and the one that stands for it as the truth that others are measured by. */
 nt_form nt_plan_contact_form(const nt_plan *plan);
+nt_form nt_plan_contact_truth(const nt_plan *plan);
+/* Its own pull-off force, 0 without adhesion [N]. */
+double nt_plan_contact_pull_off(const nt_plan *plan);
 /* {U, F, k, a} of the contact in a form; all NaN where it refuses the indentation. */
 nt_law_value nt_plan_contact_eval(const nt_plan *plan, nt_form form, double indentation);
 
+/* Whether a form of contact is Maugis-Dugdale's, whose adhesion has a range. A switch over forms has no default: what a
+ * new form is does not compile unless it is said. */
+static inline int nt_form_is_maugis(nt_form form)
+{
+    switch (form) {
+    case NT_FORM_TABLE:
+    case NT_FORM_POLISHED:
+    case NT_FORM_EXACT:
+    case NT_FORM_LOCAL:
+    case NT_FORM_LOCAL_EXACT:
+        return 1;
+    case NT_FORM_OFF:
+    case NT_FORM_ON:
+    case NT_FORM_DERJAGUIN:
+    case NT_FORM_SPHERE:
+    case NT_FORM_TIP:
+    case NT_FORM_PARABOLOID:
+    case NT_FORM_SERIES:
+    case NT_FORM_SHAPE:
+    case NT_FORM_JKR:
+    case NT_FORM_YIELDING:
+        return 0;
+    }
+    return 0;
+}
 /* Whether the contact of the scene can follow the effective radius of each place, and whether a form does. */
 int nt_plan_has_local_form(const nt_plan *plan);
 static inline int nt_form_is_local(nt_form form)
@@ -119,7 +149,7 @@ double nt_plan_away_from_folds(const nt_plan *plan);
 void nt_plan_rivals_of(nt_plan *plan);
 
 /* options.c: the forms of every term with error and cost. */
-enum { NT_OPTIONS_MAX = 6 };
+enum { NT_OPTIONS_MAX = NT_FORM_COUNT }; /* each at most once */
 #define NT_SAMPLED                                                                                                     \
     1.05 /* a largest value that was sampled on a smooth curve may be this much short of the true one                  \
           */
@@ -163,8 +193,19 @@ static inline int nt_plan_solves_layer(const nt_plan *plan)
 double nt_plan_around_error(const nt_plan *plan, int tails);
 /* How far the folds of an adhesive contact are from where they would be on a sample that yields [m]. */
 double nt_plan_rigid_shift(const nt_plan *plan);
-/* yielding/yielding.c: the plan of a scene whose sample yields to all terms together. */
-nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem);
+/* yielding/yielding.c: the tables of a sample that came to no end, so that no other demand tries them again. */
+enum { NT_YIELD_TRIED = 64 };
+typedef struct nt_yield_end {
+    double tolerance, scale;
+    int surrounded;
+    nt_status status;
+} nt_yield_end;
+typedef struct nt_yield_tried {
+    nt_yield_end end[NT_YIELD_TRIED];
+    int count;
+} nt_yield_tried;
+/* The plan of a scene whose sample yields to all terms together. `tried`: of this scene. */
+nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried, nt_problem *problem);
 /* yielding/adhere.c: with its table, contact and facts of a scene with adhesion; `error`: of the table, as a share of
  * the demand. NT_E_RANGE: contact and table do not fit. */
 nt_status nt_plan_yield_adhere(nt_plan *plan, const nt_scene *scene, double error, nt_problem *problem);
@@ -183,6 +224,19 @@ double nt_plan_rise(const nt_plan *plan, const nt_place *place, double gap);
 double nt_plan_yield_touch(const nt_plan *plan);
 /* relief.c: where adhesion takes hold at a place (NULL: at the tip's own radius) [m]. */
 double nt_plan_capture_gap(const nt_plan *plan, const nt_place *place);
+
+/* plan.c: begun and decided, without the facts of a plan that is made. */
+nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, nt_problem *problem);
+/* refusal.c: what can be demanded of a sample for which no table was made; NT_E_RANGE. */
+nt_status nt_plan_refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem);
+/* And what is said of a plan that was refused for a reason: an accuracy that is planned, near the smallest, or why
+ * there is none. */
+#define NT_DEMANDED "demand.relative_accuracy"
+nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, const nt_problem *reason);
+static inline int nt_problem_names(const nt_problem *problem, const char *field)
+{
+    return problem->field && strcmp(problem->field, field) == 0;
+}
 
 /* choice.c: the cheapest of all combinations that keeps the demand. */
 nt_status nt_plan_choose(nt_plan *plan, const nt_plan_options *options, nt_problem *problem);

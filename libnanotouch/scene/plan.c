@@ -14,24 +14,7 @@
 #define STRICTEST 1e-12 /* demand */
 #define COARSER 2.0     /* a table, where no finer one was found */
 
-static const char DEMANDED[] = "demand.relative_accuracy";
-
-#define FARTHER 1.25  /* ratio of gaps that are tried, where a sample jumps */
-#define FARTHEST 1e-2 /* [m] */
-enum { TRIES = 8, SAID = 3, FARTHER_TRIES = 24 };
-
-const char *nt_form_name(nt_form form)
-{
-    static const char *const names[] = {"off",        "on",     "derjaguin", "sphere",      "tip",
-                                        "paraboloid", "series", "shape",     "jkr",         "table",
-                                        "polished",   "exact",  "local",     "local exact", "yielding"};
-    return (unsigned)form < sizeof names / sizeof names[0] ? names[form] : "unknown";
-}
-
-static int names(const nt_problem *problem, const char *field)
-{
-    return problem->field && strcmp(problem->field, field) == 0;
-}
+enum { TRIES = 8 };
 
 /* What belongs to a surface has its grid. */
 static int is_of(const nt_surface *grid, const nt_surface *surface)
@@ -154,61 +137,6 @@ static nt_status choose_rigid(nt_plan *plan, const nt_plan_options *options, int
     return NT_OK;
 }
 
-/* The law that presses most on a sample that does not keep still. */
-static int strongest(const nt_plan *plan)
-{
-    int found = NT_PLAN_CONTACT;
-    double most = 0.0;
-    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term) {
-        const nt_term_row *row = nt_term_rows[term];
-        const int of_contact = plan->around_error > plan->rigid_error && row->words.tail != NULL;
-        const double force = row->pressure && !of_contact ? plan->terms[term].force : 0.0;
-        if (force > most) {
-            found = term;
-            most = force;
-        }
-    }
-    return found;
-}
-
-/* What is said of that law. */
-static nt_term_refused words_of(const nt_plan *plan)
-{
-    static const nt_term_refused nameless = NT_TERM_REFUSED("the forces before contact");
-    const nt_term_refused words = nt_term_rows[strongest(plan)]->refused;
-    return words.yields ? words : nameless;
-}
-
-/* By the name of that law. */
-static nt_problem by_law(const nt_plan *plan, double error)
-{
-    return nt_plan_reason(plan, words_of(plan).yields, error);
-}
-
-/* What can be demanded of a sample for which no table was made: the terms on the undeformed gap, where they are better.
- */
-static nt_status refuse(const nt_plan *plan, const nt_plan_options *options, nt_problem *problem)
-{
-    double least = fmax(plan->rigid_error, plan->around_error) * (1.0 + 1e-9);
-    int count = 0;
-    const nt_field *field = nt_demand_fields(&count); /* the first is the accuracy */
-    if (problem && names(problem, "demand.budget"))   /* a dearer table would do */
-        return NT_E_RANGE;
-    for (int term = 0; term < NT_PLAN_TERMS; ++term)
-        least += options->option[term][options->count[term] - 1].error;
-    const int finer = problem && names(problem, DEMANDED) &&
-                      problem->minimum < field->maximum; /* a table of another demand would do */
-    if (problem && !finer && !(least < field->maximum)) {
-        if (!names(problem, NT_YIELD_SPREAD))
-            *problem = by_law(plan, fmax(plan->rigid_error, plan->around_error));
-        return NT_E_RANGE;
-    }
-    const int better = problem && (problem->field != field->name || least < problem->minimum);
-    if (problem && least < field->maximum && better && !(plan->demand.budget > 0.0))
-        *problem = (nt_problem){field->name, field->unit, plan->demand.relative_accuracy, least, field->maximum};
-    return NT_E_RANGE;
-}
-
 /* What no table was made for adds on the undeformed gap, with an error of force or stiffness beyond the demand that is
  * part of the bound and that the plan warns of: over a surface with properties; with adhesion, if the sample is stiff;
  * without, where something pulls. A demand of 0 takes whatever that errs by, with no bound where the surface jumps. */
@@ -229,18 +157,18 @@ static int is_left(const nt_plan *plan, double maximum_load)
 
 /* Where no table keeps to the demand: the finest that does better than terms on the undeformed gap. What is the same
  * for every demand is tried in the same order, so that a stricter demand has no looser bound. */
-static nt_status yield_at_best(nt_plan *plan, const nt_scene *scene)
+static nt_status yield_at_best(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried)
 {
     const double demanded = plan->demand.relative_accuracy, errs = fmax(plan->rigid_error, plan->around_error);
     nt_problem least = {0};
     if (!(demanded > 0.0) || plan->properties)
         return NT_E_RANGE;
     plan->demand.relative_accuracy = STRICTEST;
-    nt_status status = nt_plan_yield(plan, scene, &least);
-    double wanted = names(&least, DEMANDED) ? least.minimum : (double)INFINITY;
+    nt_status status = nt_plan_yield(plan, scene, tried, &least);
+    double wanted = nt_problem_names(&least, NT_DEMANDED) ? least.minimum : (double)INFINITY;
     for (int i = 0; i < TRIES && status != NT_OK && wanted < errs; ++i) {
         plan->demand.relative_accuracy = wanted;
-        status = nt_plan_yield(plan, scene, NULL);
+        status = nt_plan_yield(plan, scene, tried, NULL);
         wanted *= COARSER;
     }
     plan->demand.relative_accuracy = demanded;
@@ -257,7 +185,7 @@ static nt_status unyield(nt_plan *plan, const nt_scene *scene, nt_plan_options *
 
 /* The cheapest plan whose terms add on the undeformed gap, with what that errs by in its bound; if it errs by too much,
  * the sample yields. A demand of 0 asks for every law in full. */
-static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried, nt_problem *problem)
 {
     const int adheres = plan->source != NT_ADHESION_NONE;
     nt_plan_options options;
@@ -272,103 +200,44 @@ static nt_status choose(nt_plan *plan, const nt_scene *scene, nt_problem *proble
     if ((demanded > 0.0 || errs <= UNASKED) && choose_rigid(plan, &options, 1, NULL) == NT_OK)
         return NT_OK;
     nt_problem reason = {0};
-    if (!plan->properties && nt_plan_yield(plan, scene, &reason) == NT_OK)
+    if (!plan->properties && nt_plan_yield(plan, scene, tried, &reason) == NT_OK)
         return NT_OK;
     if (problem)
         *problem = reason;
     status = adheres ? unyield(plan, scene, &options, problem) : NT_OK;
     if (!is_left(plan, scene->range.maximum_load))
-        return refuse(plan, &options, problem);
+        return nt_plan_refuse(plan, &options, problem);
     if (status == NT_OK)
         status = choose_rigid(plan, &options, 0, problem); /* a demand or a budget that nothing keeps is refused */
-    if (status != NT_OK || yield_at_best(plan, scene) == NT_OK)
+    if (status != NT_OK || yield_at_best(plan, scene, tried) == NT_OK)
         return status;
     status = adheres ? unyield(plan, scene, &options, problem) : NT_OK;
     return status == NT_OK ? choose_rigid(plan, &options, 0, problem) : status;
 }
 
 /* From a plan as it was begun. */
-static nt_status decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
+static nt_status decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, nt_problem *problem)
 {
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
     plan->bank = inputs->bank;
-    return choose(plan, &scene, problem);
+    return choose(plan, &scene, tried, problem);
 }
 
-/* Whether there is a plan of another accuracy, if not of that budget, too. */
-static int is_planned(nt_plan *plan, const nt_plan_inputs *inputs, double accuracy, nt_problem *problem)
+nt_status nt_plan_try(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, nt_problem *problem)
 {
-    nt_plan_inputs asked = *inputs;
-    nt_demand demand = plan->demand;
-    demand.relative_accuracy = accuracy;
-    demand.budget = 0.0;
-    asked.demand = &demand;
-    return nt_plan_begin(plan, &asked, problem) == NT_OK && decide(plan, &asked, problem) == NT_OK;
-}
-
-/* The least of six digits that is not below. */
-static double printed(double accuracy)
-{
-    const double digit = pow(10.0, floor(log10(accuracy)) - 5.0);
-    return ceil(accuracy / digit - 1e-9) * digit;
-}
-
-/* A refusal names an accuracy that there is a plan of: what it named, or what that names, or one to which a coarser
- * table keeps. Where there is none it names the law. */
-static void keep_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
-{
-    const nt_demand demand = plan->demand;
-    const nt_problem law = by_law(plan, fmax(plan->rigid_error, plan->around_error));
-    const double most = problem->maximum;
-    nt_problem reason = *problem;
-    int found = 0;
-    double named = 0.0;
-    for (int i = 0; i < SAID && !found && names(&reason, DEMANDED) && reason.minimum > named; ++i) {
-        named = printed(reason.minimum);
-        found = is_planned(plan, inputs, named, &reason);
-    }
-    const int coarser = !found && is_planned(plan, inputs, most, NULL);
-    while (coarser && !found) {
-        named = fmin(COARSER * named, most);
-        found = named >= most || is_planned(plan, inputs, named, NULL);
-    }
-    problem->minimum = named;
-    if (!found)
-        *problem = law;
-    plan->demand = demand;
-}
-
-/* Without adhesion a sample that jumps to a pull has a plan only farther out: names a gap beyond which there is one. */
-static void stay_away(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
-{
-    nt_scene scene = *inputs->scene;
-    nt_plan_inputs asked = *inputs;
-    const nt_term_refused words = words_of(plan);
-    asked.scene = &scene;
-    double gap = nt_plan_jump_gap(plan);
-    for (int i = 0; i < FARTHER_TRIES; ++i) {
-        gap = printed(FARTHER * gap);
-        scene.range.minimum_gap = gap;
-        if (nt_plan_begin(plan, &asked, NULL) != NT_OK || decide(plan, &asked, NULL) != NT_OK)
-            continue;
-        *problem = (nt_problem){words.jumps, "m", inputs->scene->range.minimum_gap, gap, FARTHEST};
-        return;
-    }
+    const nt_status status = nt_plan_begin(plan, inputs, problem);
+    return status == NT_OK ? decide(plan, inputs, tried, problem) : status;
 }
 
 nt_status nt_plan_decide(nt_plan *plan, const nt_plan_inputs *inputs, nt_problem *problem)
 {
     nt_problem reason = {0};
     const nt_scene scene = nt_plan_scene_over(inputs->scene, inputs->properties);
-    nt_status status = decide(plan, inputs, &reason);
+    nt_yield_tried tried = {.count = 0};
+    nt_status status = decide(plan, inputs, &tried, &reason);
     if (status != NT_OK) {
-        const int jumps = plan->source == NT_ADHESION_NONE && !plan->properties && isinf(plan->rigid_error);
-        if (problem && names(&reason, DEMANDED))
-            keep_word(plan, inputs, &reason);
-        if (problem && jumps && isinf(reason.value))
-            stay_away(plan, inputs, &reason);
         if (problem)
-            *problem = reason;
+            *problem = nt_plan_word(plan, inputs, &tried, &reason);
         return status;
     }
     status = nt_plan_dents_of(plan, &scene, problem);

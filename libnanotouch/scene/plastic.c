@@ -24,8 +24,7 @@ static double weaker(const nt_scene *scene, int *is_tip)
 
 static nt_law_value at(const nt_plan *plan, double indentation)
 {
-    const nt_form form = nt_plan_contact_form(plan);
-    return nt_plan_contact_eval(plan, form == NT_FORM_EXACT ? NT_FORM_POLISHED : form, indentation);
+    return nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), indentation);
 }
 
 static double mean_pressure(const nt_law_value *law)

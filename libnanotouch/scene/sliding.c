@@ -73,10 +73,9 @@ static void sample(const nt_plan *plan, const sampled *at, double scale, errors 
 
 static sampled sampled_uniform(const nt_plan *plan)
 {
-    const nt_form form = plan->terms[NT_PLAN_CONTACT].form, full = nt_plan_contact_form(plan);
+    const nt_form form = plan->terms[NT_PLAN_CONTACT].form;
     const double release = plan->source == NT_ADHESION_NONE ? 0.0 : nt_plan_last_hold(plan->release_gap);
-    return (sampled){plan->contact, form, full == NT_FORM_EXACT ? NT_FORM_POLISHED : full, -release,
-                     plan->largest_indentation};
+    return (sampled){plan->contact, form, nt_plan_contact_truth(plan), -release, plan->largest_indentation};
 }
 
 static sampled sampled_corner(const nt_plan *plan, int corner, double load)

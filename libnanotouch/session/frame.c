@@ -13,16 +13,8 @@
 
 static int has_zone(const nt_plan *plan)
 {
-    switch (plan->terms[NT_PLAN_CONTACT].form) {
-    case NT_FORM_TABLE:
-    case NT_FORM_POLISHED:
-    case NT_FORM_EXACT:
-    case NT_FORM_LOCAL:
-    case NT_FORM_LOCAL_EXACT:
-        return plan->contact.work_of_adhesion > 0.0 && isfinite(plan->lambda);
-    default:
-        return 0;
-    }
+    return nt_form_is_maugis(plan->terms[NT_PLAN_CONTACT].form) && plan->contact.work_of_adhesion > 0.0 &&
+           isfinite(plan->lambda);
 }
 
 /* At indentation -gap. */

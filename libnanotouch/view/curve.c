@@ -53,9 +53,7 @@ static int has_unstable(const nt_plan *plan, const nt_place *place, unstable_law
         return 1;
     nt_contact contact = plan->contact;
     contact.radius = radius_at(plan, place);
-    const int adhesive = form == NT_FORM_TABLE || form == NT_FORM_POLISHED || form == NT_FORM_EXACT ||
-                         form == NT_FORM_LOCAL || form == NT_FORM_LOCAL_EXACT;
-    return adhesive && nt_maugis_init(&law->maugis, &contact) == NT_OK;
+    return nt_form_is_maugis(form) && nt_maugis_init(&law->maugis, &contact) == NT_OK;
 }
 
 static nt_status eval_unstable(const unstable_law *law, double gap, nt_law_value *value)

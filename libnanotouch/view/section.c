@@ -40,12 +40,6 @@ static double cohesive_radius(const nt_view_contact *contact, double force)
     return hypotenuse(a, fmax(width, 0.0));
 }
 
-static int has_range(nt_form form)
-{
-    return form == NT_FORM_TABLE || form == NT_FORM_POLISHED || form == NT_FORM_EXACT || form == NT_FORM_LOCAL ||
-           form == NT_FORM_LOCAL_EXACT;
-}
-
 /* The sum of all forces as Hertz' would deform the bodies; what pulls deforms nothing that is drawn. */
 static nt_view_contact yielding(const nt_plan *plan, nt_view_contact contact, double force)
 {
@@ -64,7 +58,7 @@ nt_view_contact nt_view_contact_at(const nt_plan *plan, const nt_place *place, c
                                .modulus = plan->contact.effective_modulus,
                                .gap = pose->gap,
                                .indentation = -pose->gap,
-                               .cohesive_stress = has_range(form) ? plan->contact.cohesive_stress : 0.0,
+                               .cohesive_stress = nt_form_is_maugis(form) ? plan->contact.cohesive_stress : 0.0,
                                .tip_share = pose->tip_share};
     if (nt_plan_follows(plan))
         contact.shape.radius = contact.radius;
@@ -100,9 +94,11 @@ static outline outline_of(const nt_shape *shape)
                          slope};
     case NT_SHAPE_TRUNCATED:
         return (outline){0.0, shape->radius, slope};
-    default:
-        return (outline){1.0 / shape->radius, INFINITY, 0.0};
+    case NT_SHAPE_PARABOLOID:
+    case NT_SHAPE_SPHERE:
+        break;
     }
+    return (outline){1.0 / shape->radius, INFINITY, 0.0};
 }
 
 /* f(r), infinite beyond the wall of a punch and the equator of a sphere [m] */

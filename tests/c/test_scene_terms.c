@@ -58,25 +58,68 @@ static int is_said(const char *text)
     return text && text[0] != '\0';
 }
 
+static const char *const ids[NT_PLAN_TERMS] = {
+#define ID_OF(ID, name, type) [NT_PLAN_##ID] = #name,
+    ID_OF(CONTACT, contact, ) NT_TERMS_BESIDE(ID_OF) NT_TERMS_CUSTOM(ID_OF)};
+
+/* What a row has to have, by the name of its file and of what it lacks. */
+#define HAS(term, what, holds)                                                                                         \
+    do {                                                                                                               \
+        if (!(holds))                                                                                                  \
+            fail_msg("scene/terms: the row nt_term_%s lacks %s", ids[term], what);                                     \
+    } while (0)
+
+static void has_words(int term)
+{
+    const nt_term_row *row = nt_term_rows[term];
+    const nt_term_words *words = nt_term_words_of(term);
+    HAS(term, ".words: name", is_said(words->name));
+    HAS(term, ".words: title", is_said(words->title));
+    HAS(term, ".words: doc", is_said(words->doc));
+    HAS(term, ".words: forms", words->form_count > 0 && words->form_count <= 32);
+    for (int i = 0; i < words->form_count; i++) {
+        HAS(term, "a form of .words.forms", words->forms[i].form != NT_FORM_OFF);
+        HAS(term, "the cost of a form", words->forms[i].cost > 0.0);
+        HAS(term, "the latency of a form", words->forms[i].latency > 0.0);
+        HAS(term, "the words of a form", is_said(words->forms[i].words));
+    }
+    HAS(term, ".words: has_pressure, as it has a pressure or none", !words->has_pressure == !row->pressure);
+    HAS(term, ".refused, with which a soft sample is refused", !row->pressure || is_said(row->refused.yields));
+    HAS(term, ".refused, with which a jump is refused", !row->pressure || is_said(row->refused.jumps));
+    for (int other = 0; other < term; other++)
+        HAS(term, "a name of its own", strcmp(words->name, nt_term_words_of(other)->name) != 0);
+}
+
 static void every_row_is_whole(void **state)
 {
     (void)state;
     for (int term = 0; term < NT_PLAN_TERMS; term++) {
         const nt_term_row *row = nt_term_rows[term];
-        const nt_term_words *words = nt_term_words_of(term);
-        assert_true(is_said(words->name) && is_said(words->title) && is_said(words->doc));
-        assert_true(words->form_count > 0 && words->form_count <= 32);
-        for (int i = 0; i < words->form_count; i++)
-            assert_true(words->forms[i].cost > 0.0 && is_said(words->forms[i].words));
-        assert_true(row->full_form && row->eval);
-        assert_true(!words->has_pressure == !row->pressure);
-        assert_true(row->offer ? term == NT_PLAN_CONTACT : (row->prepare || row->tabulate) && row->hold);
-        assert_true(!row->advance == (row->state_size == 0));
-        for (int other = 0; other < term; other++)
-            assert_string_not_equal(words->name, nt_term_words_of(other)->name);
+        has_words(term);
+        HAS(term, "full_form or eval", row->full_form && row->eval);
+        HAS(term, "prepare or .tabulate", row->offer || row->prepare || row->tabulate);
+        HAS(term, "hold", row->offer || row->hold);
+        HAS(term, "the rule for laws beside contact: .offer is contact's", !row->offer || term == NT_PLAN_CONTACT);
+        HAS(term, ".advance, as it has a state or none", !row->advance == (row->state_size == 0));
     }
     assert_null(nt_term_words_of(-1));
     assert_null(nt_term_words_of(NT_PLAN_TERMS));
+}
+
+/* Every law has been seen that a scene can have beside contact, those of one's own apart. */
+static void assert_all_seen(int seen)
+{
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_CUSTOM_1; term++)
+        if (!(seen & 1 << term))
+            fail_msg("%s: no scene of `make`, above, has this law: a line there gives it",
+                     nt_term_words_of(term)->name);
+}
+
+/* Words and cost of a form are those of the form, and of no other. */
+static void assert_form_is_listed(int term)
+{
+    const nt_form full = nt_plan_full_form(&plan, term);
+    HAS(term, "its fullest form in .words.forms", nt_term_form_of(&plan, term, full)->form == full);
 }
 
 /* F = -dU/dh and k = -dF/dh by differences; no larger gap exceeds the limit; held inside. */
@@ -91,6 +134,7 @@ static void every_law_is_a_potential_within_its_limit(void **state)
                 continue;
             const double hold = nt_plan_hold_gap(&plan, term);
             seen |= 1 << term;
+            assert_form_is_listed(term);
             for (double gap = 1.1 * hold; gap < 10e-9; gap *= 1.3) {
                 const double step = 1e-4 * gap;
                 const nt_law_value less = nt_plan_term_eval(&plan, term, gap - step);
@@ -104,7 +148,7 @@ static void every_law_is_a_potential_within_its_limit(void **state)
             assert_true(nt_plan_term_eval(&plan, term, 0.1 * hold).F == nt_plan_term_eval(&plan, term, hold).F);
         }
     }
-    assert_int_equal(seen, (1 << NT_PLAN_CUSTOM_1) - 2); /* all but contact and those of one's own */
+    assert_all_seen(seen);
 }
 
 /* W = F/(2 pi R) of a sphere much larger than the gap, p = -dW/dh, and the slope of p. */
@@ -155,8 +199,8 @@ static void what_is_beside_contact(void **state)
         }
     }
     last = (nt_custom_term){.name = ""};
-    const int not_here = (1 << (NT_PLAN_TERMS - 1)) - (1 << NT_PLAN_CUSTOM_1);
-    assert_int_equal(seen | not_here, (1 << NT_PLAN_TERMS) - 2);
+    assert_all_seen(seen);
+    assert_true(seen & 1 << (NT_PLAN_TERMS - 1)); /* and `last` */
 }
 
 /* A term alone, whether the plan has it or not. */
@@ -170,6 +214,24 @@ static void one_term_alone(void **state)
     assert_true(nt_plan_term_eval(&plan, NT_PLAN_CONTACT, -1e-6).F > 0.0);
 }
 
+/* Every form of contact that can be offered has its own words and cost: all but those of laws beside contact, and the
+ * exact one, which is only measured by. */
+static void every_form_of_contact_has_its_row(void **state)
+{
+    (void)state;
+    static const nt_form others[] = {NT_FORM_ON, NT_FORM_DERJAGUIN, NT_FORM_SPHERE, NT_FORM_TIP, NT_FORM_EXACT};
+    make(NT_MEDIUM_VACUUM);
+    for (int form = NT_FORM_OFF; form < NT_FORM_COUNT; form++) {
+        int is_other = 0;
+        for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+            is_other |= form == (int)others[i];
+        if (!is_other && (int)nt_term_form_of(&plan, NT_PLAN_CONTACT, (nt_form)form)->form != form)
+            fail_msg("scene/terms/contact.c: `row_of` and `forms` do not give the form %s its row",
+                     nt_form_name((nt_form)form));
+    }
+    assert_string_equal(nt_form_name((nt_form)NT_FORM_COUNT), "unknown");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -178,6 +240,7 @@ int main(void)
         cmocka_unit_test(flats_are_those_of_the_sphere),
         cmocka_unit_test(what_is_beside_contact),
         cmocka_unit_test(one_term_alone),
+        cmocka_unit_test(every_form_of_contact_has_its_row),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

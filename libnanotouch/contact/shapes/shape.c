@@ -22,8 +22,8 @@ static const nt_field shape_fields[] = {RADIUS, ANGLE};
 
 const char *nt_shape_name(nt_shape_kind kind)
 {
-    static const char *const names[] = {"paraboloid", "sphere", "cone", "punch", "blunted", "truncated"};
-    return (unsigned)kind < sizeof names / sizeof names[0] ? names[kind] : "unknown";
+    static const char *const names[NT_SHAPE_COUNT] = {"paraboloid", "sphere", "cone", "punch", "blunted", "truncated"};
+    return (unsigned)kind < NT_SHAPE_COUNT ? names[kind] : "unknown";
 }
 
 static int has_flank(nt_shape_kind kind)
@@ -33,7 +33,7 @@ static int has_flank(nt_shape_kind kind)
 
 static int is_known(nt_shape_kind kind)
 {
-    return (unsigned)kind <= NT_SHAPE_TRUNCATED;
+    return (unsigned)kind < NT_SHAPE_COUNT;
 }
 
 double nt_pyramid_equivalent_angle(int sides, double half_angle)
@@ -60,7 +60,7 @@ nt_status nt_shape_check(const nt_shape *shape, nt_problem *problem)
     const int flank = has_flank(shape->kind);
     if (!is_known(shape->kind)) {
         if (problem != NULL)
-            *problem = (nt_problem){"kind", "", (double)shape->kind, NT_SHAPE_PARABOLOID, NT_SHAPE_TRUNCATED};
+            *problem = (nt_problem){"kind", "", (double)shape->kind, NT_SHAPE_PARABOLOID, NT_SHAPE_COUNT - 1};
         return NT_E_ARGUMENT;
     }
     if (flank && shape->sides != 0 && shape->sides != 3 && shape->sides != 4) {

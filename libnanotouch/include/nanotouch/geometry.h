@@ -24,6 +24,7 @@ typedef enum nt_shape_kind {
     NT_SHAPE_BLUNTED,    /* cone that ends in a cap of radius R (Briscoe, Sebastian, Adams 1994; Rico et al. 2005) */
     NT_SHAPE_TRUNCATED   /* cone that ends in a flat of a radius (Briscoe, Sebastian, Adams 1994) */
 } nt_shape_kind;
+enum { NT_SHAPE_COUNT = NT_SHAPE_TRUNCATED + 1 }; /* the last one */
 
 /* A tip. Fields that its kind does not name are not read. */
 typedef struct nt_shape {

@@ -96,24 +96,30 @@ typedef struct nt_plan_laws {
 } nt_plan_laws;
 #undef NT_TERM_MEMBER
 
-/* How a term is computed. */
-typedef enum nt_form {
-    NT_FORM_OFF,        /* left out */
-    NT_FORM_ON,         /* the law as it is */
-    NT_FORM_DERJAGUIN,  /* van der Waals: the paper's form for gaps << R */
-    NT_FORM_SPHERE,     /* of the apex sphere */
-    NT_FORM_TIP,        /* of sphere and cone */
-    NT_FORM_PARABOLOID, /* contact of a sphere or cap without adhesion, as Hertz' paraboloid */
-    NT_FORM_SERIES,     /* contact of a sphere without adhesion, in powers of delta/R */
-    NT_FORM_SHAPE,      /* contact without adhesion; of a paraboloid, Hertz */
-    NT_FORM_JKR,        /* contact of cone and punch, adhesion of no range */
-    NT_FORM_TABLE,      /* contact by Maugis-Dugdale, in its three tiers (maugis_table.h); a law of one's own */
-    NT_FORM_POLISHED,
-    NT_FORM_EXACT,
-    NT_FORM_LOCAL,       /* contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda */
-    NT_FORM_LOCAL_EXACT, /* the same by the exact solver */
-    NT_FORM_YIELDING     /* contact and all beside it, gap and displacement solved together */
-} nt_form;
+/* How a term is computed: its number NT_FORM_x, its name, and what it is. */
+#define NT_FORMS(FORM)                                                                                                 \
+    FORM(OFF, "off", "left out")                                                                                       \
+    FORM(ON, "on", "the law as it is")                                                                                 \
+    FORM(DERJAGUIN, "derjaguin", "van der Waals: the paper's form for gaps << R")                                      \
+    FORM(SPHERE, "sphere", "of the apex sphere")                                                                       \
+    FORM(TIP, "tip", "of sphere and cone")                                                                             \
+    FORM(PARABOLOID, "paraboloid", "contact of a sphere or cap without adhesion, as Hertz' paraboloid")                \
+    FORM(SERIES, "series", "contact of a sphere without adhesion, in powers of delta/R")                               \
+    FORM(SHAPE, "shape", "contact without adhesion; of a paraboloid, Hertz")                                           \
+    FORM(JKR, "jkr", "contact of cone and punch, adhesion of no range")                                                \
+    FORM(TABLE, "table", "contact by Maugis-Dugdale, the coarse tier (maugis_table.h); a law of one's own")            \
+    FORM(POLISHED, "polished", "contact by Maugis-Dugdale, the table made exact")                                      \
+    FORM(EXACT, "exact", "contact by Maugis-Dugdale, solved")                                                          \
+    FORM(LOCAL, "local", "contact with the radius of each place: Hertz, or Maugis-Dugdale out of a bank over lambda")  \
+    FORM(LOCAL_EXACT, "local exact", "the same by the exact solver")                                                   \
+    FORM(YIELDING, "yielding", "contact and all beside it, gap and displacement solved together")
+
+#define NT_FORM_NUMBER(ID, name, what) NT_FORM_##ID,
+typedef enum nt_form { NT_FORMS(NT_FORM_NUMBER) } nt_form;
+#undef NT_FORM_NUMBER
+#define NT_FORM_ONE(ID, name, what) +1
+enum { NT_FORM_COUNT = 0 NT_FORMS(NT_FORM_ONE) };
+#undef NT_FORM_ONE
 /* "off", "on", "derjaguin", ... */
 NT_API const char *nt_form_name(nt_form form);
 

@@ -17,22 +17,28 @@
 
 /* The rows of `forms` whose words and cost depend on more than the form; before them those of nt_shape_kind. */
 enum {
-    IN_PLACE_OF_SPHERE = 6,
+    IN_PLACE_OF_SPHERE = NT_SHAPE_COUNT,
     IN_PLACE_OF_BLUNTED,
     LOCAL_HERTZ,
     LOCAL_MAUGIS,
     MADE_HERTZ,
     MADE_SHAPE,
     MADE_MAUGIS,
-    OTHERS
+    SERIES,
+    JKR,
+    TABLE,
+    POLISHED,
+    YIELDING,
+    LOCAL_EXACT,
+    FORMS
 };
-static const nt_term_form forms[] = {
-    {NT_FORM_SHAPE, 1.0, 1.0, "Hertz"},
-    {NT_FORM_SHAPE, 8.3, 7.5, "law of the sphere"},
-    {NT_FORM_SHAPE, 1.0, 1.9, "law of the cone"},
-    {NT_FORM_SHAPE, 0.65, 0.6, "law of the punch"},
-    {NT_FORM_SHAPE, 1.1, 1.4, "law of the blunted"},
-    {NT_FORM_SHAPE, 18.0, 16.0, "law of the truncated"},
+static const nt_term_form forms[FORMS] = {
+    [NT_SHAPE_PARABOLOID] = {NT_FORM_SHAPE, 1.0, 1.0, "Hertz"},
+    [NT_SHAPE_SPHERE] = {NT_FORM_SHAPE, 8.3, 7.5, "law of the sphere"},
+    [NT_SHAPE_CONE] = {NT_FORM_SHAPE, 1.0, 1.9, "law of the cone"},
+    [NT_SHAPE_PUNCH] = {NT_FORM_SHAPE, 0.65, 0.6, "law of the punch"},
+    [NT_SHAPE_BLUNTED] = {NT_FORM_SHAPE, 1.1, 1.4, "law of the blunted"},
+    [NT_SHAPE_TRUNCATED] = {NT_FORM_SHAPE, 18.0, 16.0, "law of the truncated"},
     [IN_PLACE_OF_SPHERE] = {NT_FORM_PARABOLOID, 1.0, 1.0, "Hertz in place of the sphere"},
     [IN_PLACE_OF_BLUNTED] = {NT_FORM_PARABOLOID, 1.0, 1.0, "Hertz in place of the blunted"},
     [LOCAL_HERTZ] = {NT_FORM_LOCAL, 1.2, 1.2, "Hertz with the radius of each place"},
@@ -40,14 +46,13 @@ static const nt_term_form forms[] = {
     [MADE_HERTZ] = {NT_FORM_LOCAL, 1.2, 1.2, "Hertz with radius and modulus of each place"},
     [MADE_SHAPE] = {NT_FORM_LOCAL, 8.3, 7.5, "law of the shape with the modulus of each place"},
     [MADE_MAUGIS] = {NT_FORM_LOCAL, 4.1, 3.9, "Maugis-Dugdale with radius, modulus and adhesion of each place"},
-    [OTHERS] = {NT_FORM_SERIES, 1.05, 1.2, "law of the sphere as a series"},
-    {NT_FORM_JKR, 1.5, 2.4, "JKR"},
-    {NT_FORM_TABLE, 1.6, 1.5, "Maugis-Dugdale table"},
-    {NT_FORM_POLISHED, 6.0, 5.6, "Maugis-Dugdale, polished table"},
-    {NT_FORM_YIELDING, 2.4, 2.5, "on a sample that yields to all forces together"},
-    {NT_FORM_LOCAL_EXACT, 68.0, 59.0, "Maugis-Dugdale, exact, with the radius of each place"},
+    [SERIES] = {NT_FORM_SERIES, 1.05, 1.2, "law of the sphere as a series"},
+    [JKR] = {NT_FORM_JKR, 1.5, 2.4, "JKR"},
+    [TABLE] = {NT_FORM_TABLE, 1.6, 1.5, "Maugis-Dugdale table"},
+    [POLISHED] = {NT_FORM_POLISHED, 6.0, 5.6, "Maugis-Dugdale, polished table"},
+    [YIELDING] = {NT_FORM_YIELDING, 2.4, 2.5, "on a sample that yields to all forces together"},
+    [LOCAL_EXACT] = {NT_FORM_LOCAL_EXACT, 68.0, 59.0, "Maugis-Dugdale, exact, with the radius of each place"},
 };
-enum { FORMS = sizeof forms / sizeof forms[0] };
 
 static int local_row(const nt_plan *plan)
 {
@@ -59,21 +64,42 @@ static int local_row(const nt_plan *plan)
     return is_made ? MADE_HERTZ : LOCAL_HERTZ;
 }
 
-/* Adhesion that cannot be felt is none: then the shape is Hertz' paraboloid. */
+/* The row of a form. Adhesion that cannot be felt is none: then the shape is Hertz' paraboloid. */
+static int row_of(const nt_plan *plan, nt_form form)
+{
+    switch (form) {
+    case NT_FORM_SHAPE:
+        return (int)plan->shape.kind;
+    case NT_FORM_PARABOLOID:
+        return plan->shape.kind == NT_SHAPE_BLUNTED ? IN_PLACE_OF_BLUNTED : IN_PLACE_OF_SPHERE;
+    case NT_FORM_LOCAL:
+        return local_row(plan);
+    case NT_FORM_SERIES:
+        return SERIES;
+    case NT_FORM_JKR:
+        return JKR;
+    case NT_FORM_TABLE:
+        return TABLE;
+    case NT_FORM_POLISHED:
+        return POLISHED;
+    case NT_FORM_YIELDING:
+        return YIELDING;
+    case NT_FORM_LOCAL_EXACT:
+        return LOCAL_EXACT;
+    case NT_FORM_EXACT: /* the truth that others are measured by, never computed itself */
+    case NT_FORM_OFF:
+    case NT_FORM_ON:
+    case NT_FORM_DERJAGUIN:
+    case NT_FORM_SPHERE:
+    case NT_FORM_TIP:
+        break;
+    }
+    return LOCAL_EXACT;
+}
+
 static const nt_term_form *form_of(const void *law, nt_form form)
 {
-    const nt_plan *plan = law;
-    int i = OTHERS;
-    if (form == NT_FORM_SHAPE)
-        i = (int)plan->shape.kind;
-    else if (form == NT_FORM_PARABOLOID)
-        i = plan->shape.kind == NT_SHAPE_BLUNTED ? IN_PLACE_OF_BLUNTED : IN_PLACE_OF_SPHERE;
-    else if (form == NT_FORM_LOCAL)
-        i = local_row(plan);
-    else
-        while (i < FORMS - 1 && forms[i].form != form)
-            ++i;
-    return &forms[i];
+    return &forms[row_of(law, form)];
 }
 
 static void offer(const nt_plan *plan, nt_plan_options *options, nt_form form, double error)
@@ -180,10 +206,9 @@ static double opposing(const nt_plan *plan)
 static double more_stiffness_at(const nt_plan *plan, double gap)
 {
     const double T = NT_SAMPLED * nt_plan_largest_ratio(plan) * fabs(nt_plan_beside_at(plan, gap).k), S = plan->scale;
-    const nt_form full = nt_plan_contact_form(plan);
     if (nt_plan_varies(plan))
         return 1.0 + T / S;
-    const double k = fabs(nt_plan_contact_eval(plan, full == NT_FORM_EXACT ? NT_FORM_POLISHED : full, -gap).k);
+    const double k = fabs(nt_plan_contact_eval(plan, nt_plan_contact_truth(plan), -gap).k);
     return fmax(k, S) / fmax(k - T, S);
 }
 

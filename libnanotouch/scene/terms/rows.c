@@ -13,6 +13,13 @@ const nt_term_row *const nt_term_rows[NT_PLAN_TERMS] = {ROW(CONTACT, contact, ) 
 const unsigned nt_term_offsets[NT_PLAN_TERMS] = {[NT_PLAN_CONTACT] = 0,
                                                  NT_TERMS_BESIDE(OFFSET) NT_TERMS_CUSTOM(OFFSET)};
 
+#define NAME(ID, name, what) name,
+const char *nt_form_name(nt_form form)
+{
+    static const char *const names[] = {NT_FORMS(NAME)};
+    return (unsigned)form < NT_FORM_COUNT ? names[form] : "unknown";
+}
+
 static const nt_term_form left_out = {NT_FORM_OFF, 0.0, 0.0, "left out"};
 
 const nt_term_words *nt_term_words_of(int term)

@@ -110,7 +110,7 @@ static int is_beside(const nt_plan *plan, nt_form form)
 {
     if (plan->relief.count > 0)
         return nt_form_is_local(form);
-    return form == NT_FORM_TABLE || form == NT_FORM_POLISHED || form == NT_FORM_EXACT || form == NT_FORM_OFF;
+    return form == NT_FORM_OFF || (nt_form_is_maugis(form) && !nt_form_is_local(form));
 }
 
 static void drop_others(const nt_plan *plan, nt_plan_options *options, double error)

@@ -195,6 +195,7 @@ typedef struct nt_yield_wanted {
     double radius_scale;  /* 0: not demanded [m] */
     double load;          /* where a table without adhesion ends [N] */
     int touches;          /* nt_yield_range */
+    nt_yield_tried *tried;
 } nt_yield_wanted;
 /* yielding.c: a table of the plan's own radius, with that tolerance or finer; then, with no force of its own yet, its
  * laws turned on and contact beside it, which knows the work of adhesion [J/m^2] (0: that of the scene). */

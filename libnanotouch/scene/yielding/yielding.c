@@ -150,7 +150,7 @@ static void turn_on(nt_plan *plan)
     }
 }
 
-static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const nt_yield_wanted *of)
+static nt_status make(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const nt_yield_wanted *of)
 {
     const double tolerance = of->tolerance;
     const int sticks = adheres(plan), surrounded = sticks && nt_plan_is_surrounded(plan, scene);
@@ -173,6 +173,27 @@ static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_t
     if (status != NT_OK || !surrounded)
         return status;
     return nt_plan_yield_hold(plan, scene, &range) == NT_OK ? NT_OK : NT_E_RANGE; /* no finer one would do */
+}
+
+static int is_same(double a, double b)
+{
+    return fabs(a - b) <= 1e-12 * fabs(b);
+}
+
+/* Makes a table, unless it is known to come to no end. */
+static nt_status table_of(nt_plan *plan, const nt_scene *scene, const nt_yield_terms *in, const nt_yield_wanted *of)
+{
+    const int surrounded = adheres(plan) && nt_plan_is_surrounded(plan, scene);
+    nt_yield_tried *tried = plan->ratio == 1.0 && !of->touches ? of->tried : NULL;
+    for (int i = 0; tried && i < tried->count; ++i) {
+        const nt_yield_end *end = &tried->end[i];
+        if (is_same(end->tolerance, of->tolerance) && is_same(end->scale, plan->scale) && end->surrounded == surrounded)
+            return end->status;
+    }
+    const nt_status status = make(plan, scene, in, of);
+    if (status != NT_OK && tried && tried->count < NT_YIELD_TRIED)
+        tried->end[tried->count++] = (nt_yield_end){of->tolerance, plan->scale, surrounded, status};
+    return status;
 }
 
 /* Tables have the tolerances of one ladder, so that a looser demand can have every table that a stricter one can. */
@@ -326,10 +347,10 @@ static nt_status yield(nt_plan *plan, const nt_scene *scene, nt_yield_wanted *of
     return yield_within(plan, scene, of, others, problem);
 }
 
-nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_problem *problem)
+nt_status nt_plan_yield(nt_plan *plan, const nt_scene *scene, nt_yield_tried *tried, nt_problem *problem)
 {
     const double quantity = plan->demand.quantity, load = scene->range.maximum_load;
-    nt_yield_wanted of = {.quantity = (nt_quantity)(int)quantity};
+    nt_yield_wanted of = {.quantity = (nt_quantity)(int)quantity, .tried = tried};
     nt_status status = check(plan, scene, problem);
     if (status != NT_OK)
         return status;
