@@ -22,6 +22,7 @@ nt_supervisor_state nt_supervisor_start(void)
     return (nt_supervisor_state){.state = NT_RUN,
                                  .deflection = {.value = NAN},
                                  .amplitude = {.value = NAN},
+                                 .power = NAN,
                                  .surface = NAN,
                                  .expected = NAN}; /* nothing seen yet */
 }
@@ -183,6 +184,23 @@ static nt_state judge_stuck(const nt_supervisor *supervisor, nt_supervisor_state
     return verdict == NT_RUN ? NT_RUN : blame(state, NT_REASON_STUCK, verdict);
 }
 
+/* The drive's power is no less than what the medium takes and the swing gains, for the contact only takes:
+ *     D Q f0/f A sin(phi) >= A^2 + Q/w0 (A^2)',   A e^(-i phi) of the tip's way.
+ * Where it is less by far, this is another drive, or another Q: the set point is held by hitting harder. */
+static int is_of_this_drive(const nt_amplitude_limits *tap, nt_supervisor_state *state, const nt_sample *sample)
+{
+    const double sine = sample->amplitude * sin(sample->lag);
+    const double cosine = sample->amplitude * cos(sample->lag) + tap->shake, square = sine * sine + cosine * cosine;
+    if (isnan(state->power)) {
+        state->power = sine;
+        state->loss = square;
+    }
+    state->power = sine + tap->kept * (state->power - sine);
+    state->loss = square + tap->kept * (state->loss - square);
+    const double needed = state->loss + tap->memory * (square - state->loss);
+    return tap->reach * state->power >= tap->share * needed - tap->lost * tap->lost;
+}
+
 /* A drive that is gone looks like hard contact: the servo draws the tip up, and the amplitude has to come back while
  * lever and lock-in amplifier can follow. It tells of no force: LATCHED, and the tip lifts. */
 static nt_state judge_amplitude(const nt_supervisor *supervisor, nt_supervisor_state *state, const nt_sample *sample)
@@ -192,7 +210,8 @@ static nt_state judge_amplitude(const nt_supervisor *supervisor, nt_supervisor_s
         return NT_RUN;
     const int is_lost = sample->amplitude < tap->lost || sample->amplitude > tap->most;
     state->lost_run = is_lost ? state->lost_run + 1u : 0u;
-    return state->lost_run > tap->settling ? blame(state, NT_REASON_AMPLITUDE, NT_LATCHED) : NT_RUN;
+    const int is_another = !is_of_this_drive(tap, state, sample);
+    return is_another || state->lost_run > tap->settling ? blame(state, NT_REASON_AMPLITUDE, NT_LATCHED) : NT_RUN;
 }
 
 /* NaN or infinite: nobody knows how late, and nothing is made up for. */

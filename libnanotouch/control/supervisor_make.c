@@ -4,6 +4,7 @@
 
 #include "control/sampled.h"
 #include "core/clamp.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 #include "nanotouch/servo.h"
 #include "nanotouch/supervisor.h"
@@ -47,6 +48,7 @@ const char *nt_reason_name(uint32_t reason)
 #define LOST_SHARE 0.1
 #define MOST_SHARE 1.5
 #define SETTLING 3.0 /* time constants of lever and lock-in amplifier in which an amplitude comes back */
+#define WINDOW 10.0  /* of them, over which power and loss are averaged */
 
 /* Time constant of the stage behind its reference: what the notch leaves of the resonance, and dead time [s]. */
 static double stage_lag(const nt_rig *rig, const nt_gains *gains)
@@ -108,10 +110,19 @@ nt_amplitude_limits nt_supervisor_amplitude(const nt_rig *rig, const nt_settings
 {
     const nt_tap *tap = &settings->tap;
     const double travelled = STUCK_STEPS * greater(rig->stage.resolution, LEAST_STAGE_STEP);
+    const double Q = rig->probe.quality, f0 = rig->probe.resonance;
+    const double r = tap->frequency > 0.0 ? tap->frequency / f0 : 1.0;
+    const double window = WINDOW * nt_tap_lag(rig, tap), swing = hypotenuse(1.0 - r * r, r / Q);
+    const double strength = tap->free_amplitude * swing / (tap->at ? r * hypotenuse(r, 1.0 / Q) : 1.0);
     return (nt_amplitude_limits){
         .lost = LOST_SHARE * tap->free_amplitude,
         .most = MOST_SHARE * tap->free_amplitude,
         .settling = 1u + (uint32_t)ceil(SETTLING * nt_tap_lag(rig, tap) * settings->gains.rate),
         .stuck = {tap->noise > tap->resolution ? travelled : 0.0, tap->noise},
+        .shake = tap->at ? strength : 0.0,
+        .reach = strength * Q / r,
+        .memory = Q / (2.0 * NT_PI * f0) / window,
+        .kept = exp(-1.0 / (window * settings->gains.rate)),
+        .share = 1.0 / ((1.0 + tap->tolerance) * (1.0 + tap->tolerance)),
     };
 }

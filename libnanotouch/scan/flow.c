@@ -68,8 +68,8 @@ static double middle_of(const nt_tapping *lever, const nt_flow_state *state, con
     return ground + lever->cosine * state->mean;
 }
 
-static nt_flow_average average_at(const nt_tapping *lever, const nt_tapping_over *over, int attached, double amplitude,
-                                  double low)
+nt_flow_average nt_flow_average_at(const nt_tapping *lever, const nt_tapping_over *over, int attached, double amplitude,
+                                   double low)
 {
     nt_interaction_state history = {attached, 0.0, 0.0};
     swing w = {lever, over, amplitude, low, low + 2.0 * lever->cosine * amplitude, attached, 0};
@@ -115,7 +115,7 @@ static int make_cell(const nt_tapping *lever, const nt_tapping_over *over, doubl
         return 0;
     for (int i = 0; i < 5; i++) {
         const double A = made.amplitude + (i % 4 / 2) * width, at = made.low + (i % 2) * NARROW;
-        made.corner[i] = average_at(lever, i < 4 ? over : &there, 0, A, at);
+        made.corner[i] = nt_flow_average_at(lever, i < 4 ? over : &there, 0, A, at);
         if (made.corner[i].attached)
             return 0;
     }
@@ -161,13 +161,13 @@ static nt_flow_average average_in(const nt_tapping *lever, const nt_flow_state *
 {
     const double low = middle_of(lever, state, over) - lever->cosine * amplitude;
     if (table == NULL || state->attached || over->plan->properties != NULL || !(fabs(low) < 1e-3))
-        return average_at(lever, over, state->attached, amplitude, low);
+        return nt_flow_average_at(lever, over, state->attached, amplitude, low);
     const double radius = over->place != NULL ? over->place->radius.radius : 0.0;
     nt_flow_cell *cell = cell_at(lever, table, low, amplitude);
     in_cell in;
     if (!find_in(lever, cell, radius, low, amplitude, &in)) {
         if (!make_cell(lever, over, amplitude, low, cell))
-            return average_at(lever, over, 0, amplitude, low);
+            return nt_flow_average_at(lever, over, 0, amplitude, low);
         find_in(lever, cell, radius, low, amplitude, &in);
     }
     return (nt_flow_average){.cosine = between(cell, &in, offsetof(nt_flow_average, cosine)),

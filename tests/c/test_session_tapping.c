@@ -87,6 +87,8 @@ typedef enum spoilt {
     WELL,
     DRIVE_GONE,    /* the oscillator no longer hears, and rings down */
     DRIVE_DOUBLED, /* another program has turned it up */
+    DRIVE_UP,      /* by half */
+    QUALITY_UP,    /* the medium takes half as much */
     INVALID,       /* no valid bit, in each tick */
     INVALID_ONCE,
     NAN_AMPLITUDE, /* with a valid bit */
@@ -148,6 +150,10 @@ static nt_status write_spoilt(void *context, const nt_action *action)
         heard.drive_amplitude = 0.0;
     if (s->reads >= s->from && s->how == DRIVE_DOUBLED)
         heard.drive_amplitude *= 2.0;
+    if (s->reads >= s->from && s->how == DRIVE_UP)
+        heard.drive_amplitude *= 1.5;
+    if (s->reads == s->from && s->how == QUALITY_UP)
+        s->slave.tap.lever.quality *= 2.0;
     return nt_sim_slave_backend()->write(&s->slave, &heard);
 }
 static void disarm_spoilt(void *context)
@@ -223,9 +229,15 @@ static void a_fault_lifts_and_is_never_zero_force(void **state)
 {
     (void)state;
     const expected all[] = {
-        {INVALID_ONCE, 1, -1, -1, NT_REASON_INVALID, 2e-9}, {INVALID, 1, 2, -1, NT_REASON_INVALID, 2e-9},
-        {NAN_AMPLITUDE, 1, 2, -1, NT_REASON_INVALID, 2e-9}, {NAN_LAG, 1, 2, -1, NT_REASON_INVALID, 2e-9},
-        {ABSURD, 1, 2, -1, NT_REASON_INVALID, 2e-9},        {DRIVE_GONE, 30, 30, 30, NT_REASON_AMPLITUDE, 2e-9},
+        {INVALID_ONCE, 1, -1, -1, NT_REASON_INVALID, 2e-9},
+        {INVALID, 1, 2, -1, NT_REASON_INVALID, 2e-9},
+        {NAN_AMPLITUDE, 1, 2, -1, NT_REASON_INVALID, 2e-9},
+        {NAN_LAG, 1, 2, -1, NT_REASON_INVALID, 2e-9},
+        {ABSURD, 1, 2, -1, NT_REASON_INVALID, 2e-9},
+        {DRIVE_GONE, 30, 30, 30, NT_REASON_AMPLITUDE, 2e-9},
+        {DRIVE_DOUBLED, 60, 60, 60, NT_REASON_AMPLITUDE, 8e-9},
+        {DRIVE_UP, 60, 60, 60, NT_REASON_AMPLITUDE, 8e-9},
+        {QUALITY_UP, 60, 60, 60, NT_REASON_AMPLITUDE, 8e-9},
     };
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) {
         nt_problem problem = {0};

@@ -15,6 +15,7 @@
 #include "conformance.h"
 #include "kernel_command.h"
 #include "kernel_rig.h"
+#include "kernel_tapping.h"
 #include "larger.h"
 
 /* --- the rules of a half --- */
@@ -250,11 +251,6 @@ static double clock_us(void)
     return 1e6 * (double)t.tv_sec + 1e-3 * (double)t.tv_nsec;
 }
 
-static int is_virtual(void) /* no time passes while something computes */
-{
-    return getenv("TIME") != NULL;
-}
-
 /* A chip that never answers: the kernel waits for a second, then the tick is a bad one. */
 static void a_bus_that_does_not_answer(void **state)
 {
@@ -369,6 +365,7 @@ static int run_all(void)
     const struct CMUnitTest touch[] = {cmocka_unit_test(a_command_touches)};
     const struct CMUnitTest scan[] = {cmocka_unit_test(a_command_scans)};
     const struct CMUnitTest at_own_pace[] = {cmocka_unit_test(a_touch_is_the_simulated_one),
+                                             cmocka_unit_test_prestate(tapping_is_the_simulated_one, &chips),
                                              cmocka_unit_test(latencies)};
     const struct CMUnitTest at_any[] = {
         cmocka_unit_test(the_half_conforms),

@@ -222,6 +222,30 @@ def test_the_forecast_is_of_the_motion_that_the_lever_comes_to() -> None:
     assert 0.0 < lifted.force_bound < 0.02 * lifted.peak_force
 
 
+def test_no_tap_is_harder_than_forecast() -> None:
+    """Over dots, where the lever goes over from one motion to the other: harder than any steady motion, within the
+    bound. A set point with one motion, and an amplitude that keeps below the limit, are what they are told to be."""
+    scene, rig = nt.Scene(), nt.Rig()
+    scene.range.maximum_load = 400e-9
+    surface = nt.Surface.touched_by(scene, nt.surface.dots())
+    raster: Any = {"width": 500e-9, "height": 40e-9, "y": 200e-9, "pixels": 48, "lines": 4, "line_rate": 0.64}
+    settings = nt.Scan(raster=raster)
+    scanner = nt.Scanner(scene.plan(0.1, surface=surface), settings, rig)
+    told = scan.forecast(scanner, scene, surface)
+    image = scanner.run(9)
+    reached = max(float(channels.peak_force.max()) for channels in image[:2])
+    assert 1.2 * max(motion.peak_force for motion in told.motions) < reached < told.peak_bound
+    assert "no harder than" in str(told)
+    alone = nt.Scan(raster=raster, zloop={"set_amplitude": told.single_set_point})
+    assert len(scan.forecast(nt.Scanner(scene.plan(), alone, rig), scene).motions) == 1
+    assert told.safe_free_amplitude < 20e-9
+    gentle = nt.Drive(drive={"free_amplitude": told.safe_free_amplitude})
+    below = nt.Scanner(scene.plan(0.1, surface=surface), settings, rig, gentle)
+    assert scan.peak_bounds(below, scene, surface)[0] <= told.force_limit < told.peak_bound
+    with pytest.raises(InvalidValue, match="rise = -1 m/s"):
+        scanner.peak_bound((0.0, 0.0), -1.0, 0.0)
+
+
 def test_a_set_point_without_a_steady_motion_is_forecast() -> None:
     scene, rig = nt.presets.silicon_on_gold()
     told = scan.forecast(nt.Scanner(scene.plan(), None, rig), scene)

@@ -118,6 +118,12 @@ void bind_scan(py::module_ &module)
         .def(py::init(&make_scanner), py::arg("scan"), py::arg("rig"), py::arg("drive"), py::arg("plan"),
              py::keep_alive<1, 5>())
         .def("strip", &strip, py::arg("first"), py::arg("count"), py::arg("seed"))
+        .def("peak_bound",
+             [](const nt_scanner &self, double x, double y, double rise, double height) {
+                 const nt_place place = nt_interaction_place(self.plan, x, y);
+                 const nt_relief relief = {rise, height};
+                 return nt_scanner_peak_bound(&self, &place, &relief);
+             })
         .def("speed",
              [](const nt_scanner &self, double slope, double error) { return nt_scanner_speed(&self, slope, error); })
         .def("parachute", [](const nt_scanner &self, double height,

@@ -42,6 +42,10 @@ typedef struct nt_flow_average {
     double loss;   /* [J] */
     int attached;  /* at the top, afterwards */
 } nt_flow_average;
+/* Of a period of amplitude A of q [m] that goes down to a gap [m], attached before or not. base_height is not used. */
+NT_API NT_REALTIME nt_flow_average nt_flow_average_at(const nt_tapping *tapping, const nt_tapping_over *over,
+                                                      int attached, double amplitude, double low);
+
 /* Averages at the corners of cells of amplitude and lowest gap, made where steps come and kept for the next ones: a
  * step costs a tenth. Between the corners they are bilinear, and linear in the radius of the place. Zero: none yet.
  * Caller-owned, of one lever and plan; copyable. There is none across the capture gap, of a lever that stays attached,

@@ -98,6 +98,15 @@ NT_API double nt_scanner_parachute(const nt_scanner *scanner, double height, dou
  * loop, and a pixel is the mean of its ticks. For a stage that is slower than half the ticks' rate. */
 NT_API double nt_scanner_noise(const nt_scanner *scanner);
 
+/* What a scan goes over. */
+typedef struct nt_relief {
+    double rise;   /* largest speed at which the surface comes up under the tip [m/s] */
+    double height; /* range along a line [m] */
+} nt_relief;
+/* No tap over a place (NULL: a flat) is harder [N], from whatever motion to whatever other, by the slow flow
+ * (overshoot.c). HUGE_VAL: where the surface comes up faster than an amplitude may shrink. */
+NT_API double nt_scanner_peak_bound(const nt_scanner *scanner, const nt_place *place, const nt_relief *relief);
+
 /* Copyable. */
 typedef struct nt_scanner_state {
     nt_flow_state flow;

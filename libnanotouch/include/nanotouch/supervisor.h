@@ -29,7 +29,7 @@ enum {
     NT_REASON_BACKED_OFF = 1u << 15,      /* the passivity observer has taken gain away: a flag */
     NT_REASON_MASTER_STALE = 1u << 16,    /* the master's reading is older than two of its own periods */
     NT_REASON_LATERAL = 1u << 17,         /* the lateral force is at its limit */
-    NT_REASON_AMPLITUDE = 1u << 18        /* the amplitude is lost, or beyond what this drive can make */
+    NT_REASON_AMPLITUDE = 1u << 18        /* the amplitude is lost, or beyond what this drive can make at its lag */
 };
 /* "force limit", ... of one reason bit; "" for none. */
 NT_API const char *nt_reason_name(uint32_t reason);
@@ -55,6 +55,11 @@ typedef struct nt_amplitude_limits {
     double lost, most;     /* below the first one nothing taps; the drive cannot make more than the second [m] */
     uint32_t settling;     /* in which lever and lock-in amplifier follow [periods] */
     nt_stuck_limits stuck; /* of the amplitude */
+    double shake;          /* D of a driven base, 0 of a driven tip (tapping.h) [m] */
+    double reach;          /* D Q f0/f: the largest amplitude that this drive can make [m] */
+    double memory;         /* Q/w0 over the time in which power and loss are averaged [-] */
+    double kept;           /* of those averages, per period [-] */
+    double share;          /* of the loss that the power is at least, with what A0 may be off [-] */
 } nt_amplitude_limits;
 
 /* All that does not change while it runs. */
@@ -103,6 +108,7 @@ typedef struct nt_supervisor_state {
     uint32_t late_ticks;  /* all of them */
     nt_stuck deflection, amplitude;
     uint32_t lost_run;    /* amplitudes in a row that are lost, or cannot be */
+    double power, loss;   /* averages of A sin(phi) [m] and of A^2 [m^2], A of the tip's way */
     double expected;      /* where the stage should be by now [m] */
     double path;          /* that this has gone lately, to and fro [m] */
     uint32_t off_run;     /* ticks in a row in which the stage was not there */

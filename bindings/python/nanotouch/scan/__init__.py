@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from .flow import FlowState, FlowValue, SlowFlow
-from .forecast import Forecast, forecast, steepest
+from .forecast import Forecast, forecast
+from .overshoot import peak_bounds, steepest
 from .scanner import UNDONE, Channels, Image, LoopMargins, Scan, Scanner
 from .steady import TIERS, AmplitudeCurve, Steady, SteadyMotion
 from .tapping import Drive, Settled, Tapping, TappingState, TappingValue
@@ -30,5 +31,6 @@ __all__ = [
     "TappingState",
     "TappingValue",
     "forecast",
+    "peak_bounds",
     "steepest",
 ]

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nanotouch._arrays import Floats
 from nanotouch.errors import SolverError
+from nanotouch.scan.overshoot import limit_of, peak_bounds, places, single_set_point, steepest
 from nanotouch.scan.scanner import LoopMargins, Scanner
 from nanotouch.scan.steady import Steady, SteadyMotion
 from nanotouch.scan.tapping import Tapping
@@ -82,9 +82,18 @@ class Forecast(NamedTuple):
     hollow_force: float
     """tapping: peak force in the narrowest hollow of the surface, where the contact is widest [N]; inf: it no longer
     taps there; 0 without a hollow, and in contact mode"""
+    peak_bound: float
+    """tapping: no tap is harder [N], also where the lever goes over from one motion to another; inf: no bound; contact:
+    NaN"""
+    safe_free_amplitude: float
+    """tapping: the largest A0, no larger than the one in use, at which that bound keeps below the limit [m]; NaN: none
+    down to a twentieth of it"""
+    single_set_point: float
+    """tapping: where two motions have the set point, the nearest A/A0 that only one has over a flat; NaN: none, or not
+    needed"""
 
     def __str__(self) -> str:
-        return "\n".join([*map(self._motion, self.motions), self._safe(), *self._loop()])
+        return "\n".join([*map(self._motion, self.motions), *self._change(), self._safe(), *self._loop()])
 
     def _motion(self, motion: Motion) -> str:
         if self.mode == "contact":
@@ -106,15 +115,39 @@ class Forecast(NamedTuple):
             f"{math.degrees(motion.phase):.3g} degrees, {motion.loss / _ELECTRONVOLT:.3g} eV lost in a tap; {depth}"
         )
 
+    def _change(self) -> list[str]:
+        if self.mode == "contact":
+            return []
+        told = (
+            f"any tap: no harder than {in_words(self.peak_bound, 'N', 3)}, also where the lever goes over from one "
+            "motion to another"
+            if math.isfinite(self.peak_bound)
+            else "any tap: no bound, the base may come down faster than the amplitude can fall: lower K_I or the speed"
+        )
+        if len(self.motions) == 1:
+            return [told]
+        alone = (
+            f"a set point of {self.single_set_point:.2g} A0 has one alone"
+            if math.isfinite(self.single_set_point)
+            else "no set point has one alone: another free amplitude may"
+        )
+        return [f"two motions at this set point: the lever may go over from one to the other; {alone}", told]
+
     def _safe(self) -> str:
         limit = f"{in_words(self.force_limit, 'N', 3)} ({self.limit_reason})"
         if self.mode == "contact":
             return f"safe set point: up to {in_words(self.safe_set_point, 'N', 3)}: then no more than {limit}"
         if math.isnan(self.safe_set_point):
             return f"safe set point: none with this lever and amplitude keeps the peak force below {limit}"
-        if self.safe_set_point == 0.0:
-            return f"safe set point: any, the peak force stays below {limit}"
-        return f"safe set point: from {self.safe_set_point:.2g} A0 upwards the peak force stays below {limit}"
+        which = "any" if self.safe_set_point == 0.0 else f"from {self.safe_set_point:.2g} A0 upwards"
+        return f"safe set point: {which}, the peak force of its motions stays below {limit}{self._amplitude()}"
+
+    def _amplitude(self) -> str:
+        if self.peak_bound <= self.force_limit:
+            return ", and so does any tap"
+        if math.isnan(self.safe_free_amplitude):
+            return "; no smaller free amplitude keeps any tap below"
+        return f"; any tap does with a free amplitude up to {in_words(self.safe_free_amplitude, 'm', 2)}"
 
     def _loop(self) -> list[str]:
         lines = [
@@ -156,15 +189,14 @@ class Forecast(NamedTuple):
             return []
         if math.isinf(self.hollow_force):
             return ["hollows: in the narrowest one the sample may hold the tip, which no longer taps"]
-        over = "; a tap is harder still where the lever goes over to the repulsive motion" * (len(self.motions) > 1)
-        return [f"hollows: peak force {in_words(self.hollow_force, 'N', 3)} in the narrowest one{over}"]
+        return [f"hollows: peak force {in_words(self.hollow_force, 'N', 3)} in the narrowest one"]
 
 
 def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> Forecast:
     """What a scanner will do to the sample of a scene: forces over a flat, to 2 % by the cheapest tier that keeps that
     (:class:`Steady`); speeds by the rules of its loop over a surface."""
     mode = str(scanner.scan.zloop.mode)
-    limit, reason = _limit(scene)
+    limit, reason = limit_of(scene)
     slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
     lag = scanner.speed * slope / scanner.integral
     motions, safe, flank = _contact(scanner, limit, lag) if mode == "contact" else _tapping(scanner, scene, limit, lag)
@@ -173,6 +205,8 @@ def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> 
         scanner.speed_limit(slope, 1e-9) if slope > 0.0 else math.inf, height,
         scanner.parachute(height) if height > 0.0 else 0.0, mode, flank, _largest_set_point(scanner, lag),
         scanner.noise, _hollow_force(scanner, scene, surface, lag),
+        *peak_bounds(scanner, scene, surface),
+        single_set_point(scanner, scene, _wanted(scanner)) if len(motions) > 1 else math.nan,
     )  # fmt: skip
 
 
@@ -186,28 +220,12 @@ def _largest_set_point(scanner: Scanner, lag: float) -> float:
     return share if share > 0.0 else math.nan
 
 
-def steepest(scanner: Scanner, surface: Surface) -> tuple[float, float]:
-    """The steepest slope along a line, and the range of heights [m], of what is scanned."""
-    x, y = _places(scanner, surface)
-    z = np.asarray(surface.height(x[None, :], y[:, None])) + scanner.scan.raster.tilt_x * x
-    return float(np.abs(np.diff(z, axis=1)).max() / (x[1] - x[0])), float(np.ptp(z, axis=1).max())
-
-
-def _places(scanner: Scanner, surface: Surface) -> tuple[Floats, Floats]:
-    """x along a line and y of up to 64 lines [m]."""
-    raster = scanner.scan.raster
-    pixel = min(surface.topography.pixel_size[1], raster.width / raster.pixels)
-    x = np.linspace(raster.x, raster.x + raster.width, min(int(4 * raster.width / pixel), 20000) + 2)
-    lines = min(int(raster.lines), 64)
-    return x, raster.y + (np.arange(lines) + 0.5) * raster.height / lines
-
-
 def _hollow_force(scanner: Scanner, scene: Scene, surface: Surface | None, lag: float) -> float:
     """Where a sphere lies in a hollow its contact is that of a larger one: the widest of what is scanned, at the
     reading of a loop that lags."""
     if scanner.scan.zloop.mode == "contact" or surface is None or surface.tip_radius is None:
         return 0.0
-    x, y = _places(scanner, surface)
+    x, y = places(scanner, surface)
     widest = float(np.max(surface.radius_map.radius(x[None, :], y[:, None]).radius))
     if widest <= scene["tip.radius"]:
         return 0.0
@@ -217,17 +235,6 @@ def _hollow_force(scanner: Scanner, scene: Scene, surface: Surface | None, lag: 
     readings = [one for one in (wanted, wanted - lag / float(scanner.drive["drive.free_amplitude"])) if one > 0.0]
     found = [_of_reading(scanner, steady, one, lifted) for one in readings for lifted in (False, True)]
     return max((_most(one) for one in found if one is not None), default=math.inf)
-
-
-def _limit(scene: Scene) -> tuple[float, str]:
-    """The load that the scene allows, or that at which the sample yields: P_y = pi^3 R^2/(6 E*^2) (1.6 Y)^3."""
-    most, reason = float(scene["range.maximum_load"]), "the scene's maximum load"
-    strength, modulus = float(scene["sample.yield_strength"]), float(scene.plan().explain()["effective_modulus"])
-    if strength > 0.0:
-        yields = math.pi**3 * scene["tip.radius"] ** 2 / (6.0 * modulus**2) * (1.6 * strength) ** 3
-        if yields < most:
-            return yields, "there the sample yields"
-    return most, reason
 
 
 def _contact(scanner: Scanner, limit: float, lag: float) -> tuple[tuple[Motion, ...], float, float]:

@@ -194,6 +194,16 @@ class Scanner(Lever):
         at that of the scan."""
         return float(self._core.parachute(height, self.speed if speed is None else speed))
 
+    def peak_bound(self, at: tuple[float, float], rise: float, height: float) -> float:
+        """No tap is harder [N], from whatever motion to whatever other (docs/scan.md): over a place (x, y) [m] of a
+        surface that comes up under the tip no faster than ``rise`` [m/s], with a range of ``height`` [m] along a line.
+        inf: the base may come down faster than the amplitude can fall."""
+        if self.scan.zloop.mode == "contact":
+            raise InvalidValue("zloop.mode = contact: a bound is of tapping or phase")
+        if not (rise >= 0.0 and height >= 0.0):
+            raise InvalidValue(f"rise = {rise:g} m/s, height = {height:g} m: neither may be below 0")
+        return float(self._core.peak_bound(*at, rise, height))
+
     def run(self, seed: int = 1, progress: Callable[[float], None] | None = None, threads: int | None = None) -> Image:
         """Scan all lines.
 

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How hard a lever may tap on its way from one motion to another, and how to keep it from that (docs/scan.md)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from nanotouch._arrays import Floats
+from nanotouch.scan.scanner import Scanner
+from nanotouch.scan.steady import Steady
+from nanotouch.scene import Scene
+from nanotouch.scene.surface import Surface
+
+_ACCURACY = 0.02  # of the curve's motions
+_LEAST_SWING, _HALVINGS = 0.05, 6  # of the free amplitude: smaller ones are not advised
+_SHARES = (0.06, 0.98, 96)  # set points over A0 that are tried
+
+
+def steepest(scanner: Scanner, surface: Surface) -> tuple[float, float]:
+    """The steepest slope along a line, and the range of heights [m], of what is scanned."""
+    x, y = places(scanner, surface)
+    z = np.asarray(surface.height(x[None, :], y[:, None])) + scanner.scan.raster.tilt_x * x
+    return float(np.abs(np.diff(z, axis=1)).max() / (x[1] - x[0])), float(np.ptp(z, axis=1).max())
+
+
+def places(scanner: Scanner, surface: Surface) -> tuple[Floats, Floats]:
+    """x along a line and y of up to 64 lines [m]."""
+    raster = scanner.scan.raster
+    pixel = min(surface.topography.pixel_size[1], raster.width / raster.pixels)
+    x = np.linspace(raster.x, raster.x + raster.width, min(int(4 * raster.width / pixel), 20000) + 2)
+    lines = min(int(raster.lines), 64)
+    return x, raster.y + (np.arange(lines) + 0.5) * raster.height / lines
+
+
+def limit_of(scene: Scene) -> tuple[float, str]:
+    """The load that the scene allows, or that at which the sample yields: P_y = pi^3 R^2/(6 E*^2) (1.6 Y)^3."""
+    most, reason = float(scene["range.maximum_load"]), "the scene's maximum load"
+    strength, modulus = float(scene["sample.yield_strength"]), float(scene.plan().explain()["effective_modulus"])
+    if strength > 0.0:
+        yields = math.pi**3 * scene["tip.radius"] ** 2 / (6.0 * modulus**2) * (1.6 * strength) ** 3
+        if yields < most:
+            return yields, "there the sample yields"
+    return most, reason
+
+
+def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tuple[float, float]:
+    """No tap of a scan is harder [N], where the contact is widest and narrowest of what is scanned; and the free
+    amplitude that keeps this below the limit of :func:`limit_of` [m]."""
+    if scanner.scan.zloop.mode == "contact":
+        return math.nan, math.nan
+    raster, limit = scanner.scan.raster, limit_of(scene)[0]
+    slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
+    spots = [(float(raster.x), float(raster.y))]
+    if surface is not None and surface.tip_radius is not None:
+        x, y = places(scanner, surface)
+        radii = np.asarray(surface.radius_map.radius(x[None, :], y[:, None]).radius)
+        for at in (radii.argmax(), radii.argmin()):
+            j, i = np.unravel_index(at, radii.shape)
+            spots.append((float(x[i]), float(y[j])))
+    rise = scanner.speed * slope * (1.0 + 2.0 * raster.hysteresis) + abs(scanner.scan["raster.drift"])
+
+    def bound(of: Scanner) -> float:
+        return max(of.peak_bound(at, rise, height) for at in spots)
+
+    A0, most = float(scanner.drive["drive.free_amplitude"]), bound(scanner)
+    if most <= limit:
+        return most, A0
+    low, high, drive = _LEAST_SWING, 1.0, scanner.drive.copy()
+    for share in (low, *[math.nan] * _HALVINGS):
+        middle = math.sqrt(low * high) if math.isnan(share) else share
+        drive["drive.free_amplitude"] = middle * A0
+        keeps = bound(Scanner(scanner.plan, scanner.scan, scanner.rig, drive)) <= limit
+        if not keeps and middle == low:
+            return most, math.nan
+        low, high = (middle, high) if keeps else (low, middle)
+    return most, low * A0
+
+
+def single_set_point(scanner: Scanner, scene: Scene, wanted: float) -> float:
+    """The share of A0 nearest to the one that is wanted at which all stable motions over a flat lie on one side of 90
+    degrees; NaN: none."""
+    curve = Steady(scene.plan(), scanner.rig, scanner.drive, accuracy=_ACCURACY).curve()
+    whole = (np.diff(curve.piece) == 0) & curve.stable[1:] & curve.stable[:-1]
+    ends = np.stack([curve.amplitude[1:], curve.amplitude[:-1]]) / float(scanner.drive["drive.free_amplitude"])
+    attracted = 0.5 * (curve.phase[1:] + curve.phase[:-1]) > math.pi / 2
+    shares = np.linspace(*_SHARES)
+    meets = whole & (ends.min(axis=0) <= shares[:, None]) & (shares[:, None] <= ends.max(axis=0))
+    alone = shares[(meets & attracted).any(axis=1) != (meets & ~attracted).any(axis=1)]
+    return float(alone[np.abs(alone - wanted).argmin()]) if len(alone) else math.nan
