@@ -129,11 +129,13 @@ set(nanotouch_sources_curves
     curves/contact_point.c
     curves/film.c
     curves/flicker.c
+    curves/free_law.c
     curves/joint.c
     curves/line.c
     curves/pieces.c
     curves/read.c
     curves/robust.c
+    curves/ruptures.c
     curves/wave.c)
 set(nanotouch_sources_hal hal/capabilities.c hal/hal.c hal/rehearsal.c hal/replay_half.c hal/timing.c)
 set(nanotouch_sources_chips

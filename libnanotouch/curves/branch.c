@@ -168,8 +168,7 @@ NT_VARIANTS static void copy(const nt_curve_segment *segment, double *restrict w
     }
 }
 
-/* z and force over the baseline into the first 2 count doubles of work, z growing. */
-static void order_outwards(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work)
+void nt_curve_order(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work)
 {
     const long n = segment->count;
     double *level = work + 2 * n;
@@ -194,10 +193,16 @@ double nt_curve_branch_sigma(const nt_curve_branch *branch, double z)
     return hypotenuse(branch->noise, nt_curve_baseline_sigma(&branch->baseline, z));
 }
 
+void nt_curve_know_events(nt_curve_branch *branch)
+{
+    branch->dip.sigma = nt_curve_branch_sigma(branch, branch->z[branch->lowest]);
+    branch->adhesion_work = adhesion_work(branch);
+}
+
 void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double noise,
                           double *work, nt_curve_branch *branch)
 {
-    order_outwards(segment, baseline, work);
+    nt_curve_order(segment, baseline, work);
     *branch = (nt_curve_branch){
         .z = work,
         .force = work + segment->count,
@@ -210,12 +215,10 @@ void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseli
     branch->dips = dips(branch);
     branch->torn = torn(branch);
     branch->repulsive = repulsive(branch);
-    const double z = branch->z[branch->lowest];
-    branch->dip =
-        (nt_curve_measured){branch->dips ? -branch->force[branch->lowest] : 0.0, nt_curve_branch_sigma(branch, z)};
-    branch->dip_z = branch->dips ? z : (double)NAN;
-    branch->adhesion_work = adhesion_work(branch);
+    branch->dip.value = branch->dips ? -branch->force[branch->lowest] : 0.0;
+    branch->dip_z = branch->dips ? branch->z[branch->lowest] : (double)NAN;
     branch->contact_slope = contact_slope(branch);
+    nt_curve_know_events(branch);
 }
 
 nt_status nt_curve_read_branch(const nt_curve_segment *segment, const nt_curve_choice *choice, double *work,

@@ -5,10 +5,13 @@
 
 #include <math.h>
 
-enum { GRID = 8, TERMS = 3, BLOCKS = 200 };
-static const double nearest = 0.01, farthest = 0.35; /* of the free travel: distances of the pole */
-static const double evident = 9.0;                   /* gain of chi^2, correlation of the noise counted */
+#include "core/same_bits.h"
+#include "curves/robust.h"
+
+enum { TERMS = 3, BLOCKS = 200, OUTWARDS = 6 };
 static const double odd_least = 0.4, odd_most = 2.5; /* of minus the approach's strength, on the retraction */
+static const double unseen = 8.0; /* times the visible force: more of a film would be evident further out */
+static const double firm = 0.2;   /* of the load: from there on contact is more than a film */
 
 /* Normal equations of a line and A/(z - pole), x from -1 to 1. */
 typedef struct sums {
@@ -25,11 +28,11 @@ static void add(sums *s, const double row[TERMS], double force)
     s->squares += force * force;
 }
 
-/* The sum of squares left over with the first `terms` of them, their values in value (Cholesky). */
-static double solve(const sums *s, int terms, double value[TERMS], double *variance)
+/* The sum of squares left over, the values and the variance of the last of them (Cholesky); NaN: it is singular. */
+static double solve(const sums *s, double value[TERMS], double *variance)
 {
     double lower[TERMS][TERMS] = {{0.0}}, y[TERMS], left = s->squares;
-    for (int i = 0; i < terms; i++) {
+    for (int i = 0; i < TERMS; i++) {
         for (int j = 0; j <= i; j++) {
             double sum = s->matrix[i][j];
             for (int k = 0; k < j; k++)
@@ -44,13 +47,13 @@ static double solve(const sums *s, int terms, double value[TERMS], double *varia
         y[i] /= lower[i][i];
         left -= y[i] * y[i];
     }
-    for (int i = terms - 1; i >= 0; i--) {
+    for (int i = TERMS - 1; i >= 0; i--) {
         value[i] = y[i];
-        for (int k = i + 1; k < terms; k++)
+        for (int k = i + 1; k < TERMS; k++)
             value[i] -= lower[k][i] * value[k];
         value[i] /= lower[i][i];
     }
-    *variance = 1.0 / (lower[terms - 1][terms - 1] * lower[terms - 1][terms - 1]);
+    *variance = 1.0 / (lower[TERMS - 1][TERMS - 1] * lower[TERMS - 1][TERMS - 1]);
     return left;
 }
 
@@ -90,60 +93,84 @@ static sums over(const means *m, double scale, double pole)
     return s;
 }
 
-double nt_curve_film_at(const nt_curve_film *film, double z)
+double nt_curve_film_at(const nt_curve_bend *film, double z)
 {
-    const double above = fmax(z, film->contact) - film->pole;
-    return film->strength > 0.0 && above > 0.0 ? film->strength / above : 0.0;
+    return film->film != 0.0 ? film->film / (fmax(z, film->nearest) - film->pole) : 0.0;
 }
 
-/* How much more the mean of the blocks that the film is seen in scatters than that of independent ones. */
-static double correlation(const nt_curve_branch *branch, const sums *s, double size)
-{
-    const nt_curve_noise *noise = &branch->baseline.noise;
-    const double *film = s->matrix[TERMS - 1], n = film[0] * film[0] / film[TERMS - 1], white = noise->white / size;
-    return white > 0.0 ? (white + n * noise->flicker) / (white + noise->flicker) : 1.0;
-}
-
-nt_curve_film nt_curve_find_film(const nt_curve_branch *approach)
-{
-    nt_curve_film best = {0.0, 0.0, 0.0, 0.0};
-    long first = approach->repulsive > approach->lowest ? approach->repulsive : 0;
-    const double *z = approach->z, *force = approach->force;
-    for (long i = 0; i < approach->count; i++)
-        if (force[i] > approach->visible)
-            first = i + 1;
-    if (approach->count - first < 4 * NT_CURVE_FEWEST || approach->dips)
-        return best;
-    const means m = means_of(z + first, force + first, approach->count - first);
-    double least = INFINITY;
-    for (int i = 0; i < GRID; i++) {
-        const double scale = m.length * nearest * pow(farthest / nearest, (double)i / (GRID - 1));
-        const double pole = m.first - scale;
-        const sums s = over(&m, scale, pole);
-        double value[TERMS], line[TERMS], variance, ignored;
-        const double left = solve(&s, TERMS, value, &variance), straight = solve(&s, TERMS - 1, line, &ignored);
-        const double scatter = left / (double)(m.count - TERMS) * correlation(approach, &s, m.size);
-        if (left < least && (straight - left) / scatter > evident && value[TERMS - 1] > 0.0) {
-            least = left;
-            best = (nt_curve_film){value[TERMS - 1] * scale, pole, m.first, sqrt(variance * scatter) * scale};
-        }
-    }
-    return best;
-}
-
-int nt_curve_film_is_odd(const nt_curve_film *film, const double *z, const double *force, long count, double start)
+int nt_curve_film_is_odd(const nt_curve_bend *film, const double *z, const double *force, long count, double start)
 {
     long first = 0;
-    while (first < count && z[first] < fmax(start, film->contact))
+    while (first < count && z[first] < fmax(start, film->nearest))
         first++;
     if (count - first < 4 * NT_CURVE_FEWEST)
         return 0;
     const means m = means_of(z + first, force + first, count - first);
-    const double scale = film->contact - film->pole;
+    const double scale = film->nearest - film->pole;
     const sums s = over(&m, scale, film->pole);
-    double value[TERMS], variance;
-    const double left = solve(&s, TERMS, value, &variance);
+    double value[TERMS] = {0.0}, variance = 0.0;
+    const double left = solve(&s, value, &variance);
+    if (isnan(left))
+        return 0;
     const double sigma = sqrt(variance * left / (double)m.count), own = -value[TERMS - 1] * scale;
     const double doubt = 3.0 * sigma * scale;
-    return own > odd_least * film->strength && own < odd_most * film->strength && own > doubt;
+    return own > odd_least * film->film && own < odd_most * film->film && own > doubt;
+}
+
+/* Where the load's upper part says that contact begins (Hertz): z + F/k over F^(2/3) is a line, over F alone about one.
+ */
+static double contact_of(const nt_curve_branch *approach)
+{
+    const double most = nt_curve_highest(approach->force, approach->count);
+    double n = 0.0, x = 0.0, z = 0.0, xx = 0.0, xz = 0.0;
+    for (long i = 0; i < approach->count; i++) {
+        if (!(approach->force[i] > fmax(firm * most, approach->visible)))
+            continue;
+        const double root = cube_root(approach->force[i] / most), power = root * root;
+        n += 1.0;
+        x += power;
+        z += approach->z[i];
+        xx += power * power;
+        xz += power * approach->z[i];
+    }
+    const double spread = n * xx - x * x;
+    return spread > 0.0 ? (z * xx - x * xz) / spread : -(double)INFINITY;
+}
+
+/* How much the approach repels from z on outwards, out of contact, at most what a film could [N]. */
+static double repels(const nt_curve_branch *approach, double z)
+{
+    long low = 0, high = approach->count;
+    while (low < high) {
+        const long middle = low + (high - low) / 2;
+        if (approach->z[middle] < z)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const long end = low + OUTWARDS < approach->count ? low + OUTWARDS : approach->count;
+    double sum = 0.0;
+    for (long i = low; i < end; i++)
+        sum += (approach->force[i] + nt_curve_film_at(&approach->baseline.bend, approach->z[i])) / (double)(end - low);
+    return fmin(fmax(sum, 0.0), unseen * approach->visible);
+}
+
+double nt_curve_held_beyond_film(double depth, const nt_curve_reading *reading)
+{
+    const nt_curve_branch *approach = &reading->approach, *retract = &reading->retract;
+    const long block = retract->count / BLOCKS + 1;
+    const double contact = contact_of(approach);
+    double most = fmax(depth - repels(approach, fmax(retract->z[retract->lowest], contact)), 0.0);
+    for (int row = 0; row < reading->ruptures; row++) {
+        const nt_curve_rupture *rupture = &reading->rupture[row];
+        most = fmax(most, rupture->force - repels(approach, fmax(rupture->z, contact)));
+        most = fmax(most, rupture->step); /* no film tears */
+    }
+    for (long first = retract->lowest; first + block <= retract->count; first += block) {
+        double mean = 0.0;
+        for (long i = first; i < first + block; i++)
+            mean -= retract->force[i] / (double)block;
+        most = fmax(most, mean - repels(approach, fmax(retract->z[first], contact)));
+    }
+    return most;
 }

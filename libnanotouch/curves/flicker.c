@@ -155,30 +155,44 @@ static int pool(const nt_curve_spectrum spectra[2], nt_curve_noise *noise)
              both.likelihood + contradiction);
 }
 
-void nt_curve_share_noise(const nt_curve_segment *const segments[2], nt_curve_baseline baselines[2], double *work)
+/* Of the points that its baseline was fitted to. */
+static nt_curve_spectrum free_spectrum(const nt_curve_branch *branch)
 {
-    nt_curve_spectrum spectra[2];
-    for (int i = 0; i < 2; i++) {
-        const nt_curve_segment *segment = segments[i];
-        double *level = work, *rest = work + segment->count;
-        long count = 0;
-        nt_curve_baseline_of(baselines + i, segment->z, segment->count, level);
-        for (long k = 0; k < segment->count; k++)
-            if (segment->z[k] >= baselines[i].nearest)
-                rest[count++] = segment->force[k] - level[k];
-        spectra[i] = nt_curve_spectrum_of(rest, count);
-    }
+    long first = 0;
+    while (first < branch->count && branch->z[first] < branch->baseline.nearest)
+        first++;
+    return nt_curve_spectrum_of(branch->force + first, branch->count - first);
+}
+
+/* What level and slope are known to follows. */
+static void set_noise(nt_curve_branch *branch, const nt_curve_noise *noise, double points)
+{
+    nt_curve_baseline *baseline = &branch->baseline;
+    const double before = baseline->noise.white + points * baseline->noise.flicker;
+    baseline->noise = (nt_curve_noise){fmax(baseline->scatter * baseline->scatter, noise->white), noise->flicker};
+    const double now = baseline->noise.white + points * baseline->noise.flicker;
+    baseline->force_variance *= now / before;
+    baseline->slope_variance *= now / before;
+    nt_curve_know_events(branch);
+}
+
+void nt_curve_share_noise(nt_curve_branch *const branches[2])
+{
+    const nt_curve_spectrum spectra[2] = {free_spectrum(branches[0]), free_spectrum(branches[1])};
     nt_curve_noise shared;
     if (!pool(spectra, &shared))
         return;
-    for (int i = 0; i < 2; i++) {
-        nt_curve_baseline *baseline = baselines + i;
-        const double before = baseline->noise.white + spectra[i].points * baseline->noise.flicker;
-        baseline->noise = (nt_curve_noise){fmax(baseline->scatter * baseline->scatter, shared.white), shared.flicker};
-        const double now = baseline->noise.white + spectra[i].points * baseline->noise.flicker;
-        baseline->force_variance *= now / before;
-        baseline->slope_variance *= now / before;
-    }
+    for (int i = 0; i < 2; i++)
+        set_noise(branches[i], &shared, spectra[i].points);
+}
+
+void nt_curve_renew_noise(nt_curve_branch *branch)
+{
+    const nt_curve_spectrum spectrum = free_spectrum(branch);
+    nt_curve_noise noise;
+    noise.white = weigh_ratios(&spectrum, 1, &noise.flicker).white;
+    if (noise.white > 0.0)
+        set_noise(branch, &noise, spectrum.points);
 }
 
 NT_VARIANTS static void differences(const double force[], long count, double *restrict size)

@@ -17,7 +17,9 @@ typedef struct nt_curve_spectrum {
 
 nt_curve_spectrum nt_curve_spectrum_of(const double rest[], long count);
 /* Puts the 1/f noise of both free branches together in the baselines of both, unless they contradict each other, and
- * what level and slope are known to. work: 2 doubles for each point of the longer one. */
-void nt_curve_share_noise(const nt_curve_segment *const segments[2], nt_curve_baseline baselines[2], double *work);
+ * what level and slope are known to. */
+void nt_curve_share_noise(nt_curve_branch *const branches[2]);
+/* The noise of one free branch anew, once another baseline is taken off it. */
+void nt_curve_renew_noise(nt_curve_branch *branch);
 
 #endif

@@ -4,204 +4,24 @@
  * tilt and wave; where its level is further below the approach than drag explains, nothing is free. */
 #include "curves/joint.h"
 
+#include <math.h>
+
 #include "core/same_bits.h"
+#include "curves/bend.h"
 #include "curves/film.h"
 #include "curves/line.h"
 #include "curves/parts.h"
-#include "curves/pieces.h"
-#include "curves/robust.h"
+#include "curves/ruptures.h"
 
-enum {
-    LEAST_WIDTH = 3,
-    MOST_WIDTH = 12, /* points of the means on both sides of a step */
-    LONG_PIECE = 4   /* blocks: shorter ones may carry a step */
-};
-static const double clear = 5.0;                                  /* standard deviations of a step */
-static const double share_of_deepest = 0.01, share_of_rise = 0.6; /* that a rupture makes at least */
-static const double over_decoys = 1.5;                            /* times the largest jump that can be none */
-static const double sharp = 0.3;                                  /* of a step, that two points make where it begins */
 static const double deepest_of_many = 5.0; /* standard deviations that the lowest of many points may lie too low */
-static const double bent = 1.5;            /* times the noise: residuals of a line that is none */
 static const double far_part = 0.5;        /* of the travel: a tail as long is judged by itself */
 static const double own_tilt = 0.25;       /* of the travel, from where a tail may show a tilt of its own (drift) */
 static const double contradiction = 4.0;   /* standard deviations */
-
-/* The retraction over the approach's baseline, outside contact. */
-typedef struct outside {
-    const double *z;
-    double *over; /* force above the approach's baseline [N] */
-    long count;
-    double noise, deepest; /* [N] */
-    double decoy;          /* largest jump that can be no rupture [N] */
-    nt_curve_piece piece[NT_PIECE_BLOCKS];
-    int pieces;
-    long after[NT_CURVE_RUPTURES];   /* first point after each rupture */
-    double sigma[NT_CURVE_RUPTURES]; /* of its force [N] */
-} outside;
-
-static double clamp(double value, double low, double high)
-{
-    return fmin(fmax(value, low), high);
-}
-
-static long step_width(const outside *out)
-{
-    return (long)clamp((double)(out->count / NT_PIECE_BLOCKS + 1), LEAST_WIDTH, MOST_WIDTH);
-}
-
-/* Largest change between neighbouring means of the free approach, up or down. */
-static double approach_decoy(const nt_curve_branch *approach, long width)
-{
-    const long contact = approach->repulsive > approach->lowest ? approach->repulsive : approach->lowest;
-    double largest = 0.0;
-    for (long i = contact + 2 * width; i + width <= approach->count; i += width)
-        largest = fmax(largest, fabs(nt_curve_step_at(approach->force, i, width)));
-    return largest;
-}
-
-/* From where the force is no longer above the approach's baseline. */
-static outside outside_contact(const nt_curve_reading *reading, double *room)
-{
-    const nt_curve_branch *retract = &reading->retract;
-    long start = 0;
-    nt_curve_baseline_of(&retract->baseline, retract->z, retract->count, room);
-    nt_curve_baseline_of(&reading->approach.baseline, retract->z, retract->count, room + retract->count);
-    for (long i = 0; i < retract->count; i++) {
-        room[i] += retract->force[i] - room[retract->count + i];
-        start = room[i] > room[start] ? i : start;
-    }
-    while (start < retract->count && room[start] > reading->approach.visible)
-        start++;
-    outside found = {
-        .z = retract->z + start, .over = room + start, .count = retract->count - start, .noise = retract->noise};
-    for (long i = 0; i < found.count; i++)
-        found.deepest = fmax(found.deepest, -found.over[i]);
-    return found;
-}
-
-static double jump_between(const outside *out, const nt_curve_piece *piece)
-{
-    return piece[1].level - piece[0].level - piece[0].slope * (out->z[piece[1].first] - out->z[piece[0].first]);
-}
-
-/* A straight line through the points from .. end - 1, at z, and the standard deviation of that. */
-static nt_curve_measured line_at(const outside *out, long from, long end, double at)
-{
-    const double count = (double)(end - from);
-    double z = 0.0, force = 0.0, spread = 0.0, product = 0.0, squares = 0.0;
-    for (long k = from; k < end; k++) {
-        z += out->z[k] / count;
-        force += out->over[k] / count;
-    }
-    for (long k = from; k < end; k++) {
-        spread += (out->z[k] - z) * (out->z[k] - z);
-        product += (out->z[k] - z) * (out->over[k] - force);
-    }
-    const double slope = spread > 0.0 ? product / spread : 0.0;
-    for (long k = from; k < end; k++) {
-        const double rest = out->over[k] - force - slope * (out->z[k] - z);
-        squares += rest * rest / count;
-    }
-    if (count < LEAST_WIDTH || !(spread > 0.0) || squares > bent * bent * out->noise * out->noise)
-        return (nt_curve_measured){NAN, NAN};
-    return (nt_curve_measured){force + slope * (at - z), out->noise * sqrt(1.0 / count + (at - z) * (at - z) / spread)};
-}
-
-/* The force at z near the end of a piece: by all of the piece where it is straight, else by its last 12 points, else
- * the lowest of these. */
-static nt_curve_measured force_at(const outside *out, long first, long end, double z)
-{
-    nt_curve_measured found = line_at(out, first, end, z);
-    const long last = end - MOST_WIDTH > first ? end - MOST_WIDTH : first;
-    if (isnan(found.value))
-        found = line_at(out, last, end, z);
-    return isnan(found.value) ? (nt_curve_measured){nt_curve_lowest(out->over + last, end - last), out->noise} : found;
-}
-
-/* Mean of `count` points from `first` on, as far as there are such [N]. */
-static double mean_of(const outside *out, long first, long count)
-{
-    const long from = first > 0 ? first : 0, to = first + count < out->count ? first + count : out->count;
-    double sum = 0.0;
-    for (long i = from; i < to; i++)
-        sum += out->over[i];
-    return to > from ? sum / (double)(to - from) : (double)NAN;
-}
-
-/* Index of the first point after the largest step about the end of a piece; 0 where none makes a rupture. Most of the
- * rise over five blocks has to happen within one: a force that comes back gradually is no rupture. */
-static long rupture_after(const outside *out, long end, double *step)
-{
-    const long block = out->count / NT_PIECE_BLOCKS + 1, width = step_width(out), from = end - 2 * block;
-    long best = 0;
-    *step = 0.0;
-    for (long i = from > width ? from : width; i <= end + 2 * block && i + width <= out->count; i++) {
-        const double tried = nt_curve_step_at(out->over, i, width);
-        if (tried > *step) {
-            *step = tried;
-            best = i;
-        }
-    }
-    const double rise = mean_of(out, best + 2 * block, block) - mean_of(out, best - 3 * block, block);
-    const double least = fmax(clear * out->noise * sqrt(2.0 / (double)width), share_of_deepest * out->deepest);
-    const int seen = *step > least && *step > over_decoys * out->decoy && !(*step < share_of_rise * rise);
-    return seen ? best : 0;
-}
-
-/* What jumps downwards between long pieces, or anywhere on the free approach, is no rupture. */
-static double largest_decoy(const outside *out, const nt_curve_branch *approach)
-{
-    const long least = LONG_PIECE * (out->count / NT_PIECE_BLOCKS + 1);
-    const nt_curve_piece *piece = out->piece;
-    double largest = approach_decoy(approach, step_width(out));
-    for (int k = 0; k + 1 < out->pieces; k++)
-        if (piece[k].end - piece[k].first >= least && piece[k + 1].end - piece[k + 1].first >= least)
-            largest = fmax(largest, -jump_between(out, piece + k));
-    return largest;
-}
-
-/* The first point of the rise itself, which means on both sides smear. */
-static long edge_of(const outside *out, long after, double step)
-{
-    for (long i = after - step_width(out) > 1 ? after - step_width(out) : 1; i < after; i++)
-        if (out->over[i] - out->over[i - 1] > sharp * step + 2.0 * out->noise)
-            return i;
-    return after;
-}
-
-/* A row of the table: the force is that of the last point before the rise. */
-static void add_rupture(outside *out, const nt_curve_piece *piece, long after, double step, nt_curve_reading *reading)
-{
-    const int row = reading->ruptures;
-    if (row == NT_CURVE_RUPTURES)
-        return;
-    const long before = row ? out->after[row - 1] : 0, first = piece->first > before ? piece->first : before;
-    const nt_curve_measured force = force_at(out, first < after - 1 ? first : after - 1, after, out->z[after - 1]);
-    reading->rupture[row] = (nt_curve_rupture){out->z[after - 1], -force.value, piece->slope, step};
-    out->after[row] = after;
-    out->sigma[row] = force.sigma;
-    reading->ruptures++;
-}
-
-/* Fills the table of ruptures; returns the index from which on the tip may be free. */
-static long find_ruptures(outside *out, const nt_curve_branch *approach, nt_curve_reading *reading)
-{
-    long free = 0;
-    out->pieces = nt_curve_cut(out->z, out->over, out->count, out->piece);
-    out->decoy = largest_decoy(out, approach);
-    for (int k = 0; k + 1 < out->pieces; k++) {
-        double step;
-        const long after = rupture_after(out, out->piece[k].end, &step);
-        if (after <= free + step_width(out))
-            continue;
-        add_rupture(out, out->piece + k, edge_of(out, after, step), step, reading);
-        free = after;
-    }
-    return free;
-}
+static const double plausible = 0.1;       /* likelihood of a squeeze film that counts */
+static const double slow = 2.0;            /* times the visible force: drift makes no more of it */
 
 /* The depth at the lowest point, which noise picks as too deep: by the rupture that ends its piece, or by the piece. */
-static void refine_dip(const outside *out, nt_curve_reading *reading)
+static void refine_dip(const nt_curve_outside *out, nt_curve_reading *reading)
 {
     nt_curve_branch *retract = &reading->retract;
     const long lowest = retract->lowest - (retract->count - out->count);
@@ -214,18 +34,18 @@ static void refine_dip(const outside *out, nt_curve_reading *reading)
         return;
     const double level = nt_curve_branch_sigma(retract, retract->z[retract->lowest]); /* noise and baseline */
     const double known = sqrt(fmax(level * level - retract->noise * retract->noise, 0.0));
-    const int torn = row < reading->ruptures && (out->after[row] - lowest <= MOST_WIDTH ||
-                                                 out->piece[k].end >= out->after[row] - 2 * step_width(out));
+    const int torn = row < reading->ruptures && (out->after[row] - lowest <= NT_CURVE_MOST_WIDTH ||
+                                                 out->piece[k].end >= out->after[row] - 2 * nt_curve_step_width(out));
     const double z = retract->z[retract->lowest];
     const double over =
         nt_curve_baseline_at(&retract->baseline, z) - nt_curve_baseline_at(&reading->approach.baseline, z);
     const long before = row ? out->after[row - 1] : 0;
     const long first = out->piece[k].first > before ? out->piece[k].first : before;
     const long limit = row < reading->ruptures ? out->after[row] : out->count;
-    nt_curve_measured line = line_at(out, first, limit < out->piece[k].end ? limit : out->piece[k].end, z);
+    nt_curve_measured line = nt_curve_line_at(out, first, limit < out->piece[k].end ? limit : out->piece[k].end, z);
     if (isnan(line.value))
-        line = line_at(out, lowest - MOST_WIDTH > before ? lowest - MOST_WIDTH : before,
-                       lowest + MOST_WIDTH < limit ? lowest + MOST_WIDTH : limit, z);
+        line = nt_curve_line_at(out, lowest - NT_CURVE_MOST_WIDTH > before ? lowest - NT_CURVE_MOST_WIDTH : before,
+                                lowest + NT_CURVE_MOST_WIDTH < limit ? lowest + NT_CURVE_MOST_WIDTH : limit, z);
     nt_curve_measured better = {over - line.value, line.sigma};
     if (torn)
         better = (nt_curve_measured){reading->rupture[row].force, out->sigma[row]};
@@ -241,19 +61,29 @@ static nt_curve_wave shifted(const nt_curve_wave *wave, double by)
     return (nt_curve_wave){wave->period, wave->cosine * c + wave->sine * s, wave->sine * c - wave->cosine * s};
 }
 
+/* The same baseline seen from another z. */
+static nt_curve_baseline seen_from(const nt_curve_baseline *baseline, double z_mean)
+{
+    nt_curve_baseline found = *baseline;
+    const double shift = z_mean - baseline->z_mean, bow = baseline->bend.bow;
+    found.force += (baseline->slope + bow * shift) * shift;
+    found.slope += 2.0 * bow * shift;
+    found.wave = shifted(&baseline->wave, shift);
+    found.z_mean = z_mean;
+    return found;
+}
+
 /* The approach's baseline, `force` above it at z_mean, where its level is known to that variance. */
 static nt_curve_baseline beside(const nt_curve_baseline *approach, double z_mean, double force, double variance)
 {
-    nt_curve_baseline found = *approach;
-    found.force = approach->force + approach->slope * (z_mean - approach->z_mean) + force;
-    found.wave = shifted(&approach->wave, z_mean - approach->z_mean);
-    found.z_mean = z_mean;
+    nt_curve_baseline found = seen_from(approach, z_mean);
+    found.force += force;
     found.force_variance = variance;
     return found;
 }
 
 /* A line through the tail, over the approach's baseline. */
-static nt_curve_baseline tail_line(const outside *out, long from, double *room)
+static nt_curve_baseline tail_line(const nt_curve_outside *out, long from, double *room)
 {
     const long n = out->count - from;
     nt_curve_free tail = {room, room + n, room + 2 * n, room + 3 * n, room + 4 * n, room + 5 * n, n, 0.0, 0.0, 0.0};
@@ -268,7 +98,7 @@ static nt_curve_baseline tail_line(const outside *out, long from, double *room)
 
 /* The baseline of what lies beyond the last rupture: its own line where it is long or shows a tilt of its own, else its
  * level with the approach's tilt. */
-static nt_curve_baseline over_tail(const outside *out, long from, nt_curve_reading *reading, double *room)
+static nt_curve_baseline over_tail(const nt_curve_outside *out, long from, nt_curve_reading *reading, double *room)
 {
     const nt_curve_baseline *approach = &reading->approach.baseline;
     const nt_curve_baseline line = tail_line(out, from, room);
@@ -276,6 +106,7 @@ static nt_curve_baseline over_tail(const outside *out, long from, nt_curve_readi
     const double known = approach->noise.flicker + approach->noise.white / n; /* a longer record than the tail */
     nt_curve_baseline found = beside(approach, line.z_mean, line.force, fmax(line.force_variance, known));
     found.scatter = line.scatter;
+    found.nearest = out->z[from];
     reading->support = NT_CURVE_SHARED;
     const double length = (out->z[out->count - 1] - out->z[from]) / travel;
     const double doubt = sqrt(line.slope_variance + approach->slope_variance);
@@ -292,8 +123,7 @@ static void compare(const nt_curve_baseline *baseline, nt_curve_reading *reading
 {
     const nt_curve_baseline *approach = &reading->approach.baseline;
     const double z = baseline->z_mean, sigma = nt_curve_baseline_sigma(approach, z);
-    const double line = approach->force + approach->slope * (z - approach->z_mean); /* waves are common to both */
-    reading->offset = line - baseline->force;
+    reading->offset = seen_from(approach, z).force - baseline->force; /* waves are common to both */
     reading->offset_sigma = sqrt(sigma * sigma + baseline->force_variance);
 }
 
@@ -306,14 +136,14 @@ static nt_curve_baseline bound(const nt_curve *curve, double most, const nt_curv
 }
 
 /* How much the force grew between samples where the lowest point was torn off: no sample shows the last of it. */
-static double growth(const outside *out, const nt_curve_reading *reading)
+static double growth(const nt_curve_outside *out, const nt_curve_reading *reading)
 {
     const long lowest = reading->retract.lowest - (reading->retract.count - out->count);
     for (int row = 0; row < reading->ruptures; row++) {
         const long last = out->after[row] - 1;
-        if (last >= LEAST_WIDTH && last - lowest <= LEAST_WIDTH && lowest - last <= LEAST_WIDTH &&
-            reading->retract.dips)
-            return fmax(out->over[last - LEAST_WIDTH] - out->over[last], 0.0) / LEAST_WIDTH;
+        if (last >= NT_CURVE_LEAST_WIDTH && last - lowest <= NT_CURVE_LEAST_WIDTH &&
+            lowest - last <= NT_CURVE_LEAST_WIDTH && reading->retract.dips)
+            return fmax(out->over[last - NT_CURVE_LEAST_WIDTH] - out->over[last], 0.0) / NT_CURVE_LEAST_WIDTH;
     }
     return 0.0;
 }
@@ -336,18 +166,42 @@ static void widen(const nt_curve *curve, double most, double unseen, nt_curve_re
     reading->pull_off_most = dip->value + above + unseen;
 }
 
+/* By how much a bow of size 1 lowers the pull-off, over a baseline that it bent too [m^2]. */
+static double lowered_by_bow(const nt_curve_bend_doubts *doubts, const nt_curve_reading *reading)
+{
+    const nt_curve_branch *retract = &reading->retract;
+    const nt_curve_baseline *baseline = &retract->baseline;
+    const double z = retract->z[retract->lowest], there = z - doubts->middle, level = baseline->z_mean - doubts->middle;
+    if (reading->support == NT_CURVE_BOUND)
+        return there * there - doubts->half * doubts->half / 3.0;
+    if (reading->support == NT_CURVE_SHARED)
+        return there * there - level * level; /* the approach's tilt */
+    const double half = 0.5 * (retract->z[retract->count - 1] - baseline->nearest), away = z - baseline->z_mean;
+    return away * away - half * half / 3.0;
+}
+
+/* A bow that is not known well leaves the pull-off as uncertain; it may be a film instead where that is likely. */
+static void doubt_bow(const nt_curve_bend_doubts *doubts, nt_curve_reading *reading)
+{
+    const double lowered = lowered_by_bow(doubts, reading), doubt = doubts->bow_sigma * lowered;
+    if (doubts->film > plausible)
+        reading->pull_off_least -= fmax(reading->retract.baseline.bend.bow * lowered, 0.0);
+    reading->pull_off_sigma = hypotenuse(reading->pull_off_sigma, doubt);
+    reading->retract.dip.sigma = hypotenuse(reading->retract.dip.sigma, doubt);
+}
+
 /* What a squeeze film adds to the depth: taken off where the free retraction shows it too, else left open. */
-static void take_off_film(const outside *out, long free, nt_curve_reading *reading)
+static void take_off_film(const nt_curve_outside *out, double sigma, nt_curve_reading *reading)
 {
     nt_curve_branch *retract = &reading->retract;
     nt_curve_measured *dip = &retract->dip;
-    const nt_curve_film none = {0}, film = dip->value > 0.0 ? nt_curve_find_film(&reading->approach) : none;
-    if (!(film.strength > 0.0))
+    const nt_curve_bend *film = &reading->approach.baseline.bend;
+    if (film->film == 0.0 || !retract->dips)
         return;
-    const double z = retract->z[retract->lowest], there = fmin(nt_curve_film_at(&film, z), dip->value);
-    const double doubt = there * film.sigma / film.strength;
-    reading->pull_off_least = fmax(reading->pull_off_least - there - 2.0 * doubt, 0.0);
-    if (!nt_curve_film_is_odd(&film, out->z, out->over, out->count, free ? out->z[free] : out->z[0])) {
+    const double there = fmin(nt_curve_film_at(film, retract->z[retract->lowest]), dip->value);
+    const double doubt = there * sigma / nt_curve_film_at(film, film->nearest);
+    reading->pull_off_least -= there + 2.0 * doubt;
+    if (!nt_curve_film_is_odd(film, out->z, out->over, out->count, out->z[out->free])) {
         dip->sigma = hypotenuse(dip->sigma, there / sqrt(12.0));
         return;
     }
@@ -360,25 +214,52 @@ static void take_off_film(const outside *out, long free, nt_curve_reading *readi
     }
 }
 
-/* Whether all points of the retraction's own baseline lie beyond the last rupture. */
-static int is_free(const nt_curve_baseline *own, const outside *out, long free)
+/* A hold whose force declines slowly until it tears may be a constant one over drift. */
+static void doubt_decline(const nt_curve_outside *out, nt_curve_reading *reading)
 {
-    return free == 0 || out->z[free] < own->nearest;
+    const nt_curve_branch *retract = &reading->retract;
+    const long lowest = retract->lowest - (retract->count - out->count);
+    int row = 0;
+    while (row < reading->ruptures && out->after[row] <= lowest)
+        row++;
+    if (row == reading->ruptures || !retract->dips)
+        return;
+    const double torn = reading->rupture[row].force, decline = retract->dip.value - torn;
+    if (decline > 0.0 && decline < slow * reading->approach.visible)
+        reading->pull_off_least = fmin(reading->pull_off_least, torn);
 }
 
-void nt_curve_join(const nt_curve *curve, double *room, nt_curve_reading *reading)
+/* What the interval of the pull-off has to hold besides the baseline's offset. */
+static void leave_open(const nt_curve_outside *out, const nt_curve_bend_doubts *doubts, nt_curve_reading *reading)
+{
+    nt_curve_measured *dip = &reading->retract.dip;
+    const double before = reading->pull_off_least, depth = dip->value;
+    doubt_decline(out, reading);
+    take_off_film(out, doubts->film_sigma, reading);
+    doubt_bow(doubts, reading);
+    if (reading->retract.dips)
+        reading->pull_off_least = fmin(reading->pull_off_least, nt_curve_held_beyond_film(depth, reading));
+    reading->pull_off_least = reading->retract.dips ? fmax(reading->pull_off_least, 0.0) : 0.0;
+    dip->sigma = hypotenuse(dip->sigma, (before - reading->pull_off_least) / sqrt(12.0));
+}
+
+/* Whether all points of the retraction's own baseline lie beyond the last rupture. */
+static int is_free(const nt_curve_baseline *own, const nt_curve_outside *out)
+{
+    return out->free == 0 || out->z[out->free] < own->nearest;
+}
+
+/* Finds what the retraction's baseline rests on, and reads its events over the best there is. */
+static void join(const nt_curve *curve, const nt_curve_outside *out, double *room, nt_curve_reading *reading)
 {
     nt_curve_branch *retract = &reading->retract;
-    const long n = retract->count; /* room: 4 n for nt_curve_read_events, n for the force outside, 5 n for its tail */
-    outside out = outside_contact(reading, room + 4 * n);
+    const long n = retract->count; /* room: 4 n for nt_curve_read_events, 2 n for the force outside, 5 n for its tail */
     nt_curve_baseline baseline = retract->baseline;
-    if (out.count < NT_CURVE_FEWEST)
-        return;
-    const long free = find_ruptures(&out, &reading->approach, reading), count = out.count - free;
+    const long count = out->count - out->free;
     reading->support = NT_CURVE_TAIL;
-    const int own = is_free(&baseline, &out, free);
+    const int own = is_free(&baseline, out);
     if (!own && count >= NT_CURVE_FEWEST)
-        baseline = over_tail(&out, free + count / 20, reading, room + 5 * n);
+        baseline = over_tail(out, out->free + count / 20, reading, room + 6 * n);
     compare(&baseline, reading);
     const double offset = fmax(reading->offset, curve->least_drag); /* all of it drag, where that is unknown */
     const double most = curve->most_drag > 0.0 ? curve->most_drag : offset;
@@ -387,13 +268,25 @@ void nt_curve_join(const nt_curve *curve, double *room, nt_curve_reading *readin
         baseline = bound(curve, most, reading);
     }
     for (int i = 0; i < reading->ruptures; i++) {
-        nt_curve_rupture *rupture = &reading->rupture[i];
-        rupture->force +=
-            nt_curve_baseline_at(&baseline, rupture->z) - nt_curve_baseline_at(&reading->approach.baseline, rupture->z);
+        const double z = reading->rupture[i].z;
+        reading->rupture[i].force += nt_curve_baseline_at(&baseline, z) - nt_curve_baseline_at(&out->straight, z);
     }
     if (!own || reading->support == NT_CURVE_BOUND) /* another baseline than it was read with */
         nt_curve_read_events(&curve->retract, &baseline, retract->noise, room - 2 * n, retract);
-    refine_dip(&out, reading);
-    widen(curve, most, growth(&out, reading), reading);
-    take_off_film(&out, free, reading);
+    refine_dip(out, reading);
+    widen(curve, most, growth(out, reading), reading);
+}
+
+void nt_curve_join(const nt_curve *curve, const nt_curve_bend_doubts *doubts, nt_curve_outside *out, double *room,
+                   nt_curve_reading *reading)
+{
+    double *film = &reading->approach.baseline.bend.film;
+    const double strength = *film;
+    if (out->count < NT_CURVE_FEWEST)
+        return;
+    *film = 0.0; /* on the retraction it has the other sign */
+    nt_curve_renew_outside(out, reading);
+    join(curve, out, room, reading);
+    *film = strength;
+    leave_open(out, doubts, reading);
 }

@@ -3,10 +3,12 @@
 #ifndef NANOTOUCH_CURVES_JOINT_H
 #define NANOTOUCH_CURVES_JOINT_H
 
-#include "nanotouch/curves.h"
+#include "curves/bend.h"
+#include "curves/ruptures.h"
 
-/* Finds ruptures and the free tail of a retraction that was read over its own far half, and puts a better baseline in
- * its place where there is one. room: what is left of the caller's work. */
-void nt_curve_join(const nt_curve *curve, double *room, nt_curve_reading *reading);
+/* Puts a better baseline in the place of the retraction's own one where there is one, and says how wide that leaves the
+ * interval of the pull-off. room: what is left of the caller's work, with the force outside contact. */
+void nt_curve_join(const nt_curve *curve, const nt_curve_bend_doubts *doubts, nt_curve_outside *out, double *room,
+                   nt_curve_reading *reading);
 
 #endif

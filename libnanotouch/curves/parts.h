@@ -13,10 +13,14 @@ nt_status nt_curve_baseline_over(const nt_curve_segment *segment, const nt_curve
                                  double *work, nt_curve_baseline *baseline, nt_problem *problem);
 /* nt_curve_baseline_at of many. */
 void nt_curve_baseline_of(const nt_curve_baseline *baseline, const double z[], long count, double force[]);
+/* z and force over the baseline into the first 2 count doubles of work, z growing; 4 count more are scratch. */
+void nt_curve_order(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double *work);
 /* Reads a branch whose baseline and point noise [N] are known; z and force of *branch are the first 2 count doubles of
  * work, 4 count more are scratch. */
 void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseline *baseline, double noise,
                           double *work, nt_curve_branch *branch);
+/* What its events are known to, once its baseline is known better or worse. */
+void nt_curve_know_events(nt_curve_branch *branch);
 /* Fills the contact point of a reading from its first branch. scratch: 2 count doubles. */
 void nt_curve_find_contact(const nt_curve_branch *first, double spring_constant, double *scratch,
                            nt_curve_reading *reading);

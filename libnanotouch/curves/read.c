@@ -49,54 +49,128 @@ nt_status nt_curve_segment_check(const nt_curve_segment *segment, nt_problem *pr
     return NT_E_RANGE;
 }
 
-/* Baselines of both branches first, since they share their noise; *free: behind what is kept of the work. */
-static nt_status read_branches(const nt_curve *curve, const nt_curve_choice *choice, double **free,
-                               nt_curve_reading *reading, nt_problem *problem)
+/* How a branch is read. */
+typedef struct manner {
+    const nt_curve_choice *choice;
+    nt_problem *problem;
+} manner;
+
+/* Puts the bow of another baseline into one that was found without it. */
+static void add_bow(const nt_curve_baseline *from, nt_curve_baseline *baseline)
 {
-    const nt_curve_segment *segments[2] = {&curve->approach, &curve->retract};
-    nt_curve_branch *branches[2] = {&reading->approach, &reading->retract};
-    nt_curve_baseline baselines[2];
-    double noise[2];
-    int read = 0;
-    for (int i = 0; i < 2; i++) {
-        if (segments[i]->count < NT_CURVE_FEWEST)
-            continue;
-        nt_status status = nt_curve_segment_check(segments[i], problem);
-        if (status != NT_OK)
-            return status;
-        noise[i] = nt_curve_point_noise(segments[i]->force, segments[i]->count, *free);
-        status = nt_curve_baseline_over(segments[i], choice, noise[i], *free, baselines + i, problem);
-        if (status != NT_OK)
-            return status;
-        read++;
+    const double bow = from->bend.bow, x = baseline->z_mean - from->z_mean;
+    baseline->force += bow * x * x;
+    baseline->slope += 2.0 * bow * x;
+    baseline->bend.bow = bow;
+}
+
+/* A branch over its own baseline, its point noise known; bowed: a baseline whose bow it has too, or NULL. *free: where
+ * its arrays go, and is moved on behind them. */
+static nt_status read_branch(const nt_curve_segment *segment, const manner *how, const nt_curve_baseline *bowed,
+                             double **free, nt_curve_branch *branch)
+{
+    double *work = *free + 2 * segment->count;
+    nt_curve_segment level = *segment;
+    nt_curve_baseline baseline;
+    if (bowed) {
+        for (long i = 0; i < segment->count; i++) {
+            const double x = segment->z[i] - bowed->z_mean;
+            work[i] = segment->force[i] - bowed->bend.bow * x * x;
+        }
+        level.force = work;
+        work += segment->count;
     }
-    if (choice->kind == NT_CURVE_AUTO && read == 2)
-        nt_curve_share_noise(segments, baselines, *free);
-    for (int i = 0; i < 2; i++) {
-        if (segments[i]->count < NT_CURVE_FEWEST)
-            continue;
-        nt_curve_read_events(segments[i], baselines + i, noise[i], *free, branches[i]);
-        *free += 2 * segments[i]->count;
-    }
+    const nt_status status = nt_curve_baseline_over(&level, how->choice, branch->noise, work, &baseline, how->problem);
+    if (status != NT_OK)
+        return status;
+    if (bowed)
+        add_bow(bowed, &baseline);
+    nt_curve_read_events(segment, &baseline, branch->noise, *free, branch);
+    *free += 2 * segment->count;
     return NT_OK;
+}
+
+/* The retraction beside an approach that was read. A bow is even: what the free parts show is taken off the retraction
+ * too. kept: the approach's arrays; *free: behind them. */
+static nt_status judge(const nt_curve *curve, const manner *how, double *kept, double **free, nt_curve_reading *reading)
+{
+    nt_curve_branch *approach = &reading->approach, *retract = &reading->retract;
+    const nt_curve_segment *segment = &curve->retract;
+    const long n = segment->count;
+    double *room = *free + 2 * n, *outside = room + 4 * n, *work[2] = {kept, outside + 2 * n};
+    nt_curve_outside out = nt_curve_outside_contact(segment, outside, reading);
+    const long first = out.free + (out.free ? (out.count - out.free) / 20 : 0);
+    const nt_curve_branch tail = {
+        .z = out.z + first, .force = out.over + first, .count = out.count - first, .visible = approach->visible};
+    const nt_curve_bend_doubts doubts = nt_curve_unbend(&curve->approach, &tail, work, approach);
+    const int bowed = approach->baseline.bend.bow != 0.0;
+    const nt_status status = read_branch(segment, how, bowed ? &approach->baseline : NULL, free, retract);
+    if (status != NT_OK)
+        return status;
+    nt_curve_share_noise((nt_curve_branch *[2]){approach, retract});
+    reading->pull_off_least = reading->pull_off_most = retract->dip.value;
+    reading->pull_off_sigma = retract->dip.sigma;
+    nt_curve_join(curve, &doubts, &out, room, reading);
+    nt_curve_doubt_level(&doubts, approach);
+    return NT_OK;
+}
+
+/* One branch alone, or both without a look at the other. */
+static void judge_alone(const nt_curve *curve, const manner *how, double *work[2], nt_curve_reading *reading)
+{
+    const nt_curve_branch none = {.count = 0};
+    const nt_curve_measured no_dip = {NAN, NAN}, dip = reading->retract.count ? reading->retract.dip : no_dip;
+    reading->pull_off_least = reading->pull_off_most = dip.value;
+    reading->pull_off_sigma = dip.sigma;
+    if (how->choice->kind != NT_CURVE_AUTO || !reading->approach.count)
+        return;
+    const nt_curve_bend_doubts doubts = nt_curve_unbend(&curve->approach, &none, work, &reading->approach);
+    nt_curve_doubt_level(&doubts, &reading->approach);
+}
+
+/* Checks a segment, and its point noise; count 0 where it is none. */
+static nt_status prepare(const nt_curve_segment *segment, double *work, nt_curve_branch *branch, nt_problem *problem)
+{
+    if (segment->count < NT_CURVE_FEWEST)
+        return NT_OK;
+    const nt_status status = nt_curve_segment_check(segment, problem);
+    if (status != NT_OK)
+        return status;
+    branch->noise = nt_curve_point_noise(segment->force, segment->count, work);
+    branch->count = segment->count;
+    return NT_OK;
+}
+
+/* *free: moved on behind what is kept of the work. */
+static nt_status read_both(const nt_curve *curve, const manner *how, double **free, nt_curve_reading *reading)
+{
+    nt_curve_branch *approach = &reading->approach, *retract = &reading->retract;
+    double *kept = *free;
+    nt_status status = prepare(&curve->approach, *free, approach, how->problem);
+    if (status == NT_OK)
+        status = prepare(&curve->retract, *free, retract, how->problem);
+    if (status == NT_OK && approach->count)
+        status = read_branch(&curve->approach, how, NULL, free, approach);
+    if (status != NT_OK)
+        return status;
+    if (approach->count && retract->count && how->choice->kind == NT_CURVE_AUTO)
+        return judge(curve, how, kept, free, reading);
+    if (retract->count)
+        status = read_branch(&curve->retract, how, NULL, free, retract);
+    if (status == NT_OK)
+        judge_alone(curve, how, (double *[2]){kept, *free}, reading);
+    return status;
 }
 
 nt_status nt_curve_read(const nt_curve *curve, const nt_curve_choice *choice, double *work, nt_curve_reading *reading,
                         nt_problem *problem)
 {
     double *free = work;
-    *reading = (nt_curve_reading){.contact_point = {NAN, NAN}};
-    const nt_status status = read_branches(curve, choice, &free, reading, problem);
+    const manner how = {choice, problem};
+    *reading = (nt_curve_reading){.contact_point = {NAN, NAN}, .offset = NAN, .offset_sigma = NAN};
+    const nt_status status = read_both(curve, &how, &free, reading);
     if (status != NT_OK)
         return status;
-    reading->offset = reading->offset_sigma = NAN;
-    reading->pull_off_sigma = reading->retract.count ? reading->retract.dip.sigma : (double)NAN;
-    reading->pull_off_least = reading->pull_off_most =
-        reading->retract.count ? reading->retract.dip.value : (double)NAN;
-    if (choice->kind == NT_CURVE_AUTO && reading->approach.count && reading->retract.count)
-        nt_curve_join(curve, free, reading);
-    if (choice->kind == NT_CURVE_AUTO && reading->approach.count)
-        nt_curve_unbend(&curve->approach, work, free, &reading->approach);
     const nt_curve_branch *first = reading->approach.count ? &reading->approach : &reading->retract;
     if (first->count) {
         nt_curve_find_contact(first, curve->spring_constant, free, reading);

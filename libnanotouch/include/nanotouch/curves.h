@@ -74,7 +74,7 @@ typedef struct nt_curve_wave {
     double cosine, sine; /* [N]; both 0: no wave */
 } nt_curve_wave;
 
-/* What bends a free approach towards the sample: film/(max(z, nearest) - pole) + bow x^2. */
+/* What bends the line of a free cantilever: film/(max(z, nearest) - pole) + bow x^2. */
 typedef struct nt_curve_bend {
     double film;          /* [N m]; 0: no squeeze film is evident */
     double pole, nearest; /* z [m]; nearer than the latter it is not seen and goes on as it was there */
@@ -92,7 +92,7 @@ typedef struct nt_curve_baseline {
     nt_curve_noise noise;                  /* of the free cantilever; with NT_CURVE_AUTO that of both branches,
                                               unless they contradict each other */
     nt_curve_wave wave;
-    nt_curve_bend bend; /* of an approach beside its retraction */
+    nt_curve_bend bend; /* with NT_CURVE_AUTO: of an approach; its bow alone of the retraction beside it */
 } nt_curve_baseline;
 
 typedef enum nt_curve_baseline_kind {
@@ -192,7 +192,9 @@ typedef struct nt_curve_reading {
     nt_curve_measured contact_point;         /* their median [m]; their spread is in its sigma */
     nt_curve_support support;
     /* Depth of the retraction's lowest point if the tail is free, and if all of its offset is a tether that held to the
-     * end [N]: the two cannot be told apart. retract.dip.sigma contains the distance as that of a rectangular error. */
+     * end [N]: the two cannot be told apart. least is no more than the force of a rupture that ends a slow decline, and
+     * than what the approach does not repel by (a squeeze film). retract.dip.sigma contains the distances as those of
+     * rectangular errors. */
     double pull_off_least, pull_off_most; /* what it grows by from the last point before a rupture to the next is in */
     double pull_off_sigma;                /* standard uncertainty of both ends [N] */
     double offset;       /* of the tail below the approach [N]; NaN where there is no tail or no approach */

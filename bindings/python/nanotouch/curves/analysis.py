@@ -91,7 +91,7 @@ def analyse(curve: ForceCurve, *, baseline: Kind = "auto", drag: tuple[float, fl
         contact_points=read["contact_points"],
         pull_off_interval=_interval(*read["pull_off"]),
         ruptures=tuple(Rupture(*row) for row in read["ruptures"]),
-        notes=(*_notes(curve, approach, retract), *_tether_notes(read)),
+        notes=(*_notes(curve, approach, retract), *_interval_notes(read, pull_off)),
     )
 
 
@@ -161,22 +161,28 @@ def _interval(least: float, most: float, sigma: float) -> tuple[float, float]:
     return max(least - _GAUSSIAN * sigma, 0.0), most + _GAUSSIAN * sigma
 
 
-def _tether_notes(read: Mapping[str, Any]) -> list[str]:
-    """Why the pull-off is an interval, where it is a wide one."""
+def _interval_notes(read: Mapping[str, Any], depth: float) -> list[str]:
+    """Why the pull-off is an interval, where it is a wide one about the depth [N]."""
     least, most, _ = read["pull_off"]
     offset, sigma = read["offset"]
     between = f"the pull-off is {least * 1e9:.3g} to {most * 1e9:.3g} nN"
+    notes = []
     if read["support"] == _BOUND:
-        return [
+        notes.append(
             f"the retraction ends {offset * 1e9:.3g} nN below the approach, more than drag explains: nothing of it is "
             f"free; below the approach {between}"
-        ]
-    if most - least > 5.0 * sigma and most > 1.2 * least:
-        return [
+        )
+    elif most - depth > 5.0 * sigma and most > 1.2 * depth:
+        notes.append(
             f"the retraction ends {offset * 1e9:.3g} nN below the approach: a tether that holds to the end and drag or "
             f"an offset look the same, so {between}"
-        ]
-    return []
+        )
+    elif depth - least > max(5.0 * sigma, _DOUBTFUL * depth):
+        notes.append(
+            f"the approach repels where the retraction is held, as a squeeze film under the lever does, or the force "
+            f"declines before it tears, as drift makes it: {between}"
+        )
+    return notes
 
 
 def _notes(curve: ForceCurve, approach: Branch | None, retract: Branch | None) -> tuple[str, ...]:
@@ -186,14 +192,14 @@ def _notes(curve: ForceCurve, approach: Branch | None, retract: Branch | None) -
     ]
     notes += curve.meta.get("notes", ())
     if approach is not None and approach.baseline.bend is not None:
-        notes.append(_bend_note(approach))
+        notes.append(_bend_note(approach, retract is not None and retract.baseline.bend is not None))
     if retract is not None:
         notes += _baseline_notes(retract, curve.retract)
     return tuple(notes)
 
 
-def _bend_note(approach: Branch) -> str:
-    """What was taken off the approach besides a line, where its free part shows it."""
+def _bend_note(approach: Branch, both: bool) -> str:
+    """What was taken off the approach besides a line, where its free part shows it; `both`: off the retraction too."""
     baseline = approach.baseline
     bend = baseline.bend
     assert bend is not None
@@ -204,6 +210,7 @@ def _bend_note(approach: Branch) -> str:
         middle = 0.25 * float(approach.z[-1] - baseline.z_mean) ** 2
         parts.append(f"a bow of the baseline of {1e12 * abs(bend.bow) * middle:.2g} pN over half of its travel")
     told = f"{' and '.join(parts)} {'are' if len(parts) > 1 else 'is'} taken off the approach"
+    told += ", the bow off the retraction too" * both
     return told + "; in contact the film is not measured: its force there counts as unknown" * bool(bend.film)
 
 

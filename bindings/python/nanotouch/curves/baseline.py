@@ -33,7 +33,7 @@ class Wave:
 
 
 class Bend(NamedTuple):
-    """What bends a free approach towards the sample: ``film/(max(z, nearest) - pole) + bow (z - z_mean)^2`` [N].
+    """What bends the line of a free cantilever: ``film/(max(z, nearest) - pole) + bow (z - z_mean)^2`` [N].
 
     `film` [N m] is the repulsion of the fluid under the lever, `bow` [N/m^2] a curved baseline; 0 where there is none.
     """
@@ -67,7 +67,7 @@ class Baseline:
     wave : Wave or None
         Of interference.
     bend : Bend or None
-        Of an approach, where a squeeze film or a bow is evident.
+        Of an approach, where a squeeze film or a bow is evident; of the retraction beside it the same bow.
     """
 
     force: float
