@@ -242,6 +242,7 @@ set(nanotouch_sources_fit
     fit/halves.cpp
     fit/judgement.cpp
     fit/linear.cpp
+    fit/many.c
     fit/model.cpp
     fit/options.cpp
     fit/outcome.cpp

@@ -36,7 +36,9 @@ namespace
 constexpr int max_iterations = 100;
 constexpr double linear = 1e-9; // of s: over a step that small the branch is straight to the last bit
 constexpr double tight = 1e-12; // of the part of the branch between its folds
-constexpr long spacing = 4;     // points, of those that are searched one from the other
+constexpr long spacing = 8;     // points, of those that are searched one from the other
+constexpr long few = 32;        // points that are all searched so
+constexpr int together = 2;     // of Newton's steps, before those that have not settled are searched
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
@@ -187,24 +189,137 @@ nt_status ContactModel::at(double position, const Cubic &near, Place *place, Poi
     return NT_OK;
 }
 
-// Every so many points one after the other; those between from the cubic through them, each by itself, which a
-// processor computes side by side.
-nt_status ContactModel::points_at(const nt_fit_data &data, std::vector<Point> *points) const
+// Where the base stands at a position; unknown on the straight continuation.
+nt_status ContactModel::find(double position, const Cubic &near, Place *place) const
+{
+    *place = Place{};
+    const double base = position - value_[NT_FIT_CONTACT_POINT];
+    if (std::isnan(base))
+        return NT_E_NOT_FINITE;
+    if (base <= end_base_)
+        return NT_OK;
+    double s;
+    nt_fit_state state;
+    const nt_status status = search(base, near.at(position), &s, &state);
+    *place = {position, s, 1.0 / (state.indentation1 + compliance_ * state.F1), status == NT_OK};
+    return status;
+}
+
+// The last of every so many points is searched from those before; the others start from the cubic through these.
+nt_status ContactModel::start_block(const nt_fit_data &data, long first, Walk *walk, nt_fit_many *many) const
+{
+    const auto position = [&](long i) { return data.position[(first + i) * data.position_stride]; };
+    nt_status status = NT_OK;
+    const long count = many->at.count;
+    for (long start = 0; start < count && status == NT_OK; start += spacing) {
+        const long end = std::min(start + spacing, count);
+        Place next;
+        status = find(position(end - 1), Cubic(walk->before, walk->last, anywhere()), &next);
+        const Cubic between =
+            next.known ? Cubic(walk->last, next, anywhere()) : Cubic(walk->before, walk->last, anywhere());
+        for (long i = start; i < end; i++) {
+            const double base = position(i) - value_[NT_FIT_CONTACT_POINT];
+            if (std::isnan(base))
+                return NT_E_NOT_FINITE;
+            const bool is_held = base > end_base_;
+            many->base[i] = is_held ? base : end_base_;
+            many->at.s[i] = is_held ? std::max(between.at(position(i)), end_) : end_;
+            many->from[i] = position(i) - options_.tilt_position;
+        }
+        *walk = {walk->last, next};
+    }
+    return status;
+}
+
+// By Newton's method side by side; what does not settle, one by one.
+nt_status ContactModel::solve_block(nt_fit_many *many) const
+{
+    row_.many(&branch_, &many->at);
+    int far = nt_fit_many_step(many);
+    for (int i = 0; far && i < together; i++) {
+        nt_fit_many_move(many, end_);
+        row_.many(&branch_, &many->at);
+        far = nt_fit_many_step(many);
+    }
+    nt_status status = NT_OK;
+    for (int i = 0; far && i < many->at.count && status == NT_OK; i++) {
+        if (!nt_fit_many_moves(many, i))
+            continue;
+        nt_fit_state state;
+        status = search(many->base[i], many->at.s[i], &many->at.s[i], &state);
+        many->at.F[i] = state.F;
+        many->at.indentation[i] = state.indentation;
+        many->at.F1[i] = state.F1;
+        many->at.indentation1[i] = state.indentation1;
+        many->at.range[i] = state.range;
+        many->step[i] = 0.0;
+    }
+    return status;
+}
+
+nt_status ContactModel::write_block(const nt_fit_data &data, long first, const nt_fit_many &many, Points *points) const
+{
+    const auto write = [&](const double *from, std::vector<double> *to) {
+        std::copy_n(from, many.at.count, to->begin() + first);
+    };
+    write(many.force, &points->force);
+    write(many.at.indentation, &points->indentation);
+    write(many.by_modulus, &points->gradient[NT_FIT_EFFECTIVE_MODULUS]);
+    if (row_.parameter[NT_FIT_WORK_OF_ADHESION].name)
+        write(many.by_work, &points->gradient[NT_FIT_WORK_OF_ADHESION]);
+    if (row_.parameter[NT_FIT_COHESIVE_RANGE].name)
+        write(many.by_range, &points->gradient[NT_FIT_COHESIVE_RANGE]);
+    write(many.by_place, &points->gradient[NT_FIT_CONTACT_POINT]);
+    write(many.by_sensitivity, &points->gradient[NT_FIT_SENSITIVITY]);
+    write(many.from, &points->gradient[NT_FIT_FORCE_TILT]);
+    for (long i = first; i < first + many.at.count; i++) {
+        const double position = data.position[i * data.position_stride];
+        points->gradient[NT_FIT_FORCE_OFFSET][static_cast<std::size_t>(i)] = 1.0;
+        points->held[static_cast<std::size_t>(i)] = 1;
+        Point point;
+        if (position - value_[NT_FIT_CONTACT_POINT] > end_base_)
+            continue;
+        const nt_status status = at(position, Cubic({}, {}, end_), nullptr, &point);
+        if (status != NT_OK)
+            return status;
+        points->set(static_cast<std::size_t>(i), point);
+    }
+    return NT_OK;
+}
+
+nt_status ContactModel::one_by_one(const nt_fit_data &data, Points *points) const
+{
+    Walk walk;
+    nt_status status = NT_OK;
+    for (long i = 0; i < data.count && status == NT_OK; i++) {
+        Place next;
+        Point point;
+        status = at(data.position[i * data.position_stride], Cubic(walk.before, walk.last, anywhere()), &next, &point);
+        points->set(static_cast<std::size_t>(i), point);
+        walk = {walk.last, next};
+    }
+    return status;
+}
+
+nt_status ContactModel::points_at(const nt_fit_data &data, Points *points) const
 {
     points->resize(static_cast<std::size_t>(data.count));
-    const auto position = [&](long i) { return data.position[i * data.position_stride]; };
-    const auto point = [&](long i) { return &(*points)[static_cast<std::size_t>(i)]; };
-    Place before, last;
-    nt_status status = at(position(0), Cubic(before, last, anywhere()), &last, point(0));
-    for (long first = 0; first + 1 < data.count && status == NT_OK; first += spacing) {
-        const long end = std::min(first + spacing, data.count - 1);
-        Place next;
-        status = at(position(end), Cubic(before, last, anywhere()), &next, point(end));
-        const Cubic between = next.known ? Cubic(last, next, anywhere()) : Cubic(before, last, anywhere());
-        for (long i = first + 1; i < end && status == NT_OK; i++)
-            status = at(position(i), between, nullptr, point(i));
-        before = last;
-        last = next;
+    if (!row_.many || data.count < few)
+        return one_by_one(data, points);
+    Walk walk;
+    nt_fit_many many;
+    many.lever = {compliance_, value_[NT_FIT_SENSITIVITY], value_[NT_FIT_FORCE_OFFSET], value_[NT_FIT_FORCE_TILT]};
+    std::fill_n(many.at.range, NT_FIT_BLOCK, 0.0);
+    nt_status status = NT_OK;
+    for (long first = 0; first < data.count && status == NT_OK; first += NT_FIT_BLOCK) {
+        many.at.count = static_cast<int>(std::min<long>(NT_FIT_BLOCK, data.count - first));
+        status = start_block(data, first, &walk, &many);
+        if (status == NT_OK)
+            status = solve_block(&many);
+        if (status != NT_OK)
+            break;
+        nt_fit_many_show(&many);
+        status = write_block(data, first, many, points);
     }
     return status;
 }

@@ -2,6 +2,7 @@
 // The built-in contact laws with their analytic derivatives; private to fit/.
 #pragma once
 
+#include "fit/many.h"
 #include "fit/models/row.h"
 #include "model.hpp"
 
@@ -29,6 +30,11 @@ class Cubic
     double position_ = 0.0, s_, slope_ = 0.0, bend_ = 0.0, twist_ = 0.0;
 };
 
+// The last places that were searched one from the other.
+struct Walk {
+    Place before, last;
+};
+
 class ContactModel : public Model
 {
   public:
@@ -36,13 +42,18 @@ class ContactModel : public Model
     {
     }
     nt_status prepare(const Parameters &value) override;
-    nt_status points_at(const nt_fit_data &data, std::vector<Point> *points) const override;
+    nt_status points_at(const nt_fit_data &data, Points *points) const override;
     nt_status tear(Tear *tear) const override;
     nt_status travel(double force, double *travel) const override;
     void describe(double deepest, nt_fit_result *result) const override;
 
   private:
     nt_status at(double position, const Cubic &near, Place *place, Point *point) const;
+    nt_status one_by_one(const nt_fit_data &data, Points *points) const;
+    nt_status find(double position, const Cubic &near, Place *place) const;
+    nt_status start_block(const nt_fit_data &data, long first, Walk *walk, nt_fit_many *many) const;
+    nt_status solve_block(nt_fit_many *many) const;
+    nt_status write_block(const nt_fit_data &data, long first, const nt_fit_many &many, Points *points) const;
     double anywhere() const
     {
         return branch_.load_fold + branch_.unit;

@@ -129,7 +129,7 @@ nt_status CustomModel::differentiate(int parameter, const Array &indentation, Ar
     return status;
 }
 
-nt_status CustomModel::points_at(const nt_fit_data &data, std::vector<Point> *points) const
+nt_status CustomModel::points_at(const nt_fit_data &data, Points *points) const
 {
     const auto count = static_cast<std::size_t>(data.count);
     Array base(count), indentation, force, stiffness, slope;
@@ -141,9 +141,9 @@ nt_status CustomModel::points_at(const nt_fit_data &data, std::vector<Point> *po
         status = slope_at(indentation, scale, &stiffness);
     if (status != NT_OK)
         return status;
-    points->assign(count, Point{});
+    points->resize(count);
     for (std::size_t i = 0; i < count; i++) {
-        Point &point = (*points)[i];
+        Point point{};
         const double from = data.position[static_cast<long>(i) * data.position_stride] - options_.tilt_position;
         point.force = force[i] / s + value_[NT_FIT_FORCE_OFFSET] + value_[NT_FIT_FORCE_TILT] * from;
         point.indentation = indentation[i];
@@ -152,11 +152,12 @@ nt_status CustomModel::points_at(const nt_fit_data &data, std::vector<Point> *po
         point.gradient[NT_FIT_FORCE_OFFSET] = 1.0;
         point.gradient[NT_FIT_FORCE_TILT] = from;
         point.gradient[NT_FIT_SENSITIVITY] = -force[i] / s;
+        points->set(i, point);
     }
     for (int p = 0; p < options_.law->count && status == NT_OK; p++) {
         status = differentiate(p, indentation, &slope);
         for (std::size_t i = 0; i < count && status == NT_OK; i++)
-            (*points)[i].gradient[static_cast<std::size_t>(p)] = slope[i] / (s * (1.0 + compliance_ * stiffness[i]));
+            points->gradient[static_cast<std::size_t>(p)][i] = slope[i] / (s * (1.0 + compliance_ * stiffness[i]));
     }
     return status;
 }

@@ -14,7 +14,7 @@ class CustomModel : public Model
     {
     }
     nt_status prepare(const Parameters &value) override;
-    nt_status points_at(const nt_fit_data &data, std::vector<Point> *points) const override;
+    nt_status points_at(const nt_fit_data &data, Points *points) const override;
     nt_status tear(Tear *tear) const override;
     nt_status travel(double force, double *travel) const override;
     void describe(double deepest, nt_fit_result *result) const override;

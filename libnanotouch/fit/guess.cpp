@@ -80,12 +80,12 @@ double median_contact_point(const Model &model, const std::vector<Sample> &sampl
 double misfit(const Model &model, const std::vector<Sample> &sample)
 {
     const nt_fit_data data{&sample[0].position, nullptr, static_cast<long>(sample.size()), 2, 2};
-    std::vector<Point> points;
+    Points points;
     if (model.points_at(data, &points) != NT_OK)
         return std::numeric_limits<double>::infinity();
     double sum = 0.0;
     for (std::size_t i = 0; i < sample.size(); i++)
-        sum += std::fabs(points[i].force - sample[i].force);
+        sum += std::fabs(points.force[i] - sample[i].force);
     return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 

@@ -25,4 +25,22 @@ std::unique_ptr<Model> Model::make(const nt_fit_options &options)
     return std::make_unique<ContactModel>(options);
 }
 
+void Points::resize(std::size_t count)
+{
+    force.resize(count);
+    indentation.resize(count);
+    held.resize(count);
+    for (std::vector<double> &slope : gradient)
+        slope.resize(count);
+}
+
+void Points::set(std::size_t i, const Point &point)
+{
+    force[i] = point.force;
+    indentation[i] = point.indentation;
+    held[i] = point.held;
+    for (std::size_t p = 0; p < NT_FIT_PARAMETERS; p++)
+        gradient[p][i] = point.gradient[p];
+}
+
 } // namespace nanotouch

@@ -25,6 +25,19 @@ struct Point {
     bool held;
 };
 
+// Many of them, an array each.
+struct Points {
+    std::vector<double> force, indentation;
+    std::array<std::vector<double>, NT_FIT_PARAMETERS> gradient;
+    std::vector<char> held;
+    std::size_t size() const
+    {
+        return force.size();
+    }
+    void resize(std::size_t count);
+    void set(std::size_t i, const Point &point);
+};
+
 // Position of the base at which the tip is torn off, and its derivatives.
 struct Tear {
     double position;
@@ -42,7 +55,7 @@ class Model
     virtual nt_status prepare(const Parameters &value) = 0;
 
     // The model at the position of every point.
-    virtual nt_status points_at(const nt_fit_data &data, std::vector<Point> *points) const = 0;
+    virtual nt_status points_at(const nt_fit_data &data, Points *points) const = 0;
 
     // NT_E_UNSUPPORTED for a law without adhesion.
     virtual nt_status tear(Tear *tear) const = 0;

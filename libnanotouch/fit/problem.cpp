@@ -135,13 +135,14 @@ void Residuals::store_points()
 {
     const std::size_t count = points_.size();
     for (std::size_t i = 0; i < count; i++)
-        residual_[i] = (points_[i].force - data_.force[static_cast<long>(i) * data_.force_stride]) / unit_;
+        residual_[i] = (points_.force[i] - data_.force[static_cast<long>(i) * data_.force_stride]) / unit_;
     for (int j = 0; j < coordinates_.size(); j++) {
         const auto p = static_cast<std::size_t>(coordinates_.parameter(j));
         const double factor = factor_[static_cast<std::size_t>(j)];
+        const double *gradient = points_.gradient[p].data();
         double *slope = column(j);
         for (std::size_t i = 0; i < count; i++)
-            slope[i] = points_[i].gradient[p] * factor;
+            slope[i] = gradient[i] * factor;
     }
 }
 

@@ -102,7 +102,7 @@ class Residuals : public ceres::EvaluationCallback
     {
         return *model_;
     }
-    const std::vector<Point> &points() const
+    const Points &points() const
     {
         return points_;
     } // of the data, where the residuals are valid
@@ -131,7 +131,7 @@ class Residuals : public ceres::EvaluationCallback
     long count_ = 0;
     std::vector<double> x_, seen_; // seen: where the residuals are those of
     std::vector<double> residual_, gradient_, lowest_, highest_;
-    std::vector<Point> points_;
+    Points points_;
     std::vector<int> known_; // coordinates with a datum of their own
     bool valid_ = false, is_seen_ = false, walls_ = false, met_bound_ = false;
 };

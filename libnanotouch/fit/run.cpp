@@ -238,16 +238,15 @@ void write_result(const nt_fit_options &options, const Found &found, nt_fit_resu
 }
 
 // Derivatives by the parameters themselves, in SI.
-void write_points(const nt_fit_options &options, const double *value, const std::vector<Point> &points,
-                  nt_fit_point *written)
+void write_points(const nt_fit_options &options, const double *value, const Points &points, nt_fit_point *written)
 {
     Parameters per;
     for (int p = 0; p < NT_FIT_PARAMETERS; p++)
         per[static_cast<std::size_t>(p)] = is_logarithmic(options, p) ? 1.0 / value[p] : 1.0;
     for (std::size_t i = 0; i < points.size(); i++) {
-        written[i] = {points[i].force, points[i].indentation, {}, points[i].held};
+        written[i] = {points.force[i], points.indentation[i], {}, points.held[i]};
         for (std::size_t p = 0; p < NT_FIT_PARAMETERS; p++)
-            written[i].gradient[p] = points[i].gradient[p] * per[p];
+            written[i].gradient[p] = points.gradient[p][i] * per[p];
     }
 }
 
@@ -349,7 +348,7 @@ nt_status nt_fit_model_n(const nt_fit_options *options, const double value[NT_FI
         return NT_E_ARGUMENT;
     try {
         std::unique_ptr<nanotouch::Model> model;
-        std::vector<nanotouch::Point> points;
+        nanotouch::Points points;
         nt_status status = prepare(options, value, &model);
         if (status == NT_OK)
             status = model->points_at(*data, &points);

@@ -9,8 +9,8 @@ namespace nanotouch
 
 struct Found {
     nt_fit_result result;
-    double variance, cost;     // of a residual, and the sum of all squares, in the residuals' unit
-    std::vector<Point> points; // of the model at the result
+    double variance, cost; // of a residual, and the sum of all squares, in the residuals' unit
+    Points points;         // of the model at the result
 };
 
 // Nothing about the fit outlives this object.

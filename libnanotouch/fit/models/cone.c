@@ -12,6 +12,6 @@ static const nt_fit_quantity parameters[NT_FIT_OWN] = {NT_FIT_MODULUS};
 NT_FIT_ROW(cone, .words.name = "cone", .words.title = "Sneddon's cone", .words.law = "2/pi E* tan(psi) delta^2",
            .words.valid = "sharp cone, no adhesion, elastic half-space", .words.scaling = "E* goes as 1/tan of it",
            .words.tip = "cone", .words.sides = 0, .words.exponent = 2.0, .words.pull_off = 0.0, .words.lambda = 0.0,
-           .parameter = parameters, .held = 0U, .prepare = prepare, .at = nt_fit_sharp_at,
+           .parameter = parameters, .held = 0U, .prepare = prepare, .at = nt_fit_sharp_at, .many = NULL,
            .derive = nt_fit_sharp_derive, .indentation = nt_fit_sharp_indentation, .contact = nt_fit_sharp_contact,
            .shape = nt_fit_sharp_shape, .doubts = nt_fit_no_doubt);

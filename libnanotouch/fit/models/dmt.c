@@ -22,5 +22,6 @@ NT_FIT_ROW(dmt, .words.name = "dmt", .words.title = "DMT", .words.law = "4/3 E* 
            .words.valid = "paraboloid, stiff with a long range of adhesion (lambda below 0.05), " NT_FIT_SMALL,
            .words.scaling = "E* goes as 1/sqrt(R), w as 1/R", .words.tip = "paraboloid", .words.sides = -1,
            .words.exponent = 1.5, .words.pull_off = 2.0, .words.lambda = 0.001, .parameter = parameters, .held = 0U,
-           .prepare = prepare, .at = nt_fit_power_at, .derive = nt_fit_derive_adhesive, .indentation = indentation_at,
-           .contact = nt_fit_paraboloid_contact, .shape = NULL, .doubts = nt_fit_paraboloid_doubts);
+           .prepare = prepare, .at = nt_fit_power_at, .many = nt_fit_power_many, .derive = nt_fit_derive_adhesive,
+           .indentation = indentation_at, .contact = nt_fit_paraboloid_contact, .shape = NULL,
+           .doubts = nt_fit_paraboloid_doubts);

@@ -33,5 +33,5 @@ NT_FIT_ROW(hertz, .words.name = "hertz", .words.title = "Hertz", .words.law = "4
            .words.valid = "paraboloid, no adhesion, " NT_FIT_SMALL, .words.scaling = "E* goes as 1/sqrt(R), w as 1/R",
            .words.tip = "paraboloid", .words.sides = -1, .words.exponent = 1.5, .words.pull_off = 0.0,
            .words.lambda = 0.0, .parameter = parameters, .held = 0U, .prepare = prepare, .at = nt_fit_power_at,
-           .derive = derive, .indentation = indentation_at, .contact = nt_fit_paraboloid_contact, .shape = shape,
-           .doubts = nt_fit_paraboloid_doubts);
+           .many = nt_fit_power_many, .derive = derive, .indentation = indentation_at,
+           .contact = nt_fit_paraboloid_contact, .shape = shape, .doubts = nt_fit_paraboloid_doubts);

@@ -30,6 +30,19 @@ static nt_fit_state at(const nt_fit_branch *branch, double s)
     };
 }
 
+NT_VARIANTS static void many(const nt_fit_branch *branch, nt_fit_block *at)
+{
+    const double load = branch->load, unit = branch->indentation;
+    const int count = at->count;
+    for (int i = 0; i < count; i++) {
+        const double s = at->s[i], s2 = s * s, s3 = s2 * s;
+        at->F[i] = load * (s3 * s3 - SQRT_6 * s3);
+        at->indentation[i] = unit * (s * s3 - 4.0 / SQRT_6 * s);
+        at->F1[i] = load * (6.0 * s3 * s2 - 3.0 * SQRT_6 * s2);
+        at->indentation1[i] = unit * (4.0 * s3 - 4.0 / SQRT_6);
+    }
+}
+
 static nt_status indentation_at(const nt_fit_branch *branch, double force, double *indentation)
 {
     return nt_jkr_indentation(&branch->law.maugis.contact, force, NT_BRANCH_STABLE, indentation);
@@ -41,5 +54,5 @@ NT_FIT_ROW(jkr, .words.name = "jkr", .words.title = "JKR",
            .words.valid = "paraboloid, soft with a short range of adhesion (lambda above 5), " NT_FIT_SMALL,
            .words.scaling = "E* goes as 1/sqrt(R), w as 1/R", .words.tip = "paraboloid", .words.sides = -1,
            .words.exponent = 1.5, .words.pull_off = 1.5, .words.lambda = 20.0, .parameter = parameters, .held = 0U,
-           .prepare = prepare, .at = at, .derive = nt_fit_derive_adhesive, .indentation = indentation_at,
+           .prepare = prepare, .at = at, .many = many, .derive = nt_fit_derive_adhesive, .indentation = indentation_at,
            .contact = nt_fit_paraboloid_contact, .shape = NULL, .doubts = nt_fit_paraboloid_doubts);

@@ -60,5 +60,5 @@ NT_FIT_ROW(layer, .words.name = "layer", .words.title = "paraboloid on a layer",
            .words.law = "4/3 E* sqrt(R) delta^(3/2) C(sqrt(R delta)/t)", .words.valid = "paraboloid, " NT_FIT_BONDED,
            .words.scaling = "E* goes as 1/sqrt(R) or faster", .words.tip = "paraboloid", .words.sides = -1,
            .words.exponent = 0.0, .words.pull_off = 0.0, .words.lambda = 0.0, .parameter = parameters,
-           .held = 1U << NT_FIT_FOURTH, .prepare = prepare, .at = at, .derive = nt_fit_layer_derive,
+           .held = 1U << NT_FIT_FOURTH, .prepare = prepare, .at = at, .many = NULL, .derive = nt_fit_layer_derive,
            .indentation = indentation_at, .contact = contact, .shape = shape, .doubts = doubts);

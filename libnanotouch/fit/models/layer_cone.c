@@ -54,5 +54,5 @@ NT_FIT_ROW(layer_cone, .words.name = "layer_cone", .words.title = "cone on a lay
            .words.law = "2/pi E* tan(psi) delta^2 C(delta tan(psi)/t)", .words.valid = "sharp cone, " NT_FIT_BONDED,
            .words.scaling = "E* goes as 1/tan of it or faster", .words.tip = "cone", .words.sides = 0,
            .words.exponent = 0.0, .words.pull_off = 0.0, .words.lambda = 0.0, .parameter = parameters,
-           .held = 1U << NT_FIT_FOURTH, .prepare = prepare, .at = at, .derive = nt_fit_layer_derive,
+           .held = 1U << NT_FIT_FOURTH, .prepare = prepare, .at = at, .many = NULL, .derive = nt_fit_layer_derive,
            .indentation = indentation_at, .contact = contact, .shape = shape, .doubts = nt_fit_layer_doubts);

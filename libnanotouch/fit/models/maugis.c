@@ -28,12 +28,12 @@ static nt_status prepare(const nt_fit_options *options, const double *value, nt_
     return NT_OK;
 }
 
-static nt_fit_state in_contact(const nt_fit_branch *branch, double s)
+static inline nt_fit_state in_contact(const nt_fit_branch *branch, double s)
 {
     const double lambda = branch->lambda;
     const nt_maugis_functions f = nt_maugis_functions_at(sqrt(s));
     const nt_maugis_equilibrium at = nt_maugis_equilibrium_of(lambda, f);
-    const double q = fmin(4.0 / 3.0 * lambda * lambda * f.g2 * at.b, 1.0); /* rounding only */
+    const double exact = 4.0 / 3.0 * lambda * lambda * f.g2 * at.b, q = exact < 1.0 ? exact : 1.0; /* rounding only */
     const double r = (1.0 + q) / (2.0 - q), a2 = at.a * at.a;
     const double load =
         at.P * (1.0 - 2.0 * r) - a2 * at.a * (1.0 + r); /* lambda dP/dlambda, dd/dlambda at constant y */
@@ -66,6 +66,36 @@ static nt_fit_state at(const nt_fit_branch *branch, double s)
     return s < 0.0 ? apart(branch, s) : in_contact(branch, s);
 }
 
+static inline void put(const nt_fit_state *state, nt_fit_block *block, int i)
+{
+    block->F[i] = state->F;
+    block->indentation[i] = state->indentation;
+    block->F1[i] = state->F1;
+    block->indentation1[i] = state->indentation1;
+    block->range[i] = state->range;
+}
+
+/* As if all were in contact. */
+NT_VARIANTS static void many_in_contact(const nt_fit_branch *of, nt_fit_block *block)
+{
+    const nt_fit_branch branch = {.lambda = of->lambda, .load = of->load, .indentation = of->indentation};
+    const int count = block->count;
+    for (int i = 0; i < count; i++) {
+        const nt_fit_state state = in_contact(&branch, block->s[i] > 0.0 ? block->s[i] : 0.0);
+        put(&state, block, i);
+    }
+}
+
+static void many(const nt_fit_branch *branch, nt_fit_block *block)
+{
+    many_in_contact(branch, block);
+    for (int i = 0; i < block->count; i++)
+        if (block->s[i] < 0.0) {
+            const nt_fit_state state = apart(branch, block->s[i]);
+            put(&state, block, i);
+        }
+}
+
 static nt_status indentation_at(const nt_fit_branch *branch, double force, double *indentation)
 {
     return nt_maugis_indentation(&branch->law.maugis, force, NT_BRANCH_STABLE, indentation, NULL);
@@ -77,5 +107,5 @@ NT_FIT_ROW(maugis, .words.name = "maugis", .words.title = "Maugis-Dugdale",
            .words.valid = "paraboloid, every lambda, " NT_FIT_SMALL, .words.scaling = "E* goes as 1/sqrt(R), w as 1/R",
            .words.tip = "paraboloid", .words.sides = -1, .words.exponent = 1.5, .words.pull_off = 1.75,
            .words.lambda = 0.0, .parameter = parameters, .held = 1U << NT_FIT_COHESIVE_RANGE, .prepare = prepare,
-           .at = at, .derive = nt_fit_derive_adhesive, .indentation = indentation_at,
+           .at = at, .many = many, .derive = nt_fit_derive_adhesive, .indentation = indentation_at,
            .contact = nt_fit_paraboloid_contact, .shape = NULL, .doubts = nt_fit_paraboloid_doubts);

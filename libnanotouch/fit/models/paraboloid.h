@@ -3,6 +3,7 @@
 #ifndef NANOTOUCH_FIT_MODELS_PARABOLOID_H
 #define NANOTOUCH_FIT_MODELS_PARABOLOID_H
 
+#include "core/variants.h"
 #include "fit/models/row.h"
 
 #define NT_FIT_SMALL "contact radius much smaller than R, elastic half-space"
@@ -22,6 +23,19 @@ static inline nt_fit_state nt_fit_power_at(const nt_fit_branch *branch, double s
 {
     const double slope = branch->prefactor * sqrt(s); /* F/delta */
     return (nt_fit_state){.F = slope * s - branch->pull_off, .indentation = s, .F1 = 1.5 * slope, .indentation1 = 1.0};
+}
+
+NT_VARIANTS static inline void nt_fit_power_many(const nt_fit_branch *branch, nt_fit_block *at)
+{
+    const double prefactor = branch->prefactor, pull_off = branch->pull_off;
+    const int count = at->count;
+    for (int i = 0; i < count; i++) {
+        const double s = at->s[i], slope = prefactor * sqrt(s); /* F/delta */
+        at->F[i] = slope * s - pull_off;
+        at->indentation[i] = s;
+        at->F1[i] = 1.5 * slope;
+        at->indentation1[i] = 1.0;
+    }
 }
 
 /* The scaling of docs/fit.md; the third is 0 but for Maugis-Dugdale. */

@@ -49,5 +49,5 @@ NT_FIT_ROW(punch, .words.name = "punch", .words.title = "Sneddon's flat punch", 
            .words.valid = "rigid flat punch of radius a, square to the sample, no adhesion, elastic half-space",
            .words.scaling = "E* goes as 1/R", .words.tip = "punch", .words.sides = -1, .words.exponent = 1.0,
            .words.pull_off = 0.0, .words.lambda = 0.0, .parameter = parameters, .held = 0U, .prepare = prepare,
-           .at = at, .derive = derive, .indentation = indentation_at, .contact = contact, .shape = shape,
+           .at = at, .many = NULL, .derive = derive, .indentation = indentation_at, .contact = contact, .shape = shape,
            .doubts = nt_fit_no_doubt);

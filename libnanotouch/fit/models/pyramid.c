@@ -14,5 +14,5 @@ NT_FIT_ROW(pyramid, .words.name = "pyramid", .words.title = "four-sided pyramid"
            .words.valid = "sharp pyramid of four sides, no adhesion, elastic half-space",
            .words.scaling = "E* goes as 1/tan of it", .words.tip = "cone", .words.sides = 4, .words.exponent = 2.0,
            .words.pull_off = 0.0, .words.lambda = 0.0, .parameter = parameters, .held = 0U, .prepare = prepare,
-           .at = nt_fit_sharp_at, .derive = nt_fit_sharp_derive, .indentation = nt_fit_sharp_indentation,
+           .at = nt_fit_sharp_at, .many = NULL, .derive = nt_fit_sharp_derive, .indentation = nt_fit_sharp_indentation,
            .contact = nt_fit_sharp_contact, .shape = nt_fit_sharp_shape, .doubts = nt_fit_no_doubt);

@@ -39,6 +39,15 @@ typedef struct nt_fit_state {
     double range; /* lambda dF/dlambda at constant indentation [N] (contact_model.cpp); of a layer -t dF/dt */
 } nt_fit_state;
 
+enum { NT_FIT_BLOCK = 64 };
+
+/* The same at so many places s at once. */
+typedef struct nt_fit_block {
+    int count;
+    double s[NT_FIT_BLOCK], F[NT_FIT_BLOCK], indentation[NT_FIT_BLOCK], F1[NT_FIT_BLOCK], indentation1[NT_FIT_BLOCK],
+        range[NT_FIT_BLOCK];
+} nt_fit_block;
+
 typedef struct nt_fit_row {
     nt_fit_description words;
     const nt_fit_quantity *parameter; /* NT_FIT_OWN of them, in the order of nt_fit_parameter; name NULL: not there */
@@ -47,6 +56,8 @@ typedef struct nt_fit_row {
     nt_status (*prepare)(const nt_fit_options *options, const double *value, nt_fit_branch *branch);
     /* At s > grip_fold. */
     nt_fit_state (*at)(const nt_fit_branch *branch, double s);
+    /* The same of a block, of paraboloids; range stays 0 where the law has none. NULL: point by point. */
+    void (*many)(const nt_fit_branch *branch, nt_fit_block *block);
     /* dF/dparameter at constant indentation, by the logarithm of those with minimum > 0; stiffness is dF/ddelta. */
     void (*derive)(const nt_fit_state *state, double stiffness, double own[NT_FIT_OWN]);
     /* On the stable branch; NT_E_NO_SOLUTION where the force is too low. */
@@ -64,10 +75,10 @@ const nt_fit_row *nt_fit_row_of(nt_fit_model model);
 
 /* A row, field by field: NT_FIT_ROW(hertz, .words.name = "hertz", ...). The macro takes as many arguments as a row has
  * fields: one that is forgotten does not compile. */
-#define NT_FIT_ROW(model, f1, f2, f3, f4, f5, f6, f7, f8, f9, f10, f11, f12, f13, f14, f15, f16, f17, f18, f19)        \
+#define NT_FIT_ROW(model, f1, f2, f3, f4, f5, f6, f7, f8, f9, f10, f11, f12, f13, f14, f15, f16, f17, f18, f19, f20)   \
     extern const nt_fit_row nt_fit_row_##model;                                                                        \
-    const nt_fit_row nt_fit_row_##model = {f1,  f2,  f3,  f4,  f5,  f6,  f7,  f8,  f9, f10,                            \
-                                           f11, f12, f13, f14, f15, f16, f17, f18, f19}
+    const nt_fit_row nt_fit_row_##model = {f1,  f2,  f3,  f4,  f5,  f6,  f7,  f8,  f9,  f10,                           \
+                                           f11, f12, f13, f14, f15, f16, f17, f18, f19, f20}
 
 /* Parameters that models share. */
 #define NT_FIT_MODULUS {"effective_modulus", "Pa", NAN, 1.0, 1e14}

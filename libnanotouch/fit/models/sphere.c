@@ -42,5 +42,5 @@ NT_FIT_ROW(sphere, .words.name = "sphere", .words.title = "Sneddon's sphere",
            .words.valid = "sphere, no adhesion, contact radius up to R/2 (strains of 10 %), elastic half-space",
            .words.scaling = "E* goes as 1/sqrt(R)", .words.tip = "sphere", .words.sides = -1, .words.exponent = 1.5,
            .words.pull_off = 0.0, .words.lambda = 0.0, .parameter = parameters, .held = 0U, .prepare = prepare,
-           .at = at, .derive = nt_fit_derive_linear, .indentation = indentation_at, .contact = contact, .shape = shape,
-           .doubts = nt_fit_paraboloid_doubts);
+           .at = at, .many = NULL, .derive = nt_fit_derive_linear, .indentation = indentation_at, .contact = contact,
+           .shape = shape, .doubts = nt_fit_paraboloid_doubts);
