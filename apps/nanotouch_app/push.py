@@ -33,7 +33,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--tolerance", default="30nm", metavar="LENGTH",
                         help="distance that the operator is content with (default: %(default)s)")  # fmt: skip
     parser.add_argument("--lever", metavar="X,Y,Z",
-                        help="stiffness of the lever along x, y, z, as 20N/m,20N/m,2N/m (default: the tip is held)")  # fmt: skip
+                        help="stiffness of the lever, as 20N/m,20N/m,2N/m (default: the tip is held)")  # fmt: skip
     parser.add_argument("--seed", type=whole_number(0, 2**32 - 1, "2^32 - 1"), default=1, metavar="N",
                         help="of noise and drift (default: %(default)s)")  # fmt: skip
     output.add_options(parser)

@@ -16,16 +16,20 @@ from typing import Any
 
 import numpy as np
 from nanotouch import units
+from nanotouch.manipulation import Particles
+from nanotouch.manipulation.particles import polystyrene
 from nanotouch.touch.columns import STATES
 from nanotouch.touch.supervisor import REASONS
-from nanotouch_app.live import hand, host, look, readings, relief, seen, sliders, stage
+from nanotouch_app.live import balls, hand, host, look, readings, relief, seen, sliders, stage
+from nanotouch_app.live import tasks as laying
 from nanotouch_app.live.subject import PRESETS, felt, of_preset
-from nanotouch_app.training import LESSON, TASKS, find, pull_off, staircase, steady, stiffer, trace
+from nanotouch_app.training import LESSON, TASKS, find, pull_off, push, staircase, steady, stiffer, trace
 from nanotouch_app.training.lesson_pages import PAGES
 from nanotouch_app.training.lesson_texts import TEXTS as LESSON_TEXTS
 from nanotouch_app.training.task_texts import TEXTS as TASK_TEXTS
 
 STEPS = 65535  # of a height in the page
+LEFT_OUT = ("soft_gold",)  # dents are drawn by the window alone
 
 
 def surface_of(topography: Any) -> dict[str, Any]:
@@ -48,7 +52,15 @@ def preset(name: str) -> dict[str, Any]:
         "name": name, "title": subject.title, "hint": subject.hint, "felt": felt(name),
         "scene": subject.scene.to_dict(), "rig": subject.rig.to_dict(), "surface": surface_of(subject.topography),
         "accuracy": subject.accuracy, "relief": float(subject.topography.height_range),
+        "particles": None if subject.particles is None else of_particles(subject.particles(subject.scene)),
     }  # fmt: skip
+
+
+def of_particles(laid: Particles) -> dict[str, Any]:
+    """What they are like: the values of both tables of fields (page_particles.c), and which go with the tip's own."""
+    values = [*laid.particle._all(), *(laid.between or polystyrene())._values(), 0.0, 0.0, 0.0]
+    rolling = len(laid.particle._all()) - 1  # of the contact with the tip, the last field
+    return {"values": values, "with_tip": {"radius": [1, rolling], "half_angle": [2]}}
 
 
 def constants() -> dict[str, Any]:
@@ -58,6 +70,7 @@ def constants() -> dict[str, Any]:
              seen: "HISTORY SLICES TAIL TRACE TRACE_STEP STALE READINGS LAXER ANSWERS",
              relief: "RELIEF SLENDER LADDER HIGHEST",
              stage: "TIP_HEIGHT LEVER LEVER_POINTS BALL FAR BEND SHADOW LIFTED VIEWS",
+             balls: "PARTICLE RING THICK", laying: "ASIDE",
              readings: "TIP_STEP HAND_STEPS NOTED", look: "PROPERTY_COLOURS PROPERTY_NAMES"}  # fmt: skip
     shared = {name: getattr(module, name) for module, names in taken.items() for name in names.split()}
     return {name: sorted(value) if isinstance(value, set) else value for name, value in shared.items()}
@@ -67,10 +80,12 @@ def tasks() -> dict[str, Any]:
     """The tasks with their numbers, the pages of the lesson with what they change."""
     numbers = {"find": (find, "SHARE HELD"), "pull_off": (pull_off, "NEEDED ALLOWED"),
                "trace": (trace, "PARTS NEEDED ALLOWED"),
+               "push": (push, "RADIUS ALLOWED WORST LOSS"), "pattern": (push, "RADIUS ALLOWED WORST LOSS"),
                "steady": (steady, "TARGET BAND TIME WAY NEEDED"), "stiffer": (stiffer, "LOAD DULL")}  # fmt: skip
     listed = [{"name": name, "title": task.title, "preset": task.preset, "asked": task.asked,
                "hides": sorted(task.hides),
-               **{key: getattr(numbers[name][0], key) for key in numbers[name][1].split()}}
+               **{key: getattr(numbers[name][0], key) for key in numbers[name][1].split()},
+               **({"starts": task.starts, "targets": task.targets} if issubclass(task, push.Push) else {})}
               for name, task in TASKS.items() if name in numbers]  # fmt: skip
     pages = [{"name": lesson.name, "follows": lesson.follows, "key": page.key, "preset": page.preset, "then": page.then,
               "changes": page.changes} for lesson, page in zip(LESSON, PAGES, strict=True)]  # fmt: skip
@@ -82,7 +97,7 @@ def everything() -> dict[str, Any]:
     palettes = {name: dataclasses.asdict(palette)
                 for name, palette in (("light", look.LIGHT), ("dark", look.DARK))}  # fmt: skip
     return {
-        "presets": [preset(name) for name, one in PRESETS.items() if one.made is None],
+        "presets": [preset(name) for name in PRESETS if name not in LEFT_OUT],
         "offered": sliders.OFFERED, "given": sliders.GIVEN,
         "constants": constants(), "help": readings.HELP, "states": list(STATES), "reasons": list(REASONS),
         "palettes": palettes, "units": units.UNITS, "texts": {**TASK_TEXTS, **LESSON_TEXTS}, **tasks(),

@@ -104,6 +104,15 @@ double page_margin_with(int number, double value);
 int page_properties(const double *youngs_modulus, const double *work_of_adhesion, int nx, int ny);
 void page_place(double x, double y, double found[4]);
 
+nt_session *page_the_session(void);
+
+/* page_particles.c */
+enum { PAGE_LAID = 8 }; /* numbers of each */
+int page_particles(const double *values, int count);
+const nt_particles *page_given_particles(void);
+int page_lay(int number, double x, double y);
+int page_laid(double found[PAGE_LAID * NT_PARTICLES]);
+
 /* page_energy.c */
 void page_weigh(double spring, double zero, double alpha_p, double load);
 void page_weigh_anew(void);

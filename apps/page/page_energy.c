@@ -14,10 +14,18 @@ static struct {
     double spring, zero, alpha_p, load;
     double hand, tip, heat, began, now; /* [J] */
     double stretch, quiet_since;        /* of the last tick */
+    double spent_before, spent;         /* heat of particles until this touch, and in it [J] */
     double place[NT_AXES], force[NT_AXES];
     double shift; /* of the zero since the hand has let go [m] */
     int has_last, is_free, is_stopped;
 } sums;
+
+/* Of what the law takes particles make heat. */
+static double heat_of_particles(void)
+{
+    nt_session_particles laid;
+    return nt_session_read_particles(page_the_session(), &laid) == NT_OK ? laid.dissipated : 0.0;
+}
 
 /* A spring [N/m] whose far end is at zero - alpha_p times the master's height; the largest load [N]. Begins anew where
  * one of them is another. */
@@ -35,7 +43,7 @@ PAGE_API(page_weigh) void page_weigh(double spring, double zero, double alpha_p,
 void page_weigh_anew(void)
 {
     sums.hand = sums.tip = sums.heat = sums.began = sums.now = 0.0;
-    sums.shift = 0.0;
+    sums.shift = sums.spent = 0.0;
     sums.has_last = sums.is_stopped = 0;
     sums.is_free = 1;
 }
@@ -43,6 +51,8 @@ void page_weigh_anew(void)
 /* Outside of RUN the supervisor moves the tip: the hand has let go. */
 void page_weigh_let_go(void)
 {
+    if (!sums.is_free)
+        sums.spent = heat_of_particles() - sums.spent_before;
     sums.has_last = 0;
     sums.is_free = sums.is_stopped = 1;
 }
@@ -59,6 +69,8 @@ static double stretch_now(const nt_frame *frame)
 
 static void begin_touch(double stretch)
 {
+    sums.spent_before = heat_of_particles();
+    sums.spent = 0.0;
     sums.hand = sums.tip = sums.heat = 0.0;
     sums.began = 0.5 * sums.spring * stretch * stretch;
     sums.is_free = 0;
@@ -100,8 +112,10 @@ void page_weigh_tick(const nt_frame *frame)
         sums.heat -= pull * moved - law;
         sums.now = 0.5 * sums.spring * stretch * stretch;
     }
-    if (frame->time - sums.quiet_since > CALM)
+    if (!sums.is_free && frame->time - sums.quiet_since > CALM) {
+        sums.spent = heat_of_particles() - sums.spent_before;
         sums.is_free = 1;
+    }
     for (int i = 0; i < NT_AXES; i++) {
         sums.place[i] = frame->tip_position[i];
         sums.force[i] = frame->tip_force[i];
@@ -114,8 +128,10 @@ void page_weigh_tick(const nt_frame *frame)
  */
 PAGE_API(page_energies) void page_energies(double found[4])
 {
+    if (!sums.is_free)
+        sums.spent = heat_of_particles() - sums.spent_before;
     found[0] = sums.hand;
     found[1] = sums.now - sums.began;
-    found[2] = sums.tip;
-    found[3] = sums.heat;
+    found[2] = sums.tip - sums.spent;
+    found[3] = sums.heat + sums.spent;
 }

@@ -20,6 +20,11 @@ static struct {
     nt_properties *of_places;
 } page = {.newest = -1};
 
+nt_session *page_the_session(void)
+{
+    return page.session;
+}
+
 static void forget(void)
 {
     for (int i = 0; i < KEPT; ++i) {
@@ -90,6 +95,7 @@ PAGE_API(page_open) int page_open(const double *heights, int nx, int ny, const p
     setup.seed = (uint64_t)opening->seed;
     setup.minimum_margin = opening->margin;
     setup.ring_capacity = 0;
+    setup.particles = page_given_particles();
     world->problem = (nt_problem){0};
     nt_session *session = NULL;
     nt_properties *of_places = malloc(sizeof *of_places);

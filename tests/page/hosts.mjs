@@ -35,4 +35,18 @@ const { properties } = told.findLast(({ tell }) => tell === "laid").surface;
 worlds.property = { here: host.clock().here, ends: [properties.youngs_modulus[0], properties.youngs_modulus.at(-1)] };
 await host.answer({ do: "property", name: "work_of_adhesion", map: { ...map, heights: [0.5, -1] }, title: "a map" });
 worlds.property.refused = told.at(-1);
+
+// A ball is pushed, lost, and laid back.
+const go = async (way, count) => {
+  for (let i = 0; i < count; ++i) {
+    await host.answer({ do: "move", way: [way, 0, 0] });
+    host.turn(0.02);
+  }
+  return { laid: host.balls.laid, side: host.now.side[0], tip: host.now.tip[0], undo: host.world().undo };
+};
+await host.answer({ do: "task", name: "push", lay: true });
+worlds.push = [await go(-20e-9, 65), await go(20e-9, 40)];
+await host.answer({ do: "undo" });
+worlds.push.push(await go(0, 1));
+worlds.told = told.filter(({ tell }) => tell === "particles").flatMap(({ events }) => events);
 console.log(JSON.stringify(worlds));

@@ -212,6 +212,34 @@ test("an image and a curve are dropped: the surface, the card with what was put 
   await page.close();
 });
 
+test("a ball is drawn, pushed by a drag, and laid back", async () => {
+  const { page, said } = await visit(chromium.context, `${FILE}#task=push`);
+  await touched(page);
+  await until(page, () => window.nanotouch.seen.task.name === "push" && window.nanotouch.stage.balls.balls.length === 1);
+  const start = await value(page, () => window.nanotouch.stage.balls.balls[0].getPosition()[0]);
+  const { x, y } = await page.locator("#view").boundingBox();
+  let at = x + 420;
+  const drag = async (way, there) => { // by pieces, until the tip is there
+    for (let i = 0; i < 60 && !(await value(page, there)); ++i) {
+      await page.mouse.move(at, y + 400);
+      await page.mouse.down();
+      await page.mouse.move((at += way), y + 400);
+      await page.mouse.up();
+    }
+    assert.ok(await value(page, there), JSON.stringify(await seen(page, "now")));
+  };
+  await drag(-6, () => window.nanotouch.seen.now.tip[0] < 3.8e-6);
+  await until(page, (old) => window.nanotouch.stage.balls.balls[0].getPosition()[0] < old - 0.01, start);
+  if (process.env.NANOTOUCH_PICTURES) await page.screenshot({ path: `${process.env.NANOTOUCH_PICTURES}/push.png` });
+  assert.ok((await seen(page, "now")).side[0] > 1e-10);
+  await drag(6, () => window.nanotouch.seen.now.tip[0] > 4.6e-6); // a ball is laid only where the tip is not
+  await page.focus("#view");
+  await page.keyboard.press("z");
+  await until(page, (old) => window.nanotouch.stage.balls.balls[0].getPosition()[0] === old, start);
+  assert.deepEqual(said.filter((words) => !/GL Driver|WebGL/.test(words)), []);
+  await page.close();
+});
+
 test("in the background and back: the session's time never leaps, and it goes on", async () => {
   const { page } = await visit(chromium.context, FILE);
   await touched(page);

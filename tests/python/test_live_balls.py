@@ -4,12 +4,13 @@ and a push is undone."""
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch_app.live import subject
+from nanotouch_app.live import charts, subject
 from nanotouch_app.training.push import RADIUS, Pattern, Push
 from test_live_dents import Watched
 
@@ -180,3 +181,22 @@ def test_balls_are_those_of_the_scene() -> None:
     assert (balls.particle.radius, balls.particle.tip_radius) == (RADIUS, 30e-9)
     with pytest.raises(nt.Error, match="tip_radius"):
         nt.Session(nt.Scene(), particles=balls, minimum_margin=0.0)
+
+
+def test_what_a_push_costs_is_heat(watched: Watched) -> None:
+    """The work of the hand goes into the ball, which gives next to nothing back: rolling friction times way."""
+    exercise = begun(watched)
+    x, y, _ = exercise.places[0]
+    go(watched, x + 0.2e-6, y)
+    words = charts._energies(watched.seen)
+    found = {
+        name: float(value)
+        for name, value in re.findall(r"(hand|tip|heat) (?:about )?(-?[\d.]+)", words.replace("- ", "-"))
+    }
+    assert watched.seen.balance is not None
+    hand = watched.seen.balance.energies.hand
+    spent = watched.host.session.particles.dissipated
+    assert found["heat"] > 0.8 * found["hand"] > 0.0, words
+    assert watched.seen.spent.of_touch == pytest.approx(spent, rel=0.1)
+    assert abs(found["tip"]) < 0.2 * found["hand"], words
+    assert hand == pytest.approx(spent, rel=0.25)

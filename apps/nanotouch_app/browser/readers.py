@@ -11,10 +11,10 @@ import nanotouch as nt
 from nanotouch.errors import Error
 
 from nanotouch_app.browser.update import Summary, message_text
-from nanotouch_app.live.energy import Balance
+from nanotouch_app.live.energy import Balance, Spent
 
 Message = dict[str, Any]
-KEPT = ("world", "task")  # messages that one who comes later is told, too
+KEPT = ("world", "task", "particles")  # messages that one who comes later is told, too
 
 
 class Reader:
@@ -39,6 +39,7 @@ class Readers:
         self.touched = False
         self.changes = 0
         self.balance: Balance | None = None
+        self.spent = Spent()
 
     # --- what the session shows ---
 
@@ -59,6 +60,7 @@ class Readers:
         part = Summary.of(frames, self.touched)
         if self.balance is not None:
             self.balance.add(frames)
+            self.spent.follow(not self.balance.free)
         self.touched = bool(frames[-1]["contact_radius"] > 0.0)
         due = []
         for reader in self.all:
@@ -83,7 +85,9 @@ class Readers:
         if kind == "properties":
             return []
         if kind == "clock" and self.balance is not None:
-            message = {**message, "energies": list(self.balance.energies)}
+            message = {**message, "energies": list(self.spent.counted(self.balance.energies))}
+        if kind == "particles":
+            self.spent.now = message.get("heat", self.spent.now)
         if kind == "world":
             self.changes += 1
             self._weigh(message)

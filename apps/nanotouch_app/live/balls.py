@@ -13,7 +13,7 @@ from nanotouch_app.live.look import Colour, unit
 
 Floats = NDArray[np.float64]
 
-BALL: Colour = (232, 228, 220)
+PARTICLE: Colour = (232, 228, 220)
 RING: Colour = (20, 120, 60)
 THICK = 0.12  # of a ring, over the radius
 
@@ -38,7 +38,7 @@ class Balls:
         for actor in (*self.balls, *self.rings):
             self.renderer.RemoveActor(actor)
         radius = message["radius"] / self.length
-        self.balls = [self._actor(self._ball(radius), BALL) for _ in message["places"]]
+        self.balls = [self._actor(self._ball(radius), PARTICLE) for _ in message["places"]]
         self.rings = [self._actor(self._ring(radius), RING) for _ in message["targets"]]
         for actor, (x, y) in zip(self.rings, message["targets"], strict=True):
             actor.SetPosition(x / self.length, y / self.length, self.ground + 0.004)

@@ -123,7 +123,7 @@ def _energies(seen: Seen) -> str:
     """Where the work of the hand has gone in this touch; "" where the hand is not known."""
     if seen.balance is None:
         return ""
-    hand, stored, tip, heat = seen.balance.energies
+    hand, stored, tip, heat = seen.spent.counted(seen.balance.energies)
     if seen.dented is not None:  # what has yielded gives nothing back
         elastic = seen.dented.stored(float(seen.frame["contact_radius"]))
         tip, heat = elastic, heat + tip - elastic

@@ -102,6 +102,26 @@ class Balance:
         return Energies(self.hand, self.now - self.began, self.tip, self.heat)
 
 
+class Spent:
+    """Of what the law takes in a touch, that which particles make heat of; all of it so far [J]."""
+
+    def __init__(self, now: float = 0.0) -> None:
+        self.now = self.before = now
+        self.of_touch = 0.0
+
+    def follow(self, touches: bool) -> None:
+        """Whether something is touched. After a rewind there is less of it."""
+        self.before = min(self.before, self.now)
+        if touches:
+            self.of_touch = self.now - self.before
+        else:
+            self.before = self.now
+
+    def counted(self, energies: Energies) -> Energies:
+        """As heat, and no longer as work at the tip."""
+        return energies._replace(tip=energies.tip - self.of_touch, heat=energies.heat + self.of_touch)
+
+
 # --- the same from the law alone, for a hand that moves slowly ---
 
 

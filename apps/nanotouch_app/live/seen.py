@@ -16,7 +16,7 @@ from nanotouch.plasticity import Dent
 from numpy.typing import NDArray
 
 from nanotouch_app.live import dented
-from nanotouch_app.live.energy import Balance
+from nanotouch_app.live.energy import Balance, Spent
 from nanotouch_app.live.hands.device import Feel
 from nanotouch_app.live.reel import Reel
 
@@ -56,6 +56,7 @@ class Seen:
         self.waiting: set[str] = set()
         self.task: dict[str, Any] = {}
         self.balance: Balance | None = None
+        self.spent = Spent()
         self.dented: dented.Dented | None = None
         self.drawn_dent = (-1.0, -1.0)
         self.place: dict[str, float] = {}
@@ -89,6 +90,7 @@ class Seen:
             case "dents" if self.dented is not None:
                 self.dented.dents = tuple(Dent.from_numbers(numbers) for numbers in message["dents"])
             case "particles":
+                self.spent.now = message.get("heat", self.spent.now)
                 self.snaps += [(self.arrived, event) for event in message["events"]]
             case "task":
                 self.task = message if message["name"] else {}
@@ -185,6 +187,7 @@ class Seen:
         self._yield(frames)
         if self.balance is not None:
             self.balance.add(frames)
+            self.spent.follow(not self.balance.free)
         self.frame = frames[-1]
         if now - self.read_at > READINGS:
             self.read_at, self.reading = now, self.frame
@@ -223,6 +226,7 @@ class Seen:
             kept.clear()
         if self.balance is not None:
             self.balance = Balance(self.balance.spring, self.balance.zero, self.balance.alpha_p, self.balance.load)
+            self.spent = Spent(self.spent.now)
             self.balance.stopped = True  # where the hand has hold now, the frames say
 
     def _keep(self, frames: Any) -> None:

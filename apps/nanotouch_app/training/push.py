@@ -35,7 +35,7 @@ class Push(Exercise):
         self.count = len(self.starts)
         self.goals = np.array(self.targets) * self.facts.width
         self.places = np.column_stack([self.lays, np.full(self.count, RADIUS)])
-        self.force = np.zeros(3)
+        self.force, self.heat = np.zeros(3), 0.0
         self.events: list[str] = []
         self.largest = 0.0
         self.counts: tuple[int, int] | None = None  # touches and losses, as the task began
@@ -45,6 +45,7 @@ class Push(Exercise):
         """What the session says of them."""
         ours = range(self.count)
         self.places, self.force = laid.positions[ours], laid.forces[ours].sum(axis=0)
+        self.heat = laid.dissipated
         self.largest = max(self.largest, float(np.linalg.norm(self.force)))
         touches, losses = (sum(of[one] for one in ours) for of in (laid.touches, laid.losses))
         if self.counts is None:
@@ -76,7 +77,8 @@ class Push(Exercise):
     def shown(self) -> dict[str, Any]:
         """What a picture needs."""
         events, self.events = self.events, []
-        return {"radius": RADIUS, "places": self.places.tolist(), "targets": self.goals.tolist(), "events": events}
+        return {"radius": RADIUS, "places": self.places.tolist(), "targets": self.goals.tolist(), "events": events,
+                "heat": self.heat}  # fmt: skip
 
     def judge(self, frames: Any) -> None:
         """Nothing: :meth:`take` has it all."""

@@ -4,6 +4,7 @@
 
 import { KINDS, Refused, readUpdate, UPDATE_BYTES } from "./core.js";
 import { Hand } from "./hand.js";
+import { Balls } from "./left.js";
 import { inWords } from "./refusals.js";
 import { edged, extremes, ofPreset, PROPERTIES, stretched } from "./subject.js";
 import { Trainer } from "./trainer.js";
@@ -22,6 +23,7 @@ export class Host {
   constructor(core, table, tell) {
     Object.assign(this, { core, table, tell, speed: 1, paused: false, slowdown: 1, changes: 0, trainer: null });
     this.constants = table.constants;
+    this.balls = new Balls(core, table.constants.ASIDE);
     this.subject = null;
     this.now = null;
   }
@@ -107,6 +109,7 @@ export class Host {
       Math.floor((0.5 + (0.1 * i) / 199) * map.columns)]);
     const rise = Math.max(...line) - line[0];
     this.#giveProperties(rows, columns);
+    this.balls.give(this.subject.particles, this.scene.tip);
     core.withDoubles(padded.length + 8, null, (at) => {
       const all = core.doubles(at, padded.length + 8);
       all.set([...this.start, this.clearance, rise, map.dx, map.dy, 1, MARGIN]);
@@ -166,6 +169,7 @@ export class Host {
       this.#look();
       this.hand.follow(this.now, run);
     }
+    if (this.subject.particles) this.balls.look(this.now.time);
     if (this.trainer) this.trainer.see(this.now);
   }
 
@@ -189,7 +193,7 @@ export class Host {
     return { tell: "world", title: subject.title, felt: subject.felt, hint: subject.hint, preset: subject.name,
       scene: this.opened, rig: this.openedRig, settings: this.settings, stiffness: this.hand.stiffness,
       bound: own(OWN.bound), warnings: this.facts.warnings, terms: this.facts.terms, margin: own(OWN.margin),
-      force: own(OWN.force), relative_accuracy: this.accuracy, undo: this.done.length, redo: this.undone.length, start: this.start, size: this.size,
+      force: own(OWN.force), relative_accuracy: this.accuracy, undo: this.done.length || this.balls.pushes.length, redo: this.undone.length, start: this.start, size: this.size,
       clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
   }
 
@@ -265,6 +269,7 @@ export class Host {
   do_rewind() {
     this.core.check(this.core.c.page_rewind(this.constants.REWIND));
     this.#look();
+    this.balls.rewound(this.now.time);
     this.hand.resume(this.now);
   }
   async do_preset({ name }) { await this.layPreset(name); }
@@ -282,8 +287,15 @@ export class Host {
     if (!name) return;
     const wanted = Trainer.presetOf(this.table, name);
     const isMeant = wanted === this.subject.name && JSON.stringify(this.opened) === JSON.stringify(this.meant);
-    if (lay && !isMeant) await this.layPreset(wanted);
+    const lacks = Trainer.lays(this.table, name) && !this.subject.particles;
+    if (lacks || (lay && !isMeant)) await this.layPreset(wanted);
     this.trainer = new Trainer(this, name, seed);
+    try {
+      if (this.trainer.act.lays) this.balls.lay(this.trainer.act.lays);
+    } catch (error) {
+      this.#endTask();
+      throw error;
+    }
   }
   async do_choose({ number }) {
     const follows = this.trainer?.follows;
@@ -292,6 +304,7 @@ export class Host {
   }
   do_say({ text }) { this.trainer?.say(text); }
   #endTask() {
+    if (this.trainer?.act.lays) this.tell({ tell: "particles", radius: 0, places: [], targets: [], events: [] });
     if (this.trainer) this.tell({ tell: "task", name: "" });
     this.trainer = null;
   }
@@ -321,7 +334,10 @@ export class Host {
     }
     this.tell(this.world());
   }
-  do_undo() { this.#again(this.done, this.undone, 2); }
+  do_undo() {
+    if (!this.done.length) this.balls.undo();
+    this.#again(this.done, this.undone, 2);
+  }
   do_redo() { this.#again(this.undone, this.done, 3); }
   #again(from, to, which) {
     const entry = from.at(-1);

@@ -72,6 +72,7 @@ function hear(message) {
     state.given = false;
     lay(message.surface);
   }
+  if (message.tell === "particles" && stage.grid) stage.balls.show(message, stage.grid);
   if (message.tell === "world") {
     if (state.fields) sliders.take(message, state.fields);
     stage.mount(message.scene.tip);

@@ -21,9 +21,21 @@ export class Overlay {
   #proxy(seen, stage, palette) {
     const [x, y] = stage.pixel(stage.apex(seen.now)), { painter } = this;
     const share = Math.min(Math.max(seen.force / Math.max(seen.load, 1e-15), -1.5), 1.5);
-    const end = y + BAND * painter.height * share, colour = share >= 0 ? palette.repulsion : palette.attraction;
-    if (Math.abs(end - y) > 1) painter.line([[x, y], [x, end]], colour, 3);
-    painter.dot(x, end, RING, null, seen.stale ? palette.quiet : palette.ink);
+    const [across, along] = this.#sideways(seen, stage), ring = [x + across, y + along + BAND * painter.height * share];
+    const colour = share >= 0 ? palette.repulsion : palette.attraction;
+    if (Math.hypot(ring[0] - x, ring[1] - y) > 1) painter.line([[x, y], ring], colour, 3);
+    painter.dot(...ring, RING, null, seen.stale ? palette.quiet : palette.ink);
+  }
+
+  // What holds the tip sideways stretches the band, as it is seen: the ring is ahead of it.
+  #sideways(seen, stage) {
+    const size = Math.hypot(...seen.sideways);
+    if (!(size > 0)) return [0, 0];
+    const at = stage.apex(seen.now), here = stage.pixel(at);
+    const there = stage.pixel([at[0] - (1e-3 * seen.sideways[0]) / size, at[1] - (1e-3 * seen.sideways[1]) / size, at[2]]);
+    const way = [there[0] - here[0], there[1] - here[1]];
+    const length = (BAND * this.painter.height * Math.min(size / Math.max(seen.load, 1e-15), 1.5)) / Math.max(Math.hypot(...way), 1e-12);
+    return way.map((part) => length * part);
   }
 
   #scales(stage, palette) {

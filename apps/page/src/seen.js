@@ -30,6 +30,7 @@ export class Seen {
         this.clock = message;
         this.#stand(message.here ?? {});
         break;
+      case "particles": this.events.push(...message.events); break;
       case "task": this.task = message.name ? message : {}; break;
       case "refused":
         this.waiting.delete(message.field);
@@ -121,11 +122,16 @@ export class Seen {
     return this.now && !this.stale && Number.isFinite(this.now.force) ? this.now.force : 0;
   }
 
+  // On the tip, x and y [N]; 0 where nothing may be felt.
+  get sideways() {
+    return this.now && !this.stale ? this.now.side.map((part) => (Number.isFinite(part) ? part : 0)) : [0, 0];
+  }
+
   // What a hand is to feel now; each snap and tear once. Nothing where the newest update is too old.
   feel() {
     const event = this.events.at(-1) ?? "";
     this.events = [];
     if (this.stale || this.clock.paused || !this.world) return { level: 0, event: "" };
-    return { level: Math.min(Math.abs(this.force) / Math.max(this.load, 1e-15), 1), event };
+    return { level: Math.min(Math.hypot(this.force, ...this.sideways) / Math.max(this.load, 1e-15), 1), event };
   }
 }

@@ -124,6 +124,28 @@ export function turned(radius, halfAngle, ball, tall) {
   return { points: Float32Array.from(points), normals: Float32Array.from(normals), cells: quads(profile.length, around) };
 }
 
+// A sphere around 0.
+export function ball(radius, rows = 33, around = 49) {
+  const normals = new Float32Array(3 * rows * around);
+  for (let i = 0, at = 0; i < rows; ++i)
+    for (let k = 0; k < around; ++k, at += 3) {
+      const angle = (Math.PI * i) / (rows - 1), turn = (2 * Math.PI * k) / (around - 1);
+      normals.set([Math.sin(angle) * Math.cos(turn), Math.sin(angle) * Math.sin(turn), -Math.cos(angle)], at);
+    }
+  return { points: normals.map((part) => radius * part), normals, cells: quads(rows, around) };
+}
+
+// A flat ring around 0.
+export function ring(inner, outer, around = 65) {
+  const points = new Float32Array(6 * around), normals = new Float32Array(6 * around);
+  for (let k = 0; k < 2 * around; ++k) {
+    const turn = (2 * Math.PI * (k % around)) / (around - 1), r = k < around ? inner : outer;
+    points.set([r * Math.cos(turn), r * Math.sin(turn), 0], 3 * k);
+    normals.set([0, 0, 1], 3 * k);
+  }
+  return { points, normals, cells: quads(2, around) };
+}
+
 // The lever: a beam that is clamped behind, w = zeta (3 s^2 - s^3)/2.
 export function ribbon(at, bend, { LEVER, LEVER_POINTS: count, TIP_HEIGHT }) {
   const [length, width] = LEVER, points = new Float32Array(6 * count);

@@ -12,6 +12,7 @@ import vtkOpenGLRenderWindow from "@kitware/vtk.js/Rendering/OpenGL/RenderWindow
 import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkRenderWindow from "@kitware/vtk.js/Rendering/Core/RenderWindow";
 import vtkRenderer from "@kitware/vtk.js/Rendering/Core/Renderer";
+import { DrawnBalls } from "./balls.js";
 import { grid, laidOn, ribbon, stepped, tile, tileValues, turned } from "./shapes.js";
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
@@ -29,6 +30,7 @@ export class Stage {
     this.window.addView(this.api);
     this.renderer.setTwoSidedLighting(true);
     this.#light();
+    this.balls = new DrawnBalls(constants, (mesh) => this.#mesh(mesh), (actor) => this.renderer.removeActor(actor));
     this.resize();
   }
 
@@ -64,6 +66,7 @@ export class Stage {
 
   lay(surface) {
     for (const actor of [...this.tiles, ...(this.others ?? [])]) this.renderer.removeActor(actor);
+    this.balls.forget();
     this.grid = grid(surface, MOST, this.constants);
     this.colours = vtkColorTransferFunction.newInstance();
     this.maps = { height: this.grid };
@@ -151,7 +154,7 @@ export class Stage {
   lights(on) {
     if (on === this.visible) return;
     this.visible = on;
-    for (const actor of [...this.tiles, ...this.shadows, this.trace]) actor.setVisibility(on);
+    for (const actor of [...this.tiles, ...this.shadows, this.trace, ...this.balls.actors]) actor.setVisibility(on);
   }
 
   // --- the instrument: made anew when another tip is mounted ---
@@ -162,12 +165,7 @@ export class Stage {
     this.shape = key;
     for (const actor of [this.tip, this.lever]) if (actor) this.renderer.removeActor(actor);
     const ball = shape === "sphere" || radius > this.constants.BALL;
-    const made = turned(radius / this.grid.unit, halfAngle, ball, this.constants.TIP_HEIGHT), data = vtkPolyData.newInstance();
-    data.getPoints().setData(made.points, 3);
-    data.getPolys().setData(made.cells);
-    data.getPointData().setNormals(
-      vtkDataArray.newInstance({ name: "normals", values: made.normals, numberOfComponents: 3 }));
-    this.tip = this.#actor(data);
+    this.tip = this.#mesh(turned(radius / this.grid.unit, halfAngle, ball, this.constants.TIP_HEIGHT));
     this.tip.getProperty().setSpecular(0.35);
     this.tip.getProperty().setSpecularPower(25);
     this.tip.getProperty().setAmbient(0.3);
@@ -175,6 +173,14 @@ export class Stage {
     this.lever = this.#actor(this.leverData);
     this.others = [...this.shadows, this.trace, this.tip, this.lever];
     this.paint(this.palette);
+  }
+
+  #mesh({ points, normals, cells }) {
+    const data = vtkPolyData.newInstance();
+    data.getPoints().setData(points, 3);
+    data.getPolys().setData(cells);
+    data.getPointData().setNormals(vtkDataArray.newInstance({ name: "normals", values: normals, numberOfComponents: 3 }));
+    return this.#actor(data);
   }
 
   // --- what moves ---

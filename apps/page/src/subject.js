@@ -66,5 +66,5 @@ export async function ofPreset(table, name) {
   const found = table.presets.find((preset) => preset.name === name);
   if (!found) throw new Error(`preset ${name}: there are ${table.presets.map((one) => one.name).join(", ")}`);
   return { name, title: found.title, felt: found.felt, hint: found.hint, scene: structuredClone(found.scene),
-    rig: structuredClone(found.rig), accuracy: found.accuracy, map: await unpack(found.surface) };
+    rig: structuredClone(found.rig), accuracy: found.accuracy, particles: found.particles, map: await unpack(found.surface) };
 }

@@ -3,6 +3,7 @@
 
 import { Refused } from "./core.js";
 import { lessonPage } from "./lesson.js";
+import { push } from "./push.js";
 import { Staircase } from "./staircase.js";
 import { digits, parseQuantity } from "./units.js";
 
@@ -18,6 +19,8 @@ export class Trainer {
     if (!found) throw new Refused(`task ${name.slice(0, 40)}: valid are ${table.tasks.map((one) => one.name).join(", ")}, lesson`);
     return found.preset;
   }
+
+  static lays(table, name) { return table.tasks.some((one) => one.name === name && one.starts); }
 
   constructor(host, name, seed) {
     if (name === "lesson") name = "lesson-1";
@@ -41,6 +44,7 @@ export class Trainer {
   say_(key, figures = {}) { return filled(this.texts[key], figures); }
 
   see(now) {
+    this.act.show?.();
     if (!this.result && Number.isFinite(now.force)) {
       this.#keep(now);
       this.act.judge(now);
@@ -109,7 +113,7 @@ export class Trainer {
   }
 }
 
-const MADE = { find, pull_off: pullOff, trace, steady, stiffer };
+const MADE = { find, pull_off: pullOff, trace, steady, stiffer, push, pattern: push };
 
 function find(trainer, { SHARE, HELD }) {
   const limit = SHARE * trainer.load, told = { limit: digits(limit, "N"), held: HELD };

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,17 @@ from .lever import core_of
 from .particle import OF_EACH, OF_TIP, Particle, ParticleContact
 from .particles import polystyrene
 
-if TYPE_CHECKING:
-    from nanotouch.touch.record import Recording
-
 APART = 1e-9  # points of the way are no nearer: half of a step of the tip [m]
 NEEDED = ("x", "y", "gap", "surface_height")
+
+
+class Recording(Protocol):
+    """A :class:`nanotouch.Recording`, as far as it is asked."""
+
+    columns: dict[str, NDArray[Any]]
+    metadata: dict[str, Any]
+
+    def __contains__(self, name: object) -> bool: ...
 
 
 class Recorded:
@@ -50,7 +56,7 @@ class Recorded:
             particle, between = _described(recording.metadata["particles"])
             side = float(recording.metadata["rig"]["probe"].get("lateral_stiffness", 0.0))
             rate = float(recording.metadata["loop_rate"])
-            ticks = np.rint(recording.time * rate)
+            ticks = np.rint(recording.columns["time"] * rate)
             self.laid = [
                 (int(np.searchsorted(ticks, tick)), int(numbers[0]), (float(numbers[1]), float(numbers[2])))
                 for tick, name, numbers in recording.metadata["events"]

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Particles of the session of this page: laid, pushed by the tip, laid back (nanotouch_app/live/left.py, tasks.py).
+
+import { Refused } from "./core.js";
+
+const LAID = 8, MOST = 6; // numbers of each (page.h), and how many there may be
+const MOVED = 1e-10; // less is no push [m]
+
+export class Balls {
+  constructor(core, aside) { Object.assign(this, { core, aside, rested: [], pushes: [] }); }
+
+  // For the session that is opened next. What depends on the tip follows it.
+  give(particles, { radius, half_angle: halfAngle }) {
+    const values = [...(particles?.values ?? [])];
+    for (const [names, now] of [["radius", radius], ["half_angle", halfAngle]]) {
+      const [first] = particles?.with_tip[names] ?? [], factor = now / values[first];
+      for (const number of particles?.with_tip[names] ?? []) values[number] *= factor;
+    }
+    this.core.withDoubles(values.length, values, (at) => this.core.check(this.core.c.page_particles(at, values.length)));
+    Object.assign(this, { rested: [], pushes: [] });
+  }
+
+  get laid() {
+    return this.core.withDoubles(LAID * MOST, null, (at) => {
+      const count = this.core.c.page_laid(at), rows = [...this.core.doubles(at, LAID * MOST)];
+      return Array.from({ length: count }, (_, i) => {
+        const [x, y, z, fx, fy, fz, touches, losses] = rows.slice(LAID * i, LAID * (i + 1));
+        return { place: [x, y, z], force: [fx, fy, fz], touches, losses };
+      });
+    });
+  }
+
+  // Anew: those that lie there are put aside first.
+  lay(places) {
+    try {
+      this.laid.forEach((_, i) => this.#lay(i, [this.aside * (i + 1), this.aside]));
+      places.forEach((place, i) => this.#lay(i, place));
+    } catch {
+      throw new Refused("the tip is where a particle shall lie, or touches one: move it away first");
+    }
+    this.pushes = [];
+  }
+
+  #lay(number, [x, y]) {
+    this.core.check(this.core.c.page_lay(number, x, y));
+    this.rested[number] = [x, y];
+  }
+
+  // What has happened since: a push is done when nothing is touched any more.
+  look(time) {
+    const { laid } = this;
+    if (laid.some(({ touches, losses }) => touches > losses)) return;
+    const moved = [];
+    laid.forEach(({ place: [x, y] }, i) => {
+      const [left, low] = this.rested[i] ?? [x, y];
+      if (Math.abs(x - left) + Math.abs(y - low) > MOVED) moved.push([i, [left, low]]);
+      this.rested[i] = [x, y];
+    });
+    if (moved.length) this.pushes.push({ time, moved });
+  }
+
+  // The last push: all that it has moved goes back.
+  undo() {
+    for (const [number, place] of this.pushes.at(-1)?.moved ?? []) this.#lay(number, place);
+    this.pushes.pop();
+  }
+
+  // The session went back to a time.
+  rewound(time) {
+    this.pushes = this.pushes.filter((one) => one.time < time);
+    this.rested = this.laid.map(({ place: [x, y] }) => [x, y]);
+  }
+}
