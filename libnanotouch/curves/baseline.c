@@ -2,6 +2,7 @@
  * The baseline of one branch. The line is a robust one through the far half of the travel, then through all beyond the
  * outermost point that this line cannot explain, so that it is hardly extrapolated to where it is needed. */
 #include <math.h>
+#include <stdint.h>
 
 #include "core/variants.h"
 #include "curves/bend.h"
@@ -19,17 +20,31 @@ static const double of_foot = 1.3;    /* tells where its contact began, a third 
 static const double most_foot = 0.25; /* of the travel: what is longer is no foot, but bends */
 static const double correlated = 5.0; /* of white noise this ratio is 1 +- 0.45 */
 
+/* Copies the points with z >= far or z > start; how many. Without a branch. */
+NT_VARIANTS static long keep(const nt_curve_segment *segment, const double ends[2], double *restrict x,
+                             double *restrict force)
+{
+    const double far = ends[0], start = ends[1], *z = segment->z;
+    int64_t is_kept[NT_LANES], kept = 0;
+    for (long i = 0; i < segment->count; i += NT_LANES) {
+        const int n = nt_lanes_from(i, segment->count);
+        for (int j = 0; j < n; j++)
+            is_kept[j] = (z[i + j] >= far) | (z[i + j] > start);
+        for (int j = 0; j < n; j++) {
+            x[kept] = z[i + j];
+            force[kept] = segment->force[i + j];
+            kept += is_kept[j];
+        }
+    }
+    return (long)kept;
+}
+
 /* The points with z >= far or z > start. */
 static nt_curve_free outside(const nt_curve_segment *segment, double far, double start, double *work)
 {
     const long n = segment->count;
     nt_curve_free free = {work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, 0, 0.0, 0.0, 0.0};
-    for (long i = 0; i < n; i++) {
-        if (!(segment->z[i] >= far || segment->z[i] > start))
-            continue;
-        free.x[free.count] = segment->z[i];
-        free.force[free.count++] = segment->force[i];
-    }
+    free.count = keep(segment, (double[2]){far, start}, free.x, free.force);
     free.nearest = nt_curve_lowest(free.x, free.count);
     free.z_mean = nt_curve_sum(free.x, free.count) / (double)free.count;
     for (long i = 0; i < free.count; i++)

@@ -167,10 +167,12 @@ double nt_curve_held_beyond_film(double depth, const nt_curve_reading *reading)
         most = fmax(most, rupture->step); /* no film tears */
     }
     for (long first = retract->lowest; first + block <= retract->count; first += block) {
-        double mean = 0.0;
+        double sum = 0.0;
         for (long i = first; i < first + block; i++)
-            mean -= retract->force[i] / (double)block;
-        most = fmax(most, mean - repels(approach, fmax(retract->z[first], contact)));
+            sum -= retract->force[i];
+        const double mean = sum / (double)block;
+        if (mean > most)
+            most = fmax(most, mean - repels(approach, fmax(retract->z[first], contact)));
     }
     return most;
 }

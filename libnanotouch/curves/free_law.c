@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "core/variants.h"
 #include "curves/robust.h"
 
 enum { POLES = 10, LAWS = 4 };
@@ -79,23 +80,29 @@ typedef struct film_sums {
     double line[2], film_film, film_bow, film_rest;
 } film_sums;
 
-static film_sums film_over(const nt_free_means *m, double scale, double foot)
+NT_VARIANTS static film_sums film_over(const nt_free_means *m, double scale, double foot)
 {
     film_sums s = {{0.0, 0.0}, 0.0, 0.0, 0.0};
-    double sum = 0.0, product = 0.0;
+    double all[NT_LANES] = {0.0}, over_x[NT_LANES] = {0.0}, itself[NT_LANES] = {0.0}, bow[NT_LANES] = {0.0},
+           rest[NT_LANES] = {0.0};
     if (m->count == 0)
         return s;
-    for (int b = 0; b < m->count; b++) {
-        const double film = film_at(scale, foot, m->x[b]);
-        sum += film;
-        product += film * (m->x[b] - m->mean);
-        s.film_film += film * film;
-        s.film_bow += film * m->bow[b];
-        s.film_rest += film * m->rest[b];
-    }
+    const double mean = m->mean;
+    for (long b = 0; b < m->count; b += NT_LANES)
+        for (int j = 0, n = nt_lanes_from(b, m->count); j < n; j++) {
+            const double away = m->x[b + j] - foot, film = scale / ((away > 0.0 ? away : 0.0) + scale);
+            all[j] += film;
+            over_x[j] += film * (m->x[b + j] - mean);
+            itself[j] += film * film;
+            bow[j] += film * m->bow[b + j];
+            rest[j] += film * m->rest[b + j];
+        }
+    const double sum = nt_lanes_sum(all), product = nt_lanes_sum(over_x);
     s.line[1] = product / m->spread;
     s.line[0] = sum / m->count - s.line[1] * m->mean;
-    s.film_film -= sum * sum / m->count + product * s.line[1];
+    s.film_film = nt_lanes_sum(itself) - sum * sum / m->count - product * s.line[1];
+    s.film_bow = nt_lanes_sum(bow);
+    s.film_rest = nt_lanes_sum(rest);
     return s;
 }
 

@@ -10,7 +10,7 @@
 #include "core/variants.h"
 
 enum { SAMPLE = 63, MIDDLE = 10, MANY = 256 }; /* MIDDLE: 2.5 standard deviations of the rank of a sample's median */
-enum { FEW = 48, DRAWN = 4 }; /* values that are sorted out at once; times that ends are drawn closer */
+enum { FEW = 24, DRAWN = 4 }; /* values that are sorted out at once; times that ends are drawn closer */
 
 static const double closer = 1.5; /* times sqrt(n)/n of the values: three standard deviations of a middle rank */
 
