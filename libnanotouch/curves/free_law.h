@@ -34,7 +34,7 @@ typedef struct nt_free_law {
     int confirmed;                                  /* by the retraction's tail too */
 } nt_free_law;
 
-/* z > z of the point before `first`; count - first of at least NT_FREE_BLOCK points for a block. */
+/* Of the points from `first` on, of at least NT_FREE_BLOCK for a block, in the frame of a record. */
 nt_free_means nt_free_means_of(const nt_curve_branch *branch, long first, const nt_free_record *frame);
 /* Its line and bow, of the free approach or of the tail: [0] + [1] x + [2] x^2 [N]. */
 void nt_free_even(const nt_free_law *law, const nt_free_record *record, int of_tail, double even[3]);

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import curves
 from nanotouch.contact import Contact, pull_off_force
+from nanotouch.fit.answer import answer_of
 from synthetic_tethers import Made, Tether, make
 
 pytest.importorskip("nanotouch._fit", reason="built without Ceres")
@@ -83,11 +85,32 @@ def test_without_a_radius_the_answer_is_a_product_with_it() -> None:
 
 
 def test_a_large_contact_gives_no_work_per_area() -> None:
-    """JKR at 30 MPa on 20 nm: a/R = 0.9 at the tear."""
+    """JKR at 30 MPa on 20 nm: a/R = (3 F/(4 E* R^2))^(1/3) = 0.56 at the tear, up to 0.58 by the ends of F and E*."""
     answer = nt.fit.fit_curve(torn("jkr", 3e7, 0.5), "auto", radius=RADIUS).answer
     assert answer.adhesion == "tear"
     assert np.isnan(answer.work_of_adhesion).all()
-    assert "too large for a paraboloid" in str(answer)
+    assert "may be up to 0.58 R" in str(answer)
+
+
+@pytest.mark.parametrize(
+    ("modulus", "sensitivity", "told"), [(2.2e8, 0.0, True), (2.2e8, 0.2, False), (4e9, 0.2, True)]
+)
+def test_work_per_area_needs_a_contact_that_is_surely_small(modulus: float, sensitivity: float, told: bool) -> None:
+    """JKR on 20 nm tears at a/R = 0.29 and 0.11. The former may be above 0.3 where the force is known to 20 %."""
+    known = nt.fit.Uncertainties(sensitivity=sensitivity)
+    answer = nt.fit.fit_curve(torn("jkr", modulus, 2.0), "jkr", radius=RADIUS, uncertainties=known).answer
+    assert np.isfinite(answer.work_of_adhesion).all() == told
+    assert ("no w" in str(answer)) != told
+
+
+def test_an_open_modulus_leaves_the_size_of_the_contact_open() -> None:
+    """Neither value nor bound: w was told nevertheless, "if the contact's radius is below 0.3 R"."""
+    result = nt.fit.fit_curve(torn("dmt", 1e10, 0.5), "auto", radius=RADIUS)
+    assert np.isfinite(result.answer.work_of_adhesion).all()
+    undetermined = {**result.identifiable, "effective_modulus": False}
+    answer = answer_of(replace(result, identifiable=undetermined, bounds={}))
+    assert np.isnan(answer.work_of_adhesion).all()
+    assert "is open" in str(answer)
 
 
 def test_what_goes_on_holding_has_force_and_work_alone() -> None:

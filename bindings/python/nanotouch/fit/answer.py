@@ -34,7 +34,7 @@ class Answer(NamedTuple):
         Value, least and most (95 %) [N], the calibration's uncertainty in it.
     work_of_adhesion : (float, float)
         Least and most (95 %) [J/m^2]: from F/(2 pi R) to F/(1.5 pi R), with the uncertainties of force and radius. For
-        one clean tear alone, of a contact that is small against the tip, whose radius was given.
+        one clean tear alone, of a contact that is surely small against the tip (a/R < 0.3), whose radius was given.
     work_times_radius : (float, float)
         The same times R [N], whether the radius was given or not.
     separation_work : (float, float)
@@ -125,25 +125,33 @@ def _works(
     spread = float(np.exp(_GAUSSIAN * result.uncertainties.radius))
     product = (low / _DMT, high / _JKR)
     nothing = (np.nan, np.nan)
-    size = _size_at_tear(result)
+    size = _size_at_tear(result, high)
     if not result.radius_given:
+        said = (
+            f"w R {between(*product, 'N')} (95 %; F/(2 pi) to F/(1.5 pi)) if the contact's radius is below {_SMALL} R"
+        )
         return product, nothing, [
-            ("adhesion", f"w R {between(*product, 'N')} (95 %; F/(2 pi) to F/(1.5 pi)): the tip's radius is not given "
-                         "and w needs it (--radius, radius=)")]  # fmt: skip
-    if size > _SMALL:
+            ("adhesion", f"{said} at the tear: the tip's radius is not given, and w needs it (--radius, radius=)")
+        ]  # fmt: skip
+    if not size <= _SMALL:
+        known = f"may be up to {size:.2g} R (95 %)" if np.isfinite(size) else "is open, since the modulus is"
         return (
             product,
             nothing,
-            [("adhesion", f"no w: the contact's radius is {size:.2g} R at the tear, too large for a paraboloid")],
+            [
+                (
+                    "adhesion",
+                    f"no w: the contact's radius at the tear {known}; a paraboloid's w needs less than {_SMALL} R",
+                )
+            ],
         )
     work = (product[0] / result.radius / spread, product[1] / result.radius * spread)
-    condition = "" if np.isfinite(size) else f"; if the contact's radius is below {_SMALL} R at the tear, which is open"
     meniscus = 4.0 * np.pi * _WATER * result.radius
     return (
         product,
         work,
         [
-            ("adhesion", f"w {between(*work, 'J/m^2')} (95 %; F/(2 pi R) to F/(1.5 pi R){condition})"),
+            ("adhesion", f"w {between(*work, 'J/m^2')} (95 %; F/(2 pi R) to F/(1.5 pi R))"),
             (
                 "in air",
                 f"a meniscus of water alone gives 4 pi gamma R = {newton(meniscus)}: w is then not the sample's",
@@ -152,14 +160,16 @@ def _works(
     )
 
 
-def _size_at_tear(result: FitResult) -> float:
-    """a/R where the contact is torn off, at most (JKR); NaN where the modulus is open."""
-    modulus = result.values.get("effective_modulus", np.nan)
-    if not result.identifiable.get("effective_modulus", True):
+def _size_at_tear(result: FitResult, force: float) -> float:
+    """a/R where a contact is torn off by that force, at most (JKR, 95 %): (3 F/(4 E* R^2))^(1/3) with the least E* that
+    the curve leaves; NaN where it leaves all."""
+    if result.determined("effective_modulus") is False or "effective_modulus" not in result.values:
         modulus = result.bounds.get("effective_modulus", (np.nan, np.nan))[0]
+    else:
+        modulus = result.interval["effective_modulus"][0]
     if not modulus > 0.0:
         return np.nan
-    return float((0.75 * result.report.pull_off_force / (modulus * result.radius**2)) ** (1.0 / 3.0))
+    return float((0.75 * force / (modulus * result.radius**2)) ** (1.0 / 3.0))
 
 
 def _separation(result: FitResult) -> tuple[float, float]:
