@@ -180,7 +180,9 @@ static const ntf_touch plan_touch = {
             0.00000000e+00f, /* frequency */
             1.99999999e-08f, /* free_amplitude */
             1.00000001e-01f, /* tolerance */
+            0, /* hold */
             6.99999988e-01f, /* set_amplitude */
+            7.85398185e-01f, /* set_phase */
             1.99999995e-05f, /* lock_in */
             1.99999999e-11f, /* noise */
             0.00000000e+00f, /* resolution */
@@ -287,6 +289,11 @@ static const ntf_touch plan_touch = {
                 0.00000000e+00f, /* distance */
                 0.00000000e+00f, /* noise */
             }, /* stuck */
+            0.00000000e+00f, /* shake */
+            0.00000000e+00f, /* reach */
+            0.00000000e+00f, /* memory */
+            0.00000000e+00f, /* kept */
+            0.00000000e+00f, /* share */
         }, /* amplitude */
     }, /* supervisor */
 };

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from typing import Any
 
 import nanotouch as nt
@@ -24,18 +25,18 @@ def is_named(args: argparse.Namespace) -> bool:
 
 
 def mode(args: argparse.Namespace, tables: dict[str, Any]) -> str:
-    """Contact, or tapping where the slave has a lock-in amplifier."""
+    """Contact, or tapping or phase where the slave has a lock-in amplifier."""
     asked = str(args.mode or tables.get("zloop", {}).get("mode", "contact"))
     if asked not in nt.raster.MODES:
         raise InvalidValue(f"--mode {asked}: a rig file's probe scans with {' or '.join(nt.raster.MODES)}")
     slave = scenes.real_halves(args.scene)["slave"]
-    if asked == "tapping" and isinstance(slave, nt.rig_file.Converters) and not any(slave.setup["lock_in"]):
+    if asked != "contact" and isinstance(slave, nt.rig_file.Converters) and not any(slave.setup["lock_in"]):
         raise InvalidValue(
             f"{args.scene} has no [slave.amplitude] and [slave.lag]: without a lock-in amplifier its probe scans with "
             "--mode contact (docs/hardware.md)"
         )
     if asked == "contact" and args.free_amplitude is not None:
-        raise InvalidValue("--free-amplitude goes with --mode tapping")
+        raise InvalidValue("--free-amplitude goes with --mode tapping or phase")
     if args.steady is not None:
         raise InvalidValue("--steady: an image of the simulated scanner; a real probe scans in time")
     return asked
@@ -46,6 +47,8 @@ def _take_tap(wanted: nt.Settings, settings: nt.Scan, drive: nt.Drive, tables: d
     for name in ("at", "frequency", "free_amplitude"):
         wanted[f"tap.{name}"] = drive[f"drive.{name}"]
     wanted["tap.set_amplitude"] = settings["zloop.set_amplitude"]
+    wanted["tap.set_phase"] = settings["zloop.set_phase"]
+    wanted["tap.hold"] = "phase" if settings.zloop.mode == "phase" else "amplitude"
     for name in ("lock_in", "noise"):
         if any(key.startswith(name) for key in tables.get("zloop", {})):
             wanted[f"tap.{name}"] = settings[f"zloop.{name}"]
@@ -62,7 +65,7 @@ def opened(
     what: dict[str, Any] = {"surface": surface, "path": path}
     wanted = nt.Session(scene, rig, minimum_margin=0.0, mode="topography", **what).settings.copy()
     wanted.update_from_tables(tables)
-    taps = settings.zloop.mode == "tapping"
+    taps = settings.zloop.mode != "contact"
     if taps:
         _take_tap(wanted, settings, drive, tables)
     else:
@@ -86,12 +89,16 @@ def opened(
 
 def _say_tapping(session: nt.Session, drive: nt.Drive, promised: str, servo: float) -> None:
     """What is held, and the peak force of a tap, which is told by the scene alone."""
-    amplitude = session.settings["tap.set_amplitude"] * session.settings["tap.free_amplitude"]
+    steady = nt.Steady(session.plan, session.rig, drive, accuracy=PEAK)
+    if session.settings.tap.hold == "phase":
+        held = f"a phase of {math.degrees(session.settings['tap.set_phase']):.3g} degrees"
+        motion = steady.at_phase(session.settings["tap.set_phase"])
+    else:
+        amplitude = session.settings["tap.set_amplitude"] * session.settings["tap.free_amplitude"]
+        held, motion = f"an amplitude of {in_words(amplitude, 'm', 4)}", steady.at_amplitude(amplitude)
     output.say(
-        f"promised {promised} at most on the sample, as a mean over many taps; an amplitude of "
-        f"{in_words(amplitude, 'm', 4)} is held, with K_I = {servo:.3g}/s"
+        f"promised {promised} at most on the sample, as a mean over many taps; {held} is held, with K_I = {servo:.3g}/s"
     )
-    motion = nt.Steady(session.plan, session.rig, drive, accuracy=PEAK).at_amplitude(amplitude)
     if motion is None:
         output.say("no motion of this set point repeats in this scene: its peak force is not known")
     else:

@@ -62,14 +62,24 @@ static double run_touch(const nt_touch *touch, nt_touch_state *state)
     return state->engaged * effort.motor_force + nt_passivity_damping_force(&touch->passivity, &state->passivity);
 }
 
-/* How far the height servo would go in this period towards the set-point [m]: down for more force, or where the
- * amplitude is larger than what is held. */
+/* By how much a lever that taps swings too far [m]. A lag counts as the amplitude that a contact without loss would
+ * have, A0 sin(phi), beyond 90 degrees as A0 (2 - sin(phi)): far from the sample it is A0 (scan.h). */
+static double swing_error(const nt_touch *touch, const nt_touch_state *state)
+{
+    const nt_tap *tap = &touch->settings.tap;
+    if (tap->hold == 0)
+        return state->amplitude - tap->set_amplitude * touch->drive_amplitude;
+    const double sine = sin(state->lag), read = cos(state->lag) >= 0.0 ? sine : 2.0 - sine;
+    return (read - sin(tap->set_phase)) * touch->drive_amplitude;
+}
+
+/* How far the height servo would go in this period towards the set-point [m]: down for more force, or where the swing
+ * is larger than what is held. */
 static double height_step(const nt_touch *touch, const nt_touch_state *state)
 {
     const nt_gains *gains = &touch->settings.gains;
     const double force_error = (gains->set_point - state->signals.slave_force) / touch->rig.probe.spring_constant;
-    const double set_amplitude = touch->settings.tap.set_amplitude * touch->drive_amplitude;
-    const double error = state->mode == NT_MODE_TAPPING ? state->amplitude - set_amplitude : force_error;
+    const double error = state->mode == NT_MODE_TAPPING ? swing_error(touch, state) : force_error;
     return step_of(touch, gains->height_gain * error);
 }
 

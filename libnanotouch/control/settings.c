@@ -57,7 +57,9 @@ static const nt_field settings_fields[] = {
     FIELD(tap.frequency, "Hz", 0.0, 1e9, "frequency of the drive, 0 for the free resonance"),
     FIELD(tap.free_amplitude, "m", 1e-11, 1e-6, "amplitude A0 of the deflection far from the sample"),
     FIELD(tap.tolerance, "", 0.001, 0.5, "share of A0 by which the free amplitude may be off at opening"),
+    FIELD(tap.hold, "amplitude|phase", 0.0, 1.0, "what the height servo holds"),
     FIELD(tap.set_amplitude, "", 0.2, 0.98, "amplitude that is held, over A0"),
+    FIELD(tap.set_phase, "rad", 0.1, 1.5, "lag that is held, of a tip that is repelled: below pi/2"),
     FIELD(tap.lock_in, "s", 0.0, 1.0, "time constant of the lock-in amplifier"),
     FIELD(tap.noise, "m", 0.0, 1e-6, "standard deviation of a reading of the amplitude"),
     FIELD(tap.resolution, "m", 0.0, 1e-6, "step of a reading of the amplitude"),
@@ -67,6 +69,7 @@ static const nt_tap tap_defaults = {.at = 1, /* base */
                                     .free_amplitude = 20e-9,
                                     .tolerance = 0.1,
                                     .set_amplitude = 0.7,
+                                    .set_phase = 0.25 * NT_PI,
                                     .lock_in = 20e-6,
                                     .noise = 20e-12};
 

@@ -107,6 +107,7 @@ static void observe(const nt_touch *touch, nt_touch_state *state, const nt_sampl
     signals->smooth_force += touch->force_filter * (signals->operator_force - signals->smooth_force);
     signals->slave_force = touch->rig.probe.spring_constant * without_spike(touch, state, sample->deflection[NT_Z]);
     state->amplitude = sample->amplitude;
+    state->lag = sample->lag;
     nt_sideways_read(touch, state, sample);
     rescale(touch, state);
     const int closes = touch->rig.master.motor; /* without a motor no loop closes through the hand */

@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "core/clamp.h"
+#include "core/problem.h"
 #include "core/same_bits.h"
 #include "nanotouch/material.h"
 
@@ -57,6 +58,16 @@ static nt_status check_against_rig(const nt_settings *settings, const nt_rig *ri
     return NT_OK;
 }
 
+/* A held phase counts from the 90 degrees of the free resonance, and is told within a tenth of its width. */
+static nt_status check_phase(const nt_settings *settings, const nt_rig *rig, nt_mode mode, nt_problem *problem)
+{
+    const nt_tap *tap = &settings->tap;
+    const double f0 = rig->probe.resonance, width = 0.05 * f0 / rig->probe.quality;
+    if (mode != NT_MODE_TAPPING || tap->hold == 0 || tap->frequency == 0.0 || fabs(tap->frequency - f0) <= width)
+        return NT_OK;
+    return nt_problem_set(problem, "tap.frequency (tap.hold = phase)", "Hz", tap->frequency, f0 - width, f0 + width);
+}
+
 /* More than probe, stage and path can do in a period, and more than noise [m]. */
 static double spike_of(const nt_rig *rig, const nt_settings *settings)
 {
@@ -91,6 +102,8 @@ nt_status nt_touch_make(nt_touch *touch, const nt_rig *rig, const nt_settings *s
         status = nt_settings_check(settings, problem);
     if (status == NT_OK)
         status = check_against_rig(settings, rig, problem);
+    if (status == NT_OK)
+        status = check_phase(settings, rig, mode, problem);
     if (status != NT_OK)
         return status;
     if (mode > NT_MODE_TAPPING)

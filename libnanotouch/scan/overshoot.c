@@ -27,6 +27,12 @@ typedef struct fall {
     double least;     /* that the loop lets it fall to [m] */
 } fall;
 
+/* From what the lever does to what the stage does [s]. */
+static double delay_of(const nt_scanner *s)
+{
+    return s->scan.zloop.lock_in + s->period + 1.0 / (2.0 * NT_PI * s->stage.stage.resonance * s->stage.stage.quality);
+}
+
 /* How fast base and sample come together [m/s]: the sample rises, and the loop lowers the base where it reads too much.
  */
 static double approach_of(const fall *f, double first)
@@ -35,8 +41,7 @@ static double approach_of(const fall *f, double first)
     const nt_zloop *loop = &s->scan.zloop;
     const double A0 = s->lever.free_amplitude, q = s->stage.stage.quality, K = s->integral;
     const double beyond = q > 0.5 ? 1.0 + exp(-NT_PI / sqrt(4.0 * q * q - 1.0)) : 1.0; /* of the stage's speed */
-    const double late = loop->lock_in + s->period + 1.0 / (2.0 * NT_PI * s->stage.stage.resonance * q);
-    double error = f->amplitude + late * f->relief->rise - loop->set_amplitude * A0;
+    double error = f->amplitude + delay_of(s) * f->relief->rise - loop->set_amplitude * A0;
     if (loop->mode == NT_ZLOOP_PHASE) /* the amplifier may still show where the lag was */
         error = A0 * (2.0 - sin(fmax(first, 0.5 * NT_PI)) - sin(loop->set_phase));
     return f->relief->rise + K * error * (error > 0.0 ? beyond : 1.0);
@@ -84,7 +89,7 @@ static supply supply_of(const fall *f, double attraction, double loss)
                     D * cos(fmax(0.0, end)) + fmax(0.0, r * r - 1.0) * A, jump};
 }
 
-/* The force at the greatest depth. */
+/* The force at the greatest depth; HUGE_VAL where a tip that deep may stay in the sample. */
 static double force_of(const fall *f)
 {
     const nt_tapping *lever = &f->scanner->lever;
@@ -109,17 +114,20 @@ static double force_of(const fall *f)
         else if (taken > may.work + may.by_depth * depth)
             break;
     }
-    return nt_flow_average_at(lever, f->over, now.attached, f->amplitude, low - may.jump).peak;
+    low -= may.jump;
+    if (-low > lever->cosine * f->amplitude)
+        return HUGE_VAL;
+    return nt_flow_average_at(lever, f->over, now.attached, f->amplitude, low).peak;
 }
 
 double nt_scanner_peak_bound(const nt_scanner *scanner, const nt_place *place, const nt_relief *relief)
 {
     const nt_tapping_over over = {scanner->plan, place, 0.0};
     const double largest = scanner->lever.strength * scanner->lever.quality / scanner->lever.ratio;
-    const double set = scanner->scan.zloop.mode == NT_ZLOOP_PHASE
-                           ? 0.0
-                           : scanner->scan.zloop.set_amplitude * scanner->lever.free_amplitude;
-    const double least = fmax(0.0, set - fmin(relief->height, relief->rise / scanner->integral));
+    const nt_zloop *loop = &scanner->scan.zloop;
+    const double set = loop->mode == NT_ZLOOP_PHASE ? sin(loop->set_phase) : loop->set_amplitude;
+    const double lag = fmin(relief->height, relief->rise * (1.0 / scanner->integral + delay_of(scanner)));
+    const double least = fmax(0.0, set * scanner->lever.free_amplitude - lag);
     double most = -HUGE_VAL;
     for (int i = 0; i < SWINGS; i++) {
         const fall f = {scanner, &over, relief, least + (largest - least) * (i + 0.5) / SWINGS, least};

@@ -48,7 +48,7 @@ static int is_fixed(const nt_session *session, const char *field)
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; ++i)
         if (strcmp(field, fixed[i]) == 0)
             return 1;
-    if (strncmp(field, "tap.", 4) == 0 && strcmp(field, "tap.set_amplitude") != 0)
+    if (strncmp(field, "tap.", 4) == 0 && strncmp(field, "tap.set_", 8) != 0)
         return 1;
     if (is_of_surface(session->now->setup.properties, field))
         return 1;

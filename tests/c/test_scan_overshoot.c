@@ -36,7 +36,7 @@ static nt_status draw(uint64_t seed, int humid)
     drive = nt_drive_defaults();
     drive.free_amplitude = 10e-9 * pow(4.0, nt_noise_uniform(&dice));
     scan = nt_scan_defaults();
-    scan.zloop.set_amplitude = 0.3;
+    scan.zloop.set_amplitude = 0.4;
     const nt_plan_inputs inputs = {.scene = &scene};
     return nt_plan_make(&plan, &inputs, NULL);
 }
@@ -75,7 +75,7 @@ static void a_change_of_motion_in_the_time_domain(void **state)
         const nt_scanner scanner = made();
         nt_tapping coarse = scanner.lever;
         coarse.tolerance = 1e-6;
-        const nt_relief moving = {2e-12 * rig.probe.resonance, drive.free_amplitude};
+        const nt_relief moving = {2e-12 * rig.probe.resonance, 0.05 * drive.free_amplitude};
         const double reached = come_down(&coarse), bound = nt_scanner_peak_bound(&scanner, NULL, &moving);
         assert_true(reached <= bound);
         largest = larger(largest, reached / bound);

@@ -61,6 +61,33 @@ static void the_amplitude_is_held(void **state)
     nt_session_close(session);
 }
 
+/* Likewise the phase; attraction reads as too far up, and is gone through. The drive is at the resonance. */
+static void the_phase_is_held(void **state)
+{
+    (void)state;
+    for (int humid = 0; humid < 2; humid++) {
+        nt_session_setup setup = tapping_setup();
+        setup.scene.medium.relative_humidity = 0.4 * humid;
+        setup.settings.tap.hold = 1;
+        setup.settings.tap.set_phase = 0.9;
+        nt_session *session = open_session(&setup);
+        run(session, records, TICKS);
+        double mean = 0.0;
+        for (int i = TICKS - 1000; i < TICKS; i++) {
+            assert_int_equal(records[i].state, NT_RUN);
+            mean += records[i].lag / 1000.0;
+        }
+        print_message("phase %.3f rad of 0.9, amplitude %.2f nm\n", mean, 1e9 * records[TICKS - 1].amplitude);
+        assert_true(fabs(mean - 0.9) < 0.02);
+        assert_true(records[TICKS - 1].amplitude < 20e-9 * sin(0.9) + 0.2e-9); /* losses only make it smaller */
+        nt_session_close(session);
+        setup.settings.tap.frequency = 301e3;
+        nt_problem problem = {0};
+        assert_int_equal(nt_session_open(&session, &setup, &problem), NT_E_RANGE);
+        assert_non_null(strstr(problem.field, "tap.frequency"));
+    }
+}
+
 static void another_mode_has_no_amplitude(void **state)
 {
     (void)state;
@@ -340,6 +367,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_amplitude_is_held),
+        cmocka_unit_test(the_phase_is_held),
         cmocka_unit_test(another_mode_has_no_amplitude),
         cmocka_unit_test(a_fault_lifts_and_is_never_zero_force),
         cmocka_unit_test(a_dead_amplifier_is_found_on_the_way_down),

@@ -61,6 +61,31 @@ def test_slides_where_its_area_gives_way_first() -> None:
     assert not path.happened("roll").any()
 
 
+def test_it_rolls_or_slides_as_two_forces_say() -> None:
+    """Pushed at the height of its middle a sphere without load rolls at 6 pi w xi or slides at tau pi a0^2, whichever
+    is less, a0^3 = 9 pi w R^2/(2 E*): the published points, and random ones from 3 % beside the border of the map."""
+
+    def area_of(radius: float, work: float) -> float:
+        return float((4.5 * math.pi * work * radius**2 / E) ** (2.0 / 3.0))
+
+    rng = np.random.default_rng(3)
+    published = ((5e-6, 42e-9), (10e-6, 84e-9), (15e-6, 128e-9))
+    points = [(radius, W, strength, distance) for radius, distance in published for strength in (9e6, 12e6, 15e6)]
+    for share in (0.5, 0.9, 0.97, 1.03, 1.1, 2.0):
+        radius, work, strength = 10.0 ** rng.uniform(-6.5, -4.8), rng.uniform(0.02, 0.15), rng.uniform(9e6, 15e6)
+        points.append((radius, work, strength, share * strength * area_of(radius, work) / (6.0 * work)))
+    smooth = nt.ParticleContact(E, G, work_of_adhesion=0.0, shear_strength=0.0, rolling_distance=1e-15)
+    for radius, work, strength, distance in points:
+        glass = nt.ParticleContact(E, G, work, shear_strength=strength, rolling_distance=distance)
+        pushed = nt.Particle(radius, glass, smooth, tip_radius=0.2 * radius, tip_half_angle=1e-3)
+        start = -1.201 * radius - 20e-9
+        path = pushed.run(np.linspace(start, start + 6.0 * distance + 0.02 * radius, 80), 0.0, 0.8 * radius)
+        rolls, slides = 6.0 * math.pi * work * distance, strength * math.pi * area_of(radius, work)
+        assert path.happened("roll")[-1].any() == (rolls < slides)
+        assert path.happened("slide")[-1].any() == (slides < rolls)
+        assert abs(path.force[-1, 0]) == pytest.approx(min(rolls, slides), rel=1e-3)
+
+
 def test_limits_and_stiffnesses_are_those_of_the_books() -> None:
     sphere, a = particle(5e-6, 12e6, 42e-9), 150e-9
     torsion = 1 / (1 / G - 2 / E)

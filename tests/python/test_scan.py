@@ -240,6 +240,7 @@ def test_no_tap_is_harder_than_forecast() -> None:
     assert len(scan.forecast(nt.Scanner(scene.plan(), alone, rig), scene).motions) == 1
     assert told.safe_free_amplitude < 20e-9
     gentle = nt.Drive(drive={"free_amplitude": told.safe_free_amplitude})
+    settings["raster.line_rate"] *= told.safe_free_amplitude / 20e-9
     below = nt.Scanner(scene.plan(0.1, surface=surface), settings, rig, gentle)
     assert scan.peak_bounds(below, scene, surface)[0] <= told.force_limit < told.peak_bound
     with pytest.raises(InvalidValue, match="rise = -1 m/s"):

@@ -144,6 +144,35 @@ def test_a_scan_through_the_hal() -> None:
         nt.raster.image(session, settings)
 
 
+def test_phase_feedback_through_the_hal() -> None:
+    """On the simulated slave: what the tip sees, with the lag that is held; a session that holds something else is
+    refused."""
+    x = np.arange(64) / 64 * 2e-6
+    wave = images.Topography(np.tile(10e-9 * np.cos(1e6 * np.pi * x), (64, 1)), (x[1], x[1]))
+    scene = rubbed()
+    surface = nt.Surface.touched_by(scene, wave)
+    lever: Any = {"spring_constant": 40.0, "quality": 200.0, "resonance": 300e3}
+    tapping = nt.Rig(probe=lever, stage={"axes": 3})
+    scan_of: Any = {"x": 0.5e-6, "y": 0.5e-6, "width": 1e-6, "height": 0.1e-6, "pixels": 32, "lines": 1}
+    settings = nt.Scan(zloop={"mode": "phase", "set_phase": 0.8}, raster=scan_of | {"line_rate": 0.25})
+
+    def session(hold: str) -> nt.Session:
+        wanted = nt.Settings.for_rig(tapping)
+        wanted["tap.hold"] = hold
+        path = [(0.5e-6, 0.5e-6), (1.5e-6, 0.5e-6)]
+        return nt.Session(scene, tapping, settings=wanted, surface=surface, mode="tapping", path=path)
+
+    image = nt.raster.image(session("phase"), settings)
+    expected = np.asarray(surface.height(0.5e-6 + np.arange(32) / 32 * 1e-6, 0.5e-6))
+    for channels in image[:2]:
+        found = channels.height[0] - channels.height[0].mean() - (expected - expected.mean())
+        assert np.abs(found[2:-2]).max() < 1e-9
+        assert channels.phase[0, 2:-2] == pytest.approx(0.8, abs=0.05)
+        assert channels.signal[0].mean() == pytest.approx(20e-9 * math.sin(0.8), rel=0.05)
+    with pytest.raises(InvalidValue, match=r"tap\.hold = amplitude"):
+        nt.raster.image(session("amplitude"), settings)
+
+
 class Bench(nt.hal.Slave):
     """A device of one's own: a stage with x and y, and a lever of 8 N/m that a hard staircase pushes up."""
 

@@ -593,8 +593,12 @@ class SettingsTap(Section):
     """amplitude A0 of the deflection far from the sample [m], 1e-11 .. 1e-06"""
     tolerance: float
     """share of A0 by which the free amplitude may be off at opening [-], 0.001 .. 0.5"""
+    hold: Literal["amplitude", "phase"]
+    """what the height servo holds"""
     set_amplitude: float
     """amplitude that is held, over A0 [-], 0.2 .. 0.98"""
+    set_phase: float
+    """lag that is held, of a tip that is repelled: below pi/2 [rad], 0.1 .. 1.5"""
     lock_in: float
     """time constant of the lock-in amplifier [s], 0 .. 1"""
     noise: float
@@ -607,7 +611,9 @@ class SettingsTapValues(TypedDict, total=False):
     frequency: float
     free_amplitude: float
     tolerance: float
+    hold: Literal["amplitude", "phase"]
     set_amplitude: float
+    set_phase: float
     lock_in: float
     noise: float
     resolution: float

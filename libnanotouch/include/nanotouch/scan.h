@@ -104,7 +104,8 @@ typedef struct nt_relief {
     double height; /* range along a line [m] */
 } nt_relief;
 /* No tap over a place (NULL: a flat) is harder [N], from whatever motion to whatever other, by the slow flow
- * (overshoot.c). HUGE_VAL: where the surface comes up faster than an amplitude may shrink. */
+ * (overshoot.c). HUGE_VAL: where the tip may stay in the sample, as base and surface come together faster than
+ * the amplitude can fall, or a tap is deeper than its amplitude. */
 NT_API double nt_scanner_peak_bound(const nt_scanner *scanner, const nt_place *place, const nt_relief *relief);
 
 /* Copyable. */

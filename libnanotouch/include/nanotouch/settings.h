@@ -89,7 +89,9 @@ typedef struct nt_tap {
     double frequency;      /* of the drive, 0: at the free resonance [Hz] */
     double free_amplitude; /* A0, of the deflection far from the sample [m] */
     double tolerance;      /* by which the free amplitude may differ from A0 when a session opens, over A0 [-] */
+    int hold;              /* "amplitude|phase": what the height servo keeps */
     double set_amplitude;  /* that is held, over A0 [-] */
+    double set_phase;      /* lag that is held, of a tip that is repelled [rad] */
     double lock_in;        /* time constant of the lock-in amplifier [s] */
     double noise;          /* of a reading of the amplitude, standard deviation [m] */
     double resolution;     /* step of that reading, 0: none [m] */

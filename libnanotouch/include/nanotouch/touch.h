@@ -57,7 +57,7 @@ typedef struct nt_touch_state {
     nt_stage_loop_state stage_loop;
     nt_signals signals;                  /* what the law is given */
     double deflections[2];               /* of the last two valid samples [m] */
-    double amplitude;                    /* of mode tapping, of the last valid sample [m] */
+    double amplitude, lag;               /* of mode tapping, of the last valid sample [m], [rad] */
     nt_sum reference;                    /* where the stage shall be [m] */
     nt_sum offset;                       /* target = alpha_p x_m + offset: re-indexed after every stop [m] */
     double stretch;                      /* of the virtual coupling, at the operator's scale [m] */

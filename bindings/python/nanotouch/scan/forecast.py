@@ -86,8 +86,8 @@ class Forecast(NamedTuple):
     """tapping: no tap is harder [N], also where the lever goes over from one motion to another; inf: no bound; contact:
     NaN"""
     safe_free_amplitude: float
-    """tapping: the largest A0, no larger than the one in use, at which that bound keeps below the limit [m]; NaN: none
-    down to a twentieth of it"""
+    """tapping: the largest A0, no larger than the one in use, at which that bound keeps below the limit, with a speed
+    that is smaller by as much [m]; NaN: none down to a twentieth of it"""
     single_set_point: float
     """tapping: where two motions have the set point, the nearest A/A0 that only one has over a flat; NaN: none, or not
     needed"""
@@ -122,7 +122,8 @@ class Forecast(NamedTuple):
             f"any tap: no harder than {in_words(self.peak_bound, 'N', 3)}, also where the lever goes over from one "
             "motion to another"
             if math.isfinite(self.peak_bound)
-            else "any tap: no bound, the base may come down faster than the amplitude can fall: lower K_I or the speed"
+            else "any tap: no bound, for the tip may stay in the sample where base and surface come together: scan "
+            "slower, or with a lower K_I"
         )
         if len(self.motions) == 1:
             return [told]
@@ -147,7 +148,9 @@ class Forecast(NamedTuple):
             return ", and so does any tap"
         if math.isnan(self.safe_free_amplitude):
             return "; no smaller free amplitude keeps any tap below"
-        return f"; any tap does with a free amplitude up to {in_words(self.safe_free_amplitude, 'm', 2)}"
+        return (
+            f"; any tap does with a free amplitude up to {in_words(self.safe_free_amplitude, 'm', 2)}, as much slower"
+        )
 
     def _loop(self) -> list[str]:
         lines = [

@@ -15,6 +15,7 @@ from nanotouch.scene.surface import Surface
 
 _ACCURACY = 0.02  # of the curve's motions
 _LEAST_SWING, _HALVINGS = 0.05, 6  # of the free amplitude: smaller ones are not advised
+_LINES = 512
 _SHARES = (0.06, 0.98, 96)  # set points over A0 that are tried
 
 
@@ -26,12 +27,25 @@ def steepest(scanner: Scanner, surface: Surface) -> tuple[float, float]:
 
 
 def places(scanner: Scanner, surface: Surface) -> tuple[Floats, Floats]:
-    """x along a line and y of up to 64 lines [m]."""
+    """x along a line and y of the lines, up to 512 of them [m]."""
+    raster, lines = scanner.scan.raster, int(scanner.scan.raster.lines)
+    x = _fine(surface, raster.x, raster.width, raster.width / raster.pixels)
+    taken = np.unique(np.linspace(0, lines - 1, min(lines, _LINES)).round())
+    return x, raster.y + taken * raster.height / lines
+
+
+def _fine(surface: Surface, first: float, length: float, pixel: float) -> Floats:
+    """Four places in each pixel of scan or surface."""
+    count = 4 * length / min(surface.topography.pixel_size[1], pixel)
+    return np.linspace(first, first + length, min(int(count), 20000) + 2)
+
+
+def _steepest_turn(scanner: Scanner, surface: Surface) -> float:
+    """The steepest slope on the way from a line to the next one, at their beginning."""
     raster = scanner.scan.raster
-    pixel = min(surface.topography.pixel_size[1], raster.width / raster.pixels)
-    x = np.linspace(raster.x, raster.x + raster.width, min(int(4 * raster.width / pixel), 20000) + 2)
-    lines = min(int(raster.lines), 64)
-    return x, raster.y + (np.arange(lines) + 0.5) * raster.height / lines
+    y = _fine(surface, raster.y, raster.height, raster.height / raster.lines)
+    z = np.asarray(surface.height(raster.x, y)) + raster.tilt_y * y
+    return float(np.abs(np.diff(z)).max() / (y[1] - y[0]))
 
 
 def limit_of(scene: Scene) -> tuple[float, str]:
@@ -47,11 +61,13 @@ def limit_of(scene: Scene) -> tuple[float, str]:
 
 def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tuple[float, float]:
     """No tap of a scan is harder [N], where the contact is widest and narrowest of what is scanned; and the free
-    amplitude that keeps this below the limit of :func:`limit_of` [m]."""
+    amplitude that keeps this below the limit of :func:`limit_of` [m], with a speed that is smaller by as much."""
     if scanner.scan.zloop.mode == "contact":
         return math.nan, math.nan
     raster, limit = scanner.scan.raster, limit_of(scene)[0]
     slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
+    if surface is not None:
+        slope = max(slope, _steepest_turn(scanner, surface))
     spots = [(float(raster.x), float(raster.y))]
     if surface is not None and surface.tip_radius is not None:
         x, y = places(scanner, surface)
@@ -61,8 +77,8 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
             spots.append((float(x[i]), float(y[j])))
     rise = scanner.speed * slope * (1.0 + 2.0 * raster.hysteresis) + abs(scanner.scan["raster.drift"])
 
-    def bound(of: Scanner) -> float:
-        return max(of.peak_bound(at, rise, height) for at in spots)
+    def bound(of: Scanner, share: float = 1.0) -> float:
+        return max(of.peak_bound(at, share * rise, height) for at in spots)
 
     A0, most = float(scanner.drive["drive.free_amplitude"]), bound(scanner)
     if most <= limit:
@@ -71,7 +87,7 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
     for share in (low, *[math.nan] * _HALVINGS):
         middle = math.sqrt(low * high) if math.isnan(share) else share
         drive["drive.free_amplitude"] = middle * A0
-        keeps = bound(Scanner(scanner.plan, scanner.scan, scanner.rig, drive)) <= limit
+        keeps = bound(Scanner(scanner.plan, scanner.scan, scanner.rig, drive), middle) <= limit
         if not keeps and middle == low:
             return most, math.nan
         low, high = (middle, high) if keeps else (low, middle)

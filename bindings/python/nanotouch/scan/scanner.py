@@ -197,7 +197,7 @@ class Scanner(Lever):
     def peak_bound(self, at: tuple[float, float], rise: float, height: float) -> float:
         """No tap is harder [N], from whatever motion to whatever other (docs/scan.md): over a place (x, y) [m] of a
         surface that comes up under the tip no faster than ``rise`` [m/s], with a range of ``height`` [m] along a line.
-        inf: the base may come down faster than the amplitude can fall."""
+        inf: the tip may stay in the sample."""
         if self.scan.zloop.mode == "contact":
             raise InvalidValue("zloop.mode = contact: a bound is of tapping or phase")
         if not (rise >= 0.0 and height >= 0.0):

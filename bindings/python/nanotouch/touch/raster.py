@@ -20,32 +20,36 @@ from nanotouch.touch.columns import STATES
 from nanotouch.touch.operator import Input, core_input
 from nanotouch.touch.session import REASONS, Session
 
-MODES: dict[str, Mode] = {"contact": "topography", "tapping": "tapping"}
+MODES: dict[str, Mode] = {"contact": "topography", "tapping": "tapping", "phase": "tapping"}
 """of the session, for a mode of the z loop"""
+_KEPT = {"contact": ("gains.set_point", "set_force"), "tapping": ("tap.set_amplitude", "set_amplitude"),
+         "phase": ("tap.set_phase", "set_phase")}  # fmt: skip
+"""setting of the session that holds a set point"""
 _SETTLE = 5.0  # time constants of the height servo before the first line
 
 
 def image(session: Session, scan: Scan) -> Image:
-    """An image in contact or tapping mode, taken by a session on its own rig.
+    """An image in contact or tapping mode or by phase feedback, taken by a session on its own rig.
 
     The session's height servo (``gains.height_gain``, K_I) holds ``zloop.set_force``, or ``zloop.set_amplitude`` of the
-    session's own ``tap.free_amplitude``; the raster is the scan's. Tilt, drift and hysteresis are those of the rig, not
-    of the raster. Trace and retrace are sorted into pixels by the position that the slave has measured; a pixel is the
-    mean of what falls into it.
+    session's own ``tap.free_amplitude``, or ``zloop.set_phase``; the raster is the scan's. Tilt, drift and hysteresis
+    are those of the rig, not of the raster. Trace and retrace are sorted into pixels by the position that the slave has
+    measured; a pixel is the mean of what falls into it.
 
     Parameters
     ----------
     session : Session
-        In mode ``"topography"`` for contact, ``"tapping"`` for tapping, above the sample.
+        In mode ``"topography"`` for contact, else ``"tapping"``, with ``tap.hold`` as what is kept, above the sample.
     scan : Scan
-        ``zloop.mode`` is contact or tapping; half a line has at least two ticks of the session for each pixel.
+        Half a line has at least two ticks of the session for each pixel.
 
     Returns
     -------
     Image
         Heights of the stage as measured, from where the session began; deflection, error and force as measured. The
         lateral force is that of a lever that shows it (``probe.lateral_stiffness``), 0 of others. Tapping: amplitude,
-        error and lag as measured; the peak force, which no rig measures, is NaN, and the lateral force 0.
+        error and lag as measured, of phase feedback the error as an amplitude; the peak force, which no rig measures,
+        is NaN, and the lateral force 0.
 
     Raises
     ------
@@ -60,15 +64,18 @@ def image(session: Session, scan: Scan) -> Image:
     if MODES.get(str(loop.mode)) != session.mode:
         raise InvalidValue(
             f"session.mode = {session.mode}, zloop.mode = {loop.mode}: a scan through the hal needs topography with "
-            "contact, or tapping with tapping"
+            "contact, or tapping with tapping or phase"
         )
+    held = {"tapping": "amplitude", "phase": "phase"}.get(str(loop.mode))
+    if held is not None and session.settings.tap.hold != held:
+        raise InvalidValue(f"tap.hold = {session.settings.tap.hold}, zloop.mode = {loop.mode}: open it with {held}")
     if ticks < 2 * pixels:
         raise InvalidValue(
             f"raster.line_rate = {raster.line_rate:g} Hz: valid is up to {0.25 * session.rate / pixels:g} Hz, for two "
             f"ticks of the session in each of {pixels} pixels"
         )
     _check_range(session, scan)
-    kept, field = ("gains.set_point", "set_force") if loop.mode == "contact" else ("tap.set_amplitude", "set_amplitude")
+    kept, field = _KEPT[str(loop.mode)]
     if session.settings[kept] != scan[f"zloop.{field}"]:
         session.change("settings", kept, scan[f"zloop.{field}"])
     ways = _ways(session, scan, ticks)
@@ -88,7 +95,7 @@ def _ways(session: Session, scan: Scan, ticks: int) -> list[tuple[int, int | Non
     """Down to the surface, then there (0) and back (1) on each line, and over to the next one (None)."""
     raster, rate = scan.raster, session.rate
     lines, ends = int(raster.lines), _ends(scan)
-    error = session.settings["tap.free_amplitude"] - _set_amplitude(session, scan)  # beyond the surface [m]
+    error = session.settings["tap.free_amplitude"] - _held(session, scan)  # beyond the surface [m]
     if scan.zloop.mode == "contact":
         error = scan["zloop.set_force"] / session.rig["probe.spring_constant"]
     settle = 2.0 * session.clearance / error
@@ -103,8 +110,19 @@ def _ways(session: Session, scan: Scan, ticks: int) -> list[tuple[int, int | Non
     return ways
 
 
-def _set_amplitude(session: Session, scan: Scan) -> float:
-    return float(scan["zloop.set_amplitude"] * session.settings["tap.free_amplitude"])
+def _held(session: Session, scan: Scan) -> float:
+    """What is kept while the lever taps, as an amplitude [m]."""
+    phase = scan.zloop.mode == "phase"
+    share = math.sin(scan["zloop.set_phase"]) if phase else scan["zloop.set_amplitude"]
+    return float(share * session.settings["tap.free_amplitude"])
+
+
+def _swing(session: Session, rows: Columns, scan: Scan) -> Floats:
+    """What is read, as an amplitude [m]: a lag counts as that of a contact without loss (docs/scan.md)."""
+    if scan.zloop.mode == "tapping":
+        return np.asarray(rows["amplitude"])
+    sine = np.sin(rows["lag"])
+    return np.where(np.cos(rows["lag"]) >= 0.0, sine, 2.0 - sine) * float(session.settings["tap.free_amplitude"])
 
 
 def _check_range(session: Session, scan: Scan) -> None:
@@ -155,7 +173,7 @@ def _sorted(session: Session, rows: Columns, scan: Scan) -> Floats:
         out[4] = -math.inf
         np.maximum.at(out[4], which, rows["slave_force"])
     else:
-        error = _set_amplitude(session, scan) - rows["amplitude"]
+        error = _held(session, scan) - _swing(session, rows, scan)
         values = {0: -rows["stage_position"], 1: error, 2: rows["amplitude"], 3: rows["lag"]}
         out[4] = math.nan
     for row, value in values.items():
