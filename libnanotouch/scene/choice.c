@@ -10,9 +10,19 @@ typedef struct combination {
     double error, cost;
 } combination;
 
+/* What the first law beside contact costs more, 0: cost, 1: latency. */
+static double beside(const nt_plan_options *options, const combination *tried, int which)
+{
+    for (int term = NT_PLAN_CONTACT + 1; term < NT_PLAN_TERMS; ++term)
+        if (options->option[term][tried->index[term]].form != NT_FORM_OFF)
+            return options->option[NT_PLAN_CONTACT][tried->index[NT_PLAN_CONTACT]].beside[which];
+    return 0.0;
+}
+
 static void weigh(const nt_plan_options *options, combination *tried)
 {
-    tried->error = tried->cost = 0.0;
+    tried->error = 0.0;
+    tried->cost = beside(options, tried, 0);
     for (int term = 0; term < NT_PLAN_TERMS; ++term) {
         tried->error += options->option[term][tried->index[term]].error;
         tried->cost += options->option[term][tried->index[term]].cost;
@@ -55,6 +65,10 @@ static void take(nt_plan *plan, const nt_plan_options *options, const combinatio
         plan->terms[term].bound = options->option[term][best->index[term]].error;
         plan->terms[term].cost = options->option[term][best->index[term]].cost;
         plan->terms[term].latency = options->option[term][best->index[term]].latency;
+        if (term == NT_PLAN_CONTACT) {
+            plan->terms[term].cost += beside(options, best, 0);
+            plan->terms[term].latency += beside(options, best, 1);
+        }
         plan->latency += plan->terms[term].latency;
         if (term != NT_PLAN_CONTACT && form != NT_FORM_OFF)
             plan->on[plan->on_count++] = term;

@@ -15,6 +15,12 @@ static const double cost_radius[2] = {1.0, 1.0};   /* and the effective radius *
 static const double cost_property[2] = {0.7, 0.6}; /* and each property */
 static const double cost_tables[2] = {6.6, 5.4};   /* and four tables of a sample that yields, in place of one */
 
+/* What the first law beside contact costs before its own. A contact that is solved, or looked up, hides it; one by a
+ * formula of some operations does less; none at all, least of all. */
+#define FORMULA 1.3 /* costs of such a contact, at most */
+#define NONE 0.5    /* of none */
+static const double first_beside_formula[2] = {0.7, 0.6}, first_of_all[2] = {1.1, 1.75};
+
 #define LAST_BITS                                                                                                      \
     5e-15 /* of each term beside contact, within which a difference loses some, too; large ones can cancel to a small  \
              sum */
@@ -131,6 +137,10 @@ static void burden_contact(const nt_plan *plan, nt_plan_options *options, double
 {
     for (int i = 0; i < options->count[NT_PLAN_CONTACT]; ++i) {
         const nt_form form = options->option[NT_PLAN_CONTACT][i].form;
+        const double own = options->option[NT_PLAN_CONTACT][i].cost;
+        const double *first = own < NONE ? first_of_all : first_beside_formula;
+        for (int which = 0; which < 2 && own < FORMULA; ++which)
+            options->option[NT_PLAN_CONTACT][i].beside[which] = first[which];
         options->option[NT_PLAN_CONTACT][i].error += lost;
         options->option[NT_PLAN_CONTACT][i].cost += nt_plan_cost_of_place(plan, form, 0);
         options->option[NT_PLAN_CONTACT][i].latency += nt_plan_cost_of_place(plan, form, 1);

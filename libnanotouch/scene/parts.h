@@ -157,6 +157,7 @@ typedef struct nt_plan_options {
     struct {
         nt_form form;
         double error, cost, latency;
+        double beside[2]; /* of contact: what the first law beside it costs more, and its latency */
     } option[NT_PLAN_TERMS][NT_OPTIONS_MAX];
     int count[NT_PLAN_TERMS];
 } nt_plan_options;

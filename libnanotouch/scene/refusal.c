@@ -157,10 +157,12 @@ static nt_problem stay_away(nt_plan *plan, const nt_plan_inputs *inputs, const n
 nt_problem nt_plan_word(nt_plan *plan, const nt_plan_inputs *inputs, nt_yield_tried *tried, const nt_problem *reason)
 {
     const int jumps = plan->source == NT_ADHESION_NONE && !plan->properties && isinf(plan->rigid_error);
-    const int lost = jumps && isinf(reason->value); /* no accuracy helps */
-    const int by_law = reason->unit && strcmp(reason->unit, NT_UNIT_ERROR) == 0 && !lost;
-    nt_problem word = *reason;
+    const int by_law = reason->unit && strcmp(reason->unit, NT_UNIT_ERROR) == 0;
+    const int lost = jumps && isinf(reason->value);
+    nt_problem word = lost ? stay_away(plan, inputs, reason) : *reason;
+    if (lost && word.field != reason->field)
+        return word;
     if (nt_problem_names(reason, NT_DEMANDED) || by_law)
         word = keep_word(plan, inputs, tried, reason);
-    return jumps && isinf(word.value) ? stay_away(plan, inputs, &word) : word;
+    return jumps && !lost && isinf(word.value) ? stay_away(plan, inputs, &word) : word;
 }

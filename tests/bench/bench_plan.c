@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "../c/larger.h"
+#include "drawn.h"
 #include "nanotouch/nanotouch.h"
 #include "scene/parts.h"
 
@@ -170,18 +171,6 @@ static void report_laws(nt_form contact)
         }
 }
 
-/* A law of one's own. */
-static nt_law_value exponential(const void *length, double gap)
-{
-    const double l = *(const double *)length, F = 1e-9 * exp(-gap / l);
-    return (nt_law_value){.U = F * l, .F = F, .k = F / l};
-}
-
-static double bound_of_exponential(const void *length, double gap)
-{
-    return exponential(length, gap).F;
-}
-
 static nt_status make_surface(const nt_scene *scene)
 {
     nt_random random = nt_random_seed(1);
@@ -249,37 +238,6 @@ static void report_surface(const nt_scene *scene)
         report("height", measure(DEEP, 1), one);
 }
 
-static double up_to(nt_random *random, double factor)
-{
-    return exp(log(factor) * nt_random_uniform(random));
-}
-
-/* In air, dry or in a liquid, with one tip or another, at any demand. */
-static void draw(nt_random *random, nt_scene *scene, nt_demand *demand)
-{
-    *scene = nt_scene_defaults();
-    *demand = nt_demand_defaults();
-    scene->tip.radius = 5e-9 * up_to(random, 100.0);
-    scene->sample.youngs_modulus = 1e9 * up_to(random, 100.0);
-    scene->adhesion.contact_potential = nt_random_uniform(random) < 0.5 ? 1.0 : 0.0;
-    scene->tip.height = nt_random_uniform(random) < 0.5 ? 10.0 * scene->tip.radius : 0.0;
-    demand->relative_accuracy = 1e-9 * up_to(random, 1e8);
-    const int kind = (int)(4.0 * nt_random_uniform(random));
-    if (kind > 0)
-        scene->medium.relative_humidity = 0.0;
-    if (kind > 1)
-        scene->adhesion.work_of_adhesion = scene->adhesion.hamaker_constant = 0.0;
-    if (kind > 1 && nt_random_uniform(random) < 0.7)
-        scene->tip.shape = NT_SHAPE_SPHERE;
-    if (kind > 2) {
-        scene->medium.kind = NT_MEDIUM_LIQUID;
-        scene->medium.ionic_strength = 10.0;
-        scene->tip.surface_potential = scene->sample.surface_potential = 0.02;
-        scene->medium.hydration_energy = 1e-4;
-    }
-    scene->range.maximum_load = 1e-6 * scene->tip.radius / 20e-9 * 0.1;
-}
-
 /* Stated beside measured. */
 static void report_plan(const char *name, int over)
 {
@@ -323,19 +281,26 @@ static void report_yielding(void)
         }
 }
 
-static void report_random(uint64_t seed)
+/* `own`: with laws of one's own, and over surfaces that have properties. */
+static void report_random(uint64_t seed, int own)
 {
     nt_random random = nt_random_seed(seed);
     for (int made = 0; made < RANDOM_PLANS;) {
         nt_scene scene;
         nt_demand demand;
         draw(&random, &scene, &demand);
-        const int over = nt_random_uniform(&random) < 0.3;
+        if (own)
+            draw_own(&random, &scene);
+        const int over = nt_random_uniform(&random) < (own ? 0.6 : 0.3);
         nt_plan_inputs inputs = {.scene = &scene, .demand = &demand};
         if (over && make_surface(&scene) == NT_OK) {
             inputs.surface = &surface;
             inputs.radii = &radii;
         }
+        const int has = over && own && nt_random_uniform(&random) < 0.5;
+        const double *w = scene.adhesion.work_of_adhesion > 0.0 && scene.medium.relative_humidity == 0.0 ? work : NULL;
+        if (has && nt_properties_init(&properties, &surface, modulus, w, NULL) == NT_OK)
+            inputs.properties = &properties;
         if (make(&inputs) != NT_OK)
             continue;
         char forms[200] = "";
@@ -346,7 +311,8 @@ static void report_random(uint64_t seed)
                            nt_form_name(term->form));
         }
         char name[sizeof forms + 32];
-        (void)snprintf(name, sizeof name, "plan %d%s: %s", ++made, over ? ", surface" : "", forms);
+        (void)snprintf(name, sizeof name, "%s %d%s%s: %s", own ? "own" : "plan", ++made, over ? ", surface" : "",
+                       has ? ", properties" : "", forms);
         report_plan(name, over);
     }
 }
@@ -357,8 +323,8 @@ int main(int argc, char **argv)
     scene.tip.height = 1e-5; /* every term has its parameters, whatever the medium */
     scene.adhesion.contact_potential = 1.0;
     scene.medium.yukawa_energy = scene.medium.yukawa_length = 1e-9;
-    static const double length = 1e-9;
-    scene.custom[0] = (nt_custom_term){"exponential", exponential, bound_of_exponential, &length};
+    static const wave exponential = {1e-9, 1e-9, 0.0};
+    scene.custom[0] = (nt_custom_term){"exponential", wave_law, wave_bound, &exponential};
     const nt_plan_inputs inputs = {.scene = &scene};
     if (nt_plan_make(&plan, &inputs, NULL) != NT_OK)
         return 1;
@@ -377,7 +343,9 @@ int main(int argc, char **argv)
     scene = nt_scene_defaults();
     report_surface(&scene);
     report_yielding();
-    report_random(argc > 1 ? strtoull(argv[1], NULL, 10) : 7);
+    const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 10) : 7;
+    report_random(seed, 0);
+    report_random(seed, 1);
     printf("\n}\n");
     return 0;
 }

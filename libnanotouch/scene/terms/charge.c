@@ -37,7 +37,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     return 1;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_ON, 0.45, 0.4, "computed"}};
+static const nt_term_form forms[] = {{NT_FORM_ON, 0.15, 0.15, "computed"}};
 
 NT_TERM_BESIDE(charge, prepare, full_form, eval, hold, NULL,
                .words = {"charge", "trapped charge", "its image in the tip (Thomson)", NULL, forms, 1, 0},

@@ -106,7 +106,7 @@ static const char *name_of(const void *law)
     return table->count == 0 ? "" : table->name;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_TABLE, 1.4, 1.3, "tabulated"}};
+static const nt_term_form forms[] = {{NT_FORM_TABLE, 1.1, 0.95, "tabulated"}};
 
 #define CUSTOM(ID, name_, type)                                                                                        \
     static nt_status tabulate_##name_(void *law, const nt_scene *scene, nt_problem *problem)                           \

@@ -105,7 +105,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     return 3;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_ON, 1.55, 1.5, "computed"}};
+static const nt_term_form forms[] = {{NT_FORM_ON, 1.2, 1.05, "computed"}};
 
 NT_TERM_BESIDE(double_layer, prepare, full_form, eval, hold, pressure,
                .words = {"double_layer", "double layer",

@@ -56,8 +56,8 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
 }
 
 static const nt_term_form forms[] = {
-    {NT_FORM_SPHERE, 0.8, 0.8, "of the sphere"},
-    {NT_FORM_TIP, 1.15, 1.1, "of the whole tip"},
+    {NT_FORM_SPHERE, 0.4, 0.45, "of the sphere"},
+    {NT_FORM_TIP, 0.8, 0.75, "of the whole tip"},
 };
 
 NT_TERM_BESIDE(electrostatic, prepare, full_form, eval, hold, pressure,

@@ -46,7 +46,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     return 1;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_ON, 0.65, 0.7, "computed"}};
+static const nt_term_form forms[] = {{NT_FORM_ON, 0.25, 0.2, "computed"}};
 
 NT_TERM_BESIDE(hydration, prepare, full_form, eval, hold, pressure,
                .words = {"hydration", "hydration", "exponential, also hydrophobic (Israelachvili 2011)", NULL, forms, 1,

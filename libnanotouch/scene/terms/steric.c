@@ -52,7 +52,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     return 1;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_ON, 0.8, 0.7, "computed"}};
+static const nt_term_form forms[] = {{NT_FORM_ON, 0.4, 0.35, "computed"}};
 
 NT_TERM_BESIDE(steric, prepare, full_form, eval, hold, pressure,
                .words = {"steric", "polymer brush", "scaling law of Alexander and de Gennes", NULL, forms, 1, 1},

@@ -68,9 +68,9 @@ static void warn(nt_plan *plan, const nt_scene *scene)
 }
 
 static const nt_term_form forms[] = {
-    {NT_FORM_DERJAGUIN, 0.3, 0.25, "in Derjaguin's form"},
-    {NT_FORM_SPHERE, 0.5, 0.5, "of the sphere"},
-    {NT_FORM_TIP, 1.1, 1.05, "of the whole tip"},
+    {NT_FORM_DERJAGUIN, 0.15, 0.15, "in Derjaguin's form"},
+    {NT_FORM_SPHERE, 0.3, 0.25, "of the sphere"},
+    {NT_FORM_TIP, 0.85, 0.7, "of the whole tip"},
 };
 
 NT_TERM_BESIDE(vdw, prepare, full_form, eval, hold, pressure,

@@ -67,7 +67,7 @@ static int facts(const nt_scene *scene, nt_term_fact *out)
     return 1;
 }
 
-static const nt_term_form forms[] = {{NT_FORM_ON, 0.8, 0.5, "computed"}};
+static const nt_term_form forms[] = {{NT_FORM_ON, 0.2, 0.2, "computed"}};
 
 NT_TERM_BESIDE(yukawa, prepare, full_form, eval, hold, pressure,
                .words = {"yukawa", "Yukawa", "screened force of all matter in sphere and flat (Fischbach 2001)", NULL,

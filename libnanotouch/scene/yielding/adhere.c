@@ -100,8 +100,8 @@ static void take_contact(const nt_plan *plan, nt_plan_options *options, double e
 }
 
 /* What the table of all beside it adds to an evaluation in contact [Hertz evaluations] (tests/bench/bench_plan.c). */
-#define BESIDE_COST 0.6
-#define BESIDE_LATENCY 0.7
+#define BESIDE_COST 0.35
+#define BESIDE_LATENCY 0.55
 #define RELIEF_COST 5.7 /* over relief */
 #define RELIEF_LATENCY 4.7
 

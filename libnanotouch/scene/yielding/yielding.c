@@ -97,8 +97,8 @@ static void describe(nt_plan *plan, double error)
         const nt_term_row *row = nt_term_rows[term];
         nt_plan_term *t = &plan->terms[term];
         const nt_term_form *form = nt_term_form_of(plan, term, t->form);
-        t->name = row->words.name;
-        t->title = row->words.title;
+        t->name = nt_term_name_of(plan, term);
+        t->title = row->name_of ? t->name : row->words.title;
         t->words = form->words;
         t->bound = term == NT_PLAN_CONTACT ? error : 0.0;
         t->cost = term == NT_PLAN_CONTACT ? plan->cost : 0.0;
