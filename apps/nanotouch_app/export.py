@@ -148,7 +148,10 @@ def _export_curves(
     else:
         curves.write(out, found, progress)
     points = sum(len(segment) for curve in found for segment in curve.segments)
-    return f"{len(found)} force curve{'s' if len(found) > 1 else ''}, {points} points"
+    told = f"{len(found)} force curve{'s' if len(found) > 1 else ''}, {points} points"
+    if out.suffix.lower() == ".ibw":
+        told += "; in nanite and PyJibe add the step 'segment discovery', as their reader parts no .ibw into branches"
+    return told
 
 
 def _segments(found: Sequence[curves.ForceCurve]) -> Iterator[tuple[int, int, curves.Segment]]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch import batch
-from nanotouch.batch import sheet
+from nanotouch.batch import methods, sheet
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import output
@@ -47,9 +47,10 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     print(summary)
     for found in summary.spreads:
         print(f"  {found}")
+    print(f"  {methods.modulus_meant(knowledge)}")
     _tell_without(summary.rows)
     for name in summary.unused:
-        print(f"  note: {name!r} of the sidecar or the calibration table is none of these files")
+        print(f"  note: {name!r} of the sidecar or the calibration table is none of these files or curves")
     drawn = len(sheets) * sheet.ACROSS * sheet.DOWN
     if drawn < len(summary.pictures):
         print(f"  note: the sheets show the first {drawn} of {len(summary.pictures)} fits")

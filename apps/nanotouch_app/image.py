@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from nanotouch import images
 from nanotouch.errors import InvalidValue
-from nanotouch.units import engineering
+from nanotouch.images.words import length, lengths, prefixed
 from numpy.typing import NDArray
 
 from nanotouch_app import image_many, output
@@ -111,12 +111,13 @@ def _one(args: argparse.Namespace, file: Path, out: Path) -> dict[str, Any]:
         clean = _repaired(raw, args, facts, mask)
         if smooth is not None:
             clean = images.gaussian(clean, smooth)
-            print(f"smoothed by a Gaussian of {smooth * 1e9:.4g} nm")
+            print(f"smoothed by a Gaussian of {length(smooth)}")
         if args.tip is not None:
             clean = _without_tip(clean, tip, out, facts)
         rough = images.roughness(clean, mask)
         facts["roughness"] = {"Sa_m": rough.arithmetic, "Sq_m": rough.rms, "Sz_m": rough.peak_to_peak}
-        print(f"roughness: Sa {_nm(rough.arithmetic)}, Sq {_nm(rough.rms)}, peak to peak {_nm(rough.peak_to_peak)}")
+        sa, sq, sz = map(length, (rough.arithmetic, rough.rms, rough.peak_to_peak))
+        print(f"roughness: Sa {sa}, Sq {sq}, peak to peak {sz}")
         _tell_parameters(images.parameters(clean, mask), facts)
         _curves(args, clean, out)
         table = None if threshold is None else _grains(clean, threshold, args.pits)
@@ -170,8 +171,10 @@ def _shown(parameter: images.Parameter) -> str:
         return "unknown"
     if not parameter.unit:
         return f"{parameter.value:.4g}"
-    unit, scale = engineering("m", np.array([parameter.value]))
-    return f"{parameter.value * scale:.4g} {unit if parameter.unit == 'm' else f'{unit}^3/{unit}^2'}"
+    if parameter.unit == "m":
+        return length(parameter.value)
+    unit, scale = prefixed([parameter.value])
+    return f"{parameter.value * scale:.4g} {unit}^3/{unit}^2"
 
 
 def _read(args: argparse.Namespace, file: Path) -> images.Topography:
@@ -182,8 +185,8 @@ def _read(args: argparse.Namespace, file: Path) -> images.Topography:
 def _described(image: images.Topography) -> str:
     (ny, nx), (height, width) = image.shape, image.size
     lines = [
-        f"{image.name}: channel {image.channel!r} by {image.source}, {nx} x {ny} pixels, {width * 1e6:.4g} x "
-        f"{height * 1e6:.4g} um, heights over {_nm(image.height_range)}"
+        f"{image.name}: channel {image.channel!r} by {image.source}, {nx} x {ny} pixels, "
+        f"{lengths((width, height))}, heights over {length(image.height_range)}"
     ]
     if image.masked_pixels:
         lines.append(f"missing pixels filled from their neighbours: {image.masked_pixels}")
@@ -261,14 +264,14 @@ def _without_tip(
         radius = float("inf") if flat else estimate.radius(max(height, float(shape[shape > 0].min())))
         state = "" if estimate.converged else ", not settled"
         print(
-            f"tip from the image: radius of the apex at most {_nm(radius)}, from {estimate.points} points over "
-            f"{_nm(estimate.threshold)} of noise{state}"
+            f"tip from the image: radius of the apex at most {length(radius)}, from {estimate.points} points over "
+            f"{length(estimate.threshold)} of noise{state}"
         )
         facts["tip"] = {"radius_at_most_m": None if flat else radius, "threshold_m": estimate.threshold}
         facts["tip"] |= _apex(image)
     clean, certain = images.erode(image, shape)
     lowered = float((image.heights - clean.heights).max())
-    print(f"tip undone: up to {_nm(lowered)} lower; {100 * certain.mean():.3g} % of the surface is certain")
+    print(f"tip undone: up to {length(lowered)} lower; {100 * certain.mean():.3g} % of the surface is certain")
     facts["certain_share"] = float(certain.mean())
     return clean
 
@@ -305,7 +308,7 @@ def _tell(table: images.GrainTable, out: Path, facts: dict[str, Any]) -> None:
 def _list(table: images.GrainTable) -> None:
     """The first particles, each length in the prefix that suits it."""
     lengths = {"height": table.height, "diameter": table.diameter, "x": table.x, "y": table.y}
-    units = {name: engineering("m", values) for name, values in lengths.items()}
+    units = {name: prefixed(values) for name, values in lengths.items()}
     cube, scale = units["diameter"]
     headers = [f"{name} ({unit})" for name, (unit, _) in units.items()]
     print("  number" + "".join(f"{header:>15}" for header in (*headers[:2], f"volume ({cube}^3)", *headers[2:])))
@@ -313,7 +316,3 @@ def _list(table: images.GrainTable) -> None:
         height, diameter, x, y = (f"{values[k] * units[name][1]:15.4g}" for name, values in lengths.items())
         border = "  border" if table.border[k] else ""
         print(f"  {k + 1:6d}{height}{diameter}{table.volume[k] * scale**3:15.4g}{x}{y}{border}")
-
-
-def _nm(metres: float) -> str:
-    return f"{metres * 1e9:.4g} nm"

@@ -10,6 +10,7 @@ from typing import Any
 
 from nanotouch import curves, images, record
 from nanotouch.errors import MissingExtra, ReadError
+from nanotouch.images.words import lengths
 
 from nanotouch_app import output
 
@@ -107,7 +108,7 @@ def _describe_image(file: Path, untrusted: bool) -> Answer:
     lines = [f"{file.name}: AFM image, {len(listed)} channel{'s' if len(listed) > 1 else ''}"]
     for channel in listed:
         shape = "? pixels" if channel.shape is None else f"{channel.shape[1]} x {channel.shape[0]} pixels"
-        size = "size not stated" if channel.size is None else f"{_um(channel.size[1])} x {_um(channel.size[0])} um"
+        size = "size not stated" if channel.size is None else lengths(channel.size[::-1])
         unit = channel.unit or "not stated"
         mark = "  <- read by default" if channel.default else ""
         lines.append(f"  {channel.name:24} {channel.kind:11} {shape}, {size}, unit {unit}{mark}")
@@ -117,13 +118,13 @@ def _describe_image(file: Path, untrusted: bool) -> Answer:
     except ReadError as error:
         reason = str(error).removeprefix(f"{file}: ")
         return [*lines, f"  cannot be touched as it is: {reason}"], facts | {"cannot_be_touched": reason}
-    low, high = topography.heights.min() * 1e9, topography.heights.max() * 1e9
+    low, high = float(topography.heights.min()), float(topography.heights.max())
     dy, dx = topography.pixel_size
-    lines.append(f"  heights {low:.4g} .. {high:.4g} nm, pixel {dx * 1e9:.4g} x {dy * 1e9:.4g} nm, {topography.source}")
+    lines.append(f"  heights {lengths((low, high), 4, ' .. ')}, pixel {lengths((dx, dy))}, {topography.source}")
     if topography.masked_pixels:
         lines.append(f"  {topography.masked_pixels} missing pixels, filled from their neighbours")
     facts |= {
-        "heights_m": [low * 1e-9, high * 1e-9], "pixel_size_m": [dx, dy], "reader": topography.source,
+        "heights_m": [low, high], "pixel_size_m": [dx, dy], "reader": topography.source,
         "missing_pixels": int(topography.masked_pixels), "notes": list(topography.notes),
     }  # fmt: skip
     return lines + [f"  note: {note}" for note in topography.notes], facts
@@ -175,7 +176,3 @@ def _segment(segment: curves.Segment) -> str:
     if segment.force is not None:
         text += f", force {segment.force.min() * 1e9:.4g} .. {segment.force.max() * 1e9:.4g} nN"
     return text
-
-
-def _um(metres: float) -> str:
-    return f"{metres * 1e6:.4g}"

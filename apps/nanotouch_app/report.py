@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from nanotouch import batch
-from nanotouch.batch import sheet
+from nanotouch.batch import methods, sheet
 from nanotouch.errors import InvalidValue
 
 from nanotouch_app import fit, output
@@ -54,6 +54,9 @@ def run(args: argparse.Namespace) -> int:
         print(summary)
         for found in summary.spreads:
             print(f"  {found}")
+        print(f"  {methods.modulus_meant(known)}")
+        for name in summary.unused:
+            print(f"  note: {name!r} of the sidecar or the calibration table is none of these files or curves")
         args.answer = {"folder": str(out), "files": list(FILES), "curves": summary.rows}
         print(f"written to {out}/: report.html, results.csv, results.csv.json")
     return 0 if summary.fitted else 1

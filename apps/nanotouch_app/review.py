@@ -12,7 +12,7 @@ from typing import Any
 
 from nanotouch import fit as fitting
 from nanotouch.batch import Decision, Place, Review
-from nanotouch.errors import InvalidValue
+from nanotouch.errors import Error, InvalidValue
 from nanotouch.fit import FitResult
 from nanotouch.units import parse_quantity
 
@@ -71,7 +71,7 @@ def by_keys(review: Review) -> None:
             return
         try:
             number = max(0, number + _done(review, place, word or "n", rest.strip()))
-        except InvalidValue as error:
+        except Error as error:
             print(error)
 
 

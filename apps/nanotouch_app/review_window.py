@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from nanotouch.batch import Review
-from nanotouch.errors import Error, InvalidValue
+from nanotouch.errors import Error
 
 _NEAR = 0.02  # of the width: from there on a line is grabbed
 _NM = 1e-9
@@ -79,19 +79,30 @@ class Board:
                 self.review.decide(self.place, contact_point=self.lines[name])
             else:
                 self.review.decide(self.place, baseline=(self.lines["low"], self.lines["high"]))
-        except InvalidValue:
-            pass  # ends that cross: drawn again as they were
-        self.draw()
+        except Error as error:  # ends that cross: drawn again as they were
+            self.draw()
+            self._tell(error)
+        else:
+            self.draw()
+
+    def _tell(self, error: Error) -> None:
+        """Why a decision was not written."""
+        self.panel.set_title(str(error), parse_math=False, fontsize=9, color=VERMILION, wrap=True)
+        self.figure.canvas.draw_idle()
 
     def _key(self, event: Any) -> None:
         place = self.place
         if event.key == "q":
             self.figure.canvas.manager.destroy()
             return
-        if event.key in ("k", "x"):
-            self.review.decide(place, exclude="" if event.key == "k" else REASON)
-        elif event.key == "u":
-            self.review.decide(place, exclude="", contact_point=None, baseline=None)
+        try:
+            if event.key in ("k", "x"):
+                self.review.decide(place, exclude="" if event.key == "k" else REASON)
+            elif event.key == "u":
+                self.review.decide(place, exclude="", contact_point=None, baseline=None)
+        except Error as error:
+            self._tell(error)
+            return
         step = {"k": 1, "x": 1, "right": 1, "left": -1}.get(event.key, 0)
         self.number = min(max(self.number + step, 0), len(self.review.places) - 1)
         self.draw()

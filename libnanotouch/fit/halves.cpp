@@ -134,6 +134,8 @@ void widen(nt_fit_result *fit, double by_modulus, double by_contact)
     covariance[NT_FIT_CONTACT_POINT][NT_FIT_EFFECTIVE_MODULUS] += modulus * by_contact;
     for (const int p : {int(NT_FIT_EFFECTIVE_MODULUS), int(NT_FIT_CONTACT_POINT)})
         fit->sigma[p] = std::sqrt(covariance[p][p]);
+    if (!(fit->sigma[NT_FIT_EFFECTIVE_MODULUS] < NT_FIT_IDENTIFIABLE * fit->value[NT_FIT_EFFECTIVE_MODULUS]))
+        fit->identifiable[NT_FIT_EFFECTIVE_MODULUS] = 0;
 }
 
 } // namespace

@@ -41,7 +41,7 @@ def test_dots_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixture[s
     said = capsys.readouterr()
     assert said.err == ""
     assert {path.name for path in out.iterdir()} == {"image.json", "image.png", "image.gwy", "grains.csv"}
-    assert "by SurfaceTopography/gwy, 256 x 256 pixels, 0.5 x 0.5 um" in said.out
+    assert "by SurfaceTopography/gwy, 256 x 256 pixels, 500 x 500 nm" in said.out
     assert "auto levelling: height range" in said.out
     assert "a tilt of 1.28 degrees" in said.out
     assert "chosen: plane+lines, " in said.out

@@ -50,3 +50,25 @@ def test_a_soft_layer_on_a_hard_one_says_both_moduli() -> None:
     assert result.sigma["effective_modulus"] > 0.2 * fitted
     shallow, deep = (float(word.split()[0]) for word in (note.split("E* = ")[1], note.split("half for ")[1]))
     assert shallow < fitted / 1e3 < deep
+
+
+def test_where_the_halves_differ_by_more_than_half_the_modulus_is_not_determined() -> None:
+    """Status "ok" never stands beside it; the bound covers the moduli of both halves."""
+    rng = np.random.default_rng(5)
+    depth = np.linspace(0.0, 100e-9, 3000)
+    force = 4.0 / 3.0 * 1e4 * np.sqrt(1e-6) * depth**1.5 * (1.0 + (depth / 60e-9) ** 2)
+    base = depth + force / 0.1
+    x = np.linspace(-1e-6, base[-1], 2000)
+    measured = np.interp(x, base, force, left=0.0) + rng.normal(0.0, 3e-11, x.size)
+    segment = curves.Segment("approach", np.full(x.size, np.nan), -x, "height (measured)", measured)
+    result = fit.fit_curve(curves.ForceCurve((segment,), {"spring constant": 0.1}, "layer"), "hertz", radius=1e-6)
+    assert result.misfit < 3.0
+    assert result.sigma["effective_modulus"] >= 0.5 * result.values["effective_modulus"]
+    assert not result.identifiable["effective_modulus"]
+    assert result.status == "undetermined"
+    (note,) = [note for note in result.notes if note.startswith("the shallow half")]
+    assert "E* is not determined" in note
+    low, high = result.bounds["effective_modulus"]
+    assert low <= result.interval["effective_modulus"][0]
+    assert high >= result.interval["effective_modulus"][1]
+    assert not np.isfinite(result.answer.modulus[0])

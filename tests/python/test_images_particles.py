@@ -216,3 +216,33 @@ def test_particles_of_a_real_image() -> None:
         warnings.simplefilter("ignore", UserWarning)
         table = images.grains(images.prepare(images.read(path))[0])
     assert 22 <= len(table) <= 26  # a person counts 24
+
+
+def test_what_was_filled_in_is_no_particle() -> None:
+    """Missing pixels between high rims look like particles; one of which less than half is missing stays whole."""
+    rng = np.random.default_rng(4)
+    two = cap(100e-9, 100e-9, 40e-9, 12e-9) + cap(250e-9, 250e-9, 40e-9, 12e-9)
+    heights = two + 0.1e-9 * rng.standard_normal((N, N))
+    missing = np.zeros((N, N), bool)
+    missing[80:121, 80:121] = True  # all of the first, and its rim
+    missing[249:252, 200:300] = True  # a repaired row across the second
+    image = images.Topography(heights, (PIXEL, PIXEL), mask=missing)
+    with pytest.warns(UserWarning, match="left out: 1 particle of pixels that were mostly filled in"):
+        table = images.grains(image)
+    assert len(table) == 1
+    assert table.x[0] == pytest.approx(250e-9, abs=PIXEL)
+    assert table.diameter[0] == pytest.approx(40e-9, abs=4 * PIXEL)
+    assert not table.labels[80:121, 80:121].any()
+
+
+def test_a_speck_does_not_part_the_heights() -> None:
+    """Otsu's height lies between the classes of dense grains, also where one pixel in a thousand is far off."""
+    rng = np.random.default_rng(5)
+    dense = np.where(rng.random((N, N)) < 0.5, 0.0, 10e-9) + 0.5e-9 * rng.standard_normal((N, N))
+    specks = dense.copy()
+    specks[rng.random((N, N)) < 1e-3] = -1e-6
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        clean, marred = (images.grains(topography(z), "otsu", split=False) for z in (dense, specks))
+    assert marred.threshold == pytest.approx(clean.threshold, abs=0.5e-9)
+    assert 1.5e-9 < marred.threshold < 8e-9

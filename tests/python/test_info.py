@@ -52,7 +52,7 @@ def test_an_image(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = synthetic.write_ibw_image(tmp_path / "image.ibw", {"PhaseTrace": heights, "HeightTrace": heights}, 1.25e-7)
     text = answer(path, capsys)
     assert "AFM image, 2 channels" in text
-    assert "32 x 24 pixels, 4 x 3 um, unit m  <- read by default" in text
+    assert "32 x 24 pixels, 4 x 3 µm, unit m  <- read by default" in text
     assert "heights 0 .. 40 nm, pixel 125 x 125 nm" in text
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from nanotouch import Contact, batch, curves
-from nanotouch.errors import Error
+from nanotouch.errors import Error, InvalidValue, ReadError
 from nanotouch_app.main import main
 from nanotouch_app.review_window import Board, show
 
@@ -90,3 +90,62 @@ def test_without_a_display_the_terminal_is_named(folder: Path, monkeypatch: pyte
     monkeypatch.setattr(pyplot, "get_backend", lambda: "agg")
     with pytest.raises(Error, match="leave out --show"):
         show(batch.Review([folder], folder.parent / "side.toml", "hertz", radius=1e-6))
+
+
+def test_two_reviews_at_once_keep_each_others_decisions(folder: Path) -> None:
+    """Also what an editor writes meanwhile; a sidecar that it breaks is left alone."""
+    side = folder.parent / "side.toml"
+    one, other = (batch.Review([folder], side, "hertz", radius=1e-6) for _ in range(2))
+    one.decide(one.places[0], exclude="no contact")
+    other.decide(other.places[1], exclude="jumps")
+    one.decide(one.places[2], contact_point=5e-9)
+    read = batch.Sidecar.from_toml(side)
+    assert [read.of(folder / f"{k}.h5", 0).exclude for k in range(3)] == ["no contact", "jumps", ""]
+    side.write_text(broken := "[half\n", encoding="utf-8")
+    with pytest.raises(ReadError, match="TOML"):
+        one.decide(one.places[0], exclude="")
+    assert side.read_text(encoding="utf-8") == broken
+
+
+def test_a_decision_by_a_short_name_is_changed_and_not_shadowed(folder: Path) -> None:
+    side = folder.parent / "side.toml"
+    side.write_text('["0.h5"]\nexclude = "by hand"\n\n["1.h5"]\ncontact_point_nm = 100\n', encoding="utf-8")
+    review = batch.Review([folder], side, "hertz", radius=1e-6)
+    review.decide(review.places[0], exclude="")
+    review.decide(review.places[1], contact_point=50e-9)
+    read = batch.Sidecar.from_toml(side)
+    assert read.of(folder / "0.h5", 0) == batch.Decision()
+    assert read.of(folder / "1.h5", 0).contact_point == pytest.approx(50e-9)
+    assert list(read.decisions) == ["1.h5"]
+    longer = batch.Sidecar({"1.h5": batch.Decision("a"), "gels/1.h5": batch.Decision("b")})
+    assert longer.of(folder / "1.h5", 0).exclude == "b"
+
+
+def test_what_is_said_of_a_whole_map_is_not_undone_for_one_curve(folder: Path) -> None:
+    side = folder.parent / "side.toml"
+    whole = [curves.read(folder / f"{k}.h5")[0] for k in range(3)]
+    curves.write(folder / "map.h5", whole)
+    side.write_text('["map.h5"]\nexclude = "drift"\n', encoding="utf-8")
+    review = batch.Review([folder / "map.h5"], side, "hertz", radius=1e-6)
+    with pytest.raises(InvalidValue, match="says it of all curves of the file"):
+        review.decide(review.places[1], exclude="")
+    assert batch.Sidecar.from_toml(side).of(folder / "map.h5", 1).exclude == "drift"
+
+
+def test_a_sidecar_holds_from_every_folder_and_unknown_names_are_told(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    side = folder.parent / "side.toml"
+    monkeypatch.chdir(folder)
+    review = batch.Review(["../gels"], side, "hertz", radius=1e-6)
+    review.decide(review.places[0], exclude="tip crashed")
+    text = side.read_text(encoding="utf-8") + '\n["1.h5#7"]\nexclude = "no such curve"\n'
+    side.write_text(text, encoding="utf-8")
+    line = ["--radius", "1um", "--model", "hertz", "--sidecar", str(side)]
+    for number, (place, names) in enumerate(((folder, ["0.h5", "1.h5"]), (folder.parent, ["gels"]))):
+        monkeypatch.chdir(place)
+        summary = batch.fit_files(names, folder.parent / f"r{number}.csv", "hertz", radius=1e-6, sidecar=side)
+        assert summary.rows[0]["status"] == "excluded"
+        assert summary.unused == ["1.h5#7"]
+    assert main(["report", "gels", *line, "--out", "out"]) == 0
+    assert "'1.h5#7' of the sidecar" in capsys.readouterr().out

@@ -6,7 +6,7 @@ from __future__ import annotations
 import glob
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -164,7 +164,7 @@ def fit_files(
         rows,
         [p for entry in entries for p in entry["pictures"]],
         reused,
-        decided.unused(files) + _unused(reading, files),
+        _undone(decided, files, rows) + _unused(reading, files),
     )
 
 
@@ -189,6 +189,18 @@ def _given(
 ) -> list[Path]:
     """Tables that a run is given, which may lie among the curves."""
     return [Path(file) for file in (sidecar, groups, reading.get("calibration")) if isinstance(file, str | os.PathLike)]
+
+
+def _undone(decided: Sidecar, files: list[Path], rows: Sequence[Row]) -> list[str]:
+    """Names in the sidecar of no file, or of no curve that its file holds."""
+    unknown = decided.unused(files)
+    curves = {decided.named(Path(row["file"]), row["curve"])[0] for row in rows if row["curve"] != ""}
+    read_files = [Path(row["file"]) for row in rows if row["curve"] != ""]
+    return unknown + [
+        name for name, decision in decided.decisions.items()
+        if name not in unknown and name not in curves and name.rpartition("#")[2].isdigit()
+        and not Sidecar({name: decision}).unused(read_files)
+    ]  # fmt: skip
 
 
 def _unused(reading: Mapping[str, Any], files: list[Path]) -> list[str]:
@@ -256,8 +268,10 @@ def _picture(name: str, result: FitResult) -> dict[str, Any]:
     part = np.unique(np.linspace(0, result.z.size - 1, SHOWN).astype(int))
     columns = {"z": result.z, "force": result.force, "fitted": result.fitted}
     shown = {key: [float(f"{value:.5g}") for value in values[part]] for key, values in columns.items()}
-    good = all(result.identifiable.values())
-    return {"name": name, "text": result.show("effective_modulus"), "good": good, **shown}
+    text = result.show("effective_modulus")
+    if result.status in ("misfit", "not converged"):
+        text = f"{result.status}: {text}"
+    return {"name": name, "text": text, "good": result.status == "ok", **shown}
 
 
 def _write_json(path: Path, data: Mapping[str, Any]) -> None:

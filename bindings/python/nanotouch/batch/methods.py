@@ -29,10 +29,11 @@ def methods(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any], read
         "interference where there is strong evidence of one. Both branches were judged together: only what lies beyond "
         "the last rupture of the retraction counts as free.",
         _laws(fitted, settings),
+        modulus_meant(settings),
         "The force was fitted over the position of the cantilever's base, with the cantilever's bending in the model. "
         "Sensitivity, level and tilt of the baseline entered as data of their own uncertainty.",
         "Uncertainties are standard ones with those of the calibration; intervals are 95 % ones. Noise was split into "
-        "white and 1/f noise by Allan variances.",
+        "white and 1/f noise by its spectrum.",
         _left_out(rows),
         "Groups are given by their medians and quartiles. A distribution is called log-normal where Anderson and "
         "Darling's test does not reject that at 5 %.",
@@ -73,6 +74,17 @@ def _tip(rows: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> str:
         radii = [row["radius [m]"] for row in rows]
         return f" Radius of the tip, as the files state: {between(min(radii), max(radii), 'm')}."
     return " The radius of the tip is NOT given: 20 nm is assumed, and moduli hold for it alone."
+
+
+def modulus_meant(settings: Mapping[str, Any]) -> str:
+    """Which modulus the table holds: E of the sample needs its Poisson's ratio."""
+    ratio = settings.get("poisson_ratio")
+    if ratio is not None:
+        return f"The modulus is E of the sample, for a Poisson's ratio of {ratio:g}."
+    return (
+        "The modulus is E* of tip and sample together, 1/E* = (1 - nu^2)/E under a rigid tip; no Poisson's ratio nu "
+        "was given for E."
+    )
 
 
 def _left_out(rows: Sequence[Mapping[str, Any]]) -> str:

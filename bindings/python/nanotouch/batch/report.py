@@ -24,7 +24,7 @@ from .._io.writing import replacing
 from ..fit.show import between, with_sigma
 from ..units import engineering
 from .groups import QUANTITIES, Spread
-from .methods import methods
+from .methods import methods, modulus_meant
 
 if TYPE_CHECKING:
     from .files import Summary
@@ -65,7 +65,7 @@ def write_report(
     rows, spreads = summary.rows, summary.spreads
     parts = [
         f"<h1>{escape(title)}</h1><p>{escape(str(summary))}</p>",
-        "<h2>Results</h2>", _spread_table(spreads), *_histograms(spreads),
+        "<h2>Results</h2>", _spread_table(spreads), f"<p>{escape(modulus_meant(settings))}</p>", *_histograms(spreads),
         "<h2>Rejected, and why</h2>", _rejected(rows),
         "<h2>Curves</h2>", _curves(rows),
         "<h2>Pictures</h2>", *(_image(sheet.read_bytes(), sheet.name) for sheet in sheets),

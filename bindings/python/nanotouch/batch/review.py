@@ -45,7 +45,7 @@ class Review:
         *, reading: Mapping[str, Any] | None = None, **settings: Any,
     ) -> None:  # fmt: skip
         self.path = Path(sidecar)
-        self._decisions = dict(Sidecar.from_toml(self.path).decisions) if self.path.exists() else {}
+        self._decisions = self._stored()
         self._settings = {"model": model, **settings}
         self.places: list[Place] = []
         self.unread: dict[str, str] = {}
@@ -59,26 +59,45 @@ class Review:
                 self.unread[file.name] = str(error)
                 continue
             for index, curve in enumerate(found):
-                name = file.as_posix() if len(found) == 1 else f"{file.as_posix()}#{index}"
+                path = _path_in(file)
+                name = path if len(found) == 1 else f"{path}#{index}"
                 self.places.append(Place(file, index, name, curve))
         if not self.places:
             raise InvalidValue(f"no curve to review: {'; '.join(self.unread.values()) or 'no file'}")
 
     def decision(self, place: Place) -> Decision:
         """What is decided of a curve."""
-        return self._decisions.get(place.name) or Sidecar(self._decisions).of(place.file, place.index)
+        return Sidecar(self._decisions).of(place.file, place.index)
 
     def decide(self, place: Place, **changes: Any) -> Decision:
-        """Change `exclude`, `contact_point` [m] or `baseline` [m, m] of a curve; written at once."""
+        """Change `exclude`, `contact_point` [m] or `baseline` [m, m] of a curve; written at once.
+
+        The sidecar is read again before: what another review or an editor has written meanwhile stays.
+        """
+        self._decisions = self._stored()
         made = replace(self.decision(place), **changes)
         if made.baseline is not None and not made.baseline[0] < made.baseline[1]:
             raise InvalidValue(f"baseline {made.baseline[0]:g} .. {made.baseline[1]:g} m: expected two that grow")
-        if made == Decision():
-            self._decisions.pop(place.name, None)
-        else:
-            self._decisions[place.name] = made
+        name = self._own_name(place)
+        if made != Decision():
+            self._decisions[name or place.name] = made
+        while made == Decision() and name is not None:
+            del self._decisions[name]
+            name = self._own_name(place)
+        if self.decision(place) != made:
+            whole = Sidecar(self._decisions).named(place.file, place.index)[0]
+            raise InvalidValue(f"{self.path}: [{whole!r}] says it of all curves of the file; change it there")
         Sidecar(self._decisions).write(self.path)
         return made
+
+    def _stored(self) -> dict[str, Decision]:
+        return dict(Sidecar.from_toml(self.path).decisions) if self.path.exists() else {}
+
+    def _own_name(self, place: Place) -> str | None:
+        """By which the sidecar speaks of this curve alone."""
+        name = Sidecar(self._decisions).named(place.file, place.index)[0]
+        of_many = place.name.endswith(f"#{place.index}") and name is not None and not name.endswith(f"#{place.index}")
+        return None if of_many else name
 
     def fitted(self, place: Place) -> FitResult | str:
         """The fit with what is decided, excluded or not; or why there is none."""
@@ -86,3 +105,8 @@ class Review:
             return fit_curve(place.curve, **(self._settings | by_hand(self.decision(place))))
         except Error as error:
             return str(error)
+
+
+def _path_in(file: Path) -> str:
+    """Which a run from another folder finds, too: ``../a`` is no end of a path."""
+    return Path(os.path.abspath(file)).as_posix() if ".." in file.parts else file.as_posix()

@@ -20,7 +20,7 @@ _NAME = 36  # characters that fit over a picture
 def draw(
     pictures: Sequence[Mapping[str, Any]], folder: str | os.PathLike[str], name: str = "sheet", most: int = 20
 ) -> list[Path]:
-    """Write ``name-01.png``, ... with 30 fits each; red is what a curve does not determine.
+    """Write ``name-01.png``, ... with 30 fits each; red are those whose status is not ok.
 
     Parameters
     ----------

@@ -75,23 +75,29 @@ class Sidecar:
         return self.named(file, index)[1]
 
     def named(self, file: Path, index: int) -> tuple[str | None, Decision]:
-        """The same with the name by which it is said; None where nothing is."""
-        for end in (f"#{index}", ""):
-            for name, decision in self.decisions.items():
-                if _is_end_of(name, f"{file.as_posix()}{end}"):
-                    return name, decision
+        """The same with the name by which it is said, the longest that fits; None where nothing is."""
+        if self.decisions:
+            for end in (f"#{index}", ""):
+                fitting = [name for name in self.decisions if _is_end_of(name, file, end)]
+                if fitting:
+                    name = max(fitting, key=len)
+                    return name, self.decisions[name]
         return None, Decision()
 
     def unused(self, files: list[Path]) -> list[str]:
         """Names that are those of no file: surely misspelt."""
         return [
             name for name in self.decisions
-            if not any(_is_end_of(n, f.as_posix()) for f in files for n in (name, name.rsplit("#", 1)[0]))
+            if not any(_is_end_of(n, f) for f in files for n in (name, name.rsplit("#", 1)[0]))
         ]  # fmt: skip
 
 
-def _is_end_of(name: str, path: str) -> bool:
-    return path == name or path.endswith(f"/{name}")
+def _is_end_of(name: str, file: Path, end: str = "") -> bool:
+    """Of the path as it is given, or of the whole path: a run from another folder means the same curve."""
+    return any(
+        path == name or path.endswith(f"/{name}")
+        for path in (f"{file.as_posix()}{end}", f"{Path(os.path.abspath(file)).as_posix()}{end}")
+    )
 
 
 def _decision(where: str, table: Any) -> Decision:

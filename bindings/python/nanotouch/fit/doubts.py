@@ -69,6 +69,7 @@ def doubts(extension: ModuleType, setup: Setup, solution: Solution, uncertaintie
         notes.append(
             f"the shallow half of the contact asks for E* = {shallow}, the deep half for {deep}, each with a contact "
             "point of its own: a slip, a bow of the scanner or another law; sigma covers half of the difference"
+            + ("" if identifiable.get("effective_modulus", True) else ", and so E* is not determined")
         )
     if "wrong_model" in flagged:
         reason = "the model does not describe the curve"

@@ -139,6 +139,9 @@ def make_result(
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
         _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
     bounds = {} if reason else _bounds(identifiable, solution, uncertainties)
+    if "effective_modulus" in bounds and np.isfinite(solution.made.half_modulus[0]):  # the halves of the contact differ
+        ends = bounds["effective_modulus"], table.interval()["effective_modulus"]
+        bounds["effective_modulus"] = min(low for low, _ in ends), max(high for _, high in ends)
     if setup.model.remark is not None:
         notes.append(setup.model.remark(setup.radius, table.values, float(points.force.max())))
     return FitResult(

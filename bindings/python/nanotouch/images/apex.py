@@ -18,6 +18,7 @@ from ..errors import InvalidValue, require
 from ._robust import pixel_noise
 from .tips import rounded_cone
 from .topography import Topography
+from .words import length, lengths
 
 _LEAST = 24  # pixels of an apex, for five parameters
 _SURE = 1.96  # standard deviations of an interval of 95 %
@@ -57,8 +58,8 @@ class ApexRadius:
 
     def __str__(self) -> str:
         return (
-            f"apex and sharpest spikes: radius {self.radius * 1e9:.3g} nm, {self.low * 1e9:.3g} .. "
-            f"{self.high * 1e9:.3g} nm (95 %), of {self.spikes} spike{'s' * (self.spikes != 1)}"
+            f"apex and sharpest spikes: radius {length(self.radius, 3)}, "
+            f"{lengths((self.low, self.high), 3, ' .. ')} (95 %), of {self.spikes} spike{'s' * (self.spikes != 1)}"
         )
 
 
@@ -83,7 +84,7 @@ def apex_radius(topography: Topography) -> ApexRadius:
     found = [one for at in _peaks(topography, threshold) if (one := _widened(topography, at)) is not None]
     if not found:
         raise InvalidValue(
-            f"no spike over {threshold * 1e9:.2g} nm of noise whose apex spans {_LEAST} pixels: smaller pixels, or a "
+            f"no spike over {length(threshold, 2)} of noise whose apex spans {_LEAST} pixels: smaller pixels, or a "
             "sample with sharper spikes"
         )
     radius, sigma, angle = np.array(found).T

@@ -12,6 +12,7 @@ from .._io.words import counted
 from ..errors import require
 from ._robust import MAD
 from .topography import Topography
+from .words import length
 
 _SPECKLE = 6.0  # standard deviations from the surroundings: one in 5e8 pixels of Gaussian noise
 _HIGHER = (4.0, 16.0)  # times the threshold, at which groups are looked at again
@@ -38,9 +39,9 @@ class DespeckleReport:
 
     def __str__(self) -> str:
         if not self.pixels:
-            return f"no speckles above {self.threshold * 1e9:.3g} nm"
+            return f"no speckles above {length(self.threshold, 3)}"
         repaired = f"{counted(self.pixels, 'speckled pixel')} repaired"
-        return f"{repaired}, the worst {self.largest * 1e9:.3g} nm off its surroundings"
+        return f"{repaired}, the worst {length(self.largest, 3)} off its surroundings"
 
 
 def despeckle(topography: Topography) -> tuple[Topography, DespeckleReport]:

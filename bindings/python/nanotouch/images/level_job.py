@@ -15,6 +15,7 @@ from ._robust import block_means, digit, reduction
 from .level_report import LevelReport, LevelStep
 from .terraces import Terrace
 from .topography import Topography
+from .words import length
 
 _ROUNDING = 1e-9
 """Part of the height range that no converter resolves (24 bits: 6e-8) and that sums of doubles leave behind."""
@@ -76,10 +77,10 @@ class Job:
             bow = found.bow(shape)
             self.curved = bow if self.curved is None else self.curved + bow
             self._judge_bow(method, bow)
-            note += f" and a bow of {np.ptp(bow) * 1e9:.4g} nm"
+            note += f" and a bow of {length(np.ptp(bow))}"
         if method == "terraces":
             self.terraces, self.zero = terraces.levels(self.strips, found)
-            heights = ", ".join(f"{t.height * 1e9:.4g} nm ({100 * t.share:.3g} %)" for t in self.terraces[:6])
+            heights = ", ".join(f"{length(t.height)} ({100 * t.share:.3g} %)" for t in self.terraces[:6])
             note += f"; levels at {heights}" + (", ..." if len(self.terraces) > 6 else "")
         self._record(method, removed, note)
 
@@ -91,20 +92,20 @@ class Job:
             if turns > 1:
                 self.warnings.append(
                     f"{method} removed a background that turns {turns} times along {name} by more than the "
-                    f"{rms * 1e9:.3g} nm rms left: a structure may have gone; use poly2 or a mask"
+                    f"{length(rms, 3)} rms left: a structure may have gone; use poly2 or a mask"
                 )
 
     def _take_out_lines(self) -> None:
         found = drift.analyse(self.strips)
         self.strips = self.strips - found.offsets[:, None]
         self.by_row += found.offsets
-        note = f"offsets of rows, and {found.lasting * 1e9:.4g} nm of drift along y"
+        note = f"offsets of rows, and {length(found.lasting)} of drift along y"
         if found.structure:
             told = f"repeats every {found.period:.3g} rows" if found.period else f"has {len(found.jumps)} like steps"
             note = f"offsets of rows alone: what lasts {told}, as a grating along the fast axis does"
         elif found.jumps:
             self.warnings.append(
-                f"{counted(len(found.jumps), 'step')} of {abs(found.jumps[0]) * 1e9:.4g} nm across whole rows kept; if "
+                f"{counted(len(found.jumps), 'step')} of {length(abs(found.jumps[0]))} across whole rows kept; if "
                 "the tip changed there and the surface has no step, mask one part or use medians"
             )
         self._record("lines", found.offsets, note)
@@ -126,15 +127,15 @@ class Job:
             self._take_out_background(*self.background)
 
     def _rows_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
-        lasting = f"{found.lasting * 1e9:.3g} nm that last along y were kept"
+        lasting = f"{length(found.lasting, 3)} that last along y were kept"
         if self._along.lasting > float(np.nanstd(self.strips - self._along.offsets[:, None])):
-            lasting += f" ({self._along.lasting * 1e9:.3g} nm of them look like drift: lines takes it out)"
+            lasting += f" ({length(self._along.lasting, 3)} of them look like drift: lines takes it out)"
         if found.jumps:
             steps = counted(found.jumps, "step")
-            lasting += f", with {steps} across whole rows up to {found.highest_jump * 1e9:.4g} nm"
+            lasting += f", with {steps} across whole rows up to {length(found.highest_jump)}"
         if found.period is not None:
             return f"none; {lasting}", (
-                f"rows repeat every {found.period:.3g} rows over {found.wave * 1e9:.4g} nm: taken for a grating along "
+                f"rows repeat every {found.period:.3g} rows over {length(found.wave)}: taken for a grating along "
                 "the fast axis and left; medians would erase it"
             )
         if not found.agreed:
@@ -142,21 +143,21 @@ class Job:
         if found.single:
             off = counted(len(found.single), "row was", "rows were")
             return f"offsets of rows; {lasting}", (
-                f"{off} off by up to {found.highest_single * 1e9:.4g} nm and put back (the first is row "
+                f"{off} off by up to {length(found.highest_single)} and put back (the first is row "
                 f"{found.single[0]}); if that is a wire along the fast axis, level without rows"
             )
         return f"offsets of rows; {lasting}", ""
 
     def _medians_verdict(self, found: rows.RowProfile) -> tuple[str, str]:
-        note = f"the median of every row, {found.lasting * 1e9:.4g} nm of it lasting along y"
+        note = f"the median of every row, {length(found.lasting)} of it lasting along y"
         if found.lasting < _ROUNDING * self.topography.height_range:
             return note, ""
         if found.period is not None:
-            what = f"a grating along the fast axis of {found.period:.3g} rows, {found.wave * 1e9:.4g} nm high"
+            what = f"a grating along the fast axis of {found.period:.3g} rows, {length(found.wave)} high"
         elif found.jumps and found.highest_jump > float(np.nanstd(self.strips)) and self._along.structure:
-            what = f"{counted(found.jumps, 'step')} along the fast axis, up to {found.highest_jump * 1e9:.4g} nm high"
+            what = f"{counted(found.jumps, 'step')} along the fast axis, up to {length(found.highest_jump)} high"
         elif self._along.structure or self._surface_went(found):
-            what = f"a structure along the fast axis, {found.lasting * 1e9:.4g} nm high"
+            what = f"a structure along the fast axis, {length(found.lasting)} high"
         else:
             return note, ""
         return note, f"medians erased what looks like {what}; use lines"

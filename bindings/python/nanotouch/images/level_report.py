@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .terraces import Terrace
+from .words import length
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Candidate:
 
     def __str__(self) -> str:
         return (
-            f"{self.method}, {self.rms * 1e9:.4g} nm rms left, {self.held_out * 1e9:.3g} nm from row to row held out, "
+            f"{self.method}, {length(self.rms)} rms left, {length(self.held_out, 3)} from row to row held out, "
             f"rows over columns {self.anisotropy:.3g}, {100 * self.step_kept:.0f} % of a step on trial kept"
         )
 
@@ -62,7 +63,7 @@ class LevelStep:
     note: str
 
     def __str__(self) -> str:
-        return f"{self.method}: removed {self.removed_range * 1e9:.4g} nm; {self.note}"
+        return f"{self.method}: removed {length(self.removed_range)}; {self.note}"
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,7 @@ class LevelReport:
     candidates: tuple[Candidate, ...] = ()
 
     def __str__(self) -> str:
-        ranges = f"height range {self.range_before * 1e9:.4g} nm before, {self.range_after * 1e9:.4g} nm after"
+        ranges = f"height range {length(self.range_before)} before, {length(self.range_after)} after"
         lines = [f"{self.method} levelling: {ranges}", *(f"  {step}" for step in self.steps)]
         for name, one in zip(("chosen", "runner-up"), self.candidates, strict=False):
             lines.append(f"  {name}: {one}")

@@ -17,11 +17,13 @@ from .._io.words import counted
 from ..errors import InvalidValue, require
 from ._robust import MAD, pixel_noise
 from .topography import Topography
+from .words import length, lengths
 
 _STANDARD_DEVIATIONS = 5.0  # of the flat above which a pixel belongs to a particle
 _STANDS_OUT = 10.0
 _SADDLE = 0.2  # of the lower peak's height: two peaks are two particles if the saddle between them is so much lower
 _BINS = 512  # of Otsu's histogram
+_FEW = 0.01  # share of the pixels: fewer are no class of Otsu's, but specks
 _TILES = 4  # of the image along each side
 _FILLED = 0.9  # share of a tile from which no flat is left in it; of dense grains 0.8 is found
 _MOST = 0.5  # share of the image
@@ -107,7 +109,7 @@ class GrainTable:
 
     def __str__(self) -> str:
         what, beyond = ("pit", "deeper than") if self.pits else ("particle", "above")
-        found = f"{counted(len(self), what)} {beyond} {self.threshold * 1e9:.3g} nm"
+        found = f"{counted(len(self), what)} {beyond} {length(self.threshold, 3)}"
         if len(self):
             cut = int(self.border.sum())
             found += f" ({cut} cut by the border), {100 * self.coverage:.3g} % of the area"
@@ -117,14 +119,15 @@ class GrainTable:
 
     def _sizes(self) -> str:
         """Of those that the border does not cut."""
-        height, diameter = self.height[~self.border] * 1e9, self.diameter[~self.border] * 1e9
-        size = "depth" if self.pits else "height"
-        if height.size == 1:
-            return f"{size} {height[0]:.4g} nm, diameter {diameter[0]:.4g} nm"
-        return (
-            f"{size} {np.median(height):.4g} nm ({height.min():.4g} .. {height.max():.4g}), "
-            f"diameter {np.median(diameter):.4g} nm ({diameter.min():.4g} .. {diameter.max():.4g})"
+        return f"{'depth' if self.pits else 'height'} {_spread(self.height[~self.border])}, diameter " + _spread(
+            self.diameter[~self.border]
         )
+
+
+def _spread(values: Floats) -> str:
+    """Median, and from the least to the largest where there are several."""
+    middle = length(float(np.median(values)))
+    return middle if values.size == 1 else f"{middle} ({lengths((values.min(), values.max()), 4, ' .. ')})"
 
 
 def grains(
@@ -176,11 +179,14 @@ def grains(
     count, labels = cv2.connectedComponents((over > least).astype(np.uint8), connectivity=8)
     if split and count > 1:
         labels = _parted(over, labels, _STANDARD_DEVIATIONS * jitter)
+    labels, unseen = _seen(labels, topography.mask)
     labels = _numbered(over, labels, smallest)
     doubts = _doubts(labels, least / jitter if jitter > 0.0 else np.inf, pits)
+    if unseen:
+        doubts += (f"left out: {counted(unseen, 'pit' if pits else 'particle')} of pixels that were mostly filled in",)
     if np.ptp(bands) > least:
         doubts += (
-            f"the flat stood {np.ptp(bands) * 1e9:.3g} nm higher in some rows than in others, which was taken off: "
+            f"the flat stood {length(np.ptp(bands), 3)} higher in some rows than in others, which was taken off: "
             "drift or the bow of a scanner that levelling left",
         )
     for text in doubts:
@@ -268,7 +274,9 @@ def _parting(z: Floats) -> tuple[Floats, float]:
 
 
 def _otsu(z: Floats) -> float:
-    """The height that leaves the least variance within the two classes it makes."""
+    """The height that leaves the least variance within the two classes it makes; specks are none."""
+    low, high = np.quantile(z, [_FEW, 1.0 - _FEW])
+    z = z[(z >= low) & (z <= high)]
     histogram, edges = np.histogram(z, _BINS)
     share, middle = histogram / z.size, 0.5 * (edges[1:] + edges[:-1])
     below, moment = np.cumsum(share), np.cumsum(share * middle)
@@ -353,6 +361,16 @@ def _joined(index: NDArray[np.int64], z: Floats, peaks: Floats, least: float) ->
         if a != b and peaks[low] - height < max(_SADDLE * peaks[low], least):
             parent[low] = high
     return np.array([top(k) for k in range(len(peaks))], dtype=np.int64)
+
+
+def _seen(labels: NDArray[np.int32], filled: NDArray[np.bool_]) -> tuple[NDArray[np.int32], int]:
+    """Without those of which more than half was filled in and not measured; how many they were."""
+    if not filled.any():
+        return labels, 0
+    pixels = np.bincount(labels.ravel())
+    invented = 2 * np.bincount(labels[filled], minlength=pixels.size) > pixels
+    invented[0] = False
+    return np.where(invented[labels], 0, labels), int(np.count_nonzero(invented))
 
 
 def _numbered(over: Floats, labels: NDArray[np.int32], smallest: int) -> NDArray[np.int32]:

@@ -61,9 +61,10 @@ def _extent(topography: Topography) -> tuple[str, tuple[float, float, float, flo
 
 def _picture(figure: Any, axis: Any, topography: Topography) -> None:
     unit, extent = _extent(topography)
-    z_unit, z_scale = engineering("m", topography.height_range)
-    heights = topography.heights * z_scale
-    low, high = np.percentile(heights, [_CUT, 100.0 - _CUT])
+    measured = topography.heights[~topography.mask]
+    low, high = np.percentile(measured if measured.size else topography.heights, [_CUT, 100.0 - _CUT])
+    z_unit, z_scale = engineering("m", high - low or high)  # of what is shown: one speck may be a hundred times as deep
+    heights, low, high = topography.heights * z_scale, low * z_scale, high * z_scale
     drawn = axis.imshow(heights, origin="lower", extent=extent, cmap="afmhot", vmin=low, vmax=high)
     figure.colorbar(drawn, ax=axis, label=f"height [{z_unit}]", shrink=0.9)
     if topography.masked_pixels:

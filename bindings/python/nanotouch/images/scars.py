@@ -15,6 +15,7 @@ from .._io.words import counted
 from ..errors import require
 from ._robust import MAD, block_means, digit, middle
 from .topography import Topography
+from .words import length
 
 _HIGHEST = 3  # [row]; what is broader across the rows is a structure
 _SHORTEST = 17  # [pixel], odd for OpenCV; what is shorter along the row is a particle
@@ -59,7 +60,7 @@ class ScarReport:
         if not self.scars:
             return f"no scars{kept}"
         repaired = f"{counted(self.scars, 'scar')} ({self.pixels} pixels) repaired"
-        return f"{repaired}, up to {self.largest * 1e9:.3g} nm removed{kept}"
+        return f"{repaired}, up to {length(self.largest, 3)} removed{kept}"
 
 
 def repair_scars(topography: Topography) -> tuple[Topography, ScarReport]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidValue
+from .words import length, lengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +82,7 @@ class Topography:
         (ny, nx), (ly, lx) = self.shape, self.size
         return (
             f"Topography({self.name!r}, channel {self.channel!r}, {nx} x {ny} pixels, "
-            f"{lx * 1e6:.4g} x {ly * 1e6:.4g} um, height range {self.height_range * 1e9:.4g} nm, "
+            f"{lengths((lx, ly))}, height range {length(self.height_range)}, "
             f"{self.masked_pixels} masked)"
         )
 
