@@ -227,6 +227,40 @@ def test_lines_that_were_not_scanned_are_masked(tmp_path: Path) -> None:
     assert "25 % of the pixels are missing" in topography.notes[0]
 
 
+def test_last_lines_of_zeros_were_not_scanned(tmp_path: Path) -> None:
+    """So some versions leave them; all of a picture at 0 is a channel in which nothing was measured."""
+    path = write_sxm(tmp_path / "a.sxm")
+    content = bytearray(path.read_bytes())
+    start = content.index(b"\x1a\x04") + 2
+    content[start + 4 * NX * (NY - 6) : start + 4 * NX * NY] = bytes(4 * NX * 6)  # the six lower lines
+    path.write_bytes(bytes(content))
+    topography = images.read(path)
+    assert topography.mask[:6].all()
+    assert topography.masked_pixels == 6 * NX
+    np.testing.assert_allclose(topography.heights[6:], HEIGHTS[6:], atol=1e-14)
+    assert any("the last 6 lines of the scan hold 0 alone" in note for note in topography.notes)
+    content[start : start + 4 * NX * NY] = bytes(4 * NX * NY)
+    path.write_bytes(bytes(content))
+    flat = images.read(path)
+    assert flat.masked_pixels == 0
+    assert "all heights are equal" in flat.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [(b".000000E", b",000000E"), (b":SCAN_", b":Scan_"), (b"\n", b"\r\n"), (b":REC_DATE:", b":REC_M\xfc\xb5:")],
+    ids=["decimal commas", "small letters", "other ends of lines", "latin-1"],
+)
+def test_odd_headers_of_a_nanonis_scan(tmp_path: Path, old: bytes, new: bytes) -> None:
+    path = write_sxm(tmp_path / "a.sxm")
+    header, mark, data = path.read_bytes().partition(b"\x1a\x04")
+    assert old in header
+    path.write_bytes(header.replace(old, new) + mark + data)
+    found = images.read(path)
+    np.testing.assert_allclose(found.heights, HEIGHTS, atol=1e-14)
+    assert found.size == pytest.approx(SIDE)
+
+
 def test_every_frame_of_a_movie_is_a_channel(tmp_path: Path) -> None:
     path = write_movie(tmp_path / "a.h5-jpk")
     assert images.read(path).notes == ("frame 1 of 3; name another as the channel",)

@@ -99,13 +99,17 @@ class Tip(NamedTuple):
 
 
 def _bounds(
-    identifiable: dict[str, bool], solution: Solution, uncertainties: Uncertainties
+    identifiable: dict[str, bool], solution: Solution, uncertainties: Uncertainties, table: Table
 ) -> dict[str, tuple[float, float]]:
     """Of E* and w where the curve does not determine them: with an uncertain sensitivity only, as only that rules how
     much of the slope is the cantilever's."""
     if uncertainties.sensitivity <= 0.0 or solution.options.force_noise <= 0.0:
         return {}
-    return {name: bounds_of(name, solution, uncertainties) for name in _BOUNDED if not identifiable.get(name, True)}
+    made = {name: bounds_of(name, solution, uncertainties) for name in _BOUNDED if not identifiable.get(name, True)}
+    if "effective_modulus" in made and np.isfinite(solution.made.half_modulus[0]):  # the halves of the contact differ
+        (low, high), (least, most) = made["effective_modulus"], table.interval()["effective_modulus"]
+        made["effective_modulus"] = min(low, least), max(high, most)
+    return made
 
 
 def _shifts(extension: ModuleType, solution: Solution, uncertainties: Uncertainties) -> dict[str, Floats]:
@@ -138,10 +142,7 @@ def make_result(
     table = _table(found, options, names, shifts, np.diag(together))
     if sample.poisson_ratio is not None and "effective_modulus" in table.values:
         _add_youngs_modulus(table, sample, uncertainties, notes, assumptions)
-    bounds = {} if reason else _bounds(identifiable, solution, uncertainties)
-    if "effective_modulus" in bounds and np.isfinite(solution.made.half_modulus[0]):  # the halves of the contact differ
-        ends = bounds["effective_modulus"], table.interval()["effective_modulus"]
-        bounds["effective_modulus"] = min(low for low, _ in ends), max(high for _, high in ends)
+    bounds = {} if reason else _bounds(identifiable, solution, uncertainties, table)
     if setup.model.remark is not None:
         notes.append(setup.model.remark(setup.radius, table.values, float(points.force.max())))
     return FitResult(

@@ -4,7 +4,8 @@
 The table ``DATA_INFO`` names channel, unit and direction. After ``:SCANIT_END:`` and the bytes 1A 04 each channel
 follows with its forward picture. Where the direction is ``both`` its backward one follows, whose lines are stored in
 the order of time, from right to left. ``SCAN_DIR`` says whether the first line is the lowest (``up``) or the top one
-(``down``). Lines that were not scanned are NaN. A scan in several passes names the pass: ``[P1] Z``.
+(``down``). Lines that were not scanned are NaN, or 0 to the end. Where the language of the computer has decimal commas,
+numbers may have them. A scan in several passes names the pass: ``[P1] Z``.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .._arrays import Floats
+from .._io.words import counted
 from ..errors import ReadError
 from .channel import Channel, Plane, chosen, si_unit, with_default
 from .checks import LENGTHS, check_shape
@@ -62,10 +65,22 @@ def read(file: Path, channel: str | None) -> Plane:
     if held < scan.start + 4 * count * (number + 1):
         raise ReadError(f"{file}: {cut}")
     raw = np.fromfile(file, scan.order, count, offset=scan.start + 4 * count * number)
-    values = raw.astype(np.float64).reshape(scan.shape)[:: 1 if scan.up else -1, :: -1 if backward else 1]
+    lines, notes = _measured(raw.astype(np.float64).reshape(scan.shape))
+    values = lines[:: 1 if scan.up else -1, :: -1 if backward else 1]
     ny, nx = scan.shape
-    pixel_size, notes = (scan.size[0] / ny, scan.size[1] / nx), (f"{cut} after this picture",) if held < needed else ()
+    pixel_size = scan.size[0] / ny, scan.size[1] / nx
+    notes += (f"{cut} after this picture",) if held < needed else ()
     return Plane(listed[number].name, np.array(values), unit, pixel_size, NAME, notes=notes)
+
+
+def _measured(lines: Floats) -> tuple[Floats, tuple[str, ...]]:
+    """In the order of time, with NaN for the last lines where all is exactly 0; and a note of them."""
+    seen = np.flatnonzero(lines.any(axis=1))
+    unseen = len(lines) - 1 - int(seen[-1]) if seen.size else 0
+    if not unseen:
+        return lines, ()
+    lines[-unseen:] = np.nan
+    return lines, (f"the last {counted(unseen, 'line')} of the scan hold 0 alone: taken as not scanned",)
 
 
 def _listed(scan: _Scan) -> list[Channel]:
@@ -95,7 +110,7 @@ def _header(file: Path) -> _Scan:
     lines: list[str] = []
     for line in text.decode("latin-1").splitlines():
         if line.startswith(":") and line.rstrip().endswith(":"):
-            lines = facts.setdefault(line.strip().strip(":"), [])
+            lines = facts.setdefault(line.strip().strip(":").upper(), [])
         elif line.strip():
             lines.append(line)
     scan_type = _words(file, facts, "SCANIT_TYPE")
@@ -103,7 +118,7 @@ def _header(file: Path) -> _Scan:
         raise ReadError(f"{file}: numbers of the type {' '.join(scan_type)}, expected FLOAT MSBFIRST or LSBFIRST")
     try:
         nx, ny = (int(word) for word in _words(file, facts, "SCAN_PIXELS"))
-        width, height = (float(word) for word in _words(file, facts, "SCAN_RANGE"))
+        width, height = (float(word.replace(",", ".")) for word in _words(file, facts, "SCAN_RANGE"))
     except ValueError as error:
         raise ReadError(f"{file}: pixels or range of its header are no two numbers: {error}") from None
     direction = [word.casefold() for word in _words(file, facts, "SCAN_DIR")]
