@@ -14,8 +14,8 @@ contact by the session's path, `nt_interaction_eval_gap`. The cost holds for eva
 for each other, the latency for those that do, as in a loop. Both are measured by `make bench` (`bench_plan`) and ship
 as constants, so that a plan is the same on every machine. Over a surface contact costs 2 more (latency 2.3), for height
 and slopes; with the radius of each place 1 more; with each property of a place 0.7 more (0.6). The first law
-beside contact costs 0.7 more (0.6) where contact is one formula, as Hertz', and 1.1 more (1.75) where there is none. Laws with a
-pressure also give the pressure of two flats (`plan.pressure(name, gap)`).
+beside contact costs 0.7 more (0.6) where contact is one formula, as Hertz', and 1.1 more (1.75) where there is none.
+Laws with a pressure also give the pressure of two flats (`plan.pressure(name, gap)`).
 
 | law | what | form | cost | latency | pressure |
 | --- | --- | --- | --- | --- | --- |"""
