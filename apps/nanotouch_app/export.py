@@ -102,7 +102,10 @@ def _export_image(args: argparse.Namespace, ending: str) -> str:
         topography = images.read(args.file, args.channel, pixel_size=size, untrusted=args.untrusted)
         images.write(args.out, topography)
         ny, nx = topography.shape
-        return f"{topography.channel or 'heights'}, {nx} x {ny} pixels"
+        told = f"{topography.channel or 'heights'}, {nx} x {ny} pixels"
+        if topography.masked_pixels:
+            told += f"; {topography.masked_pixels} missing ones are filled in, which .gsf cannot say; .gwy can"
+        return told
     if args.untrusted:
         raise InvalidValue("--untrusted: all channels of a file are read in this process; export one as .gsf")
     found, left_out = images.planes(args.file)

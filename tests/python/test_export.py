@@ -185,7 +185,7 @@ def test_a_calibration_is_given_where_the_file_states_none(tmp_path: Path) -> No
     np.testing.assert_array_equal(back.retract.force, ours.retract.force)
 
 
-def test_images_to_gwy_and_gsf(tmp_path: Path) -> None:
+def test_images_to_gwy_and_gsf(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A file of two channels, one with a mask: opened by gwyfile, SurfaceTopography and here; the right way up."""
     gwyfile = pytest.importorskip("gwyfile")
     pytest.importorskip("SurfaceTopography")
@@ -205,6 +205,7 @@ def test_images_to_gwy_and_gsf(tmp_path: Path) -> None:
     masks = [container[key] for key in container if key.endswith("/mask")]
     assert any(np.array_equal(mask.data[::-1] > 0.5, hole) for mask in masks)
     assert run(tmp_path / "in.gwy", "--out", tmp_path / "out.gsf") == 0
+    assert "2 missing ones are filled in, which .gsf cannot say" in capsys.readouterr().out
     back = images.read(tmp_path / "out.gsf")
     np.testing.assert_allclose(np.where(hole, 0, back.heights), np.where(hole, 0, heights), atol=1e-14)
     assert back.size == pytest.approx((2e-6, 3e-6))
