@@ -155,16 +155,16 @@ static double repels(const nt_curve_branch *approach, double z)
     return fmin(fmax(sum, 0.0), unseen * approach->visible);
 }
 
-double nt_curve_held_beyond_film(double depth, const nt_curve_reading *reading)
+double nt_curve_held_beyond_film(double depth, double doubt, const nt_curve_reading *reading)
 {
     const nt_curve_branch *approach = &reading->approach, *retract = &reading->retract;
     const long block = retract->count / BLOCKS + 1;
     const double contact = contact_of(approach);
-    double most = fmax(depth - repels(approach, fmax(retract->z[retract->lowest], contact)), 0.0);
+    double most = depth - repels(approach, fmax(retract->z[retract->lowest], contact)), torn = 0.0;
     for (int row = 0; row < reading->ruptures; row++) {
         const nt_curve_rupture *rupture = &reading->rupture[row];
         most = fmax(most, rupture->force - repels(approach, fmax(rupture->z, contact)));
-        most = fmax(most, rupture->step); /* no film tears */
+        torn = fmax(torn, rupture->step); /* no film tears */
     }
     for (long first = retract->lowest; first + block <= retract->count; first += block) {
         double sum = 0.0;
@@ -174,5 +174,5 @@ double nt_curve_held_beyond_film(double depth, const nt_curve_reading *reading)
         if (mean > most)
             most = fmax(most, mean - repels(approach, fmax(retract->z[first], contact)));
     }
-    return most;
+    return fmax(most - doubt, torn);
 }

@@ -9,7 +9,8 @@
 double nt_curve_film_at(const nt_curve_bend *film, double z);
 /* Whether the retraction beyond `start` shows the same with the other sign, as drag does and no force of surfaces. */
 int nt_curve_film_is_odd(const nt_curve_bend *film, const double *z, const double *force, long count, double start);
-/* What of a pull-off of that depth is more than the approach repels by at the same height: no film makes it [N]. */
-double nt_curve_held_beyond_film(double depth, const nt_curve_reading *reading);
+/* What of a pull-off of that depth is more than the approach repels by at the same height, known to that doubt: no film
+ * makes it [N]. */
+double nt_curve_held_beyond_film(double depth, double doubt, const nt_curve_reading *reading);
 
 #endif

@@ -17,6 +17,7 @@ static const double deepest_of_many = 5.0; /* standard deviations that the lowes
 static const double far_part = 0.5;        /* of the travel: a tail as long is judged by itself */
 static const double own_tilt = 0.25;       /* of the travel, from where a tail may show a tilt of its own (drift) */
 static const double contradiction = 4.0;   /* standard deviations */
+static const double no_line = 3.0;         /* times the approach's scatter: a line through contact scatters as much */
 static const double plausible = 0.1;       /* likelihood of a squeeze film that counts */
 static const double slow = 2.0;            /* times the visible force: drift makes no more of it */
 
@@ -237,16 +238,20 @@ static void leave_open(const nt_curve_outside *out, const nt_curve_bend_doubts *
     doubt_decline(out, reading);
     take_off_film(out, doubts->film_sigma, reading);
     doubt_bow(doubts, reading);
-    if (reading->retract.dips)
-        reading->pull_off_least = fmin(reading->pull_off_least, nt_curve_held_beyond_film(depth, reading));
+    if (reading->retract.dips) {
+        const int judged = doubts->half > 0.0 || !(doubts->film > 0.0); /* else too little is free to say */
+        const double held = nt_curve_held_beyond_film(depth, judged ? 0.0 : reading->approach.visible, reading);
+        reading->pull_off_least = fmin(reading->pull_off_least, held);
+    }
     reading->pull_off_least = reading->retract.dips ? fmax(reading->pull_off_least, 0.0) : 0.0;
     dip->sigma = hypotenuse(dip->sigma, (before - reading->pull_off_least) / sqrt(12.0));
 }
 
-/* Whether all points of the retraction's own baseline lie beyond the last rupture. */
+/* Whether all points of the retraction's own baseline lie beyond the last rupture, and are a line as the approach's. */
 static int is_free(const nt_curve_baseline *own, const nt_curve_outside *out)
 {
-    return out->free == 0 || out->z[out->free] < own->nearest;
+    return (out->free == 0 || out->z[out->free] < own->nearest) &&
+           !(own->scatter > no_line * fmax(out->straight.scatter, out->noise));
 }
 
 /* Finds what the retraction's baseline rests on, and reads its events over the best there is. */

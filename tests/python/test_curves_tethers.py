@@ -196,3 +196,21 @@ def test_a_jump_out_of_contact_hides_no_rupture() -> None:
         assert low < 255e-12
         assert high > 240e-12
         assert report.pull_off_force > 200e-12
+
+
+def test_a_cell_that_is_never_let_go_is_no_confident_zero() -> None:
+    """Two thirds of the travel are contact, and 300 pN hold to the end: a line through contact and held part was taken
+    for the retraction's baseline, and the pull-off was 0 to 60 pN."""
+    for seed in range(5):
+        made = Made(modulus=0.4, depth=3.2e-6, travel=5e-6, noise=8e-12, drag=5e-12, speed=1e-6, seed=seed)
+        curve = make(made)
+        retract = curve.retract
+        assert retract is not None
+        assert retract.force is not None
+        force = retract.force - 300e-12 * (retract.z > 0.0)
+        moved = curves.Segment("retract", retract.time, retract.z, retract.z_channel, force)
+        report = curves.analyse(curves.ForceCurve((curve.segments[0], moved), curve.meta, "held"))
+        low, high = report.pull_off_interval
+        assert low < 310e-12 < high + 20e-12
+        assert report.pull_off_force > 200e-12
+        assert any("nothing of it is free" in note for note in report.notes)
