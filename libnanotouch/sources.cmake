@@ -62,7 +62,8 @@ set(nanotouch_sources_manipulation
     manipulation/bristle.c
     manipulation/descent.c
     manipulation/particle.c
-    manipulation/particles.c)
+    manipulation/particles.c
+    manipulation/rod.c)
 set(nanotouch_sources_plasticity plasticity/dents.c plasticity/imprint.c plasticity/indentation.c plasticity/scratch.c)
 set(nanotouch_sources_surface
     surface/dilation.c

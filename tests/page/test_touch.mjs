@@ -212,7 +212,7 @@ test("an image and a curve are dropped: the surface, the card with what was put 
   await page.close();
 });
 
-test("a ball is drawn, pushed by a drag, and laid back", async () => {
+test("a ball and its ring are drawn, and a drag pushes it", async () => {
   const { page, said } = await visit(chromium.context, `${FILE}#task=push`);
   await touched(page);
   await until(page, () => window.nanotouch.seen.task.name === "push" && window.nanotouch.stage.balls.balls.length === 1);
@@ -231,11 +231,6 @@ test("a ball is drawn, pushed by a drag, and laid back", async () => {
   await drag(-6, () => window.nanotouch.seen.now.tip[0] < 3.8e-6);
   await until(page, (old) => window.nanotouch.stage.balls.balls[0].getPosition()[0] < old - 0.01, start);
   if (process.env.NANOTOUCH_PICTURES) await page.screenshot({ path: `${process.env.NANOTOUCH_PICTURES}/push.png` });
-  assert.ok((await seen(page, "now")).side[0] > 1e-10);
-  await drag(6, () => window.nanotouch.seen.now.tip[0] > 4.6e-6); // a ball is laid only where the tip is not
-  await page.focus("#view");
-  await page.keyboard.press("z");
-  await until(page, (old) => window.nanotouch.stage.balls.balls[0].getPosition()[0] === old, start);
   assert.deepEqual(said.filter((words) => !/GL Driver|WebGL/.test(words)), []);
   await page.close();
 });

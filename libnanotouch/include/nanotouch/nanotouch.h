@@ -30,6 +30,7 @@
 #include "nanotouch/plan.h"
 #include "nanotouch/plasticity.h"
 #include "nanotouch/rig.h"
+#include "nanotouch/rod.h"
 #include "nanotouch/scan.h"
 #include "nanotouch/scene.h"
 #include "nanotouch/session.h"
