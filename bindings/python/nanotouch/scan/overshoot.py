@@ -16,6 +16,7 @@ from nanotouch.scene.surface import Surface
 _ACCURACY = 0.02  # of the curve's motions
 _LEAST_SWING, _HALVINGS = 0.05, 6  # of the free amplitude: smaller ones are not advised
 _LINES = 512
+_REHEARSED = 2000  # ticks there and back over a flat, in which a loop that rings shows it
 _SHARES = (0.06, 0.98, 96)  # set points over A0 that are tried
 
 
@@ -81,6 +82,8 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
         return max(of.peak_bound(at, share * rise, height) for at in spots)
 
     A0, most = float(scanner.drive["drive.free_amplitude"]), bound(scanner)
+    if _rings(scanner, scene, 0.5 * most):
+        return math.inf, math.nan
     if most <= limit:
         return most, A0
     low, high, drive = _LEAST_SWING, 1.0, scanner.drive.copy()
@@ -92,6 +95,15 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
             return most, math.nan
         low, high = (middle, high) if keeps else (low, middle)
     return most, low * A0
+
+
+def _rings(scanner: Scanner, scene: Scene, force: float) -> bool:
+    """Whether the z loop taps a flat harder than a force [N]: one that rings does, whatever its margins."""
+    settings = scanner.scan.copy()
+    settings["raster.lines"], settings["raster.pixels"] = 1, 16
+    settings["raster.line_rate"] = settings["zloop.rate"] / (2.0 * _REHEARSED)
+    flat = Scanner(scene.plan(), settings, scanner.rig, scanner.drive)
+    return any(float(channels.peak_force.max()) > force for channels in flat.run()[:2])
 
 
 def single_set_point(scanner: Scanner, scene: Scene, wanted: float) -> float:
