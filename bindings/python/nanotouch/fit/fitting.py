@@ -13,6 +13,7 @@ from nanotouch.curves.baseline import Kind
 from nanotouch.errors import InvalidValue
 
 from .first import AUTO, first_choice
+from .free_part import doubt_free_part
 from .models import Model, extension, find, is_sharp, layer_of
 from .points import Branch, Window, points_of
 from .reporting import Sample, Tip, make_result
@@ -158,10 +159,11 @@ def fit_curve(
         solution = solve(compiled, setup, points, uncertainties)
     sharp, given = is_sharp(chosen.name), tip is not None or radius is not None
     told = Tip(choice, given, half_angle is None if sharp else not given)
-    return make_result(
+    made = make_result(
         compiled, curve, setup, solution, uncertainties, report, branch, Sample(poisson_ratio, tip),
         assumptions, told,
     )  # fmt: skip
+    return made if chosen.adhesive else doubt_free_part(made, report, branch)
 
 
 def _check_choice(name: str, value: str, valid: tuple[str, ...]) -> None:
