@@ -9,7 +9,7 @@
  * Hertz would err by 86 %, DMT would err by 23 %, JKR would err by 26 %
  * van der Waals: in Derjaguin's form, at most 393.6 pN, 2.2 % of the pull-off; this form errs by 0.1 %
  * force within 0.11 % of the larger of itself and 17.98 nN, the pull-off; folds within 0.029 pm, bound from 0.2 pm
- * beside them on; cost 1.9 Hertz evaluations (1.75 where each waits for the last), everything exact 6.5
+ * beside them on; cost 2 Hertz evaluations (1.9 where each waits for the last), everything exact 7
  * pull-off 17.98 nN; the force jumps in, whatever the spring; stiffest contact 665 N/m
  */
 #ifndef NANOTOUCH_CONSTANTS_PLAN_H
