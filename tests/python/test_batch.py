@@ -138,6 +138,8 @@ def write(path: Path, text: str) -> Path:
     ('["a"]\ncontact_point_nm = "3"\n', "contact_point_nm"),
     ('["a"]\ncontact_point_nm = nan\n', "contact_point_nm"),
     ('["a"]\nbaseline_nm = [3.0, 2.0]\n', "two numbers that grow"),
+    ('["a"]\nsha256 = "%s"\n' % ("0" * 64), "expected one or more of"),
+    ('["a"]\nexclude = "x"\nsha256 = "0abc"\n', "64 hexadecimal digits"),
     ('a = 3\n', "expected one or more of"),
 ])  # fmt: skip
 def test_a_wrong_sidecar_is_refused_in_one_sentence(tmp_path: Path, text: str, message: str) -> None:

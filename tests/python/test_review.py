@@ -7,7 +7,7 @@ import io
 from pathlib import Path
 
 import pytest
-from nanotouch import Contact, batch, curves
+from nanotouch import Contact, batch, curves, maps
 from nanotouch.errors import Error, InvalidValue, ReadError
 from nanotouch_app.main import main
 from nanotouch_app.review_window import Board, show
@@ -149,3 +149,26 @@ def test_a_sidecar_holds_from_every_folder_and_unknown_names_are_told(
         assert summary.unused == ["1.h5#7"]
     assert main(["report", "gels", *line, "--out", "out"]) == 0
     assert "'1.h5#7' of the sidecar" in capsys.readouterr().out
+
+
+def test_a_decision_holds_for_the_content_that_was_looked_at(folder: Path) -> None:
+    """A file is replaced under its name: fit and review say so, map refuses; a new decision holds again."""
+    side, line = folder.parent / "side.toml", {"model": "hertz", "radius": 1e-6}
+    review = batch.Review([folder], side, **line)
+    review.decide(review.places[0], exclude="no contact", contact_point=5e-9)
+    review.decide(review.places[1], exclude="jumps")
+    (folder / "2.h5").replace(folder / "0.h5")
+    rows = batch.fit_files([folder], folder.parent / "r.csv", sidecar=side, **line).rows
+    assert [row["status"] for row in rows] == ["failed", "excluded"]
+    assert "made on other content" in rows[0]["reason"]
+    again = batch.Review([folder], side, **line)
+    assert again.fitted(again.places[0]) == rows[0]["reason"]
+    pytest.importorskip("xarray")
+    with pytest.raises(InvalidValue, match=r"0\.h5: its decision in the sidecar was made on other content"):
+        maps.fit(folder / "0.h5", sidecar=side, **line)
+    assert again.decide(again.places[0], exclude="jumps").contact_point is None  # that was of the other file
+    rows = batch.fit_files([folder], folder.parent / "s.csv", sidecar=side, **line).rows
+    assert [row["reason"] for row in rows] == ["jumps", "jumps"]
+    assert maps.fit(folder / "0.h5", sidecar=side, **line).reason.item() == "excluded: jumps"
+    again.decide(again.places[0], exclude="")
+    assert len(batch.Sidecar.from_toml(side).decisions) == 1

@@ -139,12 +139,13 @@ def fit_files(
     journal = Journal(_beside(out, "journal"), made_of)
     reused = 0
     for number, file in enumerate(files):
-        key = {"sha256": _digest(file), "decisions": _decisions(decided, file)}
+        sha256 = _digest(file)
+        key = {"sha256": sha256, "decisions": _decisions(decided, file)}
         known = journal.entries.get(str(file))
         if known is not None and all(known[name] == json.loads(json.dumps(value)) for name, value in key.items()):
             reused += 1
         else:
-            rows, pictures = _fitted(file, decided, reading, {"model": model, "tip": tip} | settings)
+            rows, pictures = _fitted((file, sha256), decided, reading, {"model": model, "tip": tip} | settings)
             journal.add({"file": str(file), **key, "rows": rows, "pictures": pictures})
         if progress:
             progress((number + 1) / len(files))
@@ -233,11 +234,12 @@ def _decisions(decided: Sidecar, file: Path) -> dict[str, Any]:
 
 
 def _fitted(
-    file: Path, decided: Sidecar, reading: Mapping[str, Any], settings: Mapping[str, Any]
+    found: tuple[Path, str], decided: Sidecar, reading: Mapping[str, Any], settings: Mapping[str, Any]
 ) -> tuple[list[Row], list[dict[str, Any]]]:
-    """Rows and small pictures of the curves of a file; a file or curve that fails is a row that says why."""
+    """Rows and small pictures of the curves of a file and hash; a file or curve that fails is a row that says why."""
+    file, sha256 = found
     whole = decided.of(file, -1)
-    if whole.exclude:
+    if whole.exclude and not whole.outdated(sha256):
         return [row_without(file, None, "excluded", whole.exclude)], []
     try:
         curves = read(file, **reading)
@@ -246,6 +248,9 @@ def _fitted(
     rows, pictures, name = [], [], printable(file.name)
     for index, curve in enumerate(curves):
         decision = decided.of(file, index)
+        if outdated := decision.outdated(sha256):
+            rows.append(row_without(file, index, "failed", outdated))
+            continue
         if decision.exclude:
             rows.append(row_without(file, index, "excluded", decision.exclude))
             continue

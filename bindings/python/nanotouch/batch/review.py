@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from .._io.digest import file_digest
 from ..curves import ForceCurve, read
 from ..errors import Error, InvalidValue
 from ..fit import FitResult, fit_curve
@@ -19,12 +20,13 @@ from .table import by_hand
 
 @dataclass(frozen=True)
 class Place:
-    """A curve by its file and its number in it; `name` is that of the sidecar."""
+    """A curve by its file, the file's SHA-256 and its number in it; `name` is that of the sidecar."""
 
     file: Path
     index: int
     name: str
     curve: ForceCurve
+    sha256: str
 
 
 class Review:
@@ -54,14 +56,14 @@ class Review:
             if file.resolve() == own:
                 continue
             try:
-                found = read(file, **(reading or {}))
-            except Error as error:
+                sha256, found = file_digest(file), read(file, **(reading or {}))
+            except (Error, OSError) as error:
                 self.unread[file.name] = str(error)
                 continue
             for index, curve in enumerate(found):
                 path = _path_in(file)
                 name = path if len(found) == 1 else f"{path}#{index}"
-                self.places.append(Place(file, index, name, curve))
+                self.places.append(Place(file, index, name, curve, sha256))
         if not self.places:
             raise InvalidValue(f"no curve to review: {'; '.join(self.unread.values()) or 'no file'}")
 
@@ -72,10 +74,13 @@ class Review:
     def decide(self, place: Place, **changes: Any) -> Decision:
         """Change `exclude`, `contact_point` [m] or `baseline` [m, m] of a curve; written at once.
 
-        The sidecar is read again before: what another review or an editor has written meanwhile stays.
+        The sidecar is read again before: what another review or an editor has written meanwhile stays. What was decided
+        on other content of the file goes.
         """
         self._decisions = self._stored()
-        made = replace(self.decision(place), **changes)
+        before = self.decision(place)
+        before = Decision() if before.outdated(place.sha256) else before
+        made = replace(before, **changes, sha256=place.sha256)
         if made.baseline is not None and not made.baseline[0] < made.baseline[1]:
             raise InvalidValue(f"baseline {made.baseline[0]:g} .. {made.baseline[1]:g} m: expected two that grow")
         name = self._own_name(place)
@@ -101,8 +106,11 @@ class Review:
 
     def fitted(self, place: Place) -> FitResult | str:
         """The fit with what is decided, excluded or not; or why there is none."""
+        decision = self.decision(place)
+        if outdated := decision.outdated(place.sha256):
+            return outdated
         try:
-            return fit_curve(place.curve, **(self._settings | by_hand(self.decision(place))))
+            return fit_curve(place.curve, **(self._settings | by_hand(decision)))
         except Error as error:
             return str(error)
 

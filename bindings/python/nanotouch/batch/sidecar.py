@@ -12,12 +12,16 @@
 
     ["map.jpk-force-map#3"]            # one curve of a file that holds several, counted from 0
     exclude = "no contact"
+    sha256 = "9f86d0..."               # of the file that was looked at, by `nanotouch review`; all 64 digits
+
+A decision with a ``sha256`` holds for that content alone, and not for another file of the same name.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -30,6 +34,7 @@ from .._io.writing import replacing
 from ..errors import ReadError
 
 _NM = 1e-9
+_SHOWN = 8  # digits of a hash in a message
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,16 @@ class Decision:
     exclude: str = ""
     contact_point: float | None = None
     baseline: tuple[float, float] | None = None
+    sha256: str = field(default="", compare=False)  # of the file it was made on; empty: of any
+
+    def outdated(self, sha256: str) -> str:
+        """Why it does not hold for a file with this hash; empty where it does."""
+        if not (self.sha256 and sha256) or self.sha256 == sha256:
+            return ""
+        return (
+            f"its decision in the sidecar was made on other content (SHA-256 {self.sha256[:_SHOWN]}..., "
+            f"now {sha256[:_SHOWN]}...): review it again"
+        )
 
 
 @dataclass(frozen=True)
@@ -65,6 +80,8 @@ class Sidecar:
             if decision.baseline is not None:
                 low, high = (f"{end / _NM:.12g}" for end in decision.baseline)
                 lines.append(f"baseline_nm = [{low}, {high}]")
+            if decision.sha256 and len(lines) > 1:
+                lines.append(f"sha256 = {json.dumps(decision.sha256)}")
             if len(lines) > 1:
                 tables.append("\n".join(lines))
         with replacing(Path(path)) as part:
@@ -102,7 +119,7 @@ def _is_end_of(name: str, file: Path, end: str = "") -> bool:
 
 def _decision(where: str, table: Any) -> Decision:
     known = {"exclude", "contact_point_nm", "baseline_nm"}
-    if not isinstance(table, dict) or not table or not table.keys() <= known:
+    if not isinstance(table, dict) or not table.keys() & known or not table.keys() <= known | {"sha256"}:
         raise ReadError(f"{where}: expected one or more of {', '.join(sorted(known))}")
     exclude = table.get("exclude", "")
     if not isinstance(exclude, str) or ("exclude" in table and not exclude):
@@ -115,9 +132,14 @@ def _decision(where: str, table: Any) -> Decision:
         isinstance(ends, list) and len(ends) == 2 and all(map(_is_number, ends)) and ends[0] < ends[1]
     ):
         raise ReadError(f"{where}: baseline_nm is {told(ends)}, expected two numbers that grow")
-    return Decision(
-        exclude, None if contact is None else contact * _NM, None if ends is None else (ends[0] * _NM, ends[1] * _NM)
+    sha256 = table.get("sha256", "")
+    if not isinstance(sha256, str) or ("sha256" in table and not re.fullmatch("[0-9a-f]{64}", sha256)):
+        raise ReadError(f"{where}: sha256 is {told(sha256)}, expected 64 hexadecimal digits")
+    place, baseline = (
+        None if contact is None else contact * _NM,
+        None if ends is None else (ends[0] * _NM, ends[1] * _NM),
     )
+    return Decision(exclude, place, baseline, sha256)
 
 
 def _is_number(value: Any) -> bool:

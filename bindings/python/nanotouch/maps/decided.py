@@ -25,9 +25,12 @@ def decisions_of(volume: Volume, sidecar: Sidecar) -> tuple[dict[int, Decision],
         raise InvalidValue("a sidecar names curves of a file, and this map is an array or a list of curves")
     file, found = volume.file, {}
     used: set[str] = set()
+    sha256 = volume.digest() if any(one.sha256 for one in sidecar.decisions.values()) else ""
     for place in sorted(volume.places):
         name, decision = sidecar.named(file, volume.numbers[place])
         if name is not None:
+            if outdated := decision.outdated(sha256):
+                raise InvalidValue(f"{name}: {outdated}")
             found[place] = decision
             used.add(name)
     whole = sidecar.named(file, -1)[0]  # of every curve, though each may have a decision of its own
