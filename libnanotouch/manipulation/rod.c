@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/problem.h"
+#include "core/same_bits.h"
 #include "nanotouch/material.h"
 
 enum { ROUNDS = 3000, HALVINGS = 40, WAYS = 3 };
@@ -47,7 +48,7 @@ const nt_field *nt_rod_fields(int *count)
 
 double nt_rod_half_width(const nt_rod *rod)
 {
-    return cbrt(32.0 * rod->radius * rod->radius * rod->work_of_adhesion / (NT_PI * rod->effective_modulus));
+    return cube_root(32.0 * rod->radius * rod->radius * rod->work_of_adhesion / (NT_PI * rod->effective_modulus));
 }
 
 double nt_rod_friction(const nt_rod *rod)

@@ -47,14 +47,16 @@ static inline nt_rig widened_rig(const ntf_rig *from)
     return rig;
 }
 
-/* It holds a choice, too. */
+/* It holds choices, too. */
 static inline nt_tap widened_tap(const ntf_tap *from)
 {
     return (nt_tap){.at = from->at,
                     .frequency = (double)from->frequency,
                     .free_amplitude = (double)from->free_amplitude,
                     .tolerance = (double)from->tolerance,
+                    .hold = from->hold,
                     .set_amplitude = (double)from->set_amplitude,
+                    .set_phase = (double)from->set_phase,
                     .lock_in = (double)from->lock_in,
                     .noise = (double)from->noise,
                     .resolution = (double)from->resolution};

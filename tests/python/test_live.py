@@ -176,7 +176,7 @@ def test_a_refused_slider_says_how_far_it_may_go(host: Host) -> None:
     ("preset", "field", "value", "words"),
     [
         ("silicon_on_gold", "medium.relative_humidity", 0.0,
-         "humidity 0 %: known only within 4.7 % there, and this session keeps 1 %. It stays at 61 %."),
+         "humidity 0 %: known only within 1.5 % there, and this session keeps 1 %. It stays at 61 %."),
         ("mica_in_air", "adhesion.work_of_adhesion", 2e-3,
          "that does not go with adhesion.hamaker_constant = 1e-19 J, which would have to be within 0 .. "),
     ],

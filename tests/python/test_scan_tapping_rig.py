@@ -42,10 +42,12 @@ class Stairs(nt.hal.Slave):
         gap = 0.1e-6 - float(self.at[2]) - ground
         self.amplitude += 0.5 * (min(self.gain * drive, max(gap, 0.0)) - self.amplitude)
         noise = 2e-11 * math.sin(1.7 * self.reads)
+        free = self.gain * drive  # a contact without loss: sin(lag) = A/A0
+        lag = math.asin(min(self.amplitude / free, 1.0)) if free > 0.0 else 0.5 * math.pi
         amplitude = math.nan if self.reads > self.fails_at else self.amplitude + noise
         amplitude = amplitude if self.reads < self.dies_at else 12e-9
         felt = (math.nan, math.nan, max(-gap, 0.0) + 1e-11 * math.sin(2.3 * self.reads))
-        return nt.hal.Reading(position=self.at, felt=felt, amplitude=amplitude, lag=0.8)
+        return nt.hal.Reading(position=self.at, felt=felt, amplitude=amplitude, lag=lag)
 
     def write(self, action: nt.hal.Action) -> None:
         self.at = np.array(action.target)
@@ -74,7 +76,7 @@ def test_a_device_of_ones_own() -> None:
     for channels in image[:2]:
         assert channels.height[0, 12] - channels.height[0, 3] == pytest.approx(10e-9, abs=0.2e-9)
         assert channels.signal[0, 12] == pytest.approx(12e-9, rel=0.02)
-        assert channels.phase[0, 12] == pytest.approx(0.8)
+        assert channels.phase[0, 12] == pytest.approx(math.asin(0.6), abs=0.02)
         assert np.isnan(channels.peak_force).all()
     assert image.mode == "tapping"
     assert set(slave.asked[-100:]) == {(20e-9, 300e3)}
@@ -224,10 +226,16 @@ def test_the_command_scans(device: type[Stairs], capsys: pytest.CaptureFixture[s
     assert json.loads(Path("out/scan.json").read_text())["peak_force"] is None
 
 
+def test_the_command_holds_a_phase(device: type[Stairs], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scan", "--scene", "rig.toml", *RASTER, "--mode", "phase", "--out", "out"]) == 0
+    assert "a phase of 45 degrees is held" in capsys.readouterr().out
+    height = nt.images.read("out/scan.gwy", channel="Height").heights
+    assert height[0, 12] - height[0, 3] == pytest.approx(10e-9, abs=0.3e-9)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (["--mode", "phase"], "scans with contact or tapping"),
         (["--steady"], "scans in time"),
         (["--mode", "contact", "--free-amplitude", "10nm"], "goes with --mode tapping"),
         (["--gain", "20kHz"], "amplitude servo|height_gain|margin"),

@@ -170,7 +170,7 @@ plan silicon_in_air --budget -inf   | '-inf' | 1 .. 1e+09
 plan silicon_in_air --budget nan    | 'nan' | 1 .. 1e+09
 plan silicon_in_air --budget ten    | 'ten' | 1 .. 1e+09
 plan silicon_in_air --budget 2e9    | '2e9' | 1 .. 1e+09
-plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 1.9 .. 1e+09
+plan silicon_in_air --budget 1      | (--budget) = 1 | valid is 2 .. 1e+09
 plan silicon_in_air --budget        | --budget: expected one argument
 plan silicon_in_air --quantity x    | 'x' | force, stiffness, radius, folds
 touch --minimum-margin -1           | '-1' | 0 .. 1e+06
