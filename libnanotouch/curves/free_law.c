@@ -17,6 +17,7 @@ static const double nearest = 0.01, farthest = 0.35; /* of the free travel: dist
 static const double doubt = 2.0;                     /* of chi^2 for a term, where only doubts are weighed (Akaike) */
 static const double likely = 0.02;                   /* least weight of a law that counts */
 static const double contradiction = 16.0; /* of chi^2, by which one bow and one film on both branches may be worse */
+static const double shown = 4.0;          /* of chi^2, by which a film has to describe the tail better: two sigma */
 static const double distinct = 1e-9;      /* of 1 - correlation^2 of bow and film: less is rounding */
 
 static void line_of(const double x[], const double y[], const nt_free_means *m, double line[2])
@@ -190,6 +191,12 @@ double nt_free_film_at(const nt_free_law *law, const nt_free_record *r, double x
     return law->has_film ? law->film * film_at(law->scale, r->foot, x) : 0.0;
 }
 
+/* Its force at the contact; 0 where it is the foot of the contact [N]. */
+static double film_of(const nt_free_law *law)
+{
+    return law->has_film ? law->film : 0.0;
+}
+
 /* Of the free approach [N]. */
 static double law_at(const nt_free_law *law, const nt_free_record *r, double x)
 {
@@ -234,13 +241,13 @@ static nt_curve_bend_doubts doubts_of(const nt_free_law laws[], const double wei
         if (!(weight[i] > 0.0))
             continue;
         const nt_free_law *law = laws + i;
-        const double off = law_at(law, r, r->foot) - there, bow = law->bow - chosen->bow,
-                     film = law->film - chosen->film;
+        const double off = law_at(law, r, r->foot) - there, bow = law->bow - chosen->bow;
+        const double film = film_of(law), over = film - film_of(chosen);
         open.level += weight[i] * (off * off + variance_at(law, r, r->foot) * block);
         open.bow_sigma += weight[i] * (bow * bow + law->bow_variance * block);
-        open.film_sigma += weight[i] * (film * film + law->film_variance * block);
+        open.film_sigma += weight[i] * (over * over + law->film_variance * block);
         open.film += law->has_film ? weight[i] : 0.0;
-        open.film_force += weight[i] * law->film * law->film;
+        open.film_force += weight[i] * film * film;
     }
     open.bow_sigma = sqrt(open.bow_sigma) / (r->half * r->half);
     open.film_sigma = sqrt(open.film_sigma);
@@ -290,6 +297,26 @@ static int contradict(const nt_free_law laws[LAWS], double block, const nt_free_
     return fmin(laws[3].squares, laws[1].squares) - apart > contradiction * block;
 }
 
+/* Whether a law's film describes the tail by itself better than none. */
+static int tail_shows(const nt_free_law *law, double block, const nt_free_record *r)
+{
+    const film_sums back = film_over(&r->tail, law->scale, r->foot);
+    const equations e = add(&r->tail, &back, -1.0, (equations){0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+    nt_free_law own = {.has_bow = law->has_bow, .has_film = 1};
+    return r->tail.count && solve(&e, &own) && own.film_variance > 0.0 &&
+           law->film * (2.0 * own.film - law->film) > shown * own.film_variance * block;
+}
+
+/* A film that decays over the least distance tried or less is the soft foot of a contact, unless the tail shows it.
+ * The foot keeps its place in the fits, so that it bends nothing else, but nothing of it is taken off. */
+static void leave_foot(nt_free_law laws[LAWS], int chosen, double block, const nt_free_record *r)
+{
+    if (!laws[chosen].has_film || laws[chosen].scale > 2.0 * nearest || tail_shows(laws + chosen, block, r))
+        return;
+    for (int i = 0; i < LAWS; i++)
+        laws[i].has_film = 0;
+}
+
 nt_free_law nt_free_judge(const nt_free_record *record, nt_curve_bend_doubts *left_open)
 {
     nt_free_law laws[LAWS];
@@ -304,6 +331,7 @@ nt_free_law nt_free_judge(const nt_free_record *record, nt_curve_bend_doubts *le
         block = block_variance(laws, &judged);
     }
     const int chosen = weigh(laws, block, weight);
+    leave_foot(laws, chosen, block, &judged);
     *left_open = doubts_of(laws, weight, laws + chosen, &judged, block);
     laws[chosen].confirmed = judged.tail.count > 0;
     return laws[chosen];
