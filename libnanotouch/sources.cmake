@@ -239,6 +239,7 @@ set(nanotouch_sources_fit
     fit/curve.cpp
     fit/custom_model.cpp
     fit/data.cpp
+    fit/free_part.cpp
     fit/guess.cpp
     fit/halves.cpp
     fit/judgement.cpp

@@ -63,6 +63,12 @@ nt_status fit_branch(const nt_fit_recipe &recipe, double spring_constant, const 
     outcome->flags = solving.solution().flags;
     if (std::hypot(branch.baseline.wave.cosine, branch.baseline.wave.sine) > 0.0)
         outcome->flags |= NT_FIT_WAVES;
+    double further, left;
+    const bool adhesive = nt_fit_describe(recipe.options.model).pull_off > 0.0;
+    if (!adhesive && nt_fit_begins_in_contact(&branch, outcome->reading.noise, spring_constant, &further, &left)) {
+        outcome->flags |= NT_FIT_BEGINS_IN_CONTACT;
+        std::fill_n(outcome->fit.identifiable, NT_FIT_PARAMETERS, 0);
+    }
     return NT_OK;
 }
 

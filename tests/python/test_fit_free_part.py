@@ -8,12 +8,12 @@ import pytest
 
 pytest.importorskip("nanotouch._fit")
 
-from nanotouch import curves, fit
+from nanotouch import curves, fit, maps
 
 STIFFNESS, RADIUS, MODULUS = 0.1, 1e-6, 2e3
 
 
-def approach(start: float, more: float = 0.0, period: float = 1.0) -> fit.FitResult:
+def ramp(start: float, more: float = 0.0, period: float = 1.0) -> curves.ForceCurve:
     """Hertz by the tip's own depth, from `start` [m] before the contact, with a wave of `more` [N] over it."""
     x = np.linspace(start, 0.8e-6, 1500)
     depth = np.linspace(0.0, 3e-6, 20000)
@@ -22,7 +22,12 @@ def approach(start: float, more: float = 0.0, period: float = 1.0) -> fit.FitRes
     force += more * np.sin(2 * np.pi * np.arange(x.size) / period)
     force += np.random.default_rng(30).normal(0.0, 5e-12, x.size)
     segment = curves.Segment("approach", np.full(x.size, np.nan), -x, "height (measured)", force)
-    return fit.fit_curve(curves.ForceCurve((segment,), {"spring constant": STIFFNESS}, "gel"), "hertz", radius=RADIUS)
+    return curves.ForceCurve((segment,), {"spring constant": STIFFNESS}, "gel")
+
+
+def approach(*of: float) -> fit.FitResult:
+    """Its fit."""
+    return fit.fit_curve(ramp(*of), "hertz", radius=RADIUS)
 
 
 def test_a_ramp_that_begins_in_contact_tells_no_modulus() -> None:
@@ -37,3 +42,11 @@ def test_a_ramp_that_begins_in_contact_tells_no_modulus() -> None:
 @pytest.mark.parametrize(("more", "period"), [(0.0, 1.0), (60e-12, 37.0), (60e-12, 3000.0)])
 def test_a_free_part_is_not_doubted(more: float, period: float) -> None:
     assert approach(-2e-6, more, period).reason != "no part of the branch is surely free"
+
+
+def test_a_map_tells_no_modulus_of_such_a_curve_either() -> None:
+    pytest.importorskip("xarray")
+    data = maps.fit([ramp(-0.02e-6), ramp(-2e-6), ramp(-2e-6, 60e-12, 37.0)], "hertz", radius=RADIUS)
+    assert maps.determined(data, "effective_modulus").ravel().tolist() == [False, True, True]
+    assert maps.flag_counts(data)["begins_in_contact"] == 1
+    assert np.isnan(data.effective_modulus_most.values.ravel()[0])

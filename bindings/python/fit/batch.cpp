@@ -2,7 +2,9 @@
 // fit.h, second part: many recorded curves at once.
 #include "batch.h"
 
+#include <array>
 #include <functional>
+#include <tuple>
 #include <vector>
 
 using Column = std::function<double(const nt_fit_outcome &)>;
@@ -114,6 +116,27 @@ static double rating(const Array &indentation, const Array &force, const Array &
     return nt_fit_rating(&rated);
 }
 
+// baseline: force, slope, z_mean, nearest, scatter
+static std::tuple<bool, double, double> begins_in_contact(const Array &z, const Array &force,
+                                                          const std::array<double, 5> &baseline, double noise,
+                                                          double spring_constant)
+{
+    if (z.ndim() != 1 || force.ndim() != 1 || z.size() != force.size() || z.size() == 0)
+        throw py::value_error("z and force must have one dimension and the same length");
+    nt_curve_branch branch{};
+    branch.z = z.data();
+    branch.force = force.data();
+    branch.count = static_cast<long>(z.size());
+    branch.baseline.force = baseline[0];
+    branch.baseline.slope = baseline[1];
+    branch.baseline.z_mean = baseline[2];
+    branch.baseline.nearest = baseline[3];
+    branch.baseline.scatter = baseline[4];
+    double further = 0.0, left = 0.0;
+    const bool begins = nt_fit_begins_in_contact(&branch, noise, spring_constant, &further, &left) != 0;
+    return {begins, further, left};
+}
+
 static nt_fit_recipe recipe_of(const Options &options)
 {
     if (options.own)
@@ -131,9 +154,9 @@ static void check(const nt_fit_recipe &recipe)
     raise_on(nt_fit_recipe_check(&recipe, &problem), problem, "fit");
 }
 
-void bind_batch(py::module_ &module)
+static py::dict flag_bits()
 {
-    py::dict flags, statuses;
+    py::dict flags;
     flags["not_converged"] = int(NT_FIT_NOT_CONVERGED);
     flags["stiff"] = int(NT_FIT_STIFF);
     flags["misfit"] = int(NT_FIT_MISFIT);
@@ -143,7 +166,14 @@ void bind_batch(py::module_ &module)
     flags["waves"] = int(NT_FIT_WAVES);
     flags["torn_elsewhere"] = int(NT_FIT_TORN_ELSEWHERE);
     flags["uneven"] = int(NT_FIT_UNEVEN);
-    module.attr("flags") = flags;
+    flags["begins_in_contact"] = int(NT_FIT_BEGINS_IN_CONTACT);
+    return flags;
+}
+
+void bind_batch(py::module_ &module)
+{
+    py::dict statuses;
+    module.attr("flags") = flag_bits();
 #define NT_STATUS_ENTRY(code, message) statuses[#code] = int(code);
     NT_STATUS_LIST(NT_STATUS_ENTRY)
 #undef NT_STATUS_ENTRY
@@ -179,6 +209,8 @@ void bind_batch(py::module_ &module)
         .def_readwrite("highest_force", &nt_fit_recipe::highest_force)
         .def_readwrite("sensitivity_uncertainty", &nt_fit_recipe::sensitivity_uncertainty);
     module.attr("good_rating") = NT_FIT_GOOD;
+    module.def("begins_in_contact", &begins_in_contact, py::arg("z"), py::arg("force"), py::arg("baseline"),
+               py::arg("noise"), py::arg("spring_constant"));
     module.def("rating", &rating, py::arg("indentation"), py::arg("force"), py::arg("fitted"), py::arg("noise"));
     module.def("batch", &batch, py::arg("recipe"), py::arg("z"), py::arg("force"), py::arg("edges"),
                py::arg("spring_constant"), py::arg("threads"));

@@ -98,6 +98,9 @@ class Recipe:
 
 good_rating: float
 
+def begins_in_contact(
+    z: Floats, force: Floats, baseline: tuple[float, float, float, float, float], noise: float, spring_constant: float
+) -> tuple[bool, float, float]: ...
 def rating(indentation: Floats, force: Floats, fitted: Floats, noise: float) -> float: ...
 def batch(
     recipe: Recipe, z: Floats, force: Floats, edges: NDArray[int64], spring_constant: Floats, threads: int

@@ -198,8 +198,10 @@ typedef enum nt_fit_flag {
     NT_FIT_WRONG_MODEL = 32,  /* residuals also above 5 % of the force, or torn elsewhere: nothing is determined */
     NT_FIT_WAVES = 64,        /* a wave of interference was taken off with the baseline */
     NT_FIT_TORN_ELSEWHERE = 128, /* than where this contact and cantilever let go: the tear is not used */
-    NT_FIT_UNEVEN = 1 << 20 /* shallow and deep half of the contact ask for different E* and contact points: their sigma
-                               covers half of that */
+    NT_FIT_UNEVEN = 1 << 20,     /* shallow and deep half of the contact ask for different E* and contact points: their
+                                    sigma covers half of that */
+    NT_FIT_BEGINS_IN_CONTACT = 1 << 21 /* no part of the branch is surely free: nothing is determined; of recorded
+                                          curves, and laws without adhesion */
 } nt_fit_flag;
 
 typedef struct nt_fit_solution {
@@ -265,6 +267,12 @@ typedef struct nt_fit_reading {
     nt_curve_measured offset; /* by which the retraction ends below the approach: drag, or what still holds [N] */
     int ruptures;             /* how many tear off on the retraction */
 } nt_fit_reading;
+
+/* 1 where the baseline's points scatter by more than four times the noise [N], and a contact that begins in their outer
+ * half, over a level line, describes the whole branch within half of that: by so much *further out [m] than the
+ * baseline ends, with so much *left over, RMS [N]. 0: the branch has a free part. */
+NT_API int nt_fit_begins_in_contact(const nt_curve_branch *branch, double noise, double spring_constant,
+                                    double *further, double *left);
 
 typedef struct nt_fit_outcome {
     nt_status status;       /* NT_OK; NT_E_NOT_FINITE, NT_E_RANGE (values or too few points); or as nt_fit_run */

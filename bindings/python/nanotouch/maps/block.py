@@ -89,7 +89,7 @@ def _least_modulus(settings: Settings, columns: Columns, found: dict[str, Any], 
     known, flags = settings.uncertainties, extension().flags
     if known.sensitivity == 0.0:
         return np.full(len(block), np.nan)
-    against = flags["calibration"] | flags["wrong_model"] | flags["misfit"]
+    against = flags["calibration"] | flags["wrong_model"] | flags["misfit"] | flags["begins_in_contact"]
     unknown = (columns["flags"] & undetermined_flag(0) != 0) & (columns["flags"] & against == 0)
     slope, stiffness = found["contact_slope"], found["contact_stiffness"]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -106,7 +106,8 @@ def _most_modulus(columns: Columns) -> Floats:
     The upper end of its interval, symmetric in the logarithm; none where that is a thousand times the value.
     """
     flags = extension().flags
-    against = flags["calibration"] | flags["wrong_model"] | flags["misfit"] | flags["stiff"] | flags["not_converged"]
+    names = ("calibration", "wrong_model", "misfit", "stiff", "not_converged", "begins_in_contact")
+    against = sum(flags[name] for name in names)
     unknown = (columns["flags"] & undetermined_flag(0) != 0) & (columns["flags"] & against == 0)
     with np.errstate(invalid="ignore", divide="ignore"):
         factor = _GAUSSIAN * columns["effective_modulus_sigma"] / columns["effective_modulus"]
