@@ -50,7 +50,7 @@ def run(args: argparse.Namespace, reading: dict[str, Any], knowledge: dict[str, 
     print(f"  {methods.modulus_meant(knowledge)}")
     _tell_without(summary.rows)
     for name in summary.unused:
-        print(f"  note: {name!r} of the sidecar or the calibration table is none of these files or curves")
+        print(f"  note: {name!r} of the sidecar or a table is no file or curve here, or an earlier line has it")
     drawn = len(sheets) * sheet.ACROSS * sheet.DOWN
     if drawn < len(summary.pictures):
         print(f"  note: the sheets show the first {drawn} of {len(summary.pictures)} fits")

@@ -42,7 +42,11 @@ def run(args: argparse.Namespace) -> int:
     output.check_free(args.out, args)
     stiffness = parse_quantity(args.lever, "N/m")
     lever = curves.Lever(stiffness, args.lever_known_to / 100.0, args.thermal_known_to / 100.0)
-    found = curves.recalibrate(batch.files_of(args.file), lever)
+    own = args.out.resolve()
+    files = [file for file in batch.files_of(args.file) if file.resolve() != own]
+    if not files:
+        raise InvalidValue(f"{args.out}: the only file there is, and no force curve")
+    found = curves.recalibrate(files, lever)
     curves.write_table(args.out, found, lever)
     change = np.array([one.sensitivity / one.stated for one in found])
     options = " ".join(f"--known-to {name}={100 * value:.3g}" for name, value in lever.known_to.items())

@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
             print(f"  {found}")
         print(f"  {methods.modulus_meant(known)}")
         for name in summary.unused:
-            print(f"  note: {name!r} of the sidecar or the calibration table is none of these files or curves")
+            print(f"  note: {name!r} of the sidecar or a table is no file or curve here, or an earlier line has it")
         args.answer = {"folder": str(out), "files": list(FILES), "curves": summary.rows}
         print(f"written to {out}/: report.html, results.csv, results.csv.json")
     return 0 if summary.fitted else 1

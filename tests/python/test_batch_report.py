@@ -12,7 +12,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import batch, curves
-from nanotouch.batch.groups import anderson_darling, label_by, spreads
+from nanotouch.batch.groups import anderson_darling, label_by, spreads, without_files
 from nanotouch.batch.table import SHORT
 from nanotouch_app.main import main
 from synthetic import DATA, known_curve, write_ibw_curve
@@ -126,11 +126,17 @@ def test_log_normal_is_rejected_in_5_per_cent_of_true_ones() -> None:
     assert 0.90 < np.mean(kept) < 0.985
 
 
-def test_groups_by_table(tmp_path: Path) -> None:
+def test_groups_by_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     table = tmp_path / "groups.csv"
     table.write_text("file,group\nday1/*,control\n*.ibw,treated\n")
     label = label_by(table)
-    assert [label(Path(f"x/{name}")) for name in ("day1/a.ibw", "b.ibw", "c.spm")] == ["control", "treated", ""]
+    assert [label(Path(f"x/{name}")) for name in ("day1/a.ibw", "b.ibw", "c.spm")] == ["control", "treated", "no group"]
+    table.write_text("file,group\na.ibw,one\na.ibw,two\nday1/*,control\nc.ibw,misspelt\n")
+    assert without_files(table, [Path("a.ibw"), Path("day1/a.ibw")]) == ["a.ibw", "day1/*", "c.ibw"]
+    assert without_files("folder", [Path("a.ibw")]) == []
+    monkeypatch.chdir(tmp_path)  # a folder above is in the table, as for the calibration table
+    table.write_text(f"file,group\n{tmp_path.name}/a.ibw,here\n")
+    assert label_by(table)(Path("a.ibw")) == "here"
     table.write_text("name;label\n")
     with pytest.raises(nt.errors.ReadError, match="file,group"):
         label_by(table)

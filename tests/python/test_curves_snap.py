@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from nanotouch import curves
 from nanotouch.errors import InvalidValue, ReadError
+from nanotouch_app.main import main
 
 pytest.importorskip("afmformats")
 BOLTZMANN_T = 1.380649e-23 * 295.0
@@ -113,3 +114,15 @@ def test_what_is_refused(tmp_path: Path) -> None:
             curves.Lever(*wrong)
     with pytest.raises(InvalidValue, match="correlation"):
         nt.fit.Uncertainties(correlation=-1.1)
+
+
+def test_the_table_may_lie_among_the_curves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A second run took its own table for a force curve."""
+    curves.write(tmp_path / "a.h5", [measured(1.0, STIFFNESS, 0)])
+    line = ["recalibrate", str(tmp_path), "--lever", "0.04N/m", "--lever-known-to", "4", "--thermal-known-to", "3"]
+    out = tmp_path / "cal.csv"
+    assert main([*line, "--out", str(out)]) == 0
+    assert main([*line, "--out", str(out), "--overwrite"]) == 0
+    (tmp_path / "a.h5").unlink()
+    assert main([*line, "--out", str(out), "--overwrite"]) == 2
+    assert "no force curve" in capsys.readouterr().err

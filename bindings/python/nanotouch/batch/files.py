@@ -21,7 +21,7 @@ from .._io.writing import replacing
 from ..curves import CalibrationTable, asylum_pair, read
 from ..errors import Error, InvalidValue
 from ..fit import FitResult, TipLike, fit_curve
-from .groups import Spread, label_by, spreads
+from .groups import Spread, label_by, spreads, without_files
 from .journal import Journal
 from .sidecar import Sidecar
 from .table import Row, by_hand, row_of, row_without
@@ -46,7 +46,7 @@ class Summary:
     reused : int
         Files whose results an earlier run had left.
     unused : list of str
-        Names in sidecar and calibration table that are those of no file.
+        Names in sidecar, calibration table and table of groups that are those of no file.
     """
 
     rows: list[Row]
@@ -165,7 +165,7 @@ def fit_files(
         rows,
         [p for entry in entries for p in entry["pictures"]],
         reused,
-        _undone(decided, files, rows) + _unused(reading, files),
+        _undone(decided, files, rows) + _unused(reading, files) + without_files(groups, files),
     )
 
 

@@ -22,6 +22,7 @@ from ..fit.show import with_sigma
 Label = Callable[[Path], str]
 
 FOLDER = "folder"
+NO_GROUP = "no group"  # of a file that no line of a table matches
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 #: what is summed up: column of the table, its name in words, its unit
 QUANTITIES = {
@@ -80,7 +81,7 @@ class Spread:
 def label_by(groups: str | os.PathLike[str] | None, files: Sequence[Path] = ()) -> Label:
     """The group of a file: ``"folder"``, the name of its folder (with as many of the folders above as tell those of
     `files` apart); or by a CSV table ``file,group`` whose first pattern
-    that matches counts; None: all are one group. ReadError if the table cannot be used."""
+    that matches counts, else :data:`NO_GROUP`; None: all are one group. ReadError if the table cannot be used."""
     if groups is None:
         return lambda file: ""
     if groups == FOLDER:
@@ -89,17 +90,28 @@ def label_by(groups: str | os.PathLike[str] | None, files: Sequence[Path] = ()) 
     rows = _table(Path(groups))
 
     def of(file: Path) -> str:
-        path = file.as_posix()
-        return next(
-            (
-                group
-                for name, group in rows
-                if fnmatch.fnmatchcase(path, name) or fnmatch.fnmatchcase(path, f"*/{name}")
-            ),
-            "",
-        )
+        line = _line_of(rows, file)
+        return NO_GROUP if line is None else rows[line][1]
 
     return of
+
+
+def without_files(groups: str | os.PathLike[str] | None, files: Iterable[Path]) -> list[str]:
+    """Patterns of a table of groups that no file gets its group from: misspelt, or earlier lines have them all."""
+    if groups is None or groups == FOLDER:
+        return []
+    rows = _table(Path(groups))
+    used = {_line_of(rows, file) for file in files}
+    return [name for line, (name, _) in enumerate(rows) if line not in used]
+
+
+def _line_of(rows: Sequence[tuple[str, str]], file: Path) -> int | None:
+    """Whose pattern is the first that is the path, or the end of it, from this folder or from the root."""
+    paths = (file.as_posix(), Path(os.path.abspath(file)).as_posix())
+    for line, (name, _) in enumerate(rows):
+        if any(fnmatch.fnmatchcase(path, pattern) for path in paths for pattern in (name, f"*/{name}")):
+            return line
+    return None
 
 
 def _told_apart(folders: set[Path]) -> dict[Path, str]:
