@@ -15,6 +15,7 @@ import numpy as np
 from nanotouch import images, scan
 from nanotouch.errors import InvalidValue, MissingExtra, require
 from nanotouch.plots import new_figure, saved
+from nanotouch.units import in_words
 
 from nanotouch_app import output, scan_rig, scenes, stop, surfaces
 from nanotouch_app.quantity import parse_quantity, whole_number
@@ -132,7 +133,7 @@ def _write(args: argparse.Namespace, image: scan.Image, scene: nt.Scene, out: Pa
         print(f"picture left out: {missing}")
     written = [name for name in FILES if (out / name).exists()]
     args.answer = facts | {"folder": str(out), "files": written}
-    force = "" if facts["peak_force"] is None else f"largest force {facts['peak_force'] * 1e9:.3g} nN, "
+    force = _force(facts["peak_force"])
     output.say(
         f"image: heights over {facts['height_range'] * 1e9:.4g} nm, {force}trace and retrace differ by "
         f"{facts['difference'] * 1e9:.3g} nm rms"
@@ -140,6 +141,12 @@ def _write(args: argparse.Namespace, image: scan.Image, scene: nt.Scene, out: Pa
     if slides and image.mode == "contact":
         output.say(f"friction: {facts['friction'] * 1e9:.3g} nN, half the mean difference of the lateral forces")
     print(f"written to {out}/: {', '.join(written)}\ngo on: nanotouch touch {out}/surface.gwy")
+
+
+def _force(peak: float | None) -> str:
+    if peak is None:
+        return ""
+    return f"largest force {in_words(peak, 'N', 3)}, " if peak > 0.0 else "no tap pushes on the sample, "
 
 
 def _preset(what: str | None) -> str | None:

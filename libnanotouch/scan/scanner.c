@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "answer.h"
 #include "core/problem.h"
 #include "nanotouch/material.h"
 
@@ -62,6 +63,8 @@ nt_status nt_scanner_init(nt_scanner *scanner, const nt_scanner_inputs *in, nt_p
     if ((double)made.ticks < raster->pixels)
         return nt_problem_set(problem, "raster.line_rate", "Hz", raster->line_rate, 1e-3,
                               0.5 * made.scan.zloop.rate / raster->pixels);
+    if (is_tapping(&made))
+        nt_tap_answers(&made);
     const double advised = nt_scanner_gain(&made);
     made.integral = made.scan.zloop.integral > 0.0 ? made.scan.zloop.integral : advised;
     const double most = made.integral * nt_scanner_margins(&made).gain;

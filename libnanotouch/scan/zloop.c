@@ -11,6 +11,8 @@
 #define FIELD(path, ...) NT_FIELD(nt_scan, path, __VA_ARGS__)
 #define GAIN_MARGIN 2.0
 #define PHASE_MARGIN (0.25 * NT_PI)
+#define ROUNDED 1e-9 /* of a gain of 1 */
+#define STIFFER 2.0  /* than a flat: a hollow of four times the radius */
 enum { FREQUENCIES = 2000 };
 
 static const nt_field scan_fields[] = {
@@ -65,25 +67,68 @@ nt_status nt_scan_check(const nt_scan *scan, nt_problem *problem)
     return nt_field_check(scan_fields, SCAN_FIELDS, scan, problem);
 }
 
-/* The amplitude follows the base at once where a hard sample holds it, and as slowly as 2 Q/w0 where nothing does: the
- * loop has to bear both. Contact mode has the first alone. */
-static int answers(const nt_scanner *s)
+/* The amplitude follows the base at once where a hard sample holds it, and as slowly as 2 Q/w0 where nothing does; at
+ * the set point it answers as the slow flow says, here and where the sample is STIFFER. The loop has to bear all of
+ * them. Contact mode has the first alone. */
+enum { AT_ONCE, FREELY, AT_SET_POINT, ANSWERS = AT_SET_POINT + 2 * NT_TAP_ANSWERS }; /* the odd ones: STIFFER */
+
+static int has(const nt_scanner *s, int answer)
 {
-    return s->scan.zloop.mode == NT_ZLOOP_CONTACT ? 1 : 2;
+    const nt_zloop_mode mode = s->scan.zloop.mode;
+    if (mode == NT_ZLOOP_CONTACT || answer < AT_SET_POINT)
+        return mode == NT_ZLOOP_CONTACT ? answer == AT_ONCE : 1;
+    return s->answer[(answer - AT_SET_POINT) / 2].amplitude > 0.0;
 }
 
-/* Size and lag of the open loop with K_I = 1, at a frequency [rad/s]; slow: 1 with the free lever's answer. */
-static double open_loop(const nt_scanner *s, double w, int slow, double *lag)
+/* The slow flow about a motion, S = i w/w0, with a and p the changes of A and phi for one of the height:
+ *     (2 r S + r/Q + fs_A) a - D cos(phi) p = -fs_z,    (2 r A S + D sin(phi)) p + (g_A + 1 - r^2) a = -g_z.
+ * Phase feedback reads A0 cos(phi) p. */
+static double of_set_point(const nt_scanner *s, const nt_tap_answer *at, double w, double *lag)
+{
+    const nt_tapping *t = &s->lever;
+    const double r = t->ratio, S = w / t->rate, A = at->amplitude;
+    const double x = r / t->quality + at->loss_swing, y = 2.0 * r * S, u = at->sine, v = y * A;
+    const double k = at->force_swing + 1.0 - r * r;
+    double real = -at->loss_height * u - at->cosine * at->force_height, imaginary = -at->loss_height * v, scale = 1.0;
+    if (s->scan.zloop.mode == NT_ZLOOP_PHASE) {
+        real = at->loss_height * k - x * at->force_height;
+        imaginary = -y * at->force_height;
+        scale = t->free_amplitude * at->cosine / t->strength;
+    }
+    const double below = x * u - y * v + at->cosine * k, beside = x * v + y * u;
+    *lag = atan2(beside, below) - atan2(imaginary, real);
+    return scale * hypotenuse(real, imaginary) / hypotenuse(below, beside);
+}
+
+static double answer_of(const nt_scanner *s, double w, int answer, double *lag)
+{
+    *lag = 0.0;
+    if (answer == AT_ONCE)
+        return 1.0;
+    if (answer == FREELY) {
+        const double slow = 2.0 * w * s->lever.quality / s->lever.rate;
+        *lag = atan(slow);
+        return 1.0 / hypotenuse(1.0, slow);
+    }
+    nt_tap_answer at = s->answer[(answer - AT_SET_POINT) / 2];
+    if (answer % 2) {
+        at.force_swing += (1.0 - STIFFER) * s->lever.cosine * at.force_height;
+        at.force_height *= STIFFER;
+    }
+    return of_set_point(s, &at, w, lag);
+}
+
+/* Size and lag of the open loop with K_I = 1, at a frequency [rad/s]. */
+static double open_loop(const nt_scanner *s, double w, int answer, double *lag)
 {
     const nt_stage *stage = &s->stage.stage;
     const double r = w / (2.0 * NT_PI * stage->resonance), real = 1.0 - r * r, imaginary = r / stage->quality;
-    double size = 1.0 / w / hypotenuse(real, imaginary);
-    *lag = 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
+    double size = answer_of(s, w, answer, lag) / w / hypotenuse(real, imaginary);
+    *lag += 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
     if (s->scan.zloop.mode != NT_ZLOOP_CONTACT) {
         const double amplifier = w * s->scan.zloop.lock_in;
-        const double lever = slow ? 2.0 * w * s->lever.quality / s->lever.rate : 0.0;
-        size /= hypotenuse(1.0, amplifier) * hypotenuse(1.0, lever);
-        *lag += atan(amplifier) + atan(lever);
+        size /= hypotenuse(1.0, amplifier);
+        *lag += atan(amplifier);
     }
     return size;
 }
@@ -98,8 +143,10 @@ static double frequency_at(const nt_scanner *s, int i)
 static double largest_beyond(const nt_scanner *s, double least_lag)
 {
     double most = 0.0;
-    for (int i = 0; i < FREQUENCIES * answers(s); i++) {
+    for (int i = 0; i < FREQUENCIES * ANSWERS; i++) {
         double lag;
+        if (!has(s, i / FREQUENCIES))
+            continue;
         const double size = open_loop(s, frequency_at(s, i % FREQUENCIES), i / FREQUENCIES, &lag);
         if (lag >= least_lag)
             most = fmax(most, size);
@@ -117,10 +164,11 @@ double nt_scanner_gain(const nt_scanner *scanner)
 nt_zloop_margins nt_scanner_margins(const nt_scanner *scanner)
 {
     nt_zloop_margins found = {1.0 / (scanner->integral * largest_beyond(scanner, NT_PI)), NT_PI, 0.0};
-    for (int i = 0; i < FREQUENCIES * answers(scanner); i++) {
+    for (int i = 0; i < FREQUENCIES * ANSWERS; i++) {
         double lag;
         const double w = frequency_at(scanner, i % FREQUENCIES);
-        if (scanner->integral * open_loop(scanner, w, i / FREQUENCIES, &lag) < 1.0)
+        if (!has(scanner, i / FREQUENCIES) ||
+            scanner->integral * open_loop(scanner, w, i / FREQUENCIES, &lag) < 1.0 + ROUNDED)
             continue;
         found.phase = fmin(found.phase, NT_PI - lag);
         found.speed = fmax(found.speed, w);
@@ -147,7 +195,7 @@ double nt_scanner_parachute(const nt_scanner *scanner, double height, double spe
 static double noise_gain(const nt_scanner *s, double w)
 {
     double lag;
-    const double size = s->integral * open_loop(s, w, 0, &lag), stage_free = s->integral / w;
+    const double size = s->integral * open_loop(s, w, AT_ONCE, &lag), stage_free = s->integral / w;
     const double real = 1.0 + size * cos(lag), imaginary = size * sin(lag);
     const double half = 0.5 * w * s->period * (double)s->ticks / s->scan.raster.pixels;
     const double mean = half > 1e-6 ? sin(half) / half : 1.0;

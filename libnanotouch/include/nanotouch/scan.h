@@ -60,11 +60,22 @@ typedef struct nt_zloop_margins {
     double speed; /* where the open loop has gain 1 [rad/s] */
 } nt_zloop_margins;
 
+/* How a tap that holds the set point over a flat answers to small changes: slopes of the slow flow (flow.h), at a
+ * constant height of the base. */
+typedef struct nt_tap_answer {
+    double amplitude;                 /* A of q, 0: no such motion [m] */
+    double sine, cosine;              /* D sin(phi), D cos(phi) [m] */
+    double force_height, force_swing; /* of -fc, with the height and with A [-] */
+    double loss_height, loss_swing;   /* of fs [-] */
+} nt_tap_answer;
+enum { NT_TAP_REPELLED, NT_TAP_ATTRACTED, NT_TAP_ANSWERS };
+
 /* Prepared. Immutable after nt_scanner_init; plan borrowed. */
 typedef struct nt_scanner {
     nt_scan scan;
     nt_probe probe;
-    nt_tapping lever; /* of tapping mode */
+    nt_tapping lever;                     /* of tapping mode */
+    nt_tap_answer answer[NT_TAP_ANSWERS]; /* of tapping mode; phase feedback has the first */
     const nt_plan *plan;
     nt_stage_model stage;
     double period;   /* of a tick [s] */
@@ -82,9 +93,9 @@ typedef struct nt_scanner_inputs {
  * pixels; "zloop.integral" where the loop would not be stable (gain margin below 1); "drive.frequency" where phase
  * feedback is driven off the free resonance. */
 NT_API nt_status nt_scanner_init(nt_scanner *scanner, const nt_scanner_inputs *inputs, nt_problem *problem);
-/* Open loop K_I/(i w) x stage x a tick of delay x lock-in. Of a hard sample, which the deflection or the amplitude
- * follows one to one; a soft one leaves more. In tapping mode the smaller margins of two: the amplitude follows at
- * once, and as a free lever does, 1/(1 + i w 2 Q/w0). */
+/* Open loop K_I/(i w) x stage x a tick of delay x lock-in x answer of the tap. Contact mode: at once. Tapping: smallest
+ * margins of: at once, as a free lever, 1/(1 + i w 2 Q/w0), and as the slow flow about the set point over a flat; there
+ * phase feedback runs ahead, by 1 + i w 2 Q/w0 on a hard sample. */
 NT_API nt_zloop_margins nt_scanner_margins(const nt_scanner *scanner);
 /* The largest K_I with a gain margin of 2 and a phase margin of 45 degrees [1/s]. */
 NT_API double nt_scanner_gain(const nt_scanner *scanner);

@@ -123,7 +123,7 @@ class Forecast(NamedTuple):
             "motion to another"
             if math.isfinite(self.peak_bound)
             else "any tap: no bound, for the tip may stay in the sample where base and surface come together: scan "
-            "slower, or with a lower K_I, which may ring"
+            "slower, or with a lower K_I"
         )
         if len(self.motions) == 1:
             return [told]

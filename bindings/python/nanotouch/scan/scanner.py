@@ -44,7 +44,7 @@ class Scan(ScanFields, core_type=_core.Scan):
 
 
 class LoopMargins(NamedTuple):
-    """How far a z loop is from ringing, over a hard sample."""
+    """How far a z loop is from ringing: over a hard sample, and tapping also at its set point over a flat."""
 
     gain: float
     """K_I may grow by this factor, at least"""
