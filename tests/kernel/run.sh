@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The drivers on a Linux kernel that runs as a program (User-Mode Linux): once at its own pace, once under the command
-# `nanotouch touch`, twice in virtual time, in which it must say the same, byte for byte.  Built once from Debian's source, kept in build/kernel by version and hash.
+# The drivers on a Linux kernel that runs as a program (User-Mode Linux): at its own pace, for tapping alone, under the
+# commands `nanotouch touch` and `nanotouch scan`, and twice in virtual time, in which it must say the same, byte for
+# byte. Built once from Debian's source, kept in build/kernel by version and hash.
 # Usage: tests/kernel/run.sh PROGRAM PYTHON    the one that CMake calls test_kernel; where nanotouch is installed
 set -eu
 program=$(realpath "$1")
@@ -81,11 +82,15 @@ in_virtual_time 1 &
 first=$!
 scan_by_command >"$work/scan.txt" &
 scanning=$!
+run "$work/tapping.log" TAPPING=yes &
+tapping=$!
 in_virtual_time 2
 wait $first
 wait $scanning
+wait $tapping
 cmp "$work/virtual1.txt" "$work/virtual2.txt"
 grep -a -e '^watchdog' -e '^a bus' "$work/virtual1.txt"
 echo "two runs in virtual time are alike, byte for byte ($(wc -c <"$work/virtual1.txt") bytes)"
+grep -a '^tapping' "$work/tapping.log"
 cat "$work/scan.txt"
 echo "all: $(($(date +%s) - began)) s"
