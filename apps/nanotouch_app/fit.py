@@ -147,11 +147,14 @@ def _uncertainty(text: str) -> tuple[str, float]:
     if name not in valid:
         raise argparse.ArgumentTypeError(f"{name!r}: valid are {', '.join(valid)}")
     try:
-        return name, parse_quantity(size, "rad") if name == "half_angle" else float(size) / 100.0
+        value = parse_quantity(size, "rad") if name == "half_angle" else float(size) / 100.0
     except (InvalidValue, ValueError):
         raise argparse.ArgumentTypeError(
             f"{text!r}: write it as {name}={'1deg' if name == 'half_angle' else '10'}"
         ) from None
+    if name == "correlation" and 0.0 < abs(value) <= 0.01:  # surely meant as a fraction
+        raise argparse.ArgumentTypeError(f"{text!r} [%]: valid are 0, and what lies beyond 1, as -80 for -0.8")
+    return name, value
 
 
 def reading(args: argparse.Namespace) -> dict[str, Any]:

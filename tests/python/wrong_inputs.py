@@ -290,6 +290,7 @@ fit prose.txt --poisson-ratio nan   | 'nan' | -0.99 .. 0.5
 fit prose.txt --known-to weight=3 | 'weight' | sensitivity, spring_constant, radius, thickness, half_angle, correlation
 fit prose.txt --known-to radius=x   | 'radius=x' | radius=10
 fit prose.txt --known-to half_angle=1 | 'half_angle=1' | half_angle=1deg
+fit prose.txt --known-to correlation=-0.8 | 'correlation=-0.8' | as -80 for -0.8
 fit prose.txt --spring-constant 8   | --spring-constant: '8' has no unit | N/m
 fit prose.txt --spring-constant -8N/m | -8.0 N/m | 0.0001 .. 10000 N/m
 fit prose.txt --sensitivity 40nm    | the unit 'nm' | nm/V
