@@ -284,7 +284,6 @@ info a b                            | unrecognized arguments: b
 fit prose.txt --model sneddon       | 'sneddon' | hertz, dmt, jkr, maugis
 fit prose.txt --branch up           | 'up' | retract, approach
 fit prose.txt --index -1            | '-1' | 0 .. 1000000000
-fit prose.txt --index x             | 'x' | whole number
 fit prose.txt --poisson-ratio 0.6   | '0.6' | -0.99 .. 0.5
 fit prose.txt --poisson-ratio nan   | 'nan' | -0.99 .. 0.5
 fit prose.txt --known-to weight=3 | 'weight' | sensitivity, spring_constant, radius, thickness, half_angle, correlation
