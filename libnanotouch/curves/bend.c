@@ -80,15 +80,6 @@ static void take_off(const nt_curve_segment *segment, const nt_curve_baseline *b
     nt_curve_renew_noise(approach);
 }
 
-/* The first point of a branch with z >= limit. */
-static long first_from(const nt_curve_branch *branch, double limit)
-{
-    long first = 0;
-    while (first < branch->count && branch->z[first] < limit)
-        first++;
-    return first;
-}
-
 /* Where contact begins [m], and the first points that are surely out of it. */
 typedef struct zone {
     double foot;
@@ -105,9 +96,9 @@ static int find_zone(const nt_curve_branch *approach, const nt_curve_branch *tai
         return 0;
     const double step = z[seen] - z[deeper];
     found->foot = z[seen] + foot_part * step;
-    const long clear = first_from(approach, z[seen] + clear_part * step);
+    const long clear = nt_curve_first_from(approach, z[seen] + clear_part * step);
     found->approach = clear > seen + 1 ? clear : seen + 1;
-    found->tail = found->approach < count ? first_from(tail, z[found->approach]) : 0;
+    found->tail = found->approach < count ? nt_curve_first_from(tail, z[found->approach]) : 0;
     return count - found->approach >= LEAST_BLOCKS * NT_FREE_BLOCK &&
            z[count - 1] - z[found->approach] >= least_free * (z[count - 1] - z[0]);
 }

@@ -14,8 +14,7 @@ static const double before_tear = 0.5, after_tear = 0.25; /* of the depth: a tea
 static const double beyond_contact = 1.5;                 /* of the loaded travel, seen where nothing attracts */
 static const double in_contact = 0.5;                     /* of the load: from there on contact is firm */
 
-/* The first point with z >= limit. */
-static long first_from(const nt_curve_branch *branch, double limit)
+long nt_curve_first_from(const nt_curve_branch *branch, double limit)
 {
     long low = 0, high = branch->count;
     while (low < high) {
@@ -31,7 +30,7 @@ static long first_from(const nt_curve_branch *branch, double limit)
 static long lowest(const nt_curve_branch *branch)
 {
     const double last = branch->z[branch->count - 1];
-    const long inner = first_from(branch, last - end_part * (last - branch->z[0]));
+    const long inner = nt_curve_first_from(branch, last - end_part * (last - branch->z[0]));
     return nt_curve_place_of_lowest(branch->force, inner);
 }
 
@@ -81,7 +80,7 @@ static long repulsive(const nt_curve_branch *branch)
     if (branch->dips)
         return zero;
     const double end = branch->z[zero < branch->count ? zero : branch->count - 1];
-    const long beyond = first_from(branch, branch->z[0] + beyond_contact * (end - branch->z[0]));
+    const long beyond = nt_curve_first_from(branch, branch->z[0] + beyond_contact * (end - branch->z[0]));
     return beyond > zero ? beyond : zero;
 }
 

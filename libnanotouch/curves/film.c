@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "core/same_bits.h"
+#include "curves/parts.h"
 #include "curves/robust.h"
 
 enum { TERMS = 3, BLOCKS = 200, OUTWARDS = 6 };
@@ -140,14 +141,7 @@ static double contact_of(const nt_curve_branch *approach)
 /* How much the approach repels from z on outwards, out of contact, at most what a film could [N]. */
 static double repels(const nt_curve_branch *approach, double z)
 {
-    long low = 0, high = approach->count;
-    while (low < high) {
-        const long middle = low + (high - low) / 2;
-        if (approach->z[middle] < z)
-            low = middle + 1;
-        else
-            high = middle;
-    }
+    const long low = nt_curve_first_from(approach, z);
     const long end = low + OUTWARDS < approach->count ? low + OUTWARDS : approach->count;
     double sum = 0.0;
     for (long i = low; i < end; i++)

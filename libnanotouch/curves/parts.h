@@ -21,6 +21,8 @@ void nt_curve_read_events(const nt_curve_segment *segment, const nt_curve_baseli
                           double *work, nt_curve_branch *branch);
 /* What its events are known to, once its baseline is known better or worse. */
 void nt_curve_know_events(nt_curve_branch *branch);
+/* The first point of a branch with z >= limit [m]; its count where none is. */
+long nt_curve_first_from(const nt_curve_branch *branch, double limit);
 /* Fills the contact point of a reading from its first branch. scratch: 2 count doubles. */
 void nt_curve_find_contact(const nt_curve_branch *first, double spring_constant, double *scratch,
                            nt_curve_reading *reading);
