@@ -89,7 +89,8 @@ static supply supply_of(const fall *f, double attraction, double loss)
                     D * cos(fmax(0.0, end)) + fmax(0.0, r * r - 1.0) * A, jump};
 }
 
-/* The force at the greatest depth; HUGE_VAL where a tip that deep may stay in the sample. */
+/* The force at the greatest depth; HUGE_VAL where a tip that deep may stay in the sample, or no depth was the greatest.
+ */
 static double force_of(const fall *f)
 {
     const nt_tapping *lever = &f->scanner->lever;
@@ -97,7 +98,8 @@ static double force_of(const fall *f)
     supply may = {0.0, 0.0, 0.0};
     nt_flow_average now = nt_flow_average_at(lever, f->over, 0, f->amplitude, low);
     double before = -now.cosine;
-    for (int i = 0; i < STEPS; i++) {
+    int ended = 0;
+    for (int i = 0; i < STEPS && !ended; i++) {
         const double step = fmax(FINE, 0.05 * low), du = step / lever->cosine;
         low -= step;
         now = nt_flow_average_at(lever, f->over, now.attached, f->amplitude, low);
@@ -111,11 +113,11 @@ static double force_of(const fall *f)
             may = supply_of(f, attraction, now.sine);
         } else if (isinf(may.work))
             return HUGE_VAL;
-        else if (taken > may.work + may.by_depth * depth)
-            break;
+        else
+            ended = taken > may.work + may.by_depth * depth;
     }
     low -= may.jump;
-    if (-low > lever->cosine * f->amplitude)
+    if (!ended || -low > lever->cosine * f->amplitude)
         return HUGE_VAL;
     return nt_flow_average_at(lever, f->over, now.attached, f->amplitude, low).peak;
 }
