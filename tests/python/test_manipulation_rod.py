@@ -149,7 +149,7 @@ def test_what_is_no_rod_is_refused(field: str, value: float, message: str) -> No
 
 def test_wrong_ways_are_refused() -> None:
     wire = Rod(**WIRE)
-    with pytest.raises(InvalidValue, match="a tip that does not touch it"):
+    with pytest.raises(InvalidValue, match="touches the rod: begin beside it"):
         wire.place(0.0, 0.0, 0.0, (0.0, 0.0))
     with pytest.raises(InvalidValue, match="valid are numbers"):
         wire.place(0.0, math.nan, 0.0, (0.0, 1e-6))

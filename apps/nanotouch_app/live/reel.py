@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -118,10 +119,11 @@ class Reel:
 
 
 def played(recording: Recording) -> Recording:
-    """Without what a rewind took back; as it is where it cannot be told."""
+    """Without what a rewind took back; as it is, with a warning, where that cannot be told."""
     try:
         return without_rewinds(recording)
-    except Error:
+    except Error as error:
+        warnings.warn(f"{error}; what a rewind took back is shown, too", stacklevel=2)
         return recording
 
 

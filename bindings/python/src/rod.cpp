@@ -59,7 +59,7 @@ static nt_rod_state state_of(const nt_rod &self, const Array &values)
 static Array place(const nt_rod &self, const std::array<double, 3> &pose, const std::array<double, 2> &tip)
 {
     nt_rod_state state{};
-    raise_on(nt_rod_place(&self, pose.data(), tip.data(), &state), "rod: a tip that does not touch it");
+    raise_on(nt_rod_place(&self, pose.data(), tip.data(), &state), "rod: the tip touches it");
     return array_of(self, state);
 }
 

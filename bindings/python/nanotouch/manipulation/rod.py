@@ -86,7 +86,10 @@ class Rod:
         pose = float(x), float(y), float(angle)
         if spot.shape != (2,) or not np.isfinite([*pose, *spot]).all():
             raise InvalidValue("place and tip: valid are numbers; tip is x and y [m]")
-        return _state_of(self._core.place(pose, (float(spot[0]), float(spot[1]))))
+        try:
+            return _state_of(self._core.place(pose, (float(spot[0]), float(spot[1]))))
+        except InvalidValue as error:
+            raise InvalidValue(f"tip = ({spot[0]:g}, {spot[1]:g}) m touches the rod: begin beside it") from error
 
     def run(self, x: ArrayLike, y: ArrayLike, *, state: RodState) -> RodPath:
         """Move the middle of the tip along points [m], straight from one to the next."""
