@@ -165,16 +165,21 @@ static nt_status read_contact(const nt_scanner *s, nt_scanner_state *state, cons
     grip g = {s->plan, place, &state->contact};
     const nt_force_field field = {grip_eval, grip_advance, &g, s->plan->length};
     const nt_status status = nt_cantilever_settle(&state->lever, &s->probe, &field, -state->stage.position, NULL);
-    state->measured = state->lever.deflection;
-    out->signal = state->measured;
-    out->phase = 0.0;
-    out->peak = s->probe.spring_constant * state->measured;
-    out->error = s->scan.zloop.set_force / s->probe.spring_constant - state->measured;
     if (status != NT_OK)
         return status;
     const nt_pose slid = {at->x, at->y, state->lever.tip_height - place->surface.z};
     nt_interaction_slide_gap(s->plan, &state->contact, &state->slide, place, &slid);
-    out->lateral = out->peak * (place->surface.zx + s->scan.raster.tilt_x) - state->slide.friction.force[0];
+    const double k = s->probe.spring_constant, normal = k * state->lever.deflection;
+    const double lateral = normal * (place->surface.zx + s->scan.raster.tilt_x) - state->slide.friction.force[0];
+    const nt_readout *seen = &s->scan.readout;
+    state->measured = (normal + seen->normal_per_lateral * lateral) / k;
+    out->signal = state->measured;
+    out->phase = 0.0;
+    out->peak = normal;
+    out->error = s->scan.zloop.set_force / k - state->measured;
+    out->lateral = lateral + seen->lateral_per_normal * normal;
+    if (seen->lateral_noise > 0.0)
+        out->lateral += seen->lateral_noise * nt_noise_normal(&state->noise);
     return NT_OK;
 }
 

@@ -39,6 +39,9 @@ static const nt_field scan_fields[] = {
     FIELD(raster.drift_x, "m/s", -1e-6, 1e-6, "drift of the sample along x"),
     FIELD(raster.drift_y, "m/s", -1e-6, 1e-6, "drift of the sample along y"),
     FIELD(raster.hysteresis, "", 0.0, 0.4, "opening of the scanner's loop in x and y over the stroke, open loop"),
+    FIELD(readout.lateral_per_normal, "", -1.0, 1.0, "share of the normal force that is read as a lateral force"),
+    FIELD(readout.normal_per_lateral, "", -0.5, 0.5, "share of the lateral force that is read as a normal force"),
+    FIELD(readout.lateral_noise, "N", 0.0, 1e-4, "noise of one reading of the lateral force, standard deviation"),
 };
 
 enum { SCAN_FIELDS = (int)(sizeof scan_fields / sizeof scan_fields[0]) };

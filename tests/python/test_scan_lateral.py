@@ -45,6 +45,52 @@ def test_friction_turns_with_the_direction_on_a_tilted_sample() -> None:
     assert found.coefficient == pytest.approx(0.2, rel=0.02)
 
 
+def test_read_outs_take_from_each_other() -> None:
+    """Lateral and normal forces as they are read are a matrix times those that act: what is taken off by the same
+    matrix is the friction of the load that acts. On a stiff flat."""
+    per_normal, per_lateral, mu, kept = 0.15, 0.2, 0.2, 50e-9
+    settings = contact()
+    settings.readout.lateral_per_normal, settings.readout.normal_per_lateral = per_normal, per_lateral
+    image = nt.Scanner(rubbed().plan(), settings, rig()).run()
+    removed = lateral.Crosstalk(per_normal, 0.0, per_lateral)
+    load = []
+    for way, sign in ((image.trace, 1.0), (image.retrace, -1.0)):
+        seen = 8.0 * way.signal[:, 8:-8]
+        assert seen == pytest.approx(kept, rel=1e-3)  # the loop keeps what it reads
+        normal, sideways = removed.remove(seen, way.lateral[:, 8:-8])
+        assert normal == pytest.approx(kept / (1.0 + sign * mu * per_lateral), rel=1e-3)
+        assert sideways == pytest.approx(sign * mu * normal, rel=1e-3)
+        assert way.peak_force[:, 8:-8] == pytest.approx(normal, rel=1e-3)
+        load.append(normal.mean())
+    apart = (image.trace.height - image.retrace.height)[:, 8:-8].mean()
+    radius, modulus = 20e-9, rubbed().plan().explain()["effective_modulus"]
+    depth = [(0.75 * force / (modulus * math.sqrt(radius))) ** (2.0 / 3.0) for force in load]  # Hertz
+    bend = (load[1] - load[0]) / 8.0
+    assert apart == pytest.approx(bend + depth[1] - depth[0], rel=0.02)  # less load there: the base is higher
+
+
+def test_noise_of_the_lateral_read_out() -> None:
+    """A pixel is the mean of its ticks: sigma over the root of their number, within 4 standard errors; the loop of z
+    does not see it."""
+    settings, quiet = contact(), contact()
+    settings.readout.lateral_noise = 1e-9
+    plan = rubbed().plan()
+    noisy, calm = nt.Scanner(plan, settings, rig()).run(), nt.Scanner(plan, quiet, rig()).run()
+    assert np.array_equal(noisy.trace.height, calm.trace.height)
+    apart = np.concatenate([(noisy.trace.lateral - calm.trace.lateral), (noisy.retrace.lateral - calm.retrace.lateral)])
+    ticks = 0.5 * 20e3 / 64
+    assert np.std(apart) == pytest.approx(1e-9 / math.sqrt(ticks), rel=4.0 / math.sqrt(2.0 * apart.size))
+
+
+def test_a_session_reads_what_its_slave_shows() -> None:
+    session = nt.Session(nt.Scene(), surface=nt.Surface.touched_by(nt.Scene(), nt.surface.dots()), mode="topography",
+                         path=[(0.2e-6, 0.2e-6), (0.4e-6, 0.2e-6)])  # fmt: skip
+    settings = contact(line_rate=0.5)
+    settings.readout.lateral_noise = 1e-9
+    with pytest.raises(InvalidValue, match="readout.lateral_noise = 1e-09: of the simulated scanner"):
+        nt.raster.image(session, settings)
+
+
 def test_shear_strength_shows_the_area() -> None:
     """tau pi a^2 with Hertz' a at the set force."""
     scene = rubbed()

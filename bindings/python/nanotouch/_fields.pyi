@@ -724,9 +724,23 @@ class ScanRasterValues(TypedDict, total=False):
     drift_y: float
     hysteresis: float
 
+class ScanReadout(Section):
+    lateral_per_normal: float
+    """share of the normal force that is read as a lateral force [-], -1 .. 1"""
+    normal_per_lateral: float
+    """share of the lateral force that is read as a normal force [-], -0.5 .. 0.5"""
+    lateral_noise: float
+    """noise of one reading of the lateral force, standard deviation [N], 0 .. 0.0001"""
+
+class ScanReadoutValues(TypedDict, total=False):
+    lateral_per_normal: float
+    normal_per_lateral: float
+    lateral_noise: float
+
 class ScanSections(TypedDict, total=False):
     zloop: ScanZloopValues
     raster: ScanRasterValues
+    readout: ScanReadoutValues
 
 class ScanFields(Description, core_type=_core.Scan):
     def __init__(self, **sections: Unpack[ScanSections]) -> None: ...
@@ -734,6 +748,8 @@ class ScanFields(Description, core_type=_core.Scan):
     def zloop(self) -> ScanZloop: ...
     @property
     def raster(self) -> ScanRaster: ...
+    @property
+    def readout(self) -> ScanReadout: ...
 
 class Columns:
     time: NDArray[float64]

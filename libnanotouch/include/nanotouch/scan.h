@@ -41,9 +41,18 @@ typedef struct nt_raster {
     double hysteresis;     /* of the scanner in x and y: opening of its loop over the stroke [-] */
 } nt_raster;
 
+/* What the read-outs of contact mode take from each other, and the noise of the lateral one. The z loop keeps what the
+ * normal one shows. */
+typedef struct nt_readout {
+    double lateral_per_normal; /* share of the normal force that is read as a lateral one [-] */
+    double normal_per_lateral; /* the other way: along a lever 3h/2L in deflection, 2h/L in angle (docs/friction.md) [-] */
+    double lateral_noise;      /* of one reading of the lateral force, standard deviation [N] */
+} nt_readout;
+
 typedef struct nt_scan {
     nt_zloop zloop;
     nt_raster raster;
+    nt_readout readout;
 } nt_scan;
 /* Tapping at 0.7 A0 (45 degrees), 1 nN, gain by rule, 50 kHz, 20 us, 20 pm; 256 x 256 over 1 um x 1 um, 1 line per
  * second. */
@@ -148,8 +157,8 @@ typedef struct nt_scan_row {
     double *signal;     /* amplitude, or deflection [m] */
     double *phase;      /* of tapping mode [rad] */
     double *peak_force; /* largest in the pixel [N] */
-    double *
-        lateral; /* force of the lever on the tip along x: against friction (friction.h) and up slopes; 0 tapping [N] */
+    double *lateral;    /* as it is read: force of the lever on the tip along x, against friction (friction.h) and up
+                           slopes; 0 tapping [N] */
 } nt_scan_row;
 /* To the line's beginning at the speed of a line; there and back. NT_E_NOT_FINITE, or what nt_cantilever_settle says.
  */

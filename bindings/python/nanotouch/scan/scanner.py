@@ -40,7 +40,8 @@ UNDONE = "Height, tip undone"
 
 
 class Scan(ScanFields, core_type=_core.Scan):
-    """What is scanned, how fast, and what the z loop keeps. In a file the tables ``[zloop]`` and ``[raster]``."""
+    """What is scanned, how fast, what the z loop keeps, and what the read-outs of contact mode take from each other. In
+    a file the tables ``[zloop]``, ``[raster]`` and ``[readout]``."""
 
 
 class LoopMargins(NamedTuple):
@@ -68,7 +69,7 @@ class Channels(NamedTuple):
     peak_force: Floats
     """largest in the pixel [N]; NaN where nothing measures it: a real rig that taps"""
     lateral: Floats
-    """force of the lever on the tip along x [N]: against friction and up slopes; 0 in tapping mode"""
+    """force of the lever on the tip along x, as it is read [N]: against friction and up slopes; 0 in tapping mode"""
 
 
 class Image(NamedTuple):

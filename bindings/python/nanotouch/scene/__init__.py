@@ -42,7 +42,7 @@ class Scene(SceneFields, core_type=_core.Scene):
     ``Scene(terms={"gel": {"strength": 1e-3}})``, in a file ``[terms.gel]``.
     """
 
-    beside = ("terms", "surface", "drive", "zloop", "raster")  # read by surface_file and scan
+    beside = ("terms", "surface", "drive", "zloop", "raster", "readout")  # read by surface_file and scan
     _terms: dict[str, tuple[CustomTerm, dict[str, float | str]]]
 
     def __init__(

@@ -74,6 +74,9 @@ def image(session: Session, scan: Scan) -> Image:
             f"raster.line_rate = {raster.line_rate:g} Hz: valid is up to {0.25 * session.rate / pixels:g} Hz, for two "
             f"ticks of the session in each of {pixels} pixels"
         )
+    of_its_own = [f"{name} = {scan[name]:g}" for name in scan if name.startswith("readout.") and scan[name] != 0.0]
+    if of_its_own:
+        raise InvalidValue(f"{', '.join(of_its_own)}: of the simulated scanner; a session reads what its slave shows")
     _check_range(session, scan)
     kept, field = _KEPT[str(loop.mode)]
     if session.settings[kept] != scan[f"zloop.{field}"]:
