@@ -38,7 +38,8 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("what", nargs="?", metavar="IMAGE|SURFACE|PRESET", help="AFM image; built-in surface: "
                         f"{', '.join(surfaces.BUILT_IN)}; or a preset, over its surface (default: dots)")  # fmt: skip
     how = parser.add_argument_group("how it is scanned")
-    how.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what="scene, rig, [drive], [zloop], [raster], [readout]")
+    tables = "scene, rig, [drive], [zloop], [raster], [readout]"
+    how.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what=tables)
                      + " (default: silicon in humid air)")  # fmt: skip
     how.add_argument("--mode", choices=MODES, help="keep the deflection, or tap and keep amplitude or phase "
                      "(default: tapping)")  # fmt: skip

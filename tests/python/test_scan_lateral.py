@@ -87,7 +87,7 @@ def test_a_session_reads_what_its_slave_shows() -> None:
                          path=[(0.2e-6, 0.2e-6), (0.4e-6, 0.2e-6)])  # fmt: skip
     settings = contact(line_rate=0.5)
     settings.readout.lateral_noise = 1e-9
-    with pytest.raises(InvalidValue, match="readout.lateral_noise = 1e-09: of the simulated scanner"):
+    with pytest.raises(InvalidValue, match=r"readout\.lateral_noise = 1e-09: of the simulated scanner"):
         nt.raster.image(session, settings)
 
 

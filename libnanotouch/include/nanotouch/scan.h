@@ -45,7 +45,7 @@ typedef struct nt_raster {
  * normal one shows. */
 typedef struct nt_readout {
     double lateral_per_normal; /* share of the normal force that is read as a lateral one [-] */
-    double normal_per_lateral; /* the other way: along a lever 3h/2L in deflection, 2h/L in angle (docs/friction.md) [-] */
+    double normal_per_lateral; /* the other way: along a lever 3h/2L in deflection, 2h/L in angle [-] */
     double lateral_noise;      /* of one reading of the lateral force, standard deviation [N] */
 } nt_readout;
 
