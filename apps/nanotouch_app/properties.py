@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Options that name the files of a surface, common to ``touch``, ``plan`` and ``live``: heights, and what the sample is
-made of at each place."""
+"""Options that name the files of a surface, common to ``touch``, ``scan``, ``plan`` and ``live``: heights, and what the
+sample is made of at each place."""
 
 from __future__ import annotations
 
@@ -18,6 +18,39 @@ _TOLD = {
     "youngs_modulus": "E of the sample", "effective_modulus": "E* of the contact", "work_of_adhesion": "w",
     "pull_off_force": "what a tip like the scene's is pulled off with",
 }  # fmt: skip
+
+
+def add_reading(group: Any) -> None:
+    """How an IMAGE is read."""
+    group.add_argument("--channel", metavar="NAME", help="channel of the image (nanotouch info lists them)")
+    group.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
+    group.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
+    group.add_argument(
+        "--level", metavar="METHOD", help="how IMAGE is levelled: auto, or plane, poly2 .. poly6, lines, rows, medians "
+        "and terraces, joined by +; none (default: auto)",
+    )  # fmt: skip
+    group.add_argument(
+        "--untrusted", action="store_true", help="open IMAGE in a worker with limits on memory, time and open files"
+    )
+
+
+def refuse_reading(args: argparse.Namespace) -> None:
+    """Where there is no IMAGE to read."""
+    for option in ("channel", "pixel_size", "z_unit", "level", "untrusted"):
+        if getattr(args, option) not in (None, False):
+            raise InvalidValue(f"--{option.replace('_', '-')} goes with an IMAGE")
+
+
+def reading(args: argparse.Namespace) -> dict[str, Any]:
+    """What these options say, as :class:`nanotouch.SurfaceFile` takes it; commands without them read by default."""
+    pixel_size = getattr(args, "pixel_size", None)
+    return {
+        "channel": getattr(args, "channel", None),
+        "level": getattr(args, "level", None) or "auto",
+        "pixel_size": None if pixel_size is None else parse_quantity(pixel_size, "m"),
+        "z_unit": getattr(args, "z_unit", None),
+        "untrusted": getattr(args, "untrusted", False),
+    }
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -53,18 +86,13 @@ def surface_file(args: argparse.Namespace, image: str | None, tables: dict[str, 
         if told is None and given(args):
             raise InvalidValue(f"{given(args)[0]} goes with an IMAGE")
         return told
-    pixel_size = getattr(args, "pixel_size", None)
     return nt.SurfaceFile(
         image=image,
-        channel=getattr(args, "channel", None),
-        level=getattr(args, "level", None) or "auto",
-        pixel_size=None if pixel_size is None else parse_quantity(pixel_size, "m"),
-        z_unit=getattr(args, "z_unit", None),
+        **reading(args),
         file=args.properties,
         properties={name: getattr(args, name) for name in QUANTITIES if getattr(args, name) is not None},
         units=dict(_pair(text) for text in args.unit),
         fill_by=args.fill_by,
-        untrusted=getattr(args, "untrusted", False),
     )
 
 

@@ -14,6 +14,7 @@ from nanotouch.errors import InvalidValue, require
 from nanotouch.manipulation.lever import give
 from nanotouch.plots import new_figure, saved
 from nanotouch.touch.record import write_csv
+from nanotouch.units import in_words
 
 from nanotouch_app import output
 from nanotouch_app.quantity import parse_point, parse_quantity, whole_number
@@ -46,13 +47,15 @@ def run(args: argparse.Namespace) -> int:
     if not 50e-9 <= radius <= 20e-6:
         raise InvalidValue(f"--radius {args.radius}: valid is 50nm .. 20um")
     if not 0.0 < np.hypot(*target) <= 1e3 * radius:
-        raise InvalidValue(f"--to {args.to}: valid is a way of up to 1000 radii of the particle")
+        raise InvalidValue(
+            f"--to {args.to}: valid is a way above 0, up to {in_words(1e3 * radius, 'm')}, 1000 radii of the particle"
+        )
     particle, lever = manipulation.latex(radius), None if args.lever is None else parse_lever(args.lever)
     with output.folder(args, FILES) as out:
         with output.busy("pushing"):
             done = manipulation.push(particle, target, bench=manipulation.Bench(drift=drift), tolerance=tolerance,
                                      lever=lever, seed=args.seed)  # fmt: skip
-        facts = facts_of(done)
+        facts = facts_of(done) | {"tolerance_m": tolerance}
         facts["lever_give_m"] = None if lever is None else give(lever, particle)
         write_track(done, out / "push.csv")
         output.write_json(out / "push.json", facts)
@@ -88,12 +91,17 @@ def facts_of(done: manipulation.Pushed) -> dict[str, float | None]:
 def words(facts: dict[str, Any]) -> str:
     """The same in words."""
     told = (
-        f"it lies {1e9 * facts['error_m']:.3g} nm from the target; the last look showed "
-        f"{1e9 * facts['believed_m']:.3g} nm\n{facts['pushes']} pushes of {1e9 * facts['largest_push_N']:.3g} nN at "
-        f"most, {facts['lines']} lines to look, {facts['bench_time_s']:.0f} s"
+        f"it lies {in_words(facts['error_m'], 'm', 3)} from the target; the last look showed "
+        f"{in_words(facts['believed_m'], 'm', 3)}\n{facts['pushes']} pushes of "
+        f"{in_words(facts['largest_push_N'], 'N', 3)} at most, {facts['lines']} lines to look, "
+        f"{facts['bench_time_s']:.0f} s"
     )
-    gives = facts["lever_give_m"]
-    return told if gives is None else f"{told}\nthe lever gives way by {1e9 * gives:.3g} nm under a push, at most"
+    if (gives := facts["lever_give_m"]) is not None:
+        told += f"\nthe lever gives way by {in_words(gives, 'm', 3)} under a push, at most"
+    if facts["believed_m"] > facts["tolerance_m"]:
+        told += f"\nit did not arrive: given up after {facts['pushes']} pushes, without a look within "
+        told += f"{in_words(facts['tolerance_m'], 'm', 3)} of the target"
+    return told
 
 
 def write_track(done: manipulation.Pushed, path: Path) -> None:

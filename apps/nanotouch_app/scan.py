@@ -13,11 +13,11 @@ from typing import Any
 import nanotouch as nt
 import numpy as np
 from nanotouch import images, scan
-from nanotouch.errors import InvalidValue, MissingExtra, require
+from nanotouch.errors import DeviceError, InvalidValue, MissingExtra, require
 from nanotouch.plots import new_figure, saved
 from nanotouch.units import in_words
 
-from nanotouch_app import output, scan_rig, scenes, stop, surfaces
+from nanotouch_app import output, properties, scan_rig, scenes, stop, surfaces
 from nanotouch_app.quantity import parse_quantity, whole_number
 
 FILES = ("scan.gwy", "surface.gwy", "scan.json", "scan.png")
@@ -27,7 +27,7 @@ TICKS_OF_STAGE = 20.0  # per period of the stage's resonance, where no rate is g
 ACCURACIES = (0.01, 0.03, 0.1, 0.3)  # of forces, the first that the surface allows
 MOST_TICKS = 2e9
 FLAT = 6e-6  # side of a scan on a real rig, where nobody names an area or a surface [m]
-LEAST = 4  # pixels and lines of an image
+LEAST, MOST = 4, 8192  # pixels and lines of an image
 
 
 def add_parser(subparsers: Any) -> None:
@@ -37,6 +37,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("what", nargs="?", metavar="IMAGE|SURFACE|PRESET", help="AFM image; built-in surface: "
                         f"{', '.join(surfaces.BUILT_IN)}; or a preset, over its surface (default: dots)")  # fmt: skip
+    properties.add_reading(parser.add_argument_group("how IMAGE is read"))
     how = parser.add_argument_group("how it is scanned")
     tables = "scene, rig, [drive], [zloop], [raster], [readout]"
     how.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what=tables)
@@ -47,8 +48,9 @@ def add_parser(subparsers: Any) -> None:
                      "one, as 0.7; phase: an angle, as 0.8rad")  # fmt: skip
     how.add_argument("--free-amplitude", metavar="LENGTH", help="of tapping, as 20nm")
     how.add_argument("--area", metavar="X,Y,W,H", help="lower left corner and size, as 1um,1um,2um,2um (default: all)")
-    how.add_argument("--pixels", type=int, metavar="N", help="of a line, and lines (default: 256)")
-    how.add_argument("--lines", type=int, metavar="N", help="another number of lines")
+    count = whole_number(LEAST, MOST)
+    how.add_argument("--pixels", type=count, metavar="N", help="of a line, and lines (default: 256)")
+    how.add_argument("--lines", type=count, metavar="N", help="another number of lines")
     how.add_argument("--line-rate", metavar="RATE", help="lines per second, as 0.5Hz (default: so slow that the tip "
                      "flies no more than 3 %% of the width after a step down)")  # fmt: skip
     how.add_argument("--gain", metavar="RATE", help="K_I of the z loop, as 50Hz (default: as advised)")
@@ -66,6 +68,7 @@ def run(args: argparse.Namespace) -> int:
     is_real = scan_rig.is_named(args) and not args.forecast
     with output.busy("reading the surface"):
         surface = _surface(args, scene, tables)
+    print("".join(f"{note}\n" for note in (() if surface is None else surface.notes)), end="")
     if is_real:
         return _on_rig(args, scene, tables, surface)
     plan = _plan(scene, surface, tables)
@@ -87,7 +90,8 @@ def run(args: argparse.Namespace) -> int:
     if accuracy is None:
         _check(scanner, duration)
     with output.folder(args, FILES) as out:
-        _write(args, _taken(scanner, args.seed, accuracy), scene, out, plan.friction.form != "off")
+        image, signals = _taken(scanner, args.seed, accuracy)
+        _keep(args, image, scanner.scan, signals, scene, out, plan.friction.form != "off")
     return 0
 
 
@@ -105,8 +109,35 @@ def _on_rig(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], s
         duration = settings["raster.lines"] / settings["raster.line_rate"]
         print(f"the scan takes {_time(duration)}")
         args.answer = {"duration": duration, "guarantee": session.guarantee().force}
-        _write(args, scan_rig.taken(session, settings), scene, out, session.plan.friction.form != "off")
+        slides = session.plan.friction.form != "off"
+        try:
+            image, signals = scan_rig.taken(session, settings)
+        except nt.raster.Ended as ended:
+            raise DeviceError(f"{ended}; {_kept(args, ended.image, settings, scene, out, slides)}") from ended
+        _keep(args, image, settings, signals, scene, out, slides)
     return 0
+
+
+def _keep(
+    args: argparse.Namespace, image: scan.Image, settings: nt.Scan, signals: list[int], scene: nt.Scene, out: Path,
+    slides: bool,
+) -> None:  # fmt: skip
+    """Write what was scanned, then say by which signal it ended."""
+    if not signals:
+        _write(args, image, scene, out, slides)
+        return
+    raise stop.Stopped(signals[0], _kept(args, image, settings, scene, out, slides))
+
+
+def _kept(
+    args: argparse.Namespace, image: scan.Image, settings: nt.Scan, scene: nt.Scene, out: Path, slides: bool
+) -> str:
+    """Write the lines of a scan that has ended early, and say how many there are."""
+    lines, wanted = len(image.trace.height), int(settings["raster.lines"])
+    if lines < LEAST:
+        return f"{lines} of {wanted} lines were scanned, an image has at least {LEAST}: nothing is kept"
+    _write(args, image, scene, out, slides)
+    return f"{lines} of {wanted} lines are kept"
 
 
 def _accuracy(steady: str | None, scanner: nt.Scanner) -> float | None:
@@ -158,6 +189,8 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) 
     """None: a flat without end, for what lies under a real probe is not known yet."""
     named = nt.SurfaceFile.from_tables(tables)
     preset = _preset(args.what)
+    if args.what is None or preset is not None or args.what in surfaces.BUILT_IN:
+        properties.refuse_reading(args)
     if args.what is None and named is None and scan_rig.is_named(args):
         return None
     if args.what is None or preset is not None:
@@ -168,7 +201,7 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any]) 
         raise InvalidValue(f"{args.scene} names a surface ([surface]): give it or {args.what}, not both")
     if args.what in surfaces.BUILT_IN:
         return nt.Surface.touched_by(scene, surfaces.BUILT_IN[args.what]())
-    return nt.SurfaceFile(image=args.what).touched_by(scene)
+    return nt.SurfaceFile(image=args.what, **properties.reading(args)).touched_by(scene)
 
 
 def _plan(scene: nt.Scene, surface: nt.Surface | None, tables: dict[str, Any]) -> nt.Plan:
@@ -262,16 +295,16 @@ def _check(scanner: nt.Scanner, duration: float) -> None:
         )
 
 
-def _taken(scanner: nt.Scanner, seed: int, accuracy: float | None) -> scan.Image:
-    """The image, steady to an accuracy or in time; Ctrl-C ends it, and nothing is written."""
-    with stop.between_blocks() as check, output.progress_bar("scanning") as progress:
+def _taken(scanner: nt.Scanner, seed: int, accuracy: float | None) -> tuple[scan.Image, list[int]]:
+    """The image, steady to an accuracy or in time; Ctrl-C ends it after the lines in hand. And what signals came."""
+    with stop.asked() as signals, output.progress_bar("scanning") as progress:
 
-        def after_strip(done: float) -> None:
+        def after_strip(done: float) -> bool:
             progress(done)
-            if done < 1.0:
-                check()
+            return not signals
 
-        return scanner.run(seed, after_strip) if accuracy is None else scanner.steady(accuracy, progress=after_strip)
+        image = scanner.run(seed, after_strip) if accuracy is None else scanner.steady(accuracy, progress=after_strip)
+    return image, signals
 
 
 def _facts(image: scan.Image) -> dict[str, Any]:

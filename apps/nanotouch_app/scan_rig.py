@@ -11,7 +11,7 @@ import nanotouch as nt
 from nanotouch.errors import InvalidValue
 from nanotouch.units import in_words
 
-from nanotouch_app import output, scenes
+from nanotouch_app import output, scenes, stop
 from nanotouch_app.quantity import parse_quantity
 
 PEAK = 0.1  # accuracy of the peak force that is told
@@ -105,8 +105,13 @@ def _say_tapping(session: nt.Session, drive: nt.Drive, promised: str, servo: flo
         output.say(f"each tap presses with {in_words(motion.peak_force, 'N', 3)} in this scene; nothing measures it")
 
 
-def taken(session: nt.Session, settings: nt.Scan) -> nt.scan.Image:
-    """The image. The session ends with it, and close lifts the tip."""
-    with output.busy("scanning"):
-        image: nt.scan.Image = nt.raster.image(session, settings)
-    return image
+def taken(session: nt.Session, settings: nt.Scan) -> tuple[nt.scan.Image, list[int]]:
+    """The image, and the signals that ended it, if any did. The session ends with it, and close lifts the tip."""
+    with stop.asked() as signals, output.progress_bar("scanning") as progress:
+
+        def after_block(done: float) -> bool:
+            progress(done)
+            return not signals
+
+        image = nt.raster.image(session, settings, after_block)
+    return image, signals

@@ -33,9 +33,8 @@ def on_signals() -> Iterator[None]:
 
 
 @contextmanager
-def between_blocks() -> Iterator[Callable[[], None]]:
-    """Hold a signal back until the function is called that this yields, so that no block is lost half-way. A second
-    one does not wait."""
+def asked() -> Iterator[list[int]]:
+    """The signals that came, for what ends by itself and keeps what it has. A second one does not wait."""
     came: list[int] = []
 
     def note(number: int, _: FrameType | None) -> None:
@@ -43,11 +42,19 @@ def between_blocks() -> Iterator[Callable[[], None]]:
         if len(came) > 1:
             raise Stopped(number)
 
-    def check() -> None:
-        if came:
-            raise Stopped(came[0])
-
     with _handled(note):
+        yield came
+
+
+@contextmanager
+def between_blocks() -> Iterator[Callable[[], None]]:
+    """Hold a signal back until the function is called that this yields, so that no block is lost half-way."""
+    with asked() as came:
+
+        def check() -> None:
+            if came:
+                raise Stopped(came[0])
+
         yield check
         check()
 

@@ -49,16 +49,7 @@ def add_parser(subparsers: Any) -> None:
     where.add_argument(
         "--line", metavar="X,Y,X,Y", help="line to follow, as 0um,2um,6um,2um (default: across the middle)"
     )
-    where.add_argument("--channel", metavar="NAME", help="channel of the image (nanotouch info lists them)")
-    where.add_argument("--pixel-size", metavar="LENGTH", help="pixel size of an image that does not state it, as 10nm")
-    where.add_argument("--z-unit", metavar="UNIT", help="height unit of an image that does not state it: nm, um, ...")
-    where.add_argument(
-        "--level", metavar="METHOD", help="how IMAGE is levelled: auto, or plane, poly2 .. poly6, lines, rows, medians "
-        "and terraces, joined by +; none (default: auto)",
-    )  # fmt: skip
-    where.add_argument(
-        "--untrusted", action="store_true", help="open IMAGE in a worker with limits on memory, time and open files"
-    )
+    properties.add_reading(where)
     how = parser.add_argument_group("how it is touched")
     how.add_argument(
         "--scene",
@@ -151,9 +142,7 @@ def describe(topography: nt.Topography) -> str:
 
 def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], is_real: bool) -> nt.Surface:
     if args.image is None:
-        for option in ("channel", "pixel_size", "z_unit", "level", "untrusted"):
-            if getattr(args, option) not in (None, False):
-                raise InvalidValue(f"--{option.replace('_', '-')} goes with an IMAGE")
+        properties.refuse_reading(args)
     elif args.surface is not None:
         raise InvalidValue(f"give an IMAGE or --surface {args.surface}, not both")
     named = properties.surface_file(args, args.image, tables, args.scene)

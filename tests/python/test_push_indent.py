@@ -39,9 +39,11 @@ def test_push_on_a_lever(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "the lever gives way by" in capsys.readouterr().out
 
 
-def test_push_that_does_not_arrive_has_status_1(tmp_path: Path) -> None:
-    """Closer than the noise of a look allows in 200 pushes."""
+def test_push_that_does_not_arrive_has_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Closer than the noise of a look allows in 200 pushes. It says so."""
     assert main(["push", "--to", "0.2um,0um", "--tolerance", "1pm", "--out", str(tmp_path / "a")]) == 1
+    told = "it did not arrive: given up after 200 pushes, without a look within 1 pm of the target"
+    assert told in capsys.readouterr().out
 
 
 def test_indent_leaves_the_dent_of_its_load(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -88,7 +90,7 @@ def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.C
     ("line", "words"),
     [
         ("push --radius 1nm", ["--radius 1nm", "50nm .. 20um"]),
-        ("push --to 0um,0um", ["--to 0um,0um", "up to 1000 radii"]),
+        ("push --to 0um,0um", ["--to 0um,0um", "above 0, up to 500 µm, 1000 radii"]),
         ("push --to 5um", ["1 lengths instead of 2"]),
         ("push --tolerance 0nm", ["tolerance"]),
         ("push --seed -1", ["'-1'", "0 .. 2^32 - 1"]),
@@ -97,6 +99,8 @@ def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.C
         ("indent 0nN", ["LOAD 0nN", "above 11 nN"]),
         ("indent 3nN", ["LOAD 3nN", "times the noise of the lever"]),
         ("indent 10uN", ["range.maximum_load"]),
+        ("push --drift -1nm/s", ["drift = -1e-09 m/s", "0 m/s and above"]),
+        ("scan --lines 3", ["'3'", "4 .. 8192"]),
         ("scan --seed -1", ["'-1'", "0 .. 2^64 - 1"]),
         ("scan --mode contact --set-point -5nN", ["zloop.set_force", "-5e-09 N"]),
         ("indent 5", ["'5' has no unit"]),

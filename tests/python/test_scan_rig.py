@@ -64,7 +64,6 @@ def test_the_image_is_that_of_the_device(rig: type[Ranged], capsys: pytest.Captu
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (["--lines", "3"], "at least 4"),
         (["--steady"], "scans in time"),
         (["--mode", "tapping"], "no lock-in amplifier"),
         (["--mode", "phase"], "no lock-in amplifier"),

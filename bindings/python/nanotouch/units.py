@@ -59,7 +59,7 @@ UNITS: dict[str, dict[str, float]] = {
     "periods": {"periods": 1.0, "": 1.0},
 }
 
-_EXAMPLES = {"": "0.4", "m": "2.5um", "s": "20s", "N": "100nN"}
+_EXAMPLES = {"": "0.4", "m": "2.5um", "s": "20s", "N": "100nN", "m/s": "1nm/s"}
 _SPELT = str.maketrans({"µ": "u", "μ": "u", "²": "2", "³": "3", "^": None})
 _QUANTITY = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*")
 
@@ -111,7 +111,8 @@ def in_words(value: float, unit: str, digits: int = 4) -> str:
     if not unit and 1e3 <= abs(rounded) < 1e6:
         return f"{rounded:.0f}"  # not 1.05e+03
     prefixed, factor = engineering(unit, [rounded]) if unit else ("", 1.0)
-    return f"{rounded * factor:.{digits}g} {prefixed}".rstrip()
+    scaled = float(f"{rounded * factor:.{digits}g}")
+    return f"{scaled:.{max(digits, 3)}g} {prefixed}".rstrip()  # two digits: 720 pm, not 7.2e+02 pm
 
 
 def _example(unit: str) -> str:

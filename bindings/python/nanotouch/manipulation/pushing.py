@@ -16,6 +16,7 @@ import numpy as np
 
 from nanotouch._arrays import Floats, check_between
 from nanotouch.errors import Error, InvalidValue
+from nanotouch.units import in_words
 
 from .lever import Lever, low_of, needed, reach_of
 from .particle import Particle, ParticlesState
@@ -59,9 +60,9 @@ class Bench:
         check_between("speed", self.speed, "m/s", above=0.0)
         check_between("line_time", self.line_time, "s", above=0.0)
         check_between("points", self.points, "", above=15)
-        for name in ("drift", "height_noise", "position_noise"):
+        for name, unit in (("drift", "m/s"), ("height_noise", "m"), ("position_noise", "m")):
             if not 0.0 <= getattr(self, name) < np.inf:
-                raise InvalidValue(f"{name} = {getattr(self, name):g}: valid is 0 and above")
+                raise InvalidValue(f"{name} = {getattr(self, name):g} {unit}: valid is 0 {unit} and above")
 
 
 class Track(NamedTuple):
@@ -177,7 +178,9 @@ class World:
         along, height = self.heights(centre, axis, at)
         seen = height > 0.5 * reach
         if np.count_nonzero(seen) < 8:
-            raise Lost(f"no particle within {0.8 * reach:.3g} m of where it should be: a scan of the whole is due")
+            raise Lost(
+                f"no particle within {in_words(0.8 * reach, 'm', 3)} of where it should be: a scan of the whole is due"
+            )
         unknowns = np.stack([2.0 * along[seen], np.ones(np.count_nonzero(seen))], axis=1)
         middle = np.linalg.lstsq(unknowns, height[seen] ** 2 + along[seen] ** 2, rcond=None)[0][0]
         return float(centre[axis] + middle)

@@ -21,6 +21,7 @@ from nanotouch.units import in_words
 _ACCURACY = 0.02  # of amplitude and peak force
 _LARGEST, _SMALLEST, _SHARES = 0.98, 0.06, 24  # set points over A0 that are tried
 _HALVINGS = 6
+_FLAT = 1e-15  # range of heights that rounding leaves of a flat [m]
 _SIGMAS = 5.0  # of the noise of a reading that may not lift the tip
 _ELECTRONVOLT = 1.602176634e-19
 
@@ -201,6 +202,8 @@ def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> 
     mode = str(scanner.scan.zloop.mode)
     limit, reason = limit_of(scene)
     slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
+    if height < _FLAT:
+        slope = height = 0.0
     lag = scanner.speed * slope / scanner.integral
     motions, safe, flank = _contact(scanner, limit, lag) if mode == "contact" else _tapping(scanner, scene, limit, lag)
     return Forecast(

@@ -34,6 +34,8 @@ STRIP = 64
 
 
 Result = TypeVar("Result")
+Progress = Callable[[float], bool | None]
+"""told the share that is done; False ends what goes on"""
 
 UNDONE = "Height, tip undone"
 """channel of the heights without the tip"""
@@ -119,16 +121,18 @@ class Image(NamedTuple):
 
 
 def _each(
-    work: Callable[[int], Result], items: range, kept: Callable[[int, Result], None], threads: int | None
-) -> None:
-    """Work on the cores; results are told in their order, with their number. What that raises ends the rest."""
+    work: Callable[[int], Result], items: range, kept: Callable[[int, Result], bool | None], threads: int | None
+) -> int:
+    """Work on the cores; results are told in their order, with their number. False, or what that raises, ends the
+    rest. How many were told."""
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
         try:
             for number, result in enumerate(pool.map(work, items)):
-                kept(number, result)
-        except BaseException:
+                if kept(number, result) is False:
+                    return number + 1
+        finally:
             pool.shutdown(cancel_futures=True)
-            raise
+    return len(items)
 
 
 class Scanner(Lever):
@@ -205,7 +209,7 @@ class Scanner(Lever):
             raise InvalidValue(f"rise = {rise:g} m/s, height = {height:g} m: neither may be below 0")
         return float(self._core.peak_bound(*at, rise, height))
 
-    def run(self, seed: int = 1, progress: Callable[[float], None] | None = None, threads: int | None = None) -> Image:
+    def run(self, seed: int = 1, progress: Progress | None = None, threads: int | None = None) -> Image:
         """Scan all lines.
 
         Parameters
@@ -213,7 +217,7 @@ class Scanner(Lever):
         seed : int
             Of the noise.
         progress : callable, optional
-            Told the share that is done; what it raises ends the scan.
+            Told the share that is done. False ends the scan: the image has the lines so far.
         threads : int, optional
             By default one for each core. The image is the same on any number.
         """
@@ -225,18 +229,16 @@ class Scanner(Lever):
             count = min(STRIP, lines - first)
             out[:, :, first : first + count] = self._core.strip(first, count, seed).transpose(1, 2, 0, 3)
 
-        def kept(done: int, _: None) -> None:
-            if progress is not None:
-                progress((done + 1) / len(starts))
+        def kept(done: int, _: None) -> bool | None:
+            return None if progress is None else progress((done + 1) / len(starts))
 
-        _each(strip, starts, kept, threads)
-        return self._image(out)
+        return self._image(out[:, :, : STRIP * _each(strip, starts, kept, threads)])
 
     def steady(
         self,
         accuracy: float = 0.05,
         threads: int | None = None,
-        progress: Callable[[float], None] | None = None,
+        progress: Progress | None = None,
     ) -> Image:
         """The image that an infinitely slow scan would give: tapping, at each pixel the motion of the set point.
 
@@ -250,7 +252,7 @@ class Scanner(Lever):
         threads : int, optional
             By default one for each core. The image is the same on any number.
         progress : callable, optional
-            Told the share that is done; what it raises ends the image.
+            Told the share that is done. False ends the scan: the image has the lines so far.
 
         Raises
         ------
@@ -268,19 +270,18 @@ class Scanner(Lever):
             out[:, line] = found
             return int(pixel)
 
-        def kept(line: int, pixel: int) -> None:
+        def kept(line: int, pixel: int) -> bool | None:
             if pixel >= 0:
                 raise SolverError(
                     f"line {line}, pixel {pixel}: no motion of the set point repeats each period there; a scan in time "
                     "(run(), nanotouch scan without --steady) has no such need"
                 )
-            if progress is not None:
-                progress((line + 1) / lines)
+            return None if progress is None else progress((line + 1) / lines)
 
-        _each(take, range(lines), kept, threads)
-        return self._image(np.stack([out, out]))
+        done = out[:, : _each(take, range(lines), kept, threads)]
+        return self._image(np.stack([done, done]))
 
     def _image(self, out: Floats) -> Image:
-        lines, pixels = out.shape[2:]
-        size = self.scan["raster.height"] / lines, self.scan["raster.width"] / pixels
+        raster = self.scan.raster
+        size = raster.height / raster.lines, raster.width / raster.pixels
         return Image(Channels(*out[0]), Channels(*out[1]), size, str(self.scan.zloop.mode))

@@ -13,7 +13,7 @@ import numpy as np
 
 from nanotouch._arrays import Floats
 from nanotouch.errors import DeviceError, InvalidValue
-from nanotouch.scan.scanner import Channels, Image, Scan
+from nanotouch.scan.scanner import Channels, Image, Progress, Scan
 from nanotouch.touch._path import Mode
 from nanotouch.touch._play import BLOCK_TICKS, Columns, joined, played
 from nanotouch.touch.columns import STATES
@@ -28,7 +28,25 @@ _KEPT = {"contact": ("gains.set_point", "set_force"), "tapping": ("tap.set_ampli
 _SETTLE = 5.0  # time constants of the height servo before the first line
 
 
-def image(session: Session, scan: Scan) -> Image:
+class Ended(DeviceError):
+    """The supervisor or the loop has ended a scan.
+
+    Attributes
+    ----------
+    image : Image
+        The lines before that, maybe none.
+    """
+
+    def __init__(self, message: str, image: Image) -> None:
+        super().__init__(message)
+        self.image = image
+
+
+class _Stop(Exception):
+    """Somebody has asked for the end."""
+
+
+def image(session: Session, scan: Scan, progress: Progress | None = None) -> Image:
     """An image in contact or tapping mode or by phase feedback, taken by a session on its own rig.
 
     The session's height servo (``gains.height_gain``, K_I) holds ``zloop.set_force``, or ``zloop.set_amplitude`` of the
@@ -42,6 +60,8 @@ def image(session: Session, scan: Scan) -> Image:
         In mode ``"topography"`` for contact, else ``"tapping"``, with ``tap.hold`` as what is kept, above the sample.
     scan : Scan
         Half a line has at least two ticks of the session for each pixel.
+    progress : callable, optional
+        Told the share that is done, some 20 times a second. False ends the scan: the image has the whole lines so far.
 
     Returns
     -------
@@ -55,8 +75,9 @@ def image(session: Session, scan: Scan) -> Image:
     ------
     InvalidValue
         The session is in another mode, or the raster does not suit it.
-    DeviceError
+    Ended
         The supervisor has held or lifted the tip during the scan: with line, state and reason. Or the loop has ended.
+        Its ``image`` has the lines before.
     """
     raster, loop = scan.raster, scan.zloop
     lines, pixels = int(raster.lines), int(raster.pixels)
@@ -84,14 +105,24 @@ def image(session: Session, scan: Scan) -> Image:
     ways = _ways(session, scan, ticks)
     for _, _, way in ways:
         session.core.check(core_input(way))
-    out = np.zeros((2, 6, lines, pixels))
-    with closing(played(session, [way for _, _, way in ways])) as comes:  # one script: the loop never stops on the way
-        for line, back, way in ways:
-            rows = _rows(comes, round(way.duration * session.rate), line)
-            if back is not None:
-                out[back, :, line] = _sorted(session, rows, scan)
+    out, done = np.zeros((2, 6, lines, pixels)), 0
     size = raster.height / lines, raster.width / pixels
-    return Image(Channels(*out[0]), Channels(*out[1]), size, str(loop.mode))
+
+    def so_far() -> Image:
+        return Image(Channels(*out[0, :, :done]), Channels(*out[1, :, :done]), size, str(loop.mode))
+
+    try:
+        with closing(played(session, [way for _, _, way in ways])) as comes:  # one script: the loop goes on to its end
+            for line, back, way in ways:
+                rows = _rows(comes, round(way.duration * session.rate), line, progress)
+                if back is not None:
+                    out[back, :, line] = _sorted(session, rows, scan)
+                    done = line + back  # a line is whole when the tip is back
+    except _Stop:
+        pass
+    except DeviceError as error:
+        raise Ended(f"{error}: the scan ended there", so_far()) from error
+    return so_far()
 
 
 def _ways(session: Session, scan: Scan, ticks: int) -> list[tuple[int, int | None, Input]]:
@@ -148,19 +179,21 @@ def _ends(scan: Scan) -> tuple[float, float]:
     return scan["raster.x"] - half, scan["raster.x"] + scan["raster.width"] - half
 
 
-def _rows(comes: Generator[tuple[Columns, float]], ticks: int, line: int) -> Columns:
+def _rows(comes: Generator[tuple[Columns, float]], ticks: int, line: int, progress: Progress | None) -> Columns:
     """Those of a way; refuses rows in which the supervisor did not run."""
     blocks = []
     for _ in range(-(-ticks // BLOCK_TICKS)):
-        block, _ = next(comes, ({"state": np.zeros(0)}, 1.0))
+        block, share = next(comes, ({"state": np.zeros(0)}, 1.0))
         if not len(block["state"]):
-            raise DeviceError(f"line {line}: the loop has ended: no image")
+            raise DeviceError(f"line {line}: the loop has ended")
         worst = int(block["state"].max())
         if worst > 0:
             reasons = int(block["reasons"][block["state"] == worst][0])
             why = ", ".join(name for bit, name in enumerate(REASONS) if reasons >> bit & 1)
-            raise DeviceError(f"line {line}: the supervisor went to {STATES[worst]} ({why}): no image")
+            raise DeviceError(f"line {line}: the supervisor went to {STATES[worst]} ({why})")
         blocks.append(block)
+        if progress is not None and progress(share) is False:
+            raise _Stop
     return joined(blocks) if blocks else {}
 
 
