@@ -63,7 +63,9 @@ set(nanotouch_sources_manipulation
     manipulation/descent.c
     manipulation/particle.c
     manipulation/particles.c
-    manipulation/rod.c)
+    manipulation/pushed.c
+    manipulation/rod.c
+    manipulation/rod_step.c)
 set(nanotouch_sources_plasticity plasticity/dents.c plasticity/imprint.c plasticity/indentation.c plasticity/scratch.c)
 set(nanotouch_sources_surface
     surface/dilation.c
@@ -192,7 +194,7 @@ set(nanotouch_sources_control
     control/touch.c
     control/touch_make.c
     control/verdict.c)
-set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/particles.c hal/sim/probe.c hal/sim/sim.c hal/sim/slave.c hal/sim/tap.c)
+set(nanotouch_sources_sim hal/sim/channels.c hal/sim/faults.c hal/sim/link.c hal/sim/master.c hal/sim/probe.c hal/sim/pushed.c hal/sim/sim.c hal/sim/slave.c hal/sim/tap.c)
 
 # What needs an operating system (POSIX), the heap, libgpiod or Ceres.
 set(nanotouch_sources_hosted

@@ -49,7 +49,7 @@ HEADERS = {
     **dict.fromkeys(["settings", "stage_loop", "supervisor", "touch"], "control"),
     **dict.fromkeys(["plan", "interaction", "terms", "force_table"], "scene"),
     **dict.fromkeys(["balance", "flow", "steady", "tapping"], "scan"),
-    **dict.fromkeys(["particle", "particles", "rod"], "manipulation"),
+    **dict.fromkeys(["particle", "particles", "pushed", "rod"], "manipulation"),
     "dents": "plasticity",
     "terrain": "session",
     "sim": "hal/sim",

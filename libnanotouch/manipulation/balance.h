@@ -67,6 +67,8 @@ nt_status balance_value_at(const balance *step, const double motion[], balance_v
 void balance_hessian(const balance *step, const balance_value *value, balance_matrix hessian);
 /* The Cholesky factor of H + damping tr(H), in its lower half. 0: it is not positive. */
 int balance_factor(balance_matrix hessian, int freedoms, double damping);
+/* x = -(H + damping tr(H))^-1 g, of the lower half of H; 0 where that is not positive. */
+int balance_solve(balance_matrix hessian, int freedoms, double damping, const double g[], double x[]);
 /* The motion [m] to the minimum, and what there is then. NT_E_NO_CONVERGENCE. */
 nt_status balance_find(balance *step, double motion[], balance_value *value);
 /* How the force on the tip falls as a tip that is held along z goes up [N/m]. */

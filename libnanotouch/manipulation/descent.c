@@ -35,8 +35,7 @@ int balance_factor(balance_matrix h, int n, double damping)
     return 1;
 }
 
-/* x = -(H + damping tr(H))^-1 g; 0 where that is not positive. */
-static int solve(balance_matrix hessian, int n, double damping, const double g[], double x[])
+int balance_solve(balance_matrix hessian, int n, double damping, const double g[], double x[])
 {
     balance_matrix h;
     for (int i = 0; i < n; ++i)
@@ -127,7 +126,7 @@ static int improve(balance *step, double motion[], balance_value *value, double 
     double direction[BALANCE_FREEDOMS];
     balance_hessian(step, value, hessian);
     for (*damping = fmax(*damping / 100.0, DAMPING); *damping < DAMPING_MAX; *damping *= 4.0)
-        if (solve(hessian, step->freedoms, *damping, value->gradient, direction) &&
+        if (balance_solve(hessian, step->freedoms, *damping, value->gradient, direction) &&
             go_down(step, motion, direction, value))
             return 1;
     return 0;

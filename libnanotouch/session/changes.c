@@ -52,7 +52,8 @@ static int is_fixed(const nt_session *session, const char *field)
         return 1;
     if (is_of_surface(session->now->setup.properties, field))
         return 1;
-    return (nt_terrain_surface(session->now->terrain) || session->now->pushes) && strncmp(field, "tip.", 4) == 0;
+    return (nt_terrain_surface(session->now->terrain) || nt_composition_pushes(session->now)) &&
+           strncmp(field, "tip.", 4) == 0;
 }
 
 static const nt_field *fields_of(uint32_t kind, int *count)
@@ -126,10 +127,12 @@ nt_status nt_session_prepare(const nt_session *session, nt_call *call, nt_proble
     case NT_EVENT_UNDENT:
         return nt_session_dents(session) ? NT_OK : NT_E_UNSUPPORTED;
     case NT_EVENT_LAY:
-        return session->simulates[NT_HALF_SLAVE] && session->now->pushes ? NT_OK : NT_E_UNSUPPORTED;
+    case NT_EVENT_LAY_ROD:
+        return session->simulates[NT_HALF_SLAVE] && nt_composition_pushes(session->now) ? NT_OK : NT_E_UNSUPPORTED;
     case NT_EVENT_INDEX:
     case NT_EVENT_DENT:
     case NT_EVENT_PUSHED:
+    case NT_EVENT_TURNED:
     case NT_EVENT_KINDS:
         break;
     }

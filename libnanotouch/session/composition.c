@@ -46,9 +46,9 @@ static nt_status promise(nt_composition *made, nt_problem *problem)
     const nt_plan *plan = nt_terrain_plan(made->terrain);
     const double clearance = setup->preflight ? setup->clearance : HUGE_VAL;
     nt_hazard hazard = nt_hazard_of(plan, &setup->rig, &setup->settings, nt_composition_slope(made), clearance);
-    nt_composition_add_particles(made, &hazard);
+    nt_composition_add_pushed(made, &hazard);
     made->guarantee = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard);
-    if (made->pushes) { /* sideways they give way: no slope does */
+    if (nt_composition_pushes(made)) { /* sideways they give way: no slope does */
         hazard.slope = made->reach.slope;
         made->guarantee.lateral_force = nt_guarantee_compute(&setup->rig, &setup->settings, &hazard).lateral_force +
                                         nt_composition_resistance(made, made->guarantee.force);
@@ -132,37 +132,6 @@ static int keeps_terrain(const nt_session_setup *setup, const nt_composition *be
            has_same_scene(setup, &before->setup);
 }
 
-/* Those of the first one stay. */
-static nt_status take_particles(nt_composition *made, const nt_composition *before, nt_problem *problem)
-{
-    const nt_session_setup *setup = &made->setup;
-    if (before) {
-        made->pushes = before->pushes;
-        made->particles = before->particles;
-        return NT_OK;
-    }
-    if (!setup->particles)
-        return NT_OK;
-    const nt_surface *surface = nt_terrain_surface(made->terrain);
-    const nt_particle *particle = &setup->particles->pushing.particle;
-    const double R = setup->scene.tip.radius, psi = setup->scene.tip.half_angle;
-    made->pushes = 1;
-    made->particles = *setup->particles;
-    if (setup->mode == NT_MODE_TAPPING)
-        return nt_problem_set(problem, "particles in a session that taps", "no|yes", 1.0, 0.0, 0.0);
-    if (setup->probe_model == NT_PROBE_DYNAMIC)
-        return nt_problem_set(problem, "particles with a dynamic probe", "no|yes", 1.0, 0.0, 0.0);
-    if (surface && (surface->height_minimum != 0.0 || surface->height_maximum != 0.0))
-        return nt_problem_set(problem, "surface (particles lie on a flat)", "m",
-                              surface->height_maximum - surface->height_minimum, 0.0, 0.0);
-    if (particle->tip_radius != R)
-        return nt_problem_set(problem, "particles.tip_radius (that of the scene)", "m", particle->tip_radius, R, R);
-    if (particle->tip_half_angle != psi)
-        return nt_problem_set(problem, "particles.tip_half_angle (that of the scene)", "rad", particle->tip_half_angle,
-                              psi, psi);
-    return NT_OK;
-}
-
 nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const nt_composition *before,
                      nt_problem *problem)
 {
@@ -177,7 +146,7 @@ nt_status nt_compose(nt_composition **made, const nt_session_setup *setup, const
         status = make_terrain(next, before, problem);
     next->ground = before ? before->ground : next->terrain;
     if (status == NT_OK)
-        status = take_particles(next, before, problem);
+        status = nt_composition_take_pushed(next, before, problem);
     if (status == NT_OK)
         set_borders(next);
     if (before)

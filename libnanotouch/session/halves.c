@@ -56,7 +56,7 @@ static nt_sim_setup sim_setup_of(const nt_session *session)
                           .probe_model = setup->probe_model,
                           .substep = setup->substep,
                           .faults = setup->faults,
-                          .particles = session->now->pushes ? &session->now->particles : NULL};
+                          .pushed = nt_composition_pushes(session->now) ? &session->now->pushed : NULL};
 }
 
 /* The one that the setup names, or a simulated one. */

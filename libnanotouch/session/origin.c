@@ -19,6 +19,7 @@ static const nt_field origin_fields[] = {
     FIELD(path, "", "check sum of its points"),
     FIELD(faults, "", "check sum of those from switching on"),
     FIELD(particles, "", "check sum of what they are like"),
+    FIELD(rod, "", "check sum of what it is like"),
 };
 
 /* FNV-1a over the bytes of numbers. */
@@ -65,6 +66,16 @@ static double check_sum_of_particles(const nt_particles *particles)
     return sum;
 }
 
+static double check_sum_of_rod(const nt_rod *rod)
+{
+    int count;
+    const nt_field *fields = nt_rod_fields(&count);
+    double sum = 2166136261.0;
+    for (int i = 0; rod && i < count; ++i)
+        sum = check_sum(sum, (double[]){nt_field_get(&fields[i], rod)}, 1);
+    return rod ? sum : 0.0;
+}
+
 nt_origin nt_origin_of(const nt_session_setup *setup)
 {
     return (nt_origin){.seed = setup->seed,
@@ -79,7 +90,8 @@ nt_origin nt_origin_of(const nt_session_setup *setup)
                        .preflight = setup->preflight != 0,
                        .path = check_sum(2166136261.0, setup->path, setup->path ? 2 * setup->path_count : 0),
                        .faults = check_sum_of_faults(setup->faults),
-                       .particles = check_sum_of_particles(setup->particles)};
+                       .particles = check_sum_of_particles(setup->particles),
+                       .rod = check_sum_of_rod(setup->rod)};
 }
 
 static nt_status differ(nt_problem *problem, const char *field, const char *unit, double kept, double own)

@@ -13,7 +13,7 @@ typedef struct nt_origin {
     nt_probe_model probe_model;
     int preflight;
     double x, y, clearance, rise, substep; /* [m], [m], [m], [m], [rad] */
-    double path, faults, particles;        /* check sums */
+    double path, faults, particles, rod;   /* check sums */
 } nt_origin;
 
 nt_origin nt_origin_of(const nt_session_setup *setup);

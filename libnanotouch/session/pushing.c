@@ -1,109 +1,126 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Particles of a session: what they add to its promise, laid, shown and told of. */
+ * What lies on the surface of a session: what it adds to its promise, laid, shown and told of. */
 #include <math.h>
 #include <string.h>
 
 #include "core/problem.h"
 #include "session/state.h"
 
-#define FACES 3.0 /* a tip lies against so many spheres at most ... */
-#define PAIRS 9.0 /* ... and so many pairs of six equal ones touch on a plane */
-enum { BISECTIONS = 60 };
-
-/* The contact under a load [N]: the deepest of its branches. */
-static nt_law_value pressed(const nt_particle_laws *laws, double load)
+int nt_composition_pushes(const nt_composition *composition)
 {
-    const double R = laws->normal.maugis.contact.radius;
-    double shallow = laws->rest_indentation, deep = R;
-    nt_law_value value = {0};
-    for (int i = 0; i < BISECTIONS; ++i) {
-        const double middle = 0.5 * (shallow + deep);
-        if (nt_contact_law_eval(&laws->normal, middle, NT_BRANCH_STABLE, &value) == NT_OK && value.F < load)
-            shallow = middle;
-        else
-            deep = middle;
-    }
-    (void)nt_contact_law_eval(&laws->normal, deep, NT_BRANCH_STABLE, &value);
-    return value;
+    return composition->pushed.kind != NT_PUSHED_NOTHING;
 }
 
-/* What gives way at a contact under a load [N]. */
-static double limit_under(const nt_particle_laws *laws, int bristle, double load)
+/* What a kind cannot be in, and what it has to share with the scene. */
+typedef struct terms {
+    const char *taps, *dynamic, *surface, *tip_radius, *tip_half_angle;
+} terms;
+static const terms terms_of[] = {
+    [NT_PUSHED_PARTICLES] = {"particles in a session that taps", "particles with a dynamic probe",
+                             "surface (particles lie on a flat)", "particles.tip_radius (that of the scene)",
+                             "particles.tip_half_angle (that of the scene)"},
+    [NT_PUSHED_ROD] = {"rod in a session that taps", "rod with a dynamic probe", "surface (a rod lies on a flat)",
+                       "rod.tip_radius (that of the scene)", "rod.tip_half_angle (that of the scene)"},
+};
+
+/* Under what limit and friction press together, the tip does not go through the rod. */
+static nt_status check_rod(const nt_composition *made, nt_problem *problem)
 {
-    const nt_law_value value = pressed(laws, load);
-    const nt_friction_contact contact = {value.a,
-                                         nt_compressive_load(laws->normal.model, &laws->normal.maugis.contact, value)};
-    return nt_particle_limit(laws, bristle, &contact);
+    const nt_rod *rod = &made->pushed.of.rod;
+    const double slides = nt_rod_friction(rod) * rod->length, limit = made->setup.settings.limits.force;
+    const double least = 4.0 * sqrt(slides * slides + limit * limit) / fmin(rod->radius, rod->tip_radius);
+    if (made->pushed.kind != NT_PUSHED_ROD || rod->tip_stiffness >= least)
+        return NT_OK;
+    return nt_problem_set(problem, "rod.tip_stiffness (a tip that does not go through it under the force limit)", "N/m",
+                          rod->tip_stiffness, least, 1e9);
 }
 
-/* Largest push sideways that all of them resist while the tip presses with a load [N]. Each slides at most. Or each
- * rolls, no faster than the tip goes: by the power of the push, its rolling torque over R, and friction times how fast
- * surfaces can rub: 3 at the tip, 2 where two of them touch. */
-static double resistance(const nt_particles *particles, double load)
+static nt_status check_first(const nt_composition *made, nt_problem *problem)
 {
-    const nt_particle_laws *laws = particles->pushing.laws;
-    const double R = particles->pushing.particle.radius;
-    const double slides = NT_PARTICLES * limit_under(&laws[NT_AT_SUBSTRATE], NT_SLIDING, load);
-    const double most = load + slides;
-    const double rolls = NT_PARTICLES * limit_under(&laws[NT_AT_SUBSTRATE], NT_ROLLING, load) / R +
-                         FACES * limit_under(&laws[NT_AT_TIP], NT_ROLLING, most) / R +
-                         PAIRS * limit_under(&particles->pair, NT_ROLLING, most) / R;
-    const double rubs = 3.0 * FACES * limit_under(&laws[NT_AT_TIP], NT_SLIDING, most) +
-                        2.0 * PAIRS * limit_under(&particles->pair, NT_SLIDING, most);
-    return fmin(slides, rolls + rubs);
+    const nt_session_setup *setup = &made->setup;
+    const nt_surface *surface = nt_terrain_surface(made->terrain);
+    const double R = setup->scene.tip.radius, psi = setup->scene.tip.half_angle;
+    const nt_particle *particle = &made->pushed.of.particles.pushing.particle;
+    const nt_rod *rod = &made->pushed.of.rod;
+    const int is_rod = made->pushed.kind == NT_PUSHED_ROD;
+    const double radius = is_rod ? rod->tip_radius : particle->tip_radius;
+    const double half_angle = is_rod ? rod->tip_half_angle : particle->tip_half_angle;
+    const terms *of = &terms_of[made->pushed.kind];
+    if (setup->mode == NT_MODE_TAPPING)
+        return nt_problem_set(problem, of->taps, "no|yes", 1.0, 0.0, 0.0);
+    if (setup->probe_model == NT_PROBE_DYNAMIC)
+        return nt_problem_set(problem, of->dynamic, "no|yes", 1.0, 0.0, 0.0);
+    if (surface && (surface->height_minimum != 0.0 || surface->height_maximum != 0.0))
+        return nt_problem_set(problem, of->surface, "m", surface->height_maximum - surface->height_minimum, 0.0, 0.0);
+    if (radius != R)
+        return nt_problem_set(problem, of->tip_radius, "m", radius, R, R);
+    if (half_angle != psi)
+        return nt_problem_set(problem, of->tip_half_angle, "rad", half_angle, psi, psi);
+    return NT_OK;
 }
 
-/* Of the tip's contact, along its normal or across: under the limit above, or what a row bears beside the flank. */
-static double stiffest(const nt_particles *particles, double load)
+nt_status nt_composition_take_pushed(nt_composition *made, const nt_composition *before, nt_problem *problem)
 {
-    const nt_particle_laws *laws = &particles->pushing.laws[NT_AT_TIP];
-    const nt_law_value value = pressed(laws, load + resistance(particles, load));
-    return fmax(value.k, nt_particle_stiffness(laws, NT_SLIDING, value.a));
+    const nt_session_setup *setup = &made->setup;
+    nt_status status = NT_OK;
+    if (setup->particles && setup->rod)
+        return nt_problem_set(problem, "rod beside particles (a session has the one or the other)", "no|yes", 1.0, 0.0,
+                              0.0);
+    if (before)
+        made->pushed = before->pushed; /* what the first one had stays */
+    else if (setup->particles)
+        made->pushed = nt_pushed_particles(setup->particles);
+    else if (setup->rod)
+        made->pushed = nt_pushed_rod(setup->rod);
+    if (!before && setup->rod)
+        status = nt_rod_check(setup->rod, problem);
+    if (status == NT_OK && !before && nt_composition_pushes(made))
+        status = check_first(made, problem);
+    return status == NT_OK ? check_rod(made, problem) : status;
+}
+
+static nt_pushed_bound bound_of(const nt_composition *composition, double load)
+{
+    return nt_composition_pushes(composition) ? nt_pushed_bound_of(&composition->pushed, load) : (nt_pushed_bound){0};
 }
 
 double nt_composition_stiffness(const nt_composition *composition)
 {
     const double of_plan = nt_terrain_plan(composition->terrain)->maximum_stiffness;
-    const double limit = composition->setup.settings.limits.force;
-    return composition->pushes ? fmax(of_plan, stiffest(&composition->particles, limit)) : of_plan;
+    return fmax(of_plan, bound_of(composition, composition->setup.settings.limits.force).stiffness);
 }
 
 /* Where the tip is pressed with the limit F, what resists with L gives way on each slope that is steeper than L/F. */
 double nt_composition_slope(const nt_composition *composition)
 {
     const double limit = composition->setup.settings.limits.force;
-    if (!composition->pushes)
-        return composition->reach.slope;
-    return fmax(composition->reach.slope, resistance(&composition->particles, limit) / limit);
+    return fmax(composition->reach.slope, bound_of(composition, limit).resistance / limit);
 }
 
-void nt_composition_add_particles(const nt_composition *composition, nt_hazard *hazard)
+void nt_composition_add_pushed(const nt_composition *composition, nt_hazard *hazard)
 {
-    const nt_particles *particles = &composition->particles;
-    const double limit = composition->setup.settings.limits.force;
-    const double lever = composition->setup.rig.probe.lateral_stiffness;
-    if (!composition->pushes)
+    const nt_pushed_bound bound = bound_of(composition, composition->setup.settings.limits.force);
+    const double hard = bound.stiffness, lever = composition->setup.rig.probe.lateral_stiffness;
+    if (!nt_composition_pushes(composition))
         return;
-    const double hard = stiffest(particles, limit);
     hazard->stiffness = fmax(hazard->stiffness, hard);
     for (int i = 0; i < NT_FAILURES; ++i)
         hazard->failing[i] = fmax(hazard->failing[i], hard);
-    hazard->pull_off_force += FACES * particles->pushing.laws[NT_AT_TIP].pull_off;
+    hazard->pull_off_force += bound.pull_off;
     if (lever > 0.0)
         hazard->stick = fmax(hazard->stick, hard / (1.0 + hard / lever));
 }
 
 double nt_composition_resistance(const nt_composition *composition, double load)
 {
-    const nt_particles *particles = &composition->particles;
-    if (!composition->pushes)
-        return 0.0;
-    return resistance(particles, load) + FACES * particles->pushing.laws[NT_AT_TIP].pull_off;
+    const nt_pushed_bound bound = bound_of(composition, load);
+    return bound.resistance + bound.pull_off;
 }
 
-nt_status nt_session_lay(nt_session *session, int number, const double place[2])
+static nt_status lay(nt_session *session, nt_pushed_kind kind, int number, const double pose[3])
 {
-    nt_call call = {.event = {.kind = NT_EVENT_LAY, .field = (uint32_t)number, .value = {place[0], place[1]}}};
+    const nt_event_kind as = kind == NT_PUSHED_ROD ? NT_EVENT_LAY_ROD : NT_EVENT_LAY;
+    nt_call call = {.event = {.kind = as, .field = (uint32_t)number, .value = {pose[0], pose[1], pose[2]}}};
     if (!session)
         return NT_E_ARGUMENT;
     if (number < 0)
@@ -111,25 +128,42 @@ nt_status nt_session_lay(nt_session *session, int number, const double place[2])
     if (nt_session_runs_here(session))
         return NT_E_STATE;
     nt_session_lock(session);
-    nt_status status = nt_session_prepare(session, &call, NULL);
+    nt_status status = session->now->pushed.kind == kind ? NT_OK : NT_E_UNSUPPORTED;
+    if (status == NT_OK)
+        status = nt_session_prepare(session, &call, NULL);
     if (status == NT_OK)
         status = nt_session_ask(session, &call);
     nt_session_unlock(session);
     return status;
 }
 
+nt_status nt_session_lay(nt_session *session, int number, const double place[2])
+{
+    return lay(session, NT_PUSHED_PARTICLES, number, (double[3]){place[0], place[1], 0.0});
+}
+
+nt_status nt_session_lay_rod(nt_session *session, const double pose[3])
+{
+    return lay(session, NT_PUSHED_ROD, 0, pose);
+}
+
 void nt_session_show_particles(nt_session *session)
 {
-    const nt_sim_particles *pushed = &session->sim.slave.pushed;
-    const nt_particles_state *state = &pushed->state;
+    const nt_sim_pushed *pushed = &session->sim.slave.pushed;
+    const nt_pushed_state *state = &pushed->state;
+    const int is_rod = pushed->laws.kind == NT_PUSHED_ROD;
+    const nt_rod *rod = &pushed->laws.of.rod;
     nt_session_particles shown = {.count = state->count,
-                                  .radius = pushed->laws.pushing.particle.radius,
+                                  .radius = is_rod ? rod->radius : pushed->laws.of.particles.pushing.particle.radius,
+                                  .length = is_rod ? rod->length : 0.0,
                                   .tick = session->touch_state.ticks,
                                   .stored = state->stored,
                                   .dissipated = state->dissipated};
     for (int i = 0; i < state->count; ++i) {
-        memcpy(shown.position[i], state->particles[i].position, sizeof shown.position[i]);
-        memcpy(shown.force[i], state->particles[i].force, sizeof shown.force[i]);
+        const nt_pushed_body *body = &state->bodies[i];
+        memcpy(shown.position[i], body->place, sizeof shown.position[i]);
+        memcpy(shown.force[i], body->force, sizeof shown.force[i]);
+        shown.angle[i] = body->angle;
         shown.touches[i] = pushed->touches[i];
         shown.losses[i] = pushed->losses[i];
     }
@@ -138,14 +172,18 @@ void nt_session_show_particles(nt_session *session)
 
 nt_status nt_session_keep_pushed(nt_session *session)
 {
-    const nt_sim_particles *pushed = &session->sim.slave.pushed;
+    const nt_sim_pushed *pushed = &session->sim.slave.pushed;
+    const int is_rod = pushed->laws.kind == NT_PUSHED_ROD;
     nt_status status = NT_OK;
     for (uint32_t i = 0; i < NT_PARTICLES && status == NT_OK; ++i) {
         const double *before = pushed->before[i], *now = pushed->rested[i];
-        const nt_event event = {
-            .kind = NT_EVENT_PUSHED, .field = i, .value = {before[NT_X], before[NT_Y], now[NT_X], now[NT_Y]}};
-        if (pushed->left >> i & 1u)
-            status = nt_session_keep_event(session, &event);
+        const nt_event moved = {.kind = NT_EVENT_PUSHED, .field = i, .value = {before[0], before[1], now[0], now[1]}};
+        const nt_event turned = {.kind = NT_EVENT_TURNED, .field = i, .value = {before[2], now[2]}};
+        const int has_left = pushed->left >> i & 1u;
+        if (has_left)
+            status = nt_session_keep_event(session, &moved);
+        if (has_left && is_rod && status == NT_OK)
+            status = nt_session_keep_event(session, &turned);
     }
     return status;
 }
@@ -154,7 +192,7 @@ nt_status nt_session_read_particles(nt_session *session, nt_session_particles *p
 {
     if (!session || !particles)
         return NT_E_ARGUMENT;
-    if (!session->simulates[NT_HALF_SLAVE] || !session->now->pushes)
+    if (!session->simulates[NT_HALF_SLAVE] || !nt_composition_pushes(session->now))
         return NT_E_UNSUPPORTED;
     (void)nt_mailbox_take(&session->shown, &session->newest);
     *particles = session->newest;

@@ -83,11 +83,13 @@ static nt_status apply_event(nt_session *session, const nt_event *event)
     case NT_EVENT_UNDENT:
         return nt_dents_undo(&session->sim.slave.dents) ? NT_OK : NT_E_STATE;
     case NT_EVENT_LAY:
+    case NT_EVENT_LAY_ROD:
         return lay(session, event);
     case NT_EVENT_REWIND:
     case NT_EVENT_INDEX:
     case NT_EVENT_DENT:
     case NT_EVENT_PUSHED:
+    case NT_EVENT_TURNED:
     case NT_EVENT_KINDS:
         break;
     }

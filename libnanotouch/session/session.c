@@ -58,7 +58,7 @@ static nt_status begin(nt_session *session, const nt_session_setup *setup, nt_pr
     session->touch_state = nt_touch_start(&session->now->touch, session->master_start, setup->x, setup->y);
     session->comes_back = !session->simulates[NT_HALF_MASTER];
     session->origin = nt_origin_of(setup);
-    if (session->now->pushes)
+    if (nt_composition_pushes(session->now))
         nt_session_show_particles(session);
     session->opened = nt_clock_now();
     session->master_travel = setup->rig.master.travel;

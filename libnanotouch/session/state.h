@@ -18,8 +18,7 @@ typedef struct nt_composition {
     nt_terrain *ground;  /* the first one, which owns the surface of all that follow */
     nt_reach reach;
     nt_sideways_contact grip;
-    int pushes; /* 1: there may be particles */
-    nt_particles particles;
+    nt_pushed pushed; /* what may lie there */
     nt_margins margins;
     nt_sideways_margins sideways;
     nt_guarantee guarantee;
@@ -115,12 +114,15 @@ nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *
 
 /* --- pushing.c --- */
 
-/* What is stiffest of sample and particles [N/m]. */
+/* What may lie there, of the setup or of the session so far; may this session have it? */
+nt_status nt_composition_take_pushed(nt_composition *made, const nt_composition *before, nt_problem *problem);
+int nt_composition_pushes(const nt_composition *composition);
+/* What is stiffest of sample and of what lies there [N/m]. */
 double nt_composition_stiffness(const nt_composition *composition);
-/* The steepest slope, that of particles too [-]. */
+/* The steepest slope, that of what lies there too [-]. */
 double nt_composition_slope(const nt_composition *composition);
-/* What particles add to what the sample may do. */
-void nt_composition_add_particles(const nt_composition *composition, nt_hazard *hazard);
+/* What they add to what the sample may do. */
+void nt_composition_add_pushed(const nt_composition *composition, nt_hazard *hazard);
 /* What they resist a push sideways with, under a load [N]; 0 where there are none. */
 double nt_composition_resistance(const nt_composition *composition, double load);
 void nt_session_show_particles(nt_session *session);

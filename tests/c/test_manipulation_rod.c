@@ -21,10 +21,10 @@ static void it_turns_about_the_point_of_even_friction(void **state)
         static nt_rod_state pushed, before;
         const double at = 0.5 * rod.length * arms[i], c = nt_rod_turning_point(rod.length, at);
         assert_int_equal(nt_rod_check(&rod, NULL), NT_OK);
-        assert_int_equal(nt_rod_place(&rod, (double[3]){0.0, 0.0, 0.0}, (double[2]){at, -BESIDE}, &pushed), NT_OK);
-        assert_int_equal(nt_rod_advance(&rod, &pushed, (double[2]){at, -BESIDE + 6e-9}), NT_OK);
+        assert_int_equal(nt_rod_place(&rod, (double[3]){0.0, 0.0, 0.0}, (double[3]){at, -BESIDE, 0.0}, &pushed), NT_OK);
+        assert_int_equal(nt_rod_advance(&rod, &pushed, (double[3]){at, -BESIDE + 6e-9, 0.0}), NT_OK);
         before = pushed;
-        assert_int_equal(nt_rod_advance(&rod, &pushed, (double[2]){at, -BESIDE + 8e-9}), NT_OK);
+        assert_int_equal(nt_rod_advance(&rod, &pushed, (double[3]){at, -BESIDE + 8e-9, 0.0}), NT_OK);
         const double turn = pushed.pose[2] - before.pose[2];
         assert_within((pushed.pose[1] - before.pose[1]) / turn, c, 0.01 * c);
         assert_within(-pushed.force[1], 2.0 * nt_rod_friction(&rod) * c, 4e-3 * nt_rod_friction(&rod) * c);
@@ -38,8 +38,8 @@ static void a_push_on_the_middle_does_not_turn_it(void **state)
     static nt_rod_state pushed;
     const nt_rod rod = nt_rod_defaults();
     const double whole = nt_rod_friction(&rod) * rod.length;
-    assert_int_equal(nt_rod_place(&rod, (double[3]){0.0, 0.0, 0.0}, (double[2]){0.0, -BESIDE}, &pushed), NT_OK);
-    assert_int_equal(nt_rod_advance(&rod, &pushed, (double[2]){0.0, 0.0}), NT_OK);
+    assert_int_equal(nt_rod_place(&rod, (double[3]){0.0, 0.0, 0.0}, (double[3]){0.0, -BESIDE, 0.0}, &pushed), NT_OK);
+    assert_int_equal(nt_rod_advance(&rod, &pushed, (double[3]){0.0, 0.0, 0.0}), NT_OK);
     assert_within(pushed.force[1], -whole, 1e-6 * whole);
     assert_within(pushed.pose[2], 0.0, 1e-6);
     assert_true(pushed.dissipated > 0.8 * whole * BESIDE);
@@ -75,13 +75,13 @@ static void energy_is_kept_on_random_ways(void **state)
         rod.elements = 24.0;
         rod.step = 2e-9;
         assert_int_equal(nt_rod_check(&rod, NULL), NT_OK);
-        const double pose[3] = {0.0, 0.0, 6.0 * nt_random_uniform(&random)}, tip[2] = {rod.length, rod.length};
+        const double pose[3] = {0.0, 0.0, 6.0 * nt_random_uniform(&random)}, tip[3] = {rod.length, rod.length, 0.0};
         assert_int_equal(nt_rod_place(&rod, pose, tip, &now), NT_OK);
         double heat = 0.0, turnover = 0.0;
         for (int way = 0; way < 8; ++way) {
             const double work = now.work;
-            const double to[2] = {now.pose[0] + 0.5 * rod.length * of(&random),
-                                  now.pose[1] + 0.5 * rod.length * of(&random)};
+            const double to[3] = {now.pose[0] + 0.5 * rod.length * of(&random),
+                                  now.pose[1] + 0.5 * rod.length * of(&random), 0.0};
             assert_int_equal(nt_rod_advance(&rod, &now, to), NT_OK);
             turnover += fabs(now.work - work);
             assert_true(now.dissipated >= heat && now.stored >= 0.0);
@@ -112,12 +112,12 @@ static void what_is_no_rod_is_refused(void **state)
     assert_int_equal(nt_rod_check(&rod, &problem), NT_E_NOT_FINITE);
     rod = nt_rod_defaults();
     const double pose[3] = {0.0, 0.0, 0.0};
-    assert_int_equal(nt_rod_place(&rod, pose, (double[2]){0.0, 0.0}, &now), NT_E_RANGE);
-    assert_int_equal(nt_rod_place(&rod, pose, (double[2]){0.0, NAN}, &now), NT_E_NOT_FINITE);
-    assert_int_equal(nt_rod_place(&rod, pose, (double[2]){0.0, -BESIDE}, &now), NT_OK);
+    assert_int_equal(nt_rod_place(&rod, pose, (double[3]){0.0, 0.0, 0.0}, &now), NT_E_RANGE);
+    assert_int_equal(nt_rod_place(&rod, pose, (double[3]){0.0, NAN, 0.0}, &now), NT_E_NOT_FINITE);
+    assert_int_equal(nt_rod_place(&rod, pose, (double[3]){0.0, -BESIDE, 0.0}, &now), NT_OK);
     kept = now;
-    assert_int_equal(nt_rod_advance(&rod, &now, (double[2]){NAN, 0.0}), NT_E_NOT_FINITE);
-    assert_int_equal(nt_rod_advance(&rod, &now, (double[2]){1.0, 0.0}), NT_E_RANGE);
+    assert_int_equal(nt_rod_advance(&rod, &now, (double[3]){NAN, 0.0, 0.0}), NT_E_NOT_FINITE);
+    assert_int_equal(nt_rod_advance(&rod, &now, (double[3]){1.0, 0.0, 0.0}), NT_E_RANGE);
     assert_memory_equal(&now, &kept, sizeof now);
 }
 

@@ -48,10 +48,10 @@ def test_a_push_on_the_middle_does_not_turn_it_and_one_on_the_end_slides_it_alon
     wire = Rod(**WIRE)
     across = wire.run(0.0, np.linspace(-BESIDE, 0.0, 76), state=wire.place(0.0, 0.0, 0.0, (0.0, -BESIDE)))
     assert across.angle[-1] == pytest.approx(0.0, abs=1e-6)
-    assert across.force[-1] == pytest.approx([0.0, -wire.friction * wire.length], rel=1e-6, abs=1e-15)
+    assert across.force[-1] == pytest.approx([0.0, -wire.friction * wire.length, 0.0], rel=1e-6, abs=1e-15)
     end = 0.5 * wire.length + BESIDE * (1.0 + 1e-12)
     along = wire.run(np.linspace(end, end - 50e-9, 51), 0.0, state=wire.place(0.0, 0.0, 0.0, (end, 0.0)))
-    assert along.force[-1] == pytest.approx([wire.friction * wire.length, 0.0], rel=1e-6, abs=1e-15)
+    assert along.force[-1] == pytest.approx([wire.friction * wire.length, 0.0, 0.0], rel=1e-6, abs=1e-15)
     assert along.position[-1, 0] == pytest.approx(-50e-9, abs=3e-9)  # less what the contact yields
 
 
@@ -96,7 +96,7 @@ def test_energy_is_kept_on_random_paths() -> None:
             to = state.pose[:2] + 0.3 * wire.length * rng.standard_normal(2)
             share = np.linspace(0.0, 1.0, 20)[1:, None]
             begun = state
-            path = wire.run(*(begun.tip + share * (to - begun.tip)).T, state=begun)
+            path = wire.run(*(begun.tip[:2] + share * (to - begun.tip[:2])).T, state=begun)
             state = path.state
             assert (np.diff(path.dissipated, prepend=heat) >= 0.0).all()
             assert (path.stored >= 0.0).all()
@@ -138,7 +138,7 @@ def test_more_elements_and_shorter_steps_change_little() -> None:
 
 @pytest.mark.parametrize(
     ("field", "value", "message"),
-    [("length", 100e-9, "4 radii"), ("elements", 4, "8 .. 1000"), ("work_of_adhesion", 0.0, "work_of_adhesion"),
+    [("length", 100e-9, "4 radii"), ("elements", 4, "8 .. 400"), ("work_of_adhesion", 0.0, "work_of_adhesion"),
      ("shear_strength", float("nan"), "shear_strength"), ("tip_stiffness", 0.1, "does not go through"),
      ("work_of_adhesion", 1e4, "half_width")],
 )  # fmt: skip

@@ -69,3 +69,21 @@ template <class Law> py::tuple map_law(const Array &in, Law law)
     }
     return py::make_tuple(U, F, k, a);
 }
+
+// Leads something along a path of points x, y, z, without the GIL: one row of so many numbers for each. `step` goes to
+// a point and fills the row; its first refusal ends the way, and is raised.
+template <class Step> Array run_along(const Array &points, py::ssize_t columns, const char *what, Step step)
+{
+    const py::ssize_t count = points.size() / 3;
+    Array rows(std::vector<py::ssize_t>{count, columns});
+    double *row = rows.mutable_data();
+    const double *point = points.data();
+    nt_status status = NT_OK;
+    {
+        py::gil_scoped_release release;
+        for (py::ssize_t i = 0; i < count && status == NT_OK; ++i)
+            status = step(point + 3 * i, row + columns * i);
+    }
+    raise_on(status, what);
+    return rows;
+}

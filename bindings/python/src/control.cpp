@@ -187,7 +187,7 @@ static nt_status request(Replay &replay, const std::string &name, const py::list
         return NT_OK;
     }
     if (name == "scene" || name == "stop" || name == "dent" || name == "dent_size" || name == "undent" ||
-        name == "lay" || name == "pushed")
+        name == "lay" || name == "lay_rod" || name == "pushed" || name == "turned")
         return NT_OK;
     if (name == "index") {
         nt_touch_index(&state, number(0));

@@ -50,19 +50,11 @@ static void put(const nt_particle_state &state, double *row)
 // The state at the end, and a row for each point of the path.
 static py::tuple run(const nt_pushing &self, nt_particle_state state, const Array &tips)
 {
-    const py::ssize_t count = tips.size() / 3;
-    Array rows(std::vector<py::ssize_t>{count, COLUMNS});
-    double *row = rows.mutable_data();
-    const double *tip = tips.data();
-    nt_status status = NT_OK;
-    {
-        py::gil_scoped_release release;
-        for (py::ssize_t i = 0; i < count && status == NT_OK; ++i, row += COLUMNS) {
-            status = nt_particle_advance(&self, &state, tip + 3 * i);
-            put(state, row);
-        }
-    }
-    raise_on(status, "particle");
+    const Array rows = run_along(tips, COLUMNS, "particle", [&](const double *tip, double *row) {
+        const nt_status status = nt_particle_advance(&self, &state, tip);
+        put(state, row);
+        return status;
+    });
     return py::make_tuple(state, rows);
 }
 
@@ -128,19 +120,12 @@ static void put_set(const nt_particles_state &state, double *row)
 
 static py::tuple run_set(const nt_particles &self, nt_particles_state state, const Array &bases)
 {
-    const py::ssize_t count = bases.size() / 3, columns = SET_COLUMNS + ONE_COLUMNS * state.count;
-    Array rows(std::vector<py::ssize_t>{count, columns});
-    double *row = rows.mutable_data();
-    const double *base = bases.data();
-    nt_status status = NT_OK;
-    {
-        py::gil_scoped_release release;
-        for (py::ssize_t i = 0; i < count && status == NT_OK; ++i, row += columns) {
-            status = nt_particles_advance(&self, &state, base + 3 * i);
-            put_set(state, row);
-        }
-    }
-    raise_on(status, "particles");
+    const py::ssize_t columns = SET_COLUMNS + ONE_COLUMNS * state.count;
+    const Array rows = run_along(bases, columns, "particles", [&](const double *base, double *row) {
+        const nt_status status = nt_particles_advance(&self, &state, base);
+        put_set(state, row);
+        return status;
+    });
     return py::make_tuple(state, rows);
 }
 

@@ -5,7 +5,7 @@
 
 #include "chapters.h"
 
-enum { OF_STATE = 10 }; // numbers before the pulls
+enum { POSE = 0, BASE = 3, TIP = 6, FORCE = 9, ENERGIES = 12, RESISTANCE = 15, OF_STATE = 16 }; // before the pulls
 
 static std::unique_ptr<nt_rod> make(const std::vector<double> &values)
 {
@@ -23,11 +23,13 @@ static std::unique_ptr<nt_rod> make(const std::vector<double> &values)
 
 static void put(const nt_rod_state &state, double *row)
 {
-    std::memcpy(row, state.pose, sizeof state.pose);
-    std::memcpy(row + 3, state.tip, sizeof state.tip);
-    std::memcpy(row + 5, state.force, sizeof state.force);
     const double energies[] = {state.stored, state.dissipated, state.work};
-    std::memcpy(row + 7, energies, sizeof energies);
+    std::memcpy(row + POSE, state.pose, sizeof state.pose);
+    std::memcpy(row + BASE, state.base, sizeof state.base);
+    std::memcpy(row + TIP, state.tip, sizeof state.tip);
+    std::memcpy(row + FORCE, state.force, sizeof state.force);
+    std::memcpy(row + ENERGIES, energies, sizeof energies);
+    row[RESISTANCE] = state.resistance;
 }
 
 static Array array_of(const nt_rod &self, const nt_rod_state &state)
@@ -46,46 +48,40 @@ static nt_rod_state state_of(const nt_rod &self, const Array &values)
         throw std::invalid_argument("rod: a state of a rod with as many elements");
     nt_rod_state state{};
     const double *row = values.data();
-    std::memcpy(state.pose, row, sizeof state.pose);
-    std::memcpy(state.tip, row + 3, sizeof state.tip);
-    std::memcpy(state.force, row + 5, sizeof state.force);
-    state.stored = row[7];
-    state.dissipated = row[8];
-    state.work = row[9];
+    std::memcpy(state.pose, row + POSE, sizeof state.pose);
+    std::memcpy(state.base, row + BASE, sizeof state.base);
+    std::memcpy(state.tip, row + TIP, sizeof state.tip);
+    std::memcpy(state.force, row + FORCE, sizeof state.force);
+    state.stored = row[ENERGIES];
+    state.dissipated = row[ENERGIES + 1];
+    state.work = row[ENERGIES + 2];
+    state.resistance = row[RESISTANCE];
     std::memcpy(state.pulls, row + OF_STATE, sizeof(double) * 2 * static_cast<size_t>(count));
     return state;
 }
 
-static Array place(const nt_rod &self, const std::array<double, 3> &pose, const std::array<double, 2> &tip)
+static Array place(const nt_rod &self, const std::array<double, 3> &pose, const std::array<double, 3> &base)
 {
     nt_rod_state state{};
-    raise_on(nt_rod_place(&self, pose.data(), tip.data(), &state), "rod: the tip touches it");
+    raise_on(nt_rod_place(&self, pose.data(), base.data(), &state), "rod: the tip touches it");
     return array_of(self, state);
 }
 
 // The state at the end, and a row for each point of the path.
-static py::tuple run(const nt_rod &self, const Array &from, const Array &tips)
+static py::tuple run(const nt_rod &self, const Array &from, const Array &bases)
 {
     nt_rod_state state = state_of(self, from);
-    const py::ssize_t count = tips.size() / 2;
-    Array rows(std::vector<py::ssize_t>{count, OF_STATE});
-    double *row = rows.mutable_data();
-    const double *tip = tips.data();
-    nt_status status = NT_OK;
-    {
-        py::gil_scoped_release release;
-        for (py::ssize_t i = 0; i < count && status == NT_OK; ++i, row += OF_STATE) {
-            status = nt_rod_advance(&self, &state, tip + 2 * i);
-            put(state, row);
-        }
-    }
-    raise_on(status, "rod");
+    const Array rows = run_along(bases, OF_STATE, "rod", [&](const double *base, double *row) {
+        const nt_status status = nt_rod_advance(&self, &state, base);
+        put(state, row);
+        return status;
+    });
     return py::make_tuple(array_of(self, state), rows);
 }
 
 void bind_rod(py::module_ &module)
 {
-    py::class_<nt_rod>(module, "Rod")
+    py::class_<nt_rod, std::shared_ptr<nt_rod>>(module, "Rod")
         .def(py::init(&make))
         .def("place", &place)
         .def("run", &run)

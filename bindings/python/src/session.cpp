@@ -109,6 +109,8 @@ static std::unique_ptr<Session> open_session(const Described<nt_scene> &scene, c
     setup.faults = &faults;
     const auto particles = options["particles"].cast<std::shared_ptr<nt_particles>>(); // None: null
     setup.particles = particles.get();
+    const auto rod = options["rod"].cast<std::shared_ptr<nt_rod>>();
+    setup.rod = rod.get();
     setup.seed = options["seed"].cast<uint64_t>();
     setup.ring_capacity = options["ring_capacity"].cast<long>();
     setup.minimum_margin = options["minimum_margin"].cast<double>();

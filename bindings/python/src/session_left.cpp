@@ -45,12 +45,23 @@ static void lay(Session &self, int number, double x, double y)
     raise_on(status, "lay");
 }
 
-// What lies on the surface: {places, forces on the tip, touches, losses, radius, stored, dissipated}.
+static void lay_rod(Session &self, double x, double y, double angle)
+{
+    const double pose[] = {x, y, angle};
+    const nt_status status = alone(self, [&](nt_session *h) { return nt_session_lay_rod(h, pose); });
+    if (status == NT_E_UNSUPPORTED)
+        raise(status, "lay_rod: the session was opened without a rod");
+    if (status == NT_E_STATE)
+        raise(status, "lay_rod: the tip touches it, where it is or where it shall lie: move the tip away first");
+    raise_on(status, "lay_rod");
+}
+
+// What lies on the surface: {places, forces on the tip, touches, losses, radius, length, angles, stored, dissipated}.
 static py::dict particles_of(Session &self)
 {
     nt_session_particles found{};
     raise_on(alone(self, [&](nt_session *h) { return nt_session_read_particles(h, &found); }),
-             "particles: the session was opened without");
+             "particles: the session was opened without particles and without a rod");
     const auto rows = [&](const double (*of)[NT_AXES]) {
         Array out(std::vector<py::ssize_t>{found.count, NT_AXES});
         std::copy(&of[0][0], &of[0][0] + NT_AXES * found.count, out.mutable_data());
@@ -59,12 +70,13 @@ static py::dict particles_of(Session &self)
     const auto numbers = [&](const uint32_t *of) { return std::vector<uint32_t>(of, of + found.count); };
     return py::dict(py::arg("positions") = rows(found.position), py::arg("forces") = rows(found.force),
                     py::arg("touches") = numbers(found.touches), py::arg("losses") = numbers(found.losses),
-                    py::arg("radius") = found.radius, py::arg("stored") = found.stored,
+                    py::arg("radius") = found.radius, py::arg("length") = found.length,
+                    py::arg("angles") = Array(found.count, found.angle), py::arg("stored") = found.stored,
                     py::arg("dissipated") = found.dissipated);
 }
 
 void bind_session_left(py::class_<Session> &type)
 {
     type.def("dents", &dents_of).def("undent", &undent);
-    type.def("lay", &lay).def("particles", &particles_of);
+    type.def("lay", &lay).def("lay_rod", &lay_rod).def("particles", &particles_of);
 }

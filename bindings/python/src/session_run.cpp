@@ -147,6 +147,10 @@ static py::tuple tuple_of(const nt_event &event)
         return as(event.field == 0 ? "dent" : "dent_size", take(4));
     case NT_EVENT_UNDENT:
         return as("undent", numbers);
+    case NT_EVENT_LAY_ROD:
+        return as("lay_rod", take(3));
+    case NT_EVENT_TURNED:
+        return as("turned", take(2));
     case NT_EVENT_LAY:
     case NT_EVENT_PUSHED:
         numbers.append(event.field);

@@ -92,13 +92,13 @@ nt_status nt_sim_tap_step(nt_sim_slave *slave, double base, double surface);
 /* What the lock-in amplifier shows in this tick. */
 void nt_sim_tap_read(nt_sim_slave *slave, nt_reading *reading);
 
-/* --- particles.c: what lies on the surface --- */
+/* --- pushed.c: what lies on the surface --- */
 
-nt_status nt_sim_begin_particles(nt_sim_slave *slave, const nt_sim_setup *setup);
+nt_status nt_sim_begin_pushed(nt_sim_slave *slave, const nt_sim_setup *setup);
 /* The state as if the tip stood at a height over the flat [m]: in *to. */
-nt_status nt_sim_push_particles(const nt_sim_slave *slave, double height, nt_particles_state *to);
+nt_status nt_sim_lead_pushed(const nt_sim_slave *slave, double height, nt_pushed_state *to);
 /* The tip has come there: the state holds from now on. */
-void nt_sim_keep_particles(nt_sim_slave *slave, const nt_particles_state *state);
+void nt_sim_keep_pushed(nt_sim_slave *slave, const nt_pushed_state *state);
 
 /* --- faults.c: what each fault does, where it acts; most rigs have none --- */
 

@@ -19,18 +19,18 @@ typedef struct probe_context {
     nt_dents *dents;
     const nt_place *place;
     nt_sim_slave *slave;
-    nt_particles_state *pushed; /* of the last answer; NULL: there are no particles */
-    double surface;             /* z_s under the tip [m] */
-    double gap;                 /* of the last answer [m] */
+    nt_pushed_state *pushed; /* of the last answer; NULL: nothing lies there */
+    double surface;          /* z_s under the tip [m] */
+    double gap;              /* of the last answer [m] */
     nt_law_value law;
     double peak, deepest; /* |F| and h on the way [N], [m] */
     int parted;           /* 1: there was no contact on the way */
 } probe_context;
 
-/* The particles' force beside the surface's. */
-static void add_particles(probe_context *probe, double gap)
+/* The force of what lies there beside the surface's. */
+static void add_pushed(probe_context *probe, double gap)
 {
-    const nt_status status = nt_sim_push_particles(probe->slave, gap + probe->surface, probe->pushed);
+    const nt_status status = nt_sim_lead_pushed(probe->slave, gap + probe->surface, probe->pushed);
     probe->law.F = status == NT_OK ? probe->law.F + probe->pushed->force[NT_Z] : (double)NAN;
     probe->law.k += probe->pushed->resistance;
 }
@@ -43,26 +43,26 @@ static nt_law_value force_at(void *context, double gap)
         probe->law = probe->plan->dents ? nt_dents_eval(&probe->plan->indentation, probe->dents, gap)
                                         : nt_interaction_eval_gap(probe->plan, probe->interaction, probe->place, gap);
         if (probe->pushed)
-            add_particles(probe, gap);
+            add_pushed(probe, gap);
     }
     return probe->law;
 }
 
 /* A last step of Newton's that is too small to matter is not asked again. */
-static void keep_particles(probe_context *probe, double gap)
+static void keep_pushed(probe_context *probe, double gap)
 {
     nt_status status = NT_OK;
     if (!(fabs(gap - probe->gap) <= SAME_LAW * probe->plan->length))
-        status = nt_sim_push_particles(probe->slave, gap + probe->surface, probe->pushed);
+        status = nt_sim_lead_pushed(probe->slave, gap + probe->surface, probe->pushed);
     if (status == NT_OK)
-        nt_sim_keep_particles(probe->slave, probe->pushed);
+        nt_sim_keep_pushed(probe->slave, probe->pushed);
 }
 
 static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
     if (probe->pushed)
-        keep_particles(probe, gap);
+        keep_pushed(probe, gap);
     if (!probe->plan->dents) {
         nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
         return;
@@ -184,7 +184,8 @@ void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
     slave->tap.table = (nt_flow_table){.cell = {{.is_made = 0}}};
 }
 
-/* Of slopes and particles. A sample that keeps dents has one contact everywhere: the slope alone turns its force aside.
+/* Of slopes and what is pushed. A sample that keeps dents has one contact everywhere: the slope alone turns its force
+ * aside.
  */
 static void sides_of(const nt_sim_slave *slave, double gap, double force, double sides[2])
 {
@@ -210,7 +211,7 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
         return nt_sim_tap_step(slave, base, surface);
     const int lie = slave->pushed.state.count > 0, pushes = lie && is_elsewhere;
     const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties) && !pushes;
-    nt_particles_state pushed;
+    nt_pushed_state pushed;
     probe_context context = {.plan = slave->plan,
                              .interaction = &slave->interaction,
                              .dents = &slave->dents,
@@ -223,7 +224,7 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
                              .deepest = HUGE_VAL};
     slave->pushed.left = 0;
     if (lie)
-        pushed = slave->pushed.state;
+        nt_pushed_copy(&slave->pushed.laws, &pushed, &slave->pushed.state);
     const nt_force_field field = {force_at, slave->dynamic ? passed : moved_to, &context, slave->plan->length};
     const nt_status status = slave->dynamic
                                  ? nt_cantilever_step(&slave->cantilever_model, &slave->cantilever, &field, base,

@@ -42,7 +42,7 @@ static void moment_now(const nt_sim_slave *slave, double moment[2])
 
 static int is_dynamic(const nt_sim_slave *slave, nt_probe_model model)
 {
-    if (slave->pushed.can)
+    if (slave->pushed.laws.kind != NT_PUSHED_NOTHING)
         return 0;
     return model == NT_PROBE_DYNAMIC ||
            (model == NT_PROBE_AUTO && nt_sim_needs_dynamics(slave->plan, &slave->link.rig, slave->link.period));
@@ -86,7 +86,7 @@ nt_status nt_sim_slave_init(nt_sim_slave *slave, const nt_sim_setup *setup)
     if (status == NT_OK)
         status = init_models(&made);
     if (status == NT_OK)
-        status = nt_sim_begin_particles(&made, setup);
+        status = nt_sim_begin_pushed(&made, setup);
     if (status == NT_OK)
         status = begin(&made, setup);
     if (status == NT_OK)

@@ -29,6 +29,7 @@
 #include "nanotouch/particles.h"
 #include "nanotouch/plan.h"
 #include "nanotouch/plasticity.h"
+#include "nanotouch/pushed.h"
 #include "nanotouch/rig.h"
 #include "nanotouch/rod.h"
 #include "nanotouch/scan.h"

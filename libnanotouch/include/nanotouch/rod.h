@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A straight round rod on a flat, pushed sideways by a tip: it slides and turns in the plane (docs/manipulation.md).
+ * A straight round rod on a flat, pushed by a tip: it slides and turns in the plane (docs/manipulation.md).
  *
  * It adheres as a cylinder (Chaudhury, Weaver, Hui, Kramer 1996): F/L = pi E* b^2/(4 R) - sqrt(2 pi E* b w), b half of
  * the width of the contact. Friction is spread along the line of contact: each piece is a spring that gives way at a
- * limit. It does not roll about its axis, and does not bend. All functions: thread-safe, no state but the caller's. */
+ * limit. It does not roll about its axis, and does not bend. The tip is a sphere that runs into an upright cone, seen
+ * from the rod's axis a wedge; it presses along the normal of what it touches with, without adhesion and friction. All
+ * functions: thread-safe, no state but the caller's. */
 #ifndef NANOTOUCH_ROD_H
 #define NANOTOUCH_ROD_H
 
@@ -14,7 +16,7 @@
 extern "C" {
 #endif
 
-enum { NT_ROD_ELEMENTS = 1000 };
+enum { NT_ROD_ELEMENTS = 400 };
 
 /* The rod, and the tip beside it. */
 typedef struct nt_rod {
@@ -24,12 +26,15 @@ typedef struct nt_rod {
     double effective_shear_modulus; /* G* of both [Pa] */
     double work_of_adhesion;        /* w [J/m^2] */
     double shear_strength;          /* tau, friction per contact area [Pa] */
-    double tip_radius;              /* of the tip where it touches, seen from above [m] */
+    double tip_radius;              /* r of the tip [m] */
+    double tip_half_angle;          /* psi of its cone; 0: it is as wide as its radius all the way up [rad] */
     double tip_stiffness;           /* of its contact with the rod, without adhesion and friction [N/m] */
+    double lever;                   /* stiffness between base and tip along x and y; 0: the tip is held there [N/m] */
     double elements;                /* pieces of the line of contact, a whole number [-] */
     double step;                    /* largest step of the tip; longer ways are divided [m] */
 } nt_rod;
-/* A wire of 2 um and 50 nm radius, E* = 70 GPa, tau = 10 MPa, w = 50 mJ/m^2; a tip of 20 nm, 100 pieces, 1 nm steps. */
+/* A wire of 2 um and 50 nm radius, E* = 70 GPa, tau = 10 MPa, w = 50 mJ/m^2; a tip of 20 nm that is held, 100 pieces, 1
+ * nm steps. */
 NT_API nt_rod nt_rod_defaults(void);
 /* The table of its fields, with units and ranges; *count (NULL allowed) its length. */
 NT_API const nt_field *nt_rod_fields(int *count);
@@ -50,17 +55,23 @@ NT_API double nt_rod_turning_point(double length, double arm);
 /* Where a rod is, and what it remembers. Copyable. Always stored + dissipated = work. */
 typedef struct nt_rod_state {
     double pose[3];                   /* x and y of its middle [m], angle of its axis from x [rad] */
-    double tip[2];                    /* middle of the tip [m] */
-    double force[2];                  /* on the tip [N] */
-    double stored, dissipated, work;  /* in springs and contact; heat, grows only; done by the hand [J] */
+    double base[3];                   /* where the tip's apex would be without a force; the substrate is z = 0 [m] */
+    double tip[3];                    /* apex of the tip [m] */
+    double force[3];                  /* on the tip: what the lever shows [N] */
+    double resistance;                /* -dF_z by the tip's way along z [N/m] */
+    double stored, dissipated, work;  /* in springs, contact and lever; heat, grows only; done by the hand [J] */
     double pulls[NT_ROD_ELEMENTS][2]; /* of each piece [N] */
 } nt_rod_state;
-/* At rest, unstrained, the tip beside it. NT_E_NOT_FINITE; NT_E_RANGE: the tip touches it. Left alone unless NT_OK. */
-NT_API nt_status nt_rod_place(const nt_rod *rod, const double pose[3], const double tip[2], nt_rod_state *state);
-/* Moves the tip to `tip` [m] along a straight line. After each step all forces balance: it is the nearest minimum of
+/* At rest, unstrained, the tip at its base beside it. NT_E_NOT_FINITE; NT_E_RANGE: the tip is below the substrate, or
+ * touches the rod. Left alone unless NT_OK. */
+NT_API nt_status nt_rod_place(const nt_rod *rod, const double pose[3], const double base[3], nt_rod_state *state);
+/* Leads the base to `base` [m] along a straight line. After each step all forces balance: it is the nearest minimum of
  * what is stored and of what becomes heat; what a jump sets free is heat. NT_E_NOT_FINITE; NT_E_RANGE: farther than 1e7
- * steps; NT_E_NO_CONVERGENCE. Left alone unless NT_OK. The rod has been checked. */
-NT_API NT_REALTIME nt_status nt_rod_advance(const nt_rod *rod, nt_rod_state *state, const double tip[2]);
+ * steps, below the substrate, or deeper into the rod than half of the smaller radius; NT_E_NO_CONVERGENCE. Left alone
+ * unless NT_OK. The rod has been checked. */
+NT_API NT_REALTIME nt_status nt_rod_advance(const nt_rod *rod, nt_rod_state *state, const double base[3]);
+/* Does the tip touch it? */
+NT_API NT_REALTIME int nt_rod_touches(const nt_rod *rod, const nt_rod_state *state);
 
 #ifdef __cplusplus
 }

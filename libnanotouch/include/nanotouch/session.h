@@ -45,6 +45,7 @@ typedef struct nt_session_setup {
     double substep;                /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_particles *particles; /* that can be laid on a flat at z = 0, and are pushed by this tip; simulated, with a
                                       quasi-static cantilever; copied, NULL: none */
+    const nt_rod *rod;             /* the same of a rod, instead of particles; its lever is the rig's; NULL: none */
     const nt_faults *faults;       /* of the simulated halves from their switching on, before preflight; NULL: none */
     nt_hal_choice master;          /* backend NULL: simulated */
     nt_hal_choice slave;
@@ -106,15 +107,17 @@ typedef enum nt_event_kind {
     NT_EVENT_SCENE,                  /* field: of nt_scene_fields; its value */
     NT_EVENT_REWIND,                 /* the tick that it goes back to; how many of the session's events had been kept
                                         there: only they hold then. -1: it has gone on from another session's snapshot */
-    NT_EVENT_INDEX,  /* nobody asks for it: where a hand that is not simulated was when ticks went on after
-                        opening, a start or a pause; the stage did not follow it there. x_m [m] */
-    NT_EVENT_DENT,   /* nobody asks for it: what a contact that has ended left in a sample that keeps dents, as two
-                        events. Field 0: x, y of its start, x, y of its end [m]; field 1: radius, depth [m], load [N], the
-                        number of the dent that it has grown from or -1; of the last one: it takes its place */
-    NT_EVENT_UNDENT, /* the last dent is taken back; no value */
-    NT_EVENT_LAY,    /* a particle is laid at rest; field: its number; x, y [m] */
-    NT_EVENT_PUSHED, /* nobody asks for it: the tip has let go, and a particle lies elsewhere; field: its number; x, y
-                        before, x, y now [m] */
+    NT_EVENT_INDEX,   /* nobody asks for it: where a hand that is not simulated was when ticks went on after
+                         opening, a start or a pause; the stage did not follow it there. x_m [m] */
+    NT_EVENT_DENT,    /* nobody asks for it: what a contact that has ended left in a sample that keeps dents, as two
+                         events. Field 0: x, y of its start, x, y of its end [m]; field 1: radius, depth [m], load [N], the
+                         number of the dent that it has grown from or -1; of the last one: it takes its place */
+    NT_EVENT_UNDENT,  /* the last dent is taken back; no value */
+    NT_EVENT_LAY,     /* a particle is laid at rest; field: its number; x, y [m] */
+    NT_EVENT_LAY_ROD, /* the rod is laid at rest; x, y [m], angle [rad] */
+    NT_EVENT_PUSHED,  /* nobody asks for it: the tip has let go, and a particle lies elsewhere; field: its number; x, y
+                         before, x, y now [m] */
+    NT_EVENT_TURNED,  /* follows that of a rod: its angle before and now [rad] */
     NT_EVENT_KINDS
 } nt_event_kind;
 typedef struct nt_event {
@@ -170,6 +173,9 @@ NT_API nt_status nt_session_undent(nt_session *session);
  * from where it was. NT_E_UNSUPPORTED: the setup has no particles; NT_E_CAPACITY: more than NT_PARTICLES, or one left
  * out; NT_E_STATE: the tip or another one touches it, here or there; NT_E_NOT_FINITE. */
 NT_API nt_status nt_session_lay(nt_session *session, int number, const double place[2]);
+/* Lays the rod at rest at x, y [m] and an angle of its axis from x [rad]; it is taken away from where it was. Fails as
+ * nt_session_lay: NT_E_UNSUPPORTED where the setup has no rod; NT_E_STATE where the tip touches it, here or there. */
+NT_API nt_status nt_session_lay_rod(nt_session *session, const double pose[3]);
 /* Adds a fault of the simulated halves; its start counts from the session's first tick (faults.h). NT_E_UNSUPPORTED
  * where none is simulated, NT_E_STATE while the session runs in its thread. */
 NT_API nt_status nt_session_inject(nt_session *session, const nt_fault *fault);
@@ -257,18 +263,20 @@ NT_API void nt_snapshot_close(nt_snapshot *snapshot);
 /* What a simulated sample keeps of its touches (scene: sample.dents), the oldest first; NULL where none is simulated.
  * Valid until the next tick. */
 NT_API const nt_dents *nt_session_dents(const nt_session *session);
-/* Particles after the newest tick that has been run. */
+/* Particles after the newest tick that has been run; a rod is one, with a length. */
 typedef struct nt_session_particles {
     int count;
     double radius; /* R of each [m] */
+    double length; /* L of a rod; 0 of spheres [m] */
     uint64_t tick;
     double position[NT_PARTICLES][NT_AXES]; /* of the centre [m] */
+    double angle[NT_PARTICLES];             /* of a rod's axis from x; 0 of spheres [rad] */
     double force[NT_PARTICLES][NT_AXES];    /* on the tip [N] */
     uint32_t touches[NT_PARTICLES];         /* how often the tip has touched it ... */
     uint32_t losses[NT_PARTICLES];          /* ... and lost it */
     double stored, dissipated;              /* in their contacts; heat so far [J] */
 } nt_session_particles;
-/* From the thread that makes requests, also while the session runs. NT_E_UNSUPPORTED: the setup has no particles. */
+/* From the thread that makes requests, also while the session runs. NT_E_UNSUPPORTED: the setup has none. */
 NT_API nt_status nt_session_read_particles(nt_session *session, nt_session_particles *particles);
 /* Is the cantilever computed as dynamic (1) or quasi-static (0)? 0 where the slave is not simulated. */
 NT_API int nt_session_is_dynamic(const nt_session *session);

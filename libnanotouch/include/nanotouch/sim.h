@@ -10,8 +10,8 @@
 #include "nanotouch/flow.h"
 #include "nanotouch/hal.h"
 #include "nanotouch/interaction.h"
-#include "nanotouch/particles.h"
 #include "nanotouch/plan.h"
+#include "nanotouch/pushed.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -47,8 +47,8 @@ typedef struct nt_sim_setup {
     double substep;                /* of the dynamic cantilever, 0: 0.25 [rad] */
     const nt_faults *faults;       /* copied; NULL: none */
     const nt_sim_lock_in *lock_in; /* copied; NULL: the lever is not driven */
-    const nt_particles *particles; /* that can be laid on a flat at z = 0; copied, NULL: none. The lever is that of the
-                                      rig, quasi-static, and not driven */
+    const nt_pushed *pushed;       /* what can be laid on a flat at z = 0; copied, NULL: nothing. The lever is that of
+                                      the rig, quasi-static, and not driven */
 } nt_sim_setup;
 
 enum { NT_SIM_DELAY_MAX = 254, NT_SIM_SLOTS = NT_SIM_DELAY_MAX + 2, NT_SIM_LOST_MAX = 1000, NT_SIM_CHANNELS = 13 };
@@ -133,17 +133,17 @@ typedef struct nt_sim_tap {
     double moments[NT_SIM_SLOTS][2]; /* of both [m], [rad] */
 } nt_sim_tap;
 
-/* Particles on the surface. The tip's place is that of the stage, and the lever's lateral stiffness lies between. */
-typedef struct nt_sim_particles {
-    int can; /* 1: some can be laid */
-    nt_particles laws;
-    nt_particles_state state;
-    double rested[NT_PARTICLES][2]; /* where each was laid, or left by the tip for the last time, x and y [m] */
-    double before[NT_PARTICLES][2]; /* and where before that [m] */
+/* What lies on the surface. The tip's place is that of the stage, and the lever's lateral stiffness lies between. */
+typedef struct nt_sim_pushed {
+    nt_pushed laws;
+    nt_pushed_state state;
+    double rested[NT_PARTICLES][3]; /* where each was laid, or left by the tip for the last time, x, y [m], angle [rad]
+                                     */
+    double before[NT_PARTICLES][3]; /* and where before that */
     unsigned left;                  /* bits: the tip has left what it had moved in this period */
     uint32_t touches[NT_PARTICLES]; /* how often the tip has touched it ... */
     uint32_t losses[NT_PARTICLES];  /* ... and lost it */
-} nt_sim_particles;
+} nt_sim_pushed;
 
 typedef struct nt_sim_slave {
     nt_sim_link link;
@@ -163,7 +163,7 @@ typedef struct nt_sim_slave {
     nt_interaction_state interaction;
     nt_slide slide; /* friction */
     nt_dents dents; /* of a plan with a sample that keeps them */
-    nt_sim_particles pushed;
+    nt_sim_pushed pushed;
     double lowered;                        /* by them, where this contact began, or would here [m] */
     int left;                              /* dents that were left in this period; the newest of the list */
     double x, y;                           /* [m] */
@@ -210,8 +210,9 @@ NT_API NT_REALTIME void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *p
 NT_API NT_REALTIME nt_status nt_sim_read(nt_sim *sim, nt_sample *sample);
 /* One command to both halves; lets one period pass. NT_E_NOT_FINITE, with no time passed, for what is not a number. */
 NT_API NT_REALTIME nt_status nt_sim_write(nt_sim *sim, const nt_command *command);
-/* Lays particle `number` at rest at (x, y) [m]; fails as nt_particles_lay, NT_E_UNSUPPORTED where none can be laid. */
-NT_API nt_status nt_sim_lay(nt_sim_slave *slave, int number, const double place[2]);
+/* Lays `number` at rest at x, y [m], a rod with its angle [rad]; fails as nt_pushed_lay, NT_E_UNSUPPORTED where nothing
+ * can be laid. */
+NT_API nt_status nt_sim_lay(nt_sim_slave *slave, int number, const double pose[3]);
 /* What the simulated operator does next. */
 NT_API NT_REALTIME void nt_sim_aim_hand(nt_sim_master *master, const nt_hand_target *target);
 /* Adds a fault to both halves, from now on if its start has passed. As nt_faults_add. */

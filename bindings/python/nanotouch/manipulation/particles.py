@@ -62,7 +62,7 @@ class ParticlesPath(NamedTuple):
 
 
 class Laid(NamedTuple):
-    """Particles of a session; one row each."""
+    """Particles of a session, or its rod; one row each."""
 
     positions: Floats
     """of their centres: x, y, z [m]"""
@@ -74,6 +74,10 @@ class Laid(NamedTuple):
     """how often the tip has lost it"""
     radius: float
     """of each [m]"""
+    length: float
+    """of a rod, 0 of spheres [m]"""
+    angles: Floats
+    """of a rod's axis from x, 0 of spheres [rad]"""
     stored: float
     """in their contacts, 0 at rest [J]"""
     dissipated: float

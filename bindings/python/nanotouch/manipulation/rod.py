@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rod that lies on a flat and is pushed sideways by a tip: it slides and turns in the plane.
+"""A rod that lies on a flat and is pushed by a tip: it slides and turns in the plane.
 
 Friction is spread along the line of contact: springs that give way at a limit, as those of a particle
 (docs/manipulation.md). A step of the tip ends in the minimum of what they store, of what becomes heat, and of the
@@ -8,6 +8,7 @@ energy of the tip's contact. All SI.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import NamedTuple
@@ -37,12 +38,14 @@ class Rod:
         w [J/m^2].
     shear_strength : float
         tau, friction per contact area [Pa].
-    tip_radius : float
-        Of the tip where it touches, seen from above [m].
+    tip_radius, tip_half_angle : float
+        r of the tip [m] and psi of its cone [rad]; 0: it is as wide as its radius all the way up.
     tip_stiffness : float
         Of its contact with the rod, without adhesion and friction [N/m].
+    lever : float
+        Stiffness between base and tip along x and y [N/m]; 0: the tip is held where it is told.
     elements : int
-        Pieces of the line of contact, 8 .. 1000.
+        Pieces of the line of contact, 8 .. 400.
     step : float
         Largest step of the tip [m]; longer ways are divided.
     """
@@ -54,7 +57,9 @@ class Rod:
     work_of_adhesion: float
     shear_strength: float
     tip_radius: float = 20e-9
+    tip_half_angle: float = 0.0
     tip_stiffness: float = 100.0
+    lever: float = 0.0
     elements: int = 100
     step: float = 1e-9
 
@@ -80,28 +85,28 @@ class Rod:
         """Of a length before it slides, pi G*/ln(L/b0) [N/m^2]: a strip on a half space, in its middle."""
         return self._core.stiffness()
 
-    def place(self, x: float, y: float, angle: float, tip: tuple[float, float]) -> RodState:
-        """At rest with its middle at (x, y) [m], its axis turned by an angle from x [rad]; the tip must not touch."""
-        spot = as_floats(tip, "tip")
+    def place(self, x: float, y: float, angle: float, tip: Sequence[float]) -> RodState:
+        """At rest with its middle at (x, y) [m], its axis turned by an angle from x [rad]. The tip begins beside it, at
+        x and y [m], and its apex at z, or on the substrate."""
+        spot = as_floats([*tip, 0.0] if len(tip) == 2 else tip, "tip")
         pose = float(x), float(y), float(angle)
-        if spot.shape != (2,) or not np.isfinite([*pose, *spot]).all():
-            raise InvalidValue("place and tip: valid are numbers; tip is x and y [m]")
+        if spot.shape != (3,) or not np.isfinite([*pose, *spot]).all() or spot[2] < 0.0:
+            raise InvalidValue("place and tip: valid are numbers; tip is x and y, or x, y and z >= 0 [m]")
         try:
-            return _state_of(self._core.place(pose, (float(spot[0]), float(spot[1]))))
+            return _state_of(self._core.place(pose, (float(spot[0]), float(spot[1]), float(spot[2]))))
         except InvalidValue as error:
             raise InvalidValue(f"tip = ({spot[0]:g}, {spot[1]:g}) m touches the rod: begin beside it") from error
 
-    def run(self, x: ArrayLike, y: ArrayLike, *, state: RodState) -> RodPath:
-        """Move the middle of the tip along points [m], straight from one to the next."""
-        points = np.stack(
-            np.broadcast_arrays(np.atleast_1d(as_floats(x, "x")), np.atleast_1d(as_floats(y, "y"))), axis=-1
-        )
-        if points.ndim != 2 or not len(points) or not np.isfinite(points).all():
-            raise InvalidValue("x, y: valid are numbers in one dimension, one point at least")
-        begun = np.concatenate([*state[:2], state.force, state[4:], state.pulls.ravel()])
+    def run(self, x: ArrayLike, y: ArrayLike, z: ArrayLike = 0.0, *, state: RodState) -> RodPath:
+        """Lead the tip's apex, or the base of its lever, along points [m], straight from one to the next."""
+        given = (np.atleast_1d(as_floats(values, name)) for values, name in ((x, "x"), (y, "y"), (z, "z")))
+        points = np.stack(np.broadcast_arrays(*given), axis=-1)
+        if points.ndim != 2 or not len(points) or not np.isfinite(points).all() or (points[:, 2] < 0.0).any():
+            raise InvalidValue("x, y, z: valid are numbers in one dimension, one point at least, z >= 0 m")
+        begun = np.concatenate([*state[:4], state[4:8], state.pulls.ravel()])
         last, rows = self._core.run(begun, np.ascontiguousarray(points))
-        stored, dissipated, work = rows[:, 7:].T
-        return RodPath(rows[:, :2], rows[:, 2], rows[:, 5:7], stored, dissipated, work, _state_of(last))
+        stored, dissipated, work = rows[:, 12:15].T
+        return RodPath(rows[:, :2], rows[:, 2], rows[:, 9:12], rows[:, 6:9], stored, dissipated, work, _state_of(last))
 
 
 class RodState(NamedTuple):
@@ -109,18 +114,22 @@ class RodState(NamedTuple):
 
     pose: Floats
     """x and y of its middle [m], angle of its axis from x [rad]"""
+    base: Floats
+    """x, y, z: where the tip's apex would be without a force [m]"""
     tip: Floats
-    """x and y of the tip's middle [m]"""
-    pulls: Floats
-    """of each element, x and y [N]"""
+    """x, y, z of the tip's apex [m]"""
     force: Floats
-    """x and y, on the tip [N]"""
+    """x, y, z, on the tip [N]"""
     stored: float
     """[J]"""
     dissipated: float
     """heat so far, never falling [J]"""
     work: float
     """done by the hand so far [J]"""
+    resistance: float
+    """-dF_z by the tip's way along z [N/m]"""
+    pulls: Floats
+    """of each element, x and y [N]"""
 
 
 class RodPath(NamedTuple):
@@ -131,9 +140,11 @@ class RodPath(NamedTuple):
     angle: Floats
     """of its axis from x [rad]"""
     force: Floats
-    """x and y, on the tip [N]"""
+    """x, y, z, on the tip [N]: what a lever's deflection shows"""
+    tip: Floats
+    """x, y, z of its apex [m]"""
     stored: Floats
-    """in springs and contact [J]"""
+    """in springs, contact and lever [J]"""
     dissipated: Floats
     """heat since the beginning, never falling [J]"""
     work: Floats
@@ -144,8 +155,8 @@ class RodPath(NamedTuple):
 
 def _state_of(row: Floats) -> RodState:
     """From one array."""
-    energies = (float(value) for value in row[7:10])
-    return RodState(row[:3], row[3:5], row[10:].reshape(-1, 2), row[5:7], *energies)
+    numbers = (float(value) for value in row[12:16])
+    return RodState(row[:3], row[3:6], row[6:9], row[9:12], *numbers, row[16:].reshape(-1, 2))
 
 
 def turning_point(length: float, arm: float) -> float:

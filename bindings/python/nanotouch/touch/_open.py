@@ -133,9 +133,15 @@ class Runs:
         not touch. Of a session that was opened with ``particles``."""
         self.core.lay(index(number), float(place[0]), float(place[1]))
 
+    def lay_rod(self, pose: tuple[float, float, float]) -> None:
+        """Lay the rod at rest with its middle at x, y [m] and its axis turned by an angle from x [rad], where the tip
+        does not touch it; it is taken away from where it was. Of a session that was opened with ``rod``."""
+        x, y, angle = (float(number) for number in pose)
+        self.core.lay_rod(x, y, angle)
+
     @property
     def particles(self) -> Laid:
-        """What lies on the surface, after the newest tick; also while the session runs."""
+        """What lies on the surface, spheres or a rod, after the newest tick; also while the session runs."""
         return Laid(**self.core.particles())
 
     def rewind(self, duration: float) -> None:

@@ -12,7 +12,7 @@ from nanotouch import _core
 from nanotouch._arrays import check_between
 from nanotouch._io.words import told
 from nanotouch.errors import InvalidValue
-from nanotouch.manipulation import Particles
+from nanotouch.manipulation import Particles, Rod
 from nanotouch.scene import Rig, Scene, Settings
 from nanotouch.scene.surface import Surface
 from nanotouch.touch import margins
@@ -75,6 +75,8 @@ class Options(TypedDict, total=False):
     particles: Particles
     """what :meth:`Session.lay` may lay on a flat at z = 0, to be pushed: its tip has the scene's radius and half
     angle, the lever is the rig's (docs/manipulation.md)"""
+    rod: Rod
+    """the same of one rod, instead of particles: what :meth:`Session.lay_rod` may lay"""
     master: Master | SharedObject | Mailbox | Replay | Converters | None
     """one's own half instead of the simulated hand and master (:mod:`nanotouch.touch.hal`, docs/hal.md)"""
     slave: Slave | SharedObject | Mailbox | Replay | Converters | None
@@ -160,9 +162,11 @@ def check_options(options: Mapping[str, Any]) -> None:
     for name in ("preflight", "recorded"):
         if not isinstance(options.get(name, True), bool):
             raise InvalidValue(f"{name} = {told(options[name])}: valid are True and False")
-    particles = options.get("particles")
+    particles, rod = options.get("particles"), options.get("rod")
     if not isinstance(particles, Particles | None):
         raise TypeError(f"particles = {told(particles)}: valid is a set, nt.Particles(one of them)")
+    if not isinstance(rod, Rod | None):
+        raise TypeError(f"rod = {told(rod)}: valid is a nt.manipulation.Rod")
 
 
 def _choose(settings: Settings, rate: float | None, gains: Gains | None, delay: float) -> None:

@@ -24,7 +24,7 @@ MEASURED = (
 )  # fmt: skip
 REQUESTS = {
     "aim": 3, "arm": 1, "mode": 1, "clutch": 1, "rescale": 2, "setting": 2, "scene": 2, "stop": 1, "index": 1,
-    "dent": 4, "dent_size": 4, "undent": 0, "lay": 3, "pushed": 5,
+    "dent": 4, "dent_size": 4, "undent": 0, "lay": 3, "lay_rod": 3, "pushed": 5, "turned": 2,
 }  # fmt: skip
 """what is done between two ticks, and how many numbers each has"""
 Event = tuple[int, str, list[Any]]

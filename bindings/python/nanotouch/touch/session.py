@@ -104,7 +104,7 @@ class Session(Runs, Frozen):
         self.rate = float(wanted.gains.rate)
         """of the force loop [Hz]"""
         self._events: list[tuple[int, str, list[Any]]] = []
-        faults, particles = options.get("faults"), options.get("particles")
+        faults, particles, rod = options.get("faults"), options.get("particles"), options.get("rod")
         parts = (None, None, None) if surface is None else surface.parts
         with self._scene.naming_terms():
             self.core = _core.Session(
@@ -118,6 +118,7 @@ class Session(Runs, Frozen):
                     "ring_capacity": RING_CAPACITY if options.get("recorded", True) else 0,
                     **plant_options(options.get("probe_model", "auto"), options.get("substep"), faults),
                     "particles": None if particles is None else particles._core,
+                    "rod": None if rod is None else rod._core,
                 },
             )  # fmt: skip
         described = {"scene": self._scene, "rig": self.rig, "settings": self._settings}
@@ -125,7 +126,8 @@ class Session(Runs, Frozen):
         self._amounts = None if self.core.amounts is None else Settings.from_core(self.core.amounts).to_dict()
         margin = self.stability_margin
         self._opened_with |= {"mode": mode, "stability_margin": margin if math.isfinite(margin) else None}
-        self._opened_with |= {} if particles is None else {"particles": asdict(particles)}
+        pushed = {"particles": particles, "rod": rod}
+        self._opened_with |= {name: asdict(one) for name, one in pushed.items() if one is not None}
         self._faults: list[str] = []
         self.inject(Faults() if faults is None else faults)
         own = options.get("master") or options.get("slave")
