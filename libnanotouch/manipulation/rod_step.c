@@ -10,13 +10,15 @@
 
 #include "manipulation/balance.h"
 
-enum { ROUNDS = 3000, HALVINGS = 40 };
-#define EXACT 1e-9   /* of all forces: how closely they balance */
+enum { ROUNDS = 3000, TRIES = 40 };
+#define EXACT 1e-8   /* of all forces: how closely they balance */
 #define ENOUGH 1e-5  /* where no step goes down any more */
 #define FAINT 1e-18  /* [N] */
 #define LONGEST 0.05 /* of the smaller radius: the largest motion in one of Newton's steps */
 #define DEEPEST 0.5  /* of the smaller radius */
 #define DAMPING 1e-12
+#define RETRIED 1e-5 /* the least damping that makes a difference, where a step has failed */
+#define UNSEEN 1e-16 /* of the cost: it cannot show what a step of less brings */
 
 /* x and y of the rod, half of its length times its turn; x, y and z of the tip. */
 enum { TURN = 2, OF_ROD = 3, TIP_Z = 5, WAYS = 6 };
@@ -59,6 +61,7 @@ typedef struct rod_step {
     const double *base; /* where it ends [m] */
     int freedoms;
     double k, limit; /* of each piece [N/m], [N] */
+    double give;     /* 1/k [m/N] */
     double arm;      /* half of the length [m] */
     double axis[2];  /* as it begins */
     double finest;   /* what forces need not be closer to 0 than: places are known to 1e-16 of them [N] */
@@ -80,6 +83,7 @@ static rod_step step_to(const nt_rod *rod, const nt_rod_state *from, const doubl
                       .freedoms = rod->lever > 0.0 ? TIP_Z : OF_ROD,
                       .k = nt_rod_stiffness(rod) * share,
                       .limit = nt_rod_friction(rod) * share,
+                      .give = 1.0 / (nt_rod_stiffness(rod) * share),
                       .arm = 0.5 * rod->length,
                       .axis = {cos(from->pose[2]), sin(from->pose[2])},
                       .finest = FAINT + 4e-16 * far * (rod->lever + rod->tip_stiffness)};
@@ -96,7 +100,7 @@ static double stretch_of(const rod_step *step, int i, const double pose[3], cons
     const double s = place_of(step->rod, i);
     for (int k = 0; k < 2; ++k)
         stretch[k] =
-            step->from->pulls[i][k] / step->k + (pose[k] - step->from->pose[k]) + s * (axis[k] - step->axis[k]);
+            step->from->pulls[i][k] * step->give + (pose[k] - step->from->pose[k]) + s * (axis[k] - step->axis[k]);
     return sqrt(stretch[0] * stretch[0] + stretch[1] * stretch[1]);
 }
 
@@ -199,10 +203,14 @@ static double newton(const rod_step *step, const rod_value *value, double dampin
     const double longest = LONGEST * fmin(step->rod->radius, step->rod->tip_radius);
     const int n = step->freedoms;
     balance_matrix hessian;
-    double slope = 0.0;
-    for (int i = 0; i < n; ++i)
+    double slope = 0.0, size = 0.0;
+    for (int i = 0; i < n; ++i) {
         memcpy(hessian[i], value->hessian[i], (size_t)(i + 1) * sizeof hessian[i][0]);
-    if (!balance_solve(hessian, n, damping, value->gradient, way))
+        size += fabs(hessian[i][i]);
+    }
+    for (int i = 0; i < n; ++i) /* a tip that slips off the top has stiffnesses below 0 */
+        hessian[i][i] += damping * size;
+    if (!balance_solve(hessian, n, 0.0, value->gradient, way))
         return 0.0;
     for (int i = 0; i < n; ++i)
         slope += value->gradient[i] * way[i];
@@ -216,11 +224,13 @@ static double newton(const rod_step *step, const rod_value *value, double dampin
 static int go_down(const rod_step *step, rod_place *place, rod_value *value, double *damping)
 {
     const int n = step->freedoms;
-    for (int tries = 0; tries < HALVINGS; ++tries, *damping *= 8.0) {
+    for (int tries = 0; tries < TRIES; ++tries, *damping = fmax(8.0 * *damping, RETRIED)) {
         double way[WAYS] = {0.0};
         const double slope = newton(step, value, *damping, way);
         if (slope == 0.0)
             continue;
+        if (tries > 0 && -slope < UNSEEN * value->cost)
+            return 0;
         rod_place trial = *place;
         for (int i = 0; i < 2; ++i) {
             trial.pose[i] += way[i];
@@ -229,7 +239,8 @@ static int go_down(const rod_step *step, rod_place *place, rod_value *value, dou
         trial.pose[TURN] += way[TURN] / step->arm;
         const rod_value found = value_at(step, &trial);
         const int closer = largest(found.gradient, n) < 0.9 * largest(value->gradient, n);
-        if (found.cost <= value->cost + 1e-4 * slope || (closer && found.cost <= value->cost * (1.0 + 1e-13))) {
+        const int lower = found.cost < value->cost && found.cost <= value->cost + 1e-4 * slope;
+        if (lower || (closer && found.cost <= value->cost * (1.0 + 1e-13))) {
             *place = trial;
             *value = found;
             *damping = fmax(*damping / 100.0, DAMPING);

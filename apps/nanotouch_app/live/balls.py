@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles that a task lays on the surface, and rings where they shall lie."""
+"""Particles that a task lays on the surface, spheres or a rod, and rings where they shall lie."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -33,12 +34,15 @@ class Balls:
         for actor, place in zip(self.balls, message["places"], strict=True):
             x, y, z = (float(place[0] - origin[0]), float(place[1] - origin[1]), float(place[2]))
             actor.SetPosition(x / self.length, y / self.length, self.ground + z / self.length)
+        for actor, angle in zip(self.balls, message.get("angles", ()), strict=False):
+            actor.SetOrientation(0.0, 0.0, math.degrees(angle) - 90.0)  # a rod is made along y
 
     def _make(self, message: dict[str, Any]) -> None:
         for actor in (*self.balls, *self.rings):
             self.renderer.RemoveActor(actor)
         radius = message["radius"] / self.length
-        self.balls = [self._actor(self._ball(radius), PARTICLE) for _ in message["places"]]
+        made = self._rod(radius, message["length"] / self.length) if message.get("length") else self._ball(radius)
+        self.balls = [self._actor(made, PARTICLE) for _ in message["places"]]
         self.rings = [self._actor(self._ring(radius), RING) for _ in message["targets"]]
         for actor, (x, y) in zip(self.rings, message["targets"], strict=True):
             actor.SetPosition(x / self.length, y / self.length, self.ground + 0.004)
@@ -49,6 +53,14 @@ class Balls:
         source.SetRadius(radius)
         source.SetThetaResolution(48)
         source.SetPhiResolution(32)
+        return source
+
+    def _rod(self, radius: float, length: float) -> Any:
+        source = self.vtk.vtkCylinderSource()
+        source.SetRadius(radius)
+        source.SetHeight(length)
+        source.SetResolution(48)
+        source.CapsuleCapOn()
         return source
 
     def _ring(self, radius: float) -> Any:

@@ -105,9 +105,10 @@ class Reel:
     def _told_particles(self) -> list[dict[str, Any]]:
         if self.particles is None or not self.shown:
             return []
-        places = self.particles.at(self.shown - 1)
-        near = [place.tolist() for place in places if _lies(self.recording, place)]
-        return [{"tell": "particles", "radius": self.particles.radius, "places": near, "targets": [], "events": []}]
+        near = [pose for pose in self.particles.poses(self.shown - 1).tolist() if _lies(self.recording, pose)]
+        told = {"tell": "particles", "radius": self.particles.radius, "places": [pose[:3] for pose in near],
+                "length": self.particles.length, "angles": [pose[3] for pose in near]}  # fmt: skip
+        return [told | {"targets": [], "events": []}]
 
     def _told_dents(self) -> list[dict[str, Any]]:
         if not self.keeps:
@@ -129,7 +130,7 @@ def played(recording: Recording) -> Recording:
 
 def particles_of(recording: Recording) -> Recorded | None:
     """Of a recording that holds them."""
-    return Recorded(recording) if "particles" in recording.metadata else None
+    return Recorded(recording) if {"particles", "rod"} & recording.metadata.keys() else None
 
 
 def _lies(recording: Recording, place: Any) -> bool:
@@ -156,9 +157,9 @@ def surface_of(recording: Recording) -> tuple[nt.Topography, tuple[float, float]
 def _around_particles(recording: Recording) -> Any:
     """Corners around all that were laid on the surface [m]."""
     particles = particles_of(recording)
-    places = [] if particles is None else [place for _, _, place in particles.laid if _lies(recording, place)]
+    places = [] if particles is None else [pose[:2] for _, _, pose in particles.laid if _lies(recording, pose)]
     around = np.reshape(np.array(places, dtype=float), (-1, 2))
-    reach = 0.0 if particles is None else particles.radius
+    reach = 0.0 if particles is None else particles.radius + 0.5 * particles.length
     return np.concatenate([around - reach, around + reach])
 
 

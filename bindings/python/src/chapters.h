@@ -23,6 +23,7 @@ void bind_materials(py::module_ &module);
 void bind_surface(py::module_ &module);
 void bind_descriptions(py::module_ &module);
 void bind_particle(py::module_ &module);
+void bind_pushed(py::module_ &module);
 void bind_rod(py::module_ &module);
 void bind_plan(py::module_ &module);
 void bind_plasticity(py::module_ &module);

@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, module)
     bind_margins(module);
     bind_particle(module);
     bind_rod(module);
+    bind_pushed(module);
     bind_plasticity(module);
     bind_plan(module);
     bind_c_header(module);

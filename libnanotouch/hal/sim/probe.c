@@ -48,21 +48,9 @@ static nt_law_value force_at(void *context, double gap)
     return probe->law;
 }
 
-/* A last step of Newton's that is too small to matter is not asked again. */
-static void keep_pushed(probe_context *probe, double gap)
-{
-    nt_status status = NT_OK;
-    if (!(fabs(gap - probe->gap) <= SAME_LAW * probe->plan->length))
-        status = nt_sim_lead_pushed(probe->slave, gap + probe->surface, probe->pushed);
-    if (status == NT_OK)
-        nt_sim_keep_pushed(probe->slave, probe->pushed);
-}
-
 static void moved_to(void *context, double gap)
 {
     probe_context *probe = context;
-    if (probe->pushed)
-        keep_pushed(probe, gap);
     if (!probe->plan->dents) {
         nt_interaction_advance_gap(probe->plan, probe->interaction, probe->place, gap);
         return;
@@ -97,6 +85,17 @@ static nt_law_value law_there(probe_context *probe, double gap)
     law.U -= law.F * step;
     law.F -= law.k * step;
     return law;
+}
+
+/* The tip has gone straight to its place of this period. A last step of Newton's that is too small to matter is not
+ * asked again. */
+static void keep_pushed(probe_context *probe, double gap)
+{
+    nt_status status = NT_OK;
+    if (!(fabs(gap - probe->gap) <= SAME_LAW * probe->plan->length))
+        status = nt_sim_lead_pushed(probe->slave, gap + probe->surface, probe->pushed);
+    if (status == NT_OK)
+        nt_sim_keep_pushed(probe->slave, probe->pushed);
 }
 
 /* On a sample that yields the front half alone holds a tip that ploughs; what the groove takes adds to the limit, as a
@@ -232,6 +231,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
                                  : nt_cantilever_settle(&slave->cantilever, &slave->link.rig.probe, &field, base, NULL);
     const double gap = slave->cantilever.tip_height;
     const nt_law_value law = law_there(&context, gap);
+    if (lie && status == NT_OK)
+        keep_pushed(&context, gap);
     slave->law = law;
     slave->law_gap = gap;
     double sides[2];

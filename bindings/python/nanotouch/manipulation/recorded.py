@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The particles of a recording. It holds what they are like, where each was laid, and the way of the tip: led along
-that way again, they go where they went."""
+"""The particles of a recording, or its rod. It holds what they are like, where each was laid, and the way of the tip: led
+along that way again, they go where they went."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from nanotouch import _core
 from nanotouch._arrays import Floats
 from nanotouch.errors import InvalidValue
 
-from .lever import core_of
-from .particle import OF_EACH, OF_TIP, Particle, ParticleContact
-from .particles import polystyrene
+from .particle import Particle, ParticleContact
+from .particles import Particles
+from .rod import Rod
 
 APART = 1e-9  # points of the way are no nearer: half of a step of the tip [m]
 NEEDED = ("x", "y", "gap", "surface_height")
@@ -32,43 +33,46 @@ class Recording(Protocol):
 
 
 class Recorded:
-    """Where the particles of a recording were.
+    """Where the particles of a recording, or its rod, were.
 
     Parameters
     ----------
     recording : Recording
-        Of a session with particles, from its first tick on, without rewinds
+        Of a session with particles or a rod, from its first tick on, without rewinds
         (:func:`nanotouch.touch.replay.without_rewinds`).
 
     Attributes
     ----------
-    radius : float
-        Of each [m].
+    radius, length : float
+        Of each [m]; the length of spheres is 0.
     laid : list
-        Row, number and place [m] of each particle that was laid.
+        Row, number and pose of each that was laid: x, y [m] and a rod's angle [rad], which is 0 of spheres.
     """
 
     def __init__(self, recording: Recording) -> None:
+        kind = "rod" if "rod" in recording.metadata else "particles"
         missing = [name for name in NEEDED if name not in recording]
-        if "particles" not in recording.metadata or missing:
+        if kind not in recording.metadata or missing:
             raise InvalidValue(f"the recording holds no particles: it lacks {', '.join(missing) or 'what they are'}")
         try:
-            particle, between = _described(recording.metadata["particles"])
+            of = recording.metadata[kind]
+            pushed = Rod(**of) if kind == "rod" else _described(of)
             side = float(recording.metadata["rig"]["probe"].get("lateral_stiffness", 0.0))
             rate = float(recording.metadata["loop_rate"])
             ticks = np.rint(recording.columns["time"] * rate)
             self.laid = [
-                (int(np.searchsorted(ticks, tick)), int(numbers[0]), (float(numbers[1]), float(numbers[2])))
+                (int(np.searchsorted(ticks, tick)), *_posed(name, [float(number) for number in numbers]))
                 for tick, name, numbers in recording.metadata["events"]
-                if name == "lay"
+                if name in ("lay", "lay_rod")
             ]
         except (TypeError, ValueError, LookupError, AttributeError) as error:
             raise InvalidValue(f"the recording's metadata cannot be read: {error}") from error
-        self.radius = particle.radius
+        self.radius = pushed.radius if isinstance(pushed, Rod) else pushed.particle.radius
+        self.length = pushed.length if isinstance(pushed, Rod) else 0.0
         columns = recording.columns
         height = np.maximum(columns["gap"] + columns["surface_height"], 0.0)  # as the simulated slave does
         self._way = np.column_stack([columns["x"], columns["y"], height]).astype(np.float64)
-        self._core = core_of(particle, between, (side, side, 0.0))
+        self._core = _core.Pushed(pushed._core, side)
         self._state: Any = None
         self._rows: list[int] = []  # that are known, in their order ...
         self._places: list[Floats] = []  # ... and where all were then
@@ -77,19 +81,23 @@ class Recorded:
 
     def at(self, row: int) -> Floats:
         """x, y, z of their centres [m]; one row of the answer for each that has been laid by then."""
+        return self.poses(row)[:, :3]
+
+    def poses(self, row: int) -> Floats:
+        """The same, and the angle of a rod's axis from x [rad], 0 of spheres."""
         if not 0 <= row < len(self._way):
             raise InvalidValue(f"row {row}: valid is 0 .. {len(self._way) - 1}")
         while self._done <= row:
             self._go_on(row + 1)
         known = bisect_right(self._rows, row)
-        return self._places[known - 1] if known else np.empty((0, 3))
+        return self._places[known - 1] if known else np.empty((0, 4))
 
     def _go_on(self, end: int) -> None:
         """Up to a row, or to where the next one is laid."""
         while self._next < len(self.laid) and self.laid[self._next][0] <= self._done:
-            _, number, place = self.laid[self._next]
+            _, number, pose = self.laid[self._next]
             begun = self._core.begin(tuple(self._way[self._done])) if self._state is None else self._state
-            self._state = self._core.lay(begun, number, place)
+            self._state = self._core.lay(begun, number, pose)
             self._keep(self._done, np.asarray(self._state.read()))
             self._next += 1
         if self._next < len(self.laid):
@@ -104,7 +112,7 @@ class Recorded:
 
     def _keep(self, row: int, values: Floats) -> None:
         self._rows.append(row)
-        self._places.append(values[OF_TIP:].reshape(-1, OF_EACH)[:, :3])
+        self._places.append(values.reshape(-1, 4))
 
     def _thinned(self, begin: int, end: int) -> NDArray[np.int64]:
         """Rows in which the tip has gone on, and the last one: what stands still costs nothing."""
@@ -117,10 +125,18 @@ class Recorded:
         return np.asarray(begin + np.union1d(good[places], good[-1:]))
 
 
-def _described(of: Mapping[str, Any]) -> tuple[Particle, ParticleContact]:
+def _described(of: Mapping[str, Any]) -> Particles:
     """What a session wrote down of its set."""
     one, between = of["particle"], of.get("between")
     substrate, tip = (ParticleContact(**one[side]) for side in ("substrate", "tip"))
-    return Particle(**{**one, "substrate": substrate, "tip": tip}), (
-        polystyrene() if between is None else ParticleContact(**between)
-    )
+    particle = Particle(**{**one, "substrate": substrate, "tip": tip})
+    return Particles(particle, None if between is None else ParticleContact(**between))
+
+
+def _posed(name: str, numbers: list[float]) -> tuple[int, tuple[float, float, float]]:
+    """Number, and x, y, angle."""
+    if name == "lay_rod":
+        x, y, angle = numbers
+        return 0, (x, y, angle)
+    number, x, y = numbers
+    return int(number), (x, y, 0.0)
