@@ -118,7 +118,7 @@ static void no_push_goes_beyond_the_bound(void **state)
             if (nt_pushed_advance(&both[i], &now, end, &to) != NT_OK)
                 continue; /* it would go through */
             nt_pushed_copy(&both[i], &now, &to);
-            load = larger(load, fmax(now.force[2], 0.0));
+            load = larger(load, larger(now.force[2], 0.0));
             sideways = larger(sideways, hypot(now.force[0], now.force[1]));
         }
         const nt_pushed_bound bound = nt_pushed_bound_of(&both[i], load);

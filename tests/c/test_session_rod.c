@@ -234,7 +234,7 @@ typedef struct account {
 static void add(account *of, const nt_record *record)
 {
     const double to[3] = {record->stage_position[NT_X], record->stage_position[NT_Y],
-                          fmax(record->gap + record->surface_height, 0.0)};
+                          larger(record->gap + record->surface_height, 0.0)};
     double work = 0.0;
     for (int axis = NT_X; axis <= NT_Z; ++axis) {
         work -= 0.5 * (of->force[axis] + record->tip_force[axis]) * (to[axis] - of->at[axis]);

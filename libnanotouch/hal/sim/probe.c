@@ -200,6 +200,25 @@ static void sides_of(const nt_sim_slave *slave, double gap, double force, double
     sides[NT_Y] = slopes[NT_Y] + pushed[NT_Y];
 }
 
+/* What there is at the end of a period; sides: of slopes and of what is pushed [N]. */
+static void tell_truth(nt_sim_slave *slave, const probe_context *context, const double sides[2])
+{
+    const nt_friction_state *friction = &slave->slide.friction;
+    const nt_law_value law = slave->law;
+    const double gap = slave->law_gap;
+    slave->truth = (nt_truth){.gap = gap,
+                              .tip_force = {sides[0] + friction->force[0], sides[1] + friction->force[1], law.F},
+                              .peak_force = fmax(context->peak, fabs(law.F)),
+                              .deepest_gap = fmin(context->deepest, gap),
+                              .contact_radius = law.a,
+                              .surface_height = context->surface,
+                              .tip_height = gap + context->surface,
+                              .energy = slave->plan->dents ? slave->dents.contact.stored : law.U,
+                              .dent_heat = slave->dents.dissipated,
+                              .friction_stored = friction->stored,
+                              .friction_heat = friction->dissipated};
+}
+
 nt_status nt_sim_move_probe(nt_sim_slave *slave)
 {
     const int is_elsewhere = find_place(slave);
@@ -240,18 +259,7 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     slide(slave, context.parted, gap);
     if (slave->plan->dents)
         plough(slave);
-    const nt_friction_state *friction = &slave->slide.friction;
-    slave->truth = (nt_truth){.gap = gap,
-                              .tip_force = {sides[0] + friction->force[0], sides[1] + friction->force[1], law.F},
-                              .peak_force = fmax(context.peak, fabs(law.F)),
-                              .deepest_gap = fmin(context.deepest, gap),
-                              .contact_radius = law.a,
-                              .surface_height = surface,
-                              .tip_height = gap + surface,
-                              .energy = slave->plan->dents ? slave->dents.contact.stored : law.U,
-                              .dent_heat = slave->dents.dissipated,
-                              .friction_stored = friction->stored,
-                              .friction_heat = friction->dissipated};
+    tell_truth(slave, &context, sides);
     const int fails = slave->dents.full || (lie && status != NT_OK); /* a reading that is none stops the touch */
     return fails ? NT_E_DEVICE : status;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The particles of a recording, or its rod. It holds what they are like, where each was laid, and the way of the tip: led
-along that way again, they go where they went."""
+"""The particles of a recording, or its rod: what they are like, where each was laid, and the way of the tip. Led along
+that way again, they go where they went."""
 
 from __future__ import annotations
 

@@ -155,8 +155,9 @@ class RodPath(NamedTuple):
 
 def _state_of(row: Floats) -> RodState:
     """From one array."""
-    numbers = (float(value) for value in row[12:16])
-    return RodState(row[:3], row[3:6], row[6:9], row[9:12], *numbers, row[16:].reshape(-1, 2))
+    stored, dissipated, work, resistance = (float(value) for value in row[12:16])
+    pulls = row[16:].reshape(-1, 2)
+    return RodState(row[:3], row[3:6], row[6:9], row[9:12], stored, dissipated, work, resistance, pulls)
 
 
 def turning_point(length: float, arm: float) -> float:
