@@ -23,13 +23,12 @@ from nanotouch.touch.supervisor import REASONS
 from nanotouch_app.live import balls, hand, host, look, readings, relief, seen, sliders, stage
 from nanotouch_app.live import tasks as laying
 from nanotouch_app.live.subject import PRESETS, felt, of_preset
-from nanotouch_app.training import LESSON, TASKS, find, pull_off, push, staircase, steady, stiffer, trace
+from nanotouch_app.training import LESSON, TASKS, dent, find, pull_off, push, staircase, steady, stiffer, trace
 from nanotouch_app.training.lesson_pages import PAGES
 from nanotouch_app.training.lesson_texts import TEXTS as LESSON_TEXTS
 from nanotouch_app.training.task_texts import TEXTS as TASK_TEXTS
 
 STEPS = 65535  # of a height in the page
-LEFT_OUT = ("soft_gold",)  # dents are drawn by the window alone
 
 
 def surface_of(topography: Any) -> dict[str, Any]:
@@ -80,6 +79,7 @@ def tasks() -> dict[str, Any]:
     """The tasks with their numbers, the pages of the lesson with what they change."""
     numbers = {"find": (find, "SHARE HELD"), "pull_off": (pull_off, "NEEDED ALLOWED"),
                "trace": (trace, "PARTS NEEDED ALLOWED"),
+               "dent": (dent, "SHARES ALLOWED"), "scratch": (dent, "SHARES ALLOWED GROOVE LONG"),
                "push": (push, "RADIUS ALLOWED WORST LOSS"), "pattern": (push, "RADIUS ALLOWED WORST LOSS"),
                "steady": (steady, "TARGET BAND TIME WAY NEEDED"), "stiffer": (stiffer, "LOAD DULL")}  # fmt: skip
     listed = [{"name": name, "title": task.title, "preset": task.preset, "asked": task.asked,
@@ -97,7 +97,7 @@ def everything() -> dict[str, Any]:
     palettes = {name: dataclasses.asdict(palette)
                 for name, palette in (("light", look.LIGHT), ("dark", look.DARK))}  # fmt: skip
     return {
-        "presets": [preset(name) for name in PRESETS if name not in LEFT_OUT],
+        "presets": [preset(name) for name in PRESETS],
         "offered": sliders.OFFERED, "given": sliders.GIVEN,
         "constants": constants(), "help": readings.HELP, "states": list(STATES), "reasons": list(REASONS),
         "palettes": palettes, "units": units.UNITS, "texts": {**TASK_TEXTS, **LESSON_TEXTS}, **tasks(),

@@ -113,6 +113,22 @@ const nt_particles *page_given_particles(void);
 int page_lay(int number, double x, double y);
 int page_laid(double found[PAGE_LAID * NT_PARTICLES]);
 
+/* page_dents.c */
+enum { PAGE_DENT = 8 }; /* numbers of each */
+int page_dents(double rows[PAGE_DENT * NT_DENTS]);
+int page_undent(void);
+double page_dent_depth(double load);
+
+/* page_dented.c */
+void page_dented_begin(double load);
+int page_dented_lay(const double *heights, int nx, int ny, double dx, double dy);
+void page_dented_take(const double *rows, int count);
+void page_dented_follow(const double *rows, int count, int anew);
+double page_dented_fact(int what);
+int page_dented_curve(int part, double farthest, nt_view_point *rows, int count);
+void page_dented_section(double gap, const double *r, nt_view_profile *rows, int count, double found[3]);
+int page_dented_heights(double *heights);
+
 /* page_energy.c */
 void page_weigh(double spring, double zero, double alpha_p, double load);
 void page_weigh_anew(void);

@@ -49,4 +49,30 @@ worlds.push = [await go(-20e-9, 65), await go(20e-9, 40)];
 await host.answer({ do: "undo" });
 worlds.push.push(await go(0, 1));
 worlds.told = told.filter(({ tell }) => tell === "particles").flatMap(({ events }) => events);
+
+// Dents: two presses in one place, a groove, what is refused meanwhile, undo. Ticks as those of the host in Python.
+const [step, steps] = [{ do: "wheel", steps: 1 }, async (count, message) => {
+  for (let i = 0; i < count; ++i) {
+    await host.answer(message);
+    host.turn(0.01);
+  }
+}];
+const dents = () => ({ dents: host.dents.list, undo: host.world().undo, force: host.now.force, tip: host.now.tip });
+await host.answer({ do: "task", name: "dent" });
+worlds.dents = { refused: told.at(-1), found: [] };
+await host.answer({ do: "preset", name: "soft_gold" });
+host.turn(0.01);
+for (const count of [60, 70]) {
+  await steps(count, step);
+  await steps(count, { ...step, steps: -1 });
+  worlds.dents.found.push(dents());
+}
+await steps(70, step);
+await steps(60, { do: "move", way: [0.5e-9, 0.25e-9, 0] });
+await host.answer({ do: "undo" });
+worlds.dents.held = told.findLast(({ tell }) => tell === "refused");
+await steps(70, { ...step, steps: -1 });
+worlds.dents.found.push(dents());
+await host.answer({ do: "undo" });
+worlds.dents.found.push(dents());
 console.log(JSON.stringify(worlds));

@@ -43,6 +43,7 @@ class BrowserDesk:
         if properties := host.properties():
             self.server.readers.surface = surface_bytes(self.topography.heights, self.topography.pixel_size, properties)
         self.tell(host.world())
+        host.left.report()
         serve(self, host, first, until)
 
     def close(self) -> None:

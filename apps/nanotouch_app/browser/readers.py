@@ -14,7 +14,7 @@ from nanotouch_app.browser.update import Summary, message_text
 from nanotouch_app.live.energy import Balance, Spent
 
 Message = dict[str, Any]
-KEPT = ("world", "task", "particles")  # messages that one who comes later is told, too
+KEPT = ("world", "dents", "task", "particles")  # messages that one who comes later is told, too
 
 
 class Reader:
@@ -81,6 +81,7 @@ class Readers:
         kind = message["tell"]
         if kind == "laid":
             self.surface = surface
+            self.kept.pop("dents", None)  # of what lay there before
             return [(reader, surface) for reader in self.all]
         if kind == "properties":
             return []

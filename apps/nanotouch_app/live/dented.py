@@ -123,16 +123,24 @@ class Dented:
     def heights(self, flat: Floats, pixel_size: Sequence[float] | Floats, origin: Sequence[float] | Floats) -> Floats:
         """The surface with all dents and their ridges, from its lower left corner on [m]; one that is finer than its
         pixels is left out."""
-        specimen = plasticity.Specimen(flat, (float(pixel_size[0]), float(pixel_size[1])))
+        dy, dx = (float(part) for part in pixel_size)
+        edge = self._edge(min(dx, dy))
+        specimen = plasticity.Specimen(np.pad(flat, edge, mode="edge"), (dy, dx))
+        corner = (float(origin[0]) - edge * dx, float(origin[1]) - edge * dy)
         numbers: dict[int, int] = {}
         for number, dent in enumerate(self.dents):
             before = None if dent.before is None else numbers.get(dent.before)
             try:
-                specimen.take(_moved(dent, origin)._replace(before=before))
+                specimen.take(_moved(dent, corner)._replace(before=before))
             except InvalidValue:
                 continue
             numbers[number] = len(specimen.events) - 1
-        return np.array(specimen.heights)
+        return np.array(specimen.heights[edge:-edge, edge:-edge])
+
+    def _edge(self, pixel: float) -> int:
+        """So many pixels around a map that the widest dent with its ridge lies there wherever its middle does."""
+        widest = (1.0 + plasticity.Displacement().ridge_width) * 0.5 * self.law.radius
+        return min(math.ceil(widest / pixel), 1000) + 2
 
     @property
     def relief(self) -> float:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import nanotouch as nt
+from nanotouch.errors import Error
 from nanotouch.plasticity import Dent, dents_of
 
 LOOKED = 0.1  # for new dents so often [s]
@@ -49,7 +50,10 @@ class Left:
 
     def undo(self) -> None:
         """Take the last one back, while the tip touches nothing."""
-        self.session.undent()
+        try:
+            self.session.undent()
+        except Error as error:
+            raise Error("the tip presses: lift it first, then take the dent back") from error
         self.looked = 0.0
         self.look()
 
@@ -86,6 +90,9 @@ class Pushes:
     def undo(self) -> None:
         """The last push: all that it has moved goes back, while the tip touches none of them."""
         last = [one for one in self.done if one[0] == self.done[-1][0]]
-        for _, number, place in last:
-            self.session.lay(number, place)
+        try:
+            for _, number, place in last:
+                self.session.lay(number, place)
+        except Error as error:
+            raise Error("the tip touches a particle, or is where it lay: take it away first") from error
         self.done = self.done[: -len(last)]

@@ -72,6 +72,9 @@ export function balance(energies) {
   return `work of the hand ${hand} ${unit} = ${told}`.replaceAll(/\+ (\w+) -/g, "- $1 ");
 }
 
+// What has yielded gives nothing back.
+const yielded = ([hand, stored, tip, heat], dented) => (dented ? [hand, stored, dented.stored, heat + tip - dented.stored] : [hand, stored, tip, heat]);
+
 export class History {
   constructor(painter, constants) {
     Object.assign(this, { painter, constants, high: new Follower(), low: new Follower() });
@@ -89,7 +92,7 @@ export class History {
     const axes = new Axes(painter, [-HISTORY, 0], [-low, high]);
     axes.draw(palette, ["time", "force at the hand"], ["s", "N"]);
     if (seen.clock.energies) painter.text(painter.width < 520 ? 58 : painter.width - 14, painter.width < 520 ? painter.height - 12 : 16,
-      balance(seen.clock.energies), palette.ink, { align: painter.width < 520 ? "left" : "right" });
+      balance(yielded(seen.clock.energies, seen.dented)), palette.ink, { align: painter.width < 520 ? "left" : "right" });
     const least = axes.width / this.constants.SLICES;
     rows.forEach((row, i) => { // each sums up all since the one before
       const start = i ? axes.at(rows[i - 1].time - now, 0)[0] : 0;

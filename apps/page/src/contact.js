@@ -6,6 +6,9 @@ import { digits, stepUp } from "./units.js";
 
 const POINTS = 90, HEADING = 30, MENISCUS = 2, MORE = 1.4; // beyond the panel, which zooms meanwhile
 
+const inDent = ({ depth, radius, yieldLoad }) => (depth > 0
+  ? `dent ${digits(depth, "m")} deep, ${digits(2 * radius, "m")} wide` : `elastic up to ${digits(yieldLoad, "N")}`);
+
 export class ContactPanel {
   constructor(painter, draw) {
     Object.assign(this, { painter, ask: draw, halfWidth: 0, section: null, asked: false });
@@ -98,7 +101,8 @@ export class ContactPanel {
     }
     const lambda = facts.lambda, none = !Number.isFinite(lambda) || facts.pull_off_force < 1e-3 * seen.load;
     const kind = lambda < 0.1 ? "like DMT" : lambda > 5 ? "like JKR" : "between DMT and JKR";
-    painter.text(12, painter.height - 12, none ? "no adhesion: like Hertz" : `${kind}, lambda ${digits(lambda, "", 2)}`, palette.ink);
+    const law = none ? "no adhesion: like Hertz" : `${kind}, lambda ${digits(lambda, "", 2)}`;
+    painter.text(12, painter.height - 12, seen.dented ? inDent(seen.dented) : law, palette.ink);
     const state = section.a > 0 ? (seen.world.scene.medium.brush_thickness > 0 ? "pressed, the fur between" : "touching") : section.attached ? "held" : `apart by ${digits(section.gap, "m")}`;
     painter.text(painter.width - 14, painter.height - 12, state, palette.ink, { align: "right" });
   }

@@ -131,17 +131,24 @@ export class Core {
     return facts;
   }
 
-  curve(nearest, farthest, count = 200) {
-    return [0, 1, 2].map((part) => this.withDoubles(2 * count, null, (at) => {
-      const made = this.c.page_curve(part, nearest, farthest, at, count);
-      return Array.from(this.doubles(at, 2 * made));
-    }));
+  curve(nearest, farthest) {
+    return [0, 1, 2].map((part) => this.points((at, count) => this.c.page_curve(part, nearest, farthest, at, count)));
+  }
+
+  // Rows of gap and force that `draw` writes at an address, and counts.
+  points(draw, count = 200) {
+    return this.withDoubles(2 * count, null, (at) => Array.from(this.doubles(at, 2 * draw(at, count))));
   }
 
   // Rows of tip, sample, rigid tip at the distances r, with a, c and whether it holds.
   section(gap, force, r) {
-    return this.withDoubles(4 * r.length + 5, [gap, force, 0, 0, 0, ...r], (at) => {
-      this.c.page_section(at, at + 40, at + 40 + 8 * r.length, r.length, at + 16);
+    return this.profile([gap, force], r, (at, ...rest) => this.c.page_section(at, ...rest));
+  }
+
+  // What `draw` makes of a pose: its address, that of r, of rows, how many, and that of what is found.
+  profile(pose, r, draw) {
+    return this.withDoubles(4 * r.length + 5, [...pose, 0, 0, 0, ...r], (at) => {
+      draw(at, at + 40, at + 40 + 8 * r.length, r.length, at + 16);
       const found = this.doubles(at, 4 * r.length + 5);
       return { r, rows: Array.from(found.subarray(5 + r.length)), a: found[2], c: found[3], attached: found[4] !== 0 };
     });

@@ -4,7 +4,7 @@
 
 import { KINDS, Refused, readUpdate, UPDATE_BYTES } from "./core.js";
 import { Hand } from "./hand.js";
-import { Balls } from "./left.js";
+import { Balls, Dents } from "./left.js";
 import { inWords } from "./refusals.js";
 import { edged, extremes, ofPreset, PROPERTIES, stretched } from "./subject.js";
 import { Trainer } from "./trainer.js";
@@ -24,6 +24,7 @@ export class Host {
     Object.assign(this, { core, table, tell, speed: 1, paused: false, slowdown: 1, changes: 0, trainer: null });
     this.constants = table.constants;
     this.balls = new Balls(core, table.constants.ASIDE);
+    this.dents = new Dents(core, tell);
     this.subject = null;
     this.now = null;
   }
@@ -55,6 +56,8 @@ export class Host {
     this.tell({ tell: "laid", surface: { heights: Float32Array.from(heights), rows, columns, dx, dy, properties } });
     this.tell(this.world());
   }
+
+  get keepsDents() { return this.opened.sample.dents === "yes"; }
 
   // What forces are planned for: a little less is asked where a slider leads to what is less well known.
   get accuracy() { return this.subject.accuracy ?? USUAL_ACCURACY; }
@@ -117,6 +120,7 @@ export class Host {
       core.check(core.c.page_open(at + 64, columns, rows, at));
     });
     this.#learn(facts);
+    this.dents.forget();
     this.debt = 0;
     ++this.changes;
     core.check(core.c.page_run(1));
@@ -170,6 +174,7 @@ export class Host {
       this.hand.follow(this.now, run);
     }
     if (this.subject.particles) this.balls.look(this.now.time);
+    if (this.keepsDents) this.dents.look();
     if (this.trainer) this.trainer.see(this.now);
   }
 
@@ -193,8 +198,9 @@ export class Host {
     return { tell: "world", title: subject.title, felt: subject.felt, hint: subject.hint, preset: subject.name,
       scene: this.opened, rig: this.openedRig, settings: this.settings, stiffness: this.hand.stiffness,
       bound: own(OWN.bound), warnings: this.facts.warnings, terms: this.facts.terms, margin: own(OWN.margin),
-      force: own(OWN.force), relative_accuracy: this.accuracy, undo: this.done.length || this.balls.pushes.length, redo: this.undone.length, start: this.start, size: this.size,
-      clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
+      force: own(OWN.force), relative_accuracy: this.accuracy,
+      undo: this.done.length || this.dents.list.length || this.balls.pushes.length, redo: this.undone.length,
+      start: this.start, size: this.size, clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
   }
 
   clock() {
@@ -335,7 +341,8 @@ export class Host {
     this.tell(this.world());
   }
   do_undo() {
-    if (!this.done.length) this.balls.undo();
+    if (!this.done.length && this.dents.list.length) this.dents.undo();
+    else if (!this.done.length) this.balls.undo();
     this.#again(this.done, this.undone, 2);
   }
   do_redo() { this.#again(this.undone, this.done, 3); }

@@ -1,10 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Particles of the session of this page: laid, pushed by the tip, laid back (nanotouch_app/live/left.py, tasks.py).
+// What a tip leaves in the session of this page: dents in a sample that keeps them, and particles where it has pushed
+// them; both can be taken back (nanotouch_app/live/left.py, tasks.py).
 
 import { Refused } from "./core.js";
 
 const LAID = 8, MOST = 6; // numbers of each (page.h), and how many there may be
 const MOVED = 1e-10; // less is no push [m]
+
+const DENT = 8, DENTS = 128; // numbers of each (page.h), and how many there may be
+
+export class Dents {
+  constructor(core, tell) { Object.assign(this, { core, tell, told: "" }); }
+
+  // Rows of start, end, radius, depth, load, and the dent that it has grown from, the oldest first.
+  get list() {
+    return this.core.withDoubles(DENT * DENTS, null, (at) => {
+      const count = this.core.c.page_dents(at), rows = this.core.doubles(at, DENT * count);
+      return Array.from({ length: count }, (_, i) => Array.from(rows.subarray(DENT * i, DENT * (i + 1))));
+    });
+  }
+
+  // Tells of others than before: the list changes at its end.
+  look() {
+    const { list } = this, now = `${list.length} ${list.at(-1) ?? ""}`;
+    if (now === this.told) return;
+    this.told = now;
+    this.tell({ tell: "dents", dents: list });
+  }
+
+  // Of another session: they are told in any case.
+  forget() { this.told = ""; }
+
+  // The last one.
+  undo() {
+    if (this.core.c.page_undent()) throw new Refused("the tip presses: lift it first, then take the dent back");
+  }
+}
 
 export class Balls {
   constructor(core, aside) { Object.assign(this, { core, aside, rested: [], pushes: [] }); }
@@ -61,7 +92,11 @@ export class Balls {
 
   // The last push: all that it has moved goes back.
   undo() {
-    for (const [number, place] of this.pushes.at(-1)?.moved ?? []) this.#lay(number, place);
+    try {
+      for (const [number, place] of this.pushes.at(-1)?.moved ?? []) this.#lay(number, place);
+    } catch {
+      throw new Refused("the tip touches a particle, or is where it lay: take it away first");
+    }
     this.pushes.pop();
   }
 

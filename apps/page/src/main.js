@@ -37,7 +37,10 @@ let dirty = true, palette = null, task = fragment.get("task");
 const handed = { hear, take };
 const worked = new Worked(byId("worker").textContent, handed);
 const link = state.own ? worked : framed ? new Framed(handed) : new Socketed(key, handed);
-const seen = new Seen(table.constants, (message) => worked.draw(message));
+const seen = new Seen(table.constants, (message) => worked.draw(message), (heights, dent) => {
+  stage.reshape(heights, dent);
+  dirty = true;
+});
 const stage = new Stage(byId("view").insertBefore(document.createElement("div"), byId("overlay")), table.constants);
 const painter = (id) => new Painter(byId(id));
 const overlay = new Overlay(painter("overlay"), table.constants);

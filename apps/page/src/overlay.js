@@ -7,6 +7,10 @@ const BAND = 0.15, RING = 13; // of the picture's height: the band under the lar
 const NARROW = 480; // a phone's [pixels]
 const squeezed = (share) => Math.sign(share) * Math.sqrt(Math.min(Math.abs(share), 1));
 
+// From the lowest point; where a tip dents it, from the ground.
+const heightsOf = ({ dent, ends: [low, high], low: ground, relief }) => (dent
+  ? `${digits(low - ground, "m", 2)} to ${digits(high - ground, "m", 2)}` : `0 to ${digits(relief, "m")}`);
+
 export class Overlay {
   constructor(painter, constants) { Object.assign(this, { painter, constants }); }
 
@@ -54,7 +58,7 @@ export class Overlay {
     const narrow = painter.width < NARROW;
     const drawn = grid.factor === 1 ? "" : narrow ? `, x ${grid.factor}` : `, drawn ${grid.factor} times as high`;
     const [name, unit] = isHeight ? [] : this.constants.PROPERTY_NAMES[shown];
-    painter.text(148, y - 26, isHeight ? `heights 0 to ${digits(grid.relief, "m")}${drawn}`
+    painter.text(148, y - 26, isHeight ? `heights ${heightsOf(grid)}${drawn}`
       : `${name} ${ends.map((end) => digits(end, unit)).join(" to ")}`, palette.ink);
   }
 

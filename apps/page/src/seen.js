@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page knows of a session: its updates so far, its world, and the law of that world (live/seen.py).
 
+import { Yields } from "./yields.js";
+
 const PLACE = { radius: ["tip", "radius"], youngs_modulus: ["sample", "youngs_modulus"],
   work_of_adhesion: ["adhesion", "work_of_adhesion"] };
 const DIFFERS = 0.03, REPLACED = 500; // relative; [ms]
 
 export class Seen {
-  constructor(constants, draw) {
-    Object.assign(this, { constants, draw, world: null, clock: { speed: 1, paused: false, slowdown: 1 }, task: {}, notes: [],
+  // draw: asks the worker; reshape: draws a surface that the tip has changed
+  constructor(constants, draw, reshape) {
+    this.yields = new Yields(draw, ({ dented, curve, heights }) => {
+      this.dented = dented;
+      if (curve && this.law) this.law.curve = curve;
+      if (heights) reshape(heights, dented.relief);
+    });
+    Object.assign(this, { constants, draw, dented: null, world: null, clock: { speed: 1, paused: false, slowdown: 1 }, task: {}, notes: [],
       waiting: new Set(), now: null, reading: null, readAt: 0, arrived: -Infinity, updates: 0, law: null, place: {},
       placedAt: 0, load: 1, pullOff: 0 });
     this.forget();
@@ -24,12 +32,14 @@ export class Seen {
       case "world": this.#settle(message); break;
       case "laid":
         this.forget();
-        Object.assign(this, { world: null, now: null, reading: null, law: null });
+        Object.assign(this, { world: null, now: null, reading: null, law: null, dented: null });
+        this.yields.lay(message.surface);
         break;
       case "clock":
         this.clock = message;
         this.#stand(message.here ?? {});
         break;
+      case "dents": this.yields.hear(message.dents); break;
       case "particles": this.events.push(...message.events); break;
       case "task": this.task = message.name ? message : {}; break;
       case "refused":
@@ -78,6 +88,8 @@ export class Seen {
     const made = await this.draw({ draw: "plan", scene, rig, here, accuracy });
     if (made.error || this.world?.scene !== scene) return;
     this.law = made;
+    this.dented = made.dented ?? null;
+    this.yields.begin(Boolean(made.dented));
     this.pullOff = made.facts.pull_off_force;
   }
 
@@ -87,7 +99,11 @@ export class Seen {
     const { constants } = this, at = performance.now();
     this.arrived = at;
     ++this.updates;
-    if (this.now && now.time < this.now.time) this.forget(); // rewound
+    if (this.now && now.time < this.now.time) { // rewound
+      this.forget();
+      this.yields.leap();
+    }
+    this.yields.see(now);
     this.now = now;
     if (!this.reading || at - this.readAt > 1000 * constants.READINGS) {
       this.readAt = at;

@@ -13,6 +13,8 @@ function quads(rows, columns) {
   return cells;
 }
 
+const SHOWN = 0.25; // of the deepest dent: so far the colours go at least, so that noise of a shallow one is none
+
 // How much higher than they are heights are drawn (live/relief.py).
 
 // Way along y or x after which heights are as good as any others: their mean square difference is the variance.
@@ -48,20 +50,30 @@ export function stepped(factor, up, relief, { LADDER, HIGHEST }) {
   return following * relief <= HIGHEST ? following : factor;
 }
 
-// The drawn surface: mean heights over squares of pixels, at most `most` to a side; in units of the longer side.
-export function grid({ heights, rows, columns, dx, dy }, most, { RELIEF, SLENDER, LADDER }) {
-  const size = Math.ceil(Math.max(rows, columns) / most);
-  const ny = Math.floor(rows / size), nx = Math.floor(columns / size), mean = new Float32Array(nx * ny);
+// Mean heights over squares of pixels.
+function means({ heights, columns }, size, ny, nx) {
+  const mean = new Float32Array(nx * ny);
   for (let j = 0; j < ny * size; ++j)
     for (let i = 0; i < nx * size; ++i)
       mean[Math.floor(j / size) * nx + Math.floor(i / size)] += heights[j * columns + i] / (size * size);
-  const unit = Math.max(rows * dy, columns * dx);
+  return mean;
+}
+
+function extremesOf(values) {
   let low = Infinity, high = -Infinity;
-  for (const value of mean) {
+  for (const value of values) {
     low = Math.min(low, value);
     high = Math.max(high, value);
   }
-  const made = { heights: mean, rows: ny, columns: nx, unit, low, dx: (size * dx) / unit, dy: (size * dy) / unit, ends: [low, Math.max(high, low + Math.max(1e-12, 1e-9 * Math.abs(low)))], relief: high - low };
+  return [low, high];
+}
+
+// The drawn surface, at most `most` points to a side; in units of the longer side.
+export function grid({ heights, rows, columns, dx, dy }, most, { RELIEF, SLENDER, LADDER }) {
+  const size = Math.ceil(Math.max(rows, columns) / most);
+  const ny = Math.floor(rows / size), nx = Math.floor(columns / size), mean = means({ heights, columns }, size, ny, nx);
+  const unit = Math.max(rows * dy, columns * dx), [low, high] = extremesOf(mean);
+  const made = { heights: mean, rows: ny, columns: nx, size, unit, low, dx: (size * dx) / unit, dy: (size * dy) / unit, ends: [low, Math.max(high, low + Math.max(1e-12, 1e-9 * Math.abs(low)))], relief: high - low, dent: 0 };
   made.factor = made.built = high > low
     ? stepBelow((unit * Math.min(RELIEF, SLENDER * featureWidth(made))) / (high - low), LADDER) : 1;
   made.scale = made.factor / unit;
@@ -77,7 +89,22 @@ export function grid({ heights, rows, columns, dx, dy }, most, { RELIEF, SLENDER
   return made;
 }
 
+// Other heights in a grid whose tip dents it by so much at most [m]; whether all of it is drawn otherwise now: the first
+// time it is stretched, so that a dent is seen. Its ground stays where it is drawn.
+export function dented(map, heights, columns, dent, { RELIEF, LADDER }) {
+  map.heights.set(means({ heights, columns }, map.size, map.rows, map.columns));
+  const [low, high] = extremesOf(map.heights), isFirst = map.dent !== dent;
+  map.ends = [Math.min(low, map.low - SHOWN * dent), Math.max(high, map.low + SHOWN * dent)];
+  map.relief = Math.max(high - low, dent);
+  if (!isFirst) return false;
+  map.dent = dent;
+  map.factor = map.built = stepBelow((map.unit * RELIEF) / map.relief, LADDER);
+  map.scale = map.factor / map.unit;
+  return true;
+}
+
 export function tile(map, row, column, size) {
+  const scale = map.built / map.unit; // what is changed by hand stretches the actor
   const rows = Math.min(size, map.rows - row), columns = Math.min(size, map.columns - column), count = rows * columns;
   const points = new Float32Array(3 * count), normals = new Float32Array(3 * count), heights = new Float32Array(count);
   const height = (j, i) => map.heights[j * map.columns + i];
@@ -86,9 +113,9 @@ export function tile(map, row, column, size) {
       const y = row + j, x = column + i, left = Math.max(x - 1, 0), right = Math.min(x + 1, map.columns - 1);
       const below = Math.max(y - 1, 0), above = Math.min(y + 1, map.rows - 1);
       heights[at] = height(y, x);
-      points.set([(x + 0.5) * map.dx, (y + 0.5) * map.dy, (heights[at] - map.low) * map.scale], 3 * at);
-      const slopeX = ((height(y, right) - height(y, left)) * map.scale) / ((right - left) * map.dx);
-      const slopeY = ((height(above, x) - height(below, x)) * map.scale) / ((above - below) * map.dy);
+      points.set([(x + 0.5) * map.dx, (y + 0.5) * map.dy, (heights[at] - map.low) * scale], 3 * at);
+      const slopeX = ((height(y, right) - height(y, left)) * scale) / ((right - left) * map.dx);
+      const slopeY = ((height(above, x) - height(below, x)) * scale) / ((above - below) * map.dy);
       const length = Math.hypot(slopeX, slopeY, 1);
       normals.set([-slopeX / length, -slopeY / length, 1 / length], 3 * at);
     }

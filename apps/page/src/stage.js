@@ -13,7 +13,7 @@ import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkRenderWindow from "@kitware/vtk.js/Rendering/Core/RenderWindow";
 import vtkRenderer from "@kitware/vtk.js/Rendering/Core/Renderer";
 import { DrawnBalls } from "./balls.js";
-import { grid, laidOn, ribbon, stepped, tile, tileValues, turned } from "./shapes.js";
+import { dented, grid, laidOn, ribbon, stepped, tile, tileValues, turned } from "./shapes.js";
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
 const unit = (colour) => colour.map((part) => part / 255);
@@ -68,6 +68,7 @@ export class Stage {
     for (const actor of [...this.tiles, ...(this.others ?? [])]) this.renderer.removeActor(actor);
     this.balls.forget();
     this.grid = grid(surface, MOST, this.constants);
+    this.columns = surface.columns;
     this.colours = vtkColorTransferFunction.newInstance();
     this.maps = { height: this.grid };
     for (const [name, heights] of Object.entries(surface.properties ?? {}))
@@ -96,13 +97,44 @@ export class Stage {
     if (this.palette) this.paint(this.palette);
   }
 
-  #tile(row, column) {
-    const made = tile(this.grid, row, column, TILE), data = vtkPolyData.newInstance();
+  // The tip has changed the surface, and can dent it by so much [m]: tiles are made anew where it has.
+  reshape(heights, dent) {
+    const { grid: map } = this, before = map.heights.slice(), all = dented(map, heights, this.columns, dent, this.constants);
+    this.tiles.forEach((actor, i) => {
+      if (!all && !this.#differs(before, this.places[i])) return;
+      this.#mould(actor.getMapper().getInputData(), ...this.places[i]);
+      actor.setScale(1, 1, map.factor / map.built);
+      this.rebuilt += 4 * TILE * TILE;
+    });
+    this.lastTraced = null;
+    this.paint(this.palette);
+  }
+
+  // Whether a point of a tile, or beside it, is elsewhere.
+  #differs(before, [row, column]) {
+    const { heights, rows, columns } = this.grid;
+    for (let j = Math.max(row - 1, 0); j < Math.min(row + TILE + 1, rows); ++j)
+      for (let i = Math.max(column - 1, 0); i < Math.min(column + TILE + 1, columns); ++i)
+        if (heights[j * columns + i] !== before[j * columns + i]) return true;
+    return false;
+  }
+
+  // Points, normals and what is shown by colour of a tile.
+  #mould(data, row, column) {
+    const made = tile(this.grid, row, column, TILE);
     data.getPoints().setData(made.points, 3);
-    data.getPolys().setData(made.cells);
-    data.getPointData().setScalars(vtkDataArray.newInstance({ name: "height", values: made.heights }));
+    data.getPoints().modified();
+    data.getPointData().setScalars(vtkDataArray.newInstance({ name: this.shown,
+      values: this.shown === "height" ? made.heights : tileValues(this.maps[this.shown], [row, column], TILE) }));
     data.getPointData().setNormals(
       vtkDataArray.newInstance({ name: "normals", values: made.normals, numberOfComponents: 3 }));
+    data.modified();
+    return made.cells;
+  }
+
+  #tile(row, column) {
+    const data = vtkPolyData.newInstance();
+    data.getPolys().setData(this.#mould(data, row, column));
     const actor = this.#actor(data), mapper = actor.getMapper();
     mapper.setLookupTable(this.colours);
     mapper.setUseLookupTableScalarRange(true);
@@ -188,7 +220,7 @@ export class Stage {
   // Where the tip is drawn: over the drawn surface, at the gap that is true.
   apex(now) {
     const { grid: map, constants } = this, [x, y, z] = now.tip, ground = map.at(x, y);
-    const above = (Number.isFinite(now.gap) ? now.gap : z - ground) * map.scale;
+    const above = (Number.isFinite(now.gap) && !map.dent ? now.gap : z - ground) * map.scale; // a gap is that of the dent as it was
     const drawn = above > 0 ? constants.FAR * Math.tanh(above / constants.FAR) : above;
     return [x / map.unit, y / map.unit, (ground - map.low) * map.scale + drawn];
   }

@@ -2,6 +2,7 @@
 // Tasks and the lesson beside the session of this page; words and numbers are those of nanotouch_app/training.
 
 import { Refused } from "./core.js";
+import { dent } from "./dent.js";
 import { lessonPage } from "./lesson.js";
 import { push } from "./push.js";
 import { Staircase } from "./staircase.js";
@@ -113,7 +114,7 @@ export class Trainer {
   }
 }
 
-const MADE = { find, pull_off: pullOff, trace, steady, stiffer, push, pattern: push };
+const MADE = { find, pull_off: pullOff, trace, steady, stiffer, dent, scratch: dent, push, pattern: push };
 
 function find(trainer, { SHARE, HELD }) {
   const limit = SHARE * trainer.load, told = { limit: digits(limit, "N"), held: HELD };

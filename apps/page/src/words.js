@@ -47,7 +47,8 @@ export class Words {
       : gap > 0 ? `apart by ${digits(gap, "m")}` : `pressed in by ${digits(-gap, "m")}`;
     const margin = Number.isFinite(world.margin) ? `margin ${Number(world.margin.toPrecision(3))}` : "no loop closes through this hand";
     const pull = law && law.facts.pull_off_force > 1e-3 * load ? ` · pull-off ${digits(law.facts.pull_off_force, "N")}` : "";
-    return `${touch} · within ${Number(Math.max(100 * world.bound, 0.01).toPrecision(2))} % (plan) · ${margin} · ` +
+    const within = Number.isFinite(world.bound) ? `within ${Number(Math.max(100 * world.bound, 0.01).toPrecision(2))} %` : "no bound";
+    return `${touch} · ${within} (plan) · ${margin} · ` +
       `never above ${digits(world.force, "N")}${pull}`;
   }
 

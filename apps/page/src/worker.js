@@ -49,6 +49,7 @@ function draw(message) {
   try {
     if (message.draw === "plan") Object.assign(reply, drawn.plan(message));
     else if (message.draw === "section") Object.assign(reply, drawn.section(message));
+    else if (message.draw === "dented") Object.assign(reply, drawn.dented.see(message));
     else if (message.draw === "curve") Object.assign(reply, { card: fitCard(drawn.core, message) });
   } catch (error) {
     reply.error = error.message;
