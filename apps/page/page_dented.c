@@ -14,9 +14,10 @@ static struct {
     double load;    /* the largest [N] */
     nt_dents dents; /* as far as the updates say; the list is the session's */
     int is_placed;
-    double *flat, *heights; /* before any dent, and with those of `drawn`; with an edge around for their ridges */
-    nt_height_map map;      /* of these */
-    int edge;               /* [pixels] */
+    double *flat, *one,
+        *heights;      /* before any dent; one dent alone; with those of `drawn`; an edge around for ridges */
+    nt_height_map map; /* of these */
+    int edge;          /* [pixels] */
     nt_dent drawn[NT_DENTS];
     int drawn_count; /* -1: not yet */
 } sample = {.drawn_count = -1};
@@ -64,15 +65,17 @@ PAGE_API(page_dented_lay) int page_dented_lay(const double *heights, int nx, int
     const int edge = edge_of(dx, dy), wide = nx + 2 * edge, high = ny + 2 * edge;
     const size_t size = sizeof(double) * (size_t)wide * (size_t)high;
     free(sample.flat);
+    free(sample.one);
     free(sample.heights);
     sample.flat = malloc(size);
+    sample.one = calloc((size_t)wide * (size_t)high, sizeof(double));
     sample.heights = malloc(size);
     sample.dents.count = 0;
     sample.drawn_count = -1;
     sample.is_placed = 0;
     sample.edge = edge;
     sample.map = (nt_height_map){sample.heights, wide, high, dx, dy};
-    if (!sample.flat || !sample.heights)
+    if (!sample.flat || !sample.one || !sample.heights)
         return NT_E_NO_MEMORY;
     for (int j = 0; j < high; ++j)
         for (int i = 0; i < wide; ++i)
@@ -210,20 +213,39 @@ static nt_imprint moved(nt_imprint of)
     return of;
 }
 
-/* All dents with their ridges, the older ones first; one that is finer than its pixels is left out. */
-static void edit(const nt_dents *dents)
+/* One more dent. Where they overlap the deepest counts, beside it the highest ridge; `way` holds so far how far from
+ * the ground each pixel is. */
+static void add(double *way, const nt_imprint *imprint)
 {
     const nt_displacement how = nt_displacement_defaults();
-    int is_drawn[NT_DENTS] = {0};
-    memcpy(sample.heights, sample.flat, sizeof(double) * (size_t)sample.map.nx * (size_t)sample.map.ny);
+    const nt_imprint_change change = {NULL, imprint, &how};
+    nt_edit done;
+    if (nt_imprint_edit(sample.one, &sample.map, &change, &done, NULL) != NT_OK)
+        return; /* finer than the pixels */
+    for (long j = done.first_y; j < done.first_y + done.count_y; ++j)
+        for (long i = done.first_x; i < done.first_x + done.count_x; ++i) {
+            double *so_far = &way[j * sample.map.nx + i], *new = &sample.one[j * sample.map.nx + i];
+            *so_far = *so_far < 0.0 || *new < 0.0 ? fmin(*so_far, *new) : fmax(*so_far, *new);
+            *new = 0.0;
+        }
+}
+
+/* All dents with their ridges, but those that have grown into another one. */
+static void edit(const nt_dents *dents)
+{
+    const int pixels = sample.map.nx * sample.map.ny;
+    int has_grown[NT_DENTS] = {0};
+    for (int i = 0; i < dents->count; ++i)
+        if (dents->made[i].before >= 0 && dents->made[i].before < i)
+            has_grown[dents->made[i].before] = 1;
+    memset(sample.heights, 0, sizeof(double) * (size_t)pixels);
     for (int i = 0; i < dents->count; ++i) {
-        const int number = dents->made[i].before, grows = number >= 0 && number < i && is_drawn[number];
-        const nt_imprint after = moved(dents->made[i].imprint);
-        const nt_imprint before = grows ? moved(dents->made[number].imprint) : after;
-        const nt_imprint_change change = {grows ? &before : NULL, &after, &how};
-        nt_edit done;
-        is_drawn[i] = nt_imprint_edit(sample.heights, &sample.map, &change, &done, NULL) == NT_OK;
+        const nt_imprint imprint = moved(dents->made[i].imprint);
+        if (!has_grown[i])
+            add(sample.heights, &imprint);
     }
+    for (int i = 0; i < pixels; ++i)
+        sample.heights[i] += sample.flat[i];
 }
 
 /* Into `heights`, the pixels of page_dented_lay: with all dents, and with the one that would be left if the tip let go

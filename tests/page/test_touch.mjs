@@ -235,6 +235,53 @@ test("a ball and its ring are drawn, and a drag pushes it", async () => {
   await page.close();
 });
 
+test("gold keeps a groove: drawn as it grows, one undo for one touch, refused while it presses", async () => {
+  const { page, said } = await visit(chromium.context, `${FILE}#preset=soft_gold`);
+  await touched(page);
+  const lowest = () => value(page, () => Math.min(...window.nanotouch.stage.grid.heights));
+  const undo = page.locator("[data-act=undo]");
+  await page.focus("#view");
+  assert.equal(await lowest(), 0);
+  assert.ok(await undo.isDisabled());
+  await page.keyboard.down(" ");
+  await until(page, () => window.nanotouch.seen.now.force > 0.4 * window.nanotouch.seen.load);
+  for (let i = 0; i < 8; ++i) await page.keyboard.press("ArrowRight", { delay: 15 });
+  await until(page, () => Math.min(...window.nanotouch.stage.grid.heights) < -5e-10); // before it lets go
+  await page.keyboard.press("z");
+  await until(page, () => window.nanotouch.seen.notes.some(({ text }) => /lift it first/.test(text)));
+  await page.keyboard.up(" ");
+  await until(page, () => window.nanotouch.seen.now.contact === 0 && window.nanotouch.seen.clock.undo > 0);
+  const { dented, now } = await value(page, () => window.nanotouch.seen);
+  assert.ok(Math.abs(await lowest() / -dented.depth - 1) < 0.1, `${await lowest()} ${dented.depth}`); // the tip hangs over its end
+  assert.ok(now.gap > now.tip[2], `${now.gap} ${now.tip[2]}`); // which is lower
+  assert.ok(!(await undo.isDisabled()));
+  if (process.env.NANOTOUCH_PICTURES) await page.screenshot({ path: `${process.env.NANOTOUCH_PICTURES}/groove.png` });
+  await page.keyboard.press("z");
+  await until(page, () => Math.min(...window.nanotouch.stage.grid.heights) === 0 && window.nanotouch.seen.clock.undo === 0);
+  assert.deepEqual(said.filter((words) => !/GL Driver|WebGL/.test(words)), []);
+  await page.close();
+});
+
+test("a dent of a depth, by keys alone", async () => {
+  const { page } = await visit(chromium.context, `${FILE}#task=dent`);
+  await touched(page);
+  await until(page, () => window.nanotouch.seen.task.name === "dent" && window.nanotouch.seen.world?.title === "Soft gold");
+  await page.focus("#view");
+  await page.keyboard.press("F1");
+  await until(page, () => window.nanotouch.seen.notes.some(({ text }) => /nothing is left yet/.test(text)));
+  const depth = (words) => Number(/([\d.]+) nm deep/.exec(words)?.[1] ?? 1e-3 * Number(/([\d.]+) pm deep/.exec(words)?.[1] ?? 0));
+  const asked = depth((await seen(page, "task")).words);
+  assert.ok(asked > 0.2 && asked < 2, `${asked}`);
+  const deepest = async () => 1e9 * ((await seen(page, "dented")).depth);
+  for (let i = 0; i < 400 && (await deepest()) < 0.97 * asked; ++i) await page.keyboard.press("PageDown", { delay: 30 });
+  for (let i = 0; i < 400 && (await seen(page, "now")).contact > 0; ++i) await page.keyboard.press("PageUp", { delay: 10 });
+  await until(page, () => /deep/.test(window.nanotouch.seen.task.now));
+  await page.keyboard.press("F1");
+  await until(page, () => "score" in window.nanotouch.seen.task);
+  assert.ok((await seen(page, "task")).passed, JSON.stringify(await seen(page, "task")));
+  await page.close();
+});
+
 test("in the background and back: the session's time never leaps, and it goes on", async () => {
   const { page } = await visit(chromium.context, FILE);
   await touched(page);

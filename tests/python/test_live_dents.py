@@ -164,6 +164,52 @@ def test_the_surface_has_the_dents_and_leaves_out_what_is_finer_than_its_pixels(
     assert sample.lowered(200e-9, 50e-9) == (0.0, 0.0)
 
 
+def test_dents_that_overlap_are_as_deep_as_the_deepest_and_one_at_the_edge_is_cut_off() -> None:
+    """Beside Specimen's own picture of one dent alone."""
+    sample = made(200e-9, 100e-9)
+    first, second = sample.dents
+    a = first.imprint.radius
+    shifted = second.imprint._replace(start_x=60e-9 + a, end_x=60e-9 + a)
+    sample.dents = (first, second._replace(imprint=shifted))
+    flat = np.zeros((256, 256))
+    heights = sample.heights(flat, (0.4e-9, 0.4e-9), (0.0, 0.0))
+    alone = plasticity.Specimen(flat, 0.4e-9)
+    alone.take(first)
+    deep = np.array(alone.heights)
+    alone.undo()
+    alone.take(sample.dents[1])
+    np.testing.assert_allclose(heights.min(), min(deep.min(), alone.heights.min()), rtol=1e-12)
+    np.testing.assert_allclose(heights[deep < 0.0], np.minimum(deep, alone.heights)[deep < 0.0], atol=1e-24)
+    moved = sample.heights(flat, (0.4e-9, 0.4e-9), (60e-9, 50e-9))  # the corner lies in the middle of the first one
+    assert moved[0, 0] == pytest.approx(-first.imprint.depth, rel=1e-2)
+
+
+def test_one_undo_takes_back_all_that_a_touch_has_left(watched: Watched) -> None:
+    """A groove, and the tap before it."""
+    hand = operator(watched)
+    for count in (1, 2):
+        hand.down_to(150e-9)
+        for _ in range(12):
+            watched.answer({"do": "move", "way": (3e-9, 0.0, 0.0)})
+            watched.advance(0.02)
+        if count == 2:
+            watched.answer({"do": "undo"})
+            refused = [message["why"] for message in watched.told if message["tell"] == "refused"]
+            assert "lift it first" in refused[-1]
+        hand.up()
+        left = watched.host.left.dents
+        if count == 1:
+            before = left
+            watched.answer({"do": "move", "way": (0.0, 40e-9, 0.0)})
+            watched.advance(0.3)
+    assert len(left) > len(before) > 0
+    watched.answer({"do": "undo"})
+    assert watched.host.left.dents == before
+    assert watched.host.clock()["undo"] == len(before)
+    watched.answer({"do": "undo"})
+    assert watched.host.left.dents == ()
+
+
 def test_the_picture_draws_dents_and_balls(tmp_path: Any) -> None:
     pytest.importorskip("vtkmodules")
     works, reason = view.probe()

@@ -121,21 +121,28 @@ class Dented:
         return np.where(r < a, -deep * (1.0 - (r / a) ** 2), 0.0)
 
     def heights(self, flat: Floats, pixel_size: Sequence[float] | Floats, origin: Sequence[float] | Floats) -> Floats:
-        """The surface with all dents and their ridges, from its lower left corner on [m]; one that is finer than its
-        pixels is left out."""
+        """The surface with all dents and their ridges, from its lower left corner on [m].
+
+        Where they overlap the deepest counts; one that is finer than its pixels is left out.
+        """
         dy, dx = (float(part) for part in pixel_size)
         edge = self._edge(min(dx, dy))
-        specimen = plasticity.Specimen(np.pad(flat, edge, mode="edge"), (dy, dx))
+        way = np.zeros((flat.shape[0] + 2 * edge, flat.shape[1] + 2 * edge))
+        specimen = plasticity.Specimen(way, (dy, dx))
         corner = (float(origin[0]) - edge * dx, float(origin[1]) - edge * dy)
-        numbers: dict[int, int] = {}
+        grown = {dent.before for dent in self.dents}
         for number, dent in enumerate(self.dents):
-            before = None if dent.before is None else numbers.get(dent.before)
+            if number in grown:
+                continue
             try:
-                specimen.take(_moved(dent, corner)._replace(before=before))
+                event = specimen.take(_moved(dent, corner)._replace(before=None))
             except InvalidValue:
                 continue
-            numbers[number] = len(specimen.events) - 1
-        return np.array(specimen.heights[edge:-edge, edge:-edge])
+            so_far, new = way[event.changed], specimen.heights[event.changed]
+            pit = (so_far < 0.0) | (new < 0.0)
+            way[event.changed] = np.where(pit, np.minimum(so_far, new), np.maximum(so_far, new))
+            specimen.undo()
+        return flat + way[edge:-edge, edge:-edge]
 
     def _edge(self, pixel: float) -> int:
         """So many pixels around a map that the widest dent with its ridge lies there wherever its middle does."""

@@ -131,6 +131,8 @@ class Host(Tasks):
         frame = self.observer.newest()
         if frame is not None and not self.paused and self._drives(frame):
             self.hand.follow(frame, min(now - self.seen, 0.1) * self.speed)
+        if frame is not None:
+            self.left.follow(frame)
         self.seen = now
         self._look_on()
         self._drain()
@@ -153,6 +155,7 @@ class Host(Tasks):
             frame = self.observer.newest()
             if frame is not None:
                 self.hand.follow(frame, 0.01)
+                self.left.follow(frame)
             self.left.looked = 0.0
             self._look_on()
             self._drain()
@@ -166,11 +169,16 @@ class Host(Tasks):
             "scene": session.scene.to_dict(), "rig": session.rig.to_dict(), "settings": session.settings.to_dict(),
             "stiffness": self.hand.stiffness, "bound": plan.bound, "law": plan.contact_law,
             "warnings": [str(warning.text) for warning in plan.warnings], "margin": session.stability_margin,
-            "force": session.guarantee().force, "undo": len(self.done) or len(self.left.dents) or len(self.pushes.done),
+            "force": session.guarantee().force, "undo": self.undoable,
             "redo": len(self.undone), "start": list(session.path[0]), "clearance": session.clearance, "name": self.name,
             "relative_accuracy": session.relative_accuracy, "zero": self.hand.zero,
             "size": list(map(float, self.subject.topography.size)),
         }  # fmt: skip
+
+    @property
+    def undoable(self) -> int:
+        """How many changes, or else dents, or else pushes can be taken back."""
+        return len(self.done) or len(self.left.dents) or len(self.pushes.done)
 
     def clock(self) -> Message:
         """How the session goes; the world, too, if another program has changed it."""
@@ -180,7 +188,7 @@ class Host(Tasks):
         progress = self.session.progress
         return {
             "tell": "clock", "speed": self.speed, "paused": self.paused, "slowdown": progress.slowdown,
-            "recorded": self.writer is not None, "height": self.hand.height,
+            "recorded": self.writer is not None, "height": self.hand.height, "undo": self.undoable,
             "here": places.here(self.session.surface, self.observer.newest()),
         }  # fmt: skip
 

@@ -4,6 +4,7 @@ they were pushed to; both can be taken back."""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -13,6 +14,7 @@ from nanotouch.errors import Error
 from nanotouch.plasticity import Dent, dents_of
 
 LOOKED = 0.1  # for new dents so often [s]
+APART = 0.3  # for so long, until the next contact is another touch [s]
 Message = dict[str, Any]
 
 
@@ -34,6 +36,19 @@ class Left:
         self.session, self.tell = session, tell
         self.dents: tuple[Dent, ...] = ()
         self.looked = 0.0
+        self.began: list[int] = []  # how many there were at each touch
+        self.touched_at = self.newest = -math.inf  # of the session [s]
+
+    def follow(self, frame: Any) -> None:
+        """The newest frame: whether the tip touches."""
+        self.newest = float(frame["time"])
+        if keeps(self.session.scene) and frame["contact_radius"] > 0.0:
+            self._touches()
+
+    def _touches(self) -> None:
+        if not self.touched_at <= self.newest < self.touched_at + APART:
+            self.began.append(len(self.dents))
+        self.touched_at = self.newest
 
     def look(self, now: float | None = None) -> bool:
         """Whether there are others than before. Of a session that keeps its events."""
@@ -44,16 +59,23 @@ class Left:
         dents = dents_of(self.session.metadata()["events"])
         if dents == self.dents:
             return False
+        if len(dents) > len(self.dents):  # a tap may be over already
+            self._touches()
         self.dents = dents
         self.report()
         return True
 
     def undo(self) -> None:
-        """Take the last one back, while the tip touches nothing."""
+        """Take back all that the last touch has left, while the tip touches nothing."""
+        while self.began and self.began[-1] >= len(self.dents):
+            self.began.pop()
+        before = self.began[-1] if self.began else len(self.dents) - 1
         try:
-            self.session.undent()
+            for _ in self.dents[before:]:
+                self.session.undent()
         except Error as error:
             raise Error("the tip presses: lift it first, then take the dent back") from error
+        self.began = self.began[:-1]
         self.looked = 0.0
         self.look()
 

@@ -174,7 +174,7 @@ export class Host {
       this.hand.follow(this.now, run);
     }
     if (this.subject.particles) this.balls.look(this.now.time);
-    if (this.keepsDents) this.dents.look();
+    if (this.keepsDents) this.dents.look(this.now);
     if (this.trainer) this.trainer.see(this.now);
   }
 
@@ -199,9 +199,10 @@ export class Host {
       scene: this.opened, rig: this.openedRig, settings: this.settings, stiffness: this.hand.stiffness,
       bound: own(OWN.bound), warnings: this.facts.warnings, terms: this.facts.terms, margin: own(OWN.margin),
       force: own(OWN.force), relative_accuracy: this.accuracy,
-      undo: this.done.length || this.dents.list.length || this.balls.pushes.length, redo: this.undone.length,
-      start: this.start, size: this.size, clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
+      undo: this.undoable, redo: this.undone.length, start: this.start, size: this.size, clearance: this.clearance, zero: this.hand.zero, changes: this.changes, source: "simulated in this page" };
   }
+
+  get undoable() { return this.done.length || this.dents.list.length || this.balls.pushes.length; }
 
   clock() {
     const { core } = this, given = this.subject.properties ?? {};
@@ -215,7 +216,7 @@ export class Host {
       core.c.page_energies(at);
       return [...core.doubles(at, 4)];
     });
-    return { tell: "clock", speed: this.speed, paused: this.paused, slowdown: this.slowdown, recorded: false,
+    return { tell: "clock", speed: this.speed, paused: this.paused, slowdown: this.slowdown, recorded: false, undo: this.undoable,
       height: this.hand.height, here, energies };
   }
 

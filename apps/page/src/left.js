@@ -8,9 +8,13 @@ const LAID = 8, MOST = 6; // numbers of each (page.h), and how many there may be
 const MOVED = 1e-10; // less is no push [m]
 
 const DENT = 8, DENTS = 128; // numbers of each (page.h), and how many there may be
+const APART = 0.3; // for so long, until the next contact is another touch [s]
 
 export class Dents {
-  constructor(core, tell) { Object.assign(this, { core, tell, told: "" }); }
+  constructor(core, tell) {
+    Object.assign(this, { core, tell });
+    this.forget();
+  }
 
   // Rows of start, end, radius, depth, load, and the dent that it has grown from, the oldest first.
   get list() {
@@ -21,19 +25,28 @@ export class Dents {
   }
 
   // Tells of others than before: the list changes at its end.
-  look() {
+  look({ time, contact }) {
     const { list } = this, now = `${list.length} ${list.at(-1) ?? ""}`;
+    if (contact > 0 || list.length > this.known) { // a tap may be over already
+      if (!(time >= this.touchedAt && time < this.touchedAt + APART)) this.began.push(this.known);
+      this.touchedAt = time;
+    }
+    this.known = list.length;
     if (now === this.told) return;
     this.told = now;
     this.tell({ tell: "dents", dents: list });
   }
 
   // Of another session: they are told in any case.
-  forget() { this.told = ""; }
+  forget() { Object.assign(this, { told: "", known: 0, began: [], touchedAt: -Infinity }); } // began: how many there were before each touch
 
-  // The last one.
+  // All that the last touch has left that is there still.
   undo() {
-    if (this.core.c.page_undent()) throw new Refused("the tip presses: lift it first, then take the dent back");
+    const { length } = this.list;
+    while (this.began.at(-1) >= length) this.began.pop();
+    for (let count = length; count > (this.began.at(-1) ?? length - 1); --count)
+      if (this.core.c.page_undent()) throw new Refused("the tip presses: lift it first, then take the dent back");
+    this.began.pop();
   }
 }
 

@@ -16,6 +16,7 @@ import { DrawnBalls } from "./balls.js";
 import { dented, grid, laidOn, ribbon, stepped, tile, tileValues, turned } from "./shapes.js";
 
 const TILE = 128, MOST = 256; // pixels to a side of a tile, and of the whole mesh
+const GLASSY = 0.45; // of a tip that dents the sample
 const unit = (colour) => colour.map((part) => part / 255);
 const radians = (degrees) => (degrees * Math.PI) / 180;
 
@@ -107,6 +108,7 @@ export class Stage {
       this.rebuilt += 4 * TILE * TILE;
     });
     this.lastTraced = null;
+    this.tip?.getProperty().setOpacity(GLASSY); // what it leaves lies below it
     this.paint(this.palette);
   }
 
@@ -201,6 +203,7 @@ export class Stage {
     this.tip.getProperty().setSpecular(0.35);
     this.tip.getProperty().setSpecularPower(25);
     this.tip.getProperty().setAmbient(0.3);
+    this.tip.getProperty().setOpacity(this.grid.dent ? GLASSY : 1);
     this.leverData = vtkPolyData.newInstance();
     this.lever = this.#actor(this.leverData);
     this.others = [...this.shadows, this.trace, this.tip, this.lever];

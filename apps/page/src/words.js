@@ -33,7 +33,7 @@ export class Words {
     byId("about").textContent = [world.source ?? "simulated", world.felt].filter(Boolean).join("  ·  ");
     byId("clock").textContent = `${clock.paused ? "PAUSED " : ""}${clock.speed}x${slow}${clock.recorded ? " · rec" : ""}`;
     document.querySelector("[data-act=pause]").textContent = clock.paused ? "Go on" : "Pause";
-    document.querySelector("[data-act=undo]").disabled = !world.undo;
+    document.querySelector("[data-act=undo]").disabled = !(clock.undo ?? world.undo); // what the tip leaves can be taken back, too
     const { state, reasons } = seen.now, names = this.table.reasons.filter((_, bit) => (reasons >>> bit) & 1);
     byId("state").textContent = this.table.states[state];
     byId("dot").style.background = `var(--${STATES[state]})`;
