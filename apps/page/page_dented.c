@@ -233,7 +233,7 @@ static void add(double *way, const nt_imprint *imprint)
 /* All dents with their ridges, but those that have grown into another one. */
 static void edit(const nt_dents *dents)
 {
-    const int pixels = sample.map.nx * sample.map.ny;
+    const long pixels = sample.map.nx * sample.map.ny;
     int has_grown[NT_DENTS] = {0};
     for (int i = 0; i < dents->count; ++i)
         if (dents->made[i].before >= 0 && dents->made[i].before < i)
@@ -244,7 +244,7 @@ static void edit(const nt_dents *dents)
         if (!has_grown[i])
             add(sample.heights, &imprint);
     }
-    for (int i = 0; i < pixels; ++i)
+    for (long i = 0; i < pixels; ++i)
         sample.heights[i] += sample.flat[i];
 }
 
@@ -265,8 +265,8 @@ PAGE_API(page_dented_heights) int page_dented_heights(double *heights)
     memcpy(sample.drawn, dents.made, size);
     sample.drawn_count = dents.count;
     edit(&dents);
-    const int edge = sample.edge, nx = sample.map.nx - 2 * edge, ny = sample.map.ny - 2 * edge;
-    for (int j = 0; j < ny; ++j)
+    const long edge = sample.edge, nx = sample.map.nx - 2 * edge, ny = sample.map.ny - 2 * edge;
+    for (long j = 0; j < ny; ++j)
         memcpy(heights + j * nx, sample.heights + (j + edge) * sample.map.nx + edge, sizeof(double) * (size_t)nx);
     return 1;
 }

@@ -189,6 +189,7 @@ def dents_differ(theirs: dict[str, Any]) -> list[str]:
         note()
     go(70, {"do": "wheel", "steps": 1})
     go(60, {"do": "move", "way": (0.5e-9, 0.25e-9, 0.0)})
+    host.answer({"do": "undo"})  # refused
     go(70, {"do": "wheel", "steps": -1})
     note()
     host.answer({"do": "undo"})

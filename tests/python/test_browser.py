@@ -270,6 +270,23 @@ def test_readers_are_told_where_the_work_of_the_hand_goes() -> None:
     assert json.loads(text)["energies"] == pytest.approx(list(energies))
 
 
+def test_who_comes_later_is_told_the_dents_of_what_lies_there_now() -> None:
+    readers = Readers()
+    host = Host(of_preset("soft_gold"), readers.hear, stepped=True)
+    readers.hear(host.world())
+    host.answer({"do": "press", "on": True})
+    host.advance(2.0)
+    host.answer({"do": "press", "on": False})
+    host.advance(0.5)
+    (told,) = [message for message in map(json.loads, readers.greeting()) if message["tell"] == "dents"]
+    assert [row[4] for row in told["dents"]] == [dent.imprint.radius for dent in host.left.dents]
+    assert told["dents"]
+    host.answer({"do": "preset", "name": "polyester"})
+    assert "dents" not in readers.kept
+    readers.close()
+    host.close()
+
+
 def test_a_missing_page_is_a_plain_word(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(nt.Error, match="make page"):
         page(tmp_path / "none.html")

@@ -67,15 +67,14 @@ class Left:
 
     def undo(self) -> None:
         """Take back all that the last touch has left, while the tip touches nothing."""
-        while self.began and self.began[-1] >= len(self.dents):
-            self.began.pop()
-        before = self.began[-1] if self.began else len(self.dents) - 1
+        earlier = [count for count in self.began if count < len(self.dents)]
+        before = earlier[-1] if earlier else len(self.dents) - 1
         try:
             for _ in self.dents[before:]:
                 self.session.undent()
         except Error as error:
             raise Error("the tip presses: lift it first, then take the dent back") from error
-        self.began = self.began[:-1]
+        self.began = [count for count in self.began if count < before]
         self.looked = 0.0
         self.look()
 

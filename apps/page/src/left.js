@@ -42,11 +42,10 @@ export class Dents {
 
   // All that the last touch has left that is there still.
   undo() {
-    const { length } = this.list;
-    while (this.began.at(-1) >= length) this.began.pop();
-    for (let count = length; count > (this.began.at(-1) ?? length - 1); --count)
+    const { length } = this.list, before = this.began.findLast((count) => count < length) ?? length - 1;
+    for (let count = length; count > before; --count)
       if (this.core.c.page_undent()) throw new Refused("the tip presses: lift it first, then take the dent back");
-    this.began.pop();
+    this.began = this.began.filter((count) => count < before);
   }
 }
 
