@@ -123,7 +123,7 @@ set(nanotouch_sources_scene
     scene/yielding/table.c
     scene/yielding/terms.c
     scene/yielding/yielding.c)
-set(nanotouch_sources_scan scan/answer.c scan/balance.c scan/branches.c scan/curve.c scan/drive.c scan/flow.c scan/orbit.c scan/overshoot.c scan/scanner.c scan/settle.c scan/steady.c scan/tapping.c scan/zloop.c)
+set(nanotouch_sources_scan scan/answer.c scan/balance.c scan/branches.c scan/curve.c scan/drive.c scan/flow.c scan/loop.c scan/orbit.c scan/overshoot.c scan/scanner.c scan/settle.c scan/steady.c scan/tapping.c scan/zloop.c)
 set(nanotouch_sources_view view/curve.c view/section.c)
 set(nanotouch_sources_curves
     curves/baseline.c
@@ -232,6 +232,7 @@ set(nanotouch_sources_session
     session/run.c
     session/session.c
     session/setup.c
+    session/tap_loop.c
     session/terrain.c
     session/terrain_reach.c
     session/well.c)

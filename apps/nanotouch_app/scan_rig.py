@@ -16,6 +16,7 @@ from nanotouch_app.quantity import parse_quantity
 
 PEAK = 0.1  # accuracy of the peak force that is told
 LINES = 16  # of the raster that tell the relief, if a surface is named
+LEAST_QUALITY = 10.0  # of a lever that is simulated
 SETTLES = 2.0  # time constants of the height servo in a pixel, where no line rate is given
 
 
@@ -54,6 +55,15 @@ def _take_tap(wanted: nt.Settings, settings: nt.Scan, drive: nt.Drive, tables: d
             wanted[f"tap.{name}"] = settings[f"zloop.{name}"]
 
 
+def _with_margin(scene: nt.Scene, rig: nt.Rig, wanted: nt.Settings, what: dict[str, Any]) -> float:
+    """The K_I that nobody has named: the usual one, or what leaves a margin of 2 on this lever and stage."""
+    usual = float(wanted.gains.height_gain)
+    if rig["probe.quality"] < LEAST_QUALITY:
+        return usual
+    simulated = nt.Session(scene, rig, settings=wanted, mode="tapping", minimum_margin=0.0, **what)
+    return min(usual, float(f"{0.5 * usual * simulated.stability_margin:.2g}"))
+
+
 def opened(
     args: argparse.Namespace, settings: nt.Scan, drive: nt.Drive, surface: nt.Surface | None, rate: float | None
 ) -> nt.Session:
@@ -72,6 +82,8 @@ def opened(
         wanted.gains.set_point = settings.zloop.set_force
     if args.gain is not None:
         wanted.gains.height_gain = parse_quantity(args.gain, "Hz")
+    elif taps and not any(key.startswith("height_gain") for key in tables.get("gains", {})):
+        wanted.gains.height_gain = _with_margin(scene, rig, wanted, what)
     servo = float(wanted.gains.height_gain)
     if not servo > 0.0:
         raise InvalidValue(f"K_I = {servo:g}/s of the height servo (--gain, gains.height_gain): valid is above 0/s")

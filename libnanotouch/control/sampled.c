@@ -34,13 +34,6 @@ nt_sampled nt_sampled_make(double mass, double damping, double stiffness, double
     return part;
 }
 
-/* exp(j theta) - 1 */
-static double complex from_one(double theta)
-{
-    const double half = sin(0.5 * theta);
-    return nt_complex(-2.0 * half * half, sin(theta));
-}
-
 /* exp(-j theta) */
 static double complex back_by(double theta)
 {
@@ -49,7 +42,7 @@ static double complex back_by(double theta)
 
 nt_sampled_value nt_sampled_at(const nt_sampled *part, double theta)
 {
-    const double complex less = from_one(theta), delay = back_by(theta), dead = back_by(part->whole * theta);
+    const double complex less = nt_complex_from_one(theta), delay = back_by(theta), dead = back_by(part->whole * theta);
     const double complex first = dead * (part->early[0] * delay + part->late[0]);
     const double complex second = dead * (part->early[1] * delay + part->late[1]);
     const double complex a = less - part->step[0][0], d = less - part->step[1][1];
@@ -120,7 +113,7 @@ nt_sampled_loop nt_sampled_loop_of(const nt_rig *rig, const nt_settings *setting
 static double complex stage_numerator(const nt_sampled_loop *loop, double theta, double complex *denominator)
 {
     const nt_sampled_value stage = nt_sampled_at(&loop->stage, theta);
-    const double complex less = from_one(theta);
+    const double complex less = nt_complex_from_one(theta);
     const double *a = loop->stage_loop.a;
     *denominator = loop->notched ? less * less + (2.0 + a[1]) * less + (1.0 + a[1] + a[2]) : stage.determinant;
     return loop->notched ? loop->stage_loop.b[0] * stage.position : stage.position;
@@ -128,13 +121,13 @@ static double complex stage_numerator(const nt_sampled_loop *loop, double theta,
 
 double complex nt_sampled_low_pass(const nt_sampled_loop *loop, double theta)
 {
-    const double complex less = from_one(theta);
+    const double complex less = nt_complex_from_one(theta);
     return loop->force_filter * (1.0 + less) / (less + loop->force_filter);
 }
 
 nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
 {
-    const double complex less = from_one(theta), z = 1.0 + less;
+    const double complex less = nt_complex_from_one(theta), z = 1.0 + less;
     double complex below;
     const double complex above = stage_numerator(loop, theta, &below);
     const nt_sampled_value master = nt_sampled_at(&loop->master, theta);
@@ -158,7 +151,7 @@ nt_sampled_terms nt_sampled_terms_at(const nt_sampled_loop *loop, double theta)
 
 double complex nt_sampled_stage(const nt_sampled_loop *loop, double theta)
 {
-    const double complex less = from_one(theta), integral = loop->stage_loop.integral * (1.0 + less);
+    const double complex less = nt_complex_from_one(theta), integral = loop->stage_loop.integral * (1.0 + less);
     double complex below;
     const double complex above = stage_numerator(loop, theta, &below);
     if (loop->printed) {

@@ -4,17 +4,10 @@
 #ifndef NANOTOUCH_CONTROL_SAMPLED_H
 #define NANOTOUCH_CONTROL_SAMPLED_H
 
-#include <complex.h>
-
+#include "core/complex_number.h"
 #include "core/lti.h"
 #include "nanotouch/settings.h"
 #include "nanotouch/stage_loop.h"
-
-/* CMPLX of C11, which not every C library has; for finite parts. */
-static inline double complex nt_complex(double re, double im)
-{
-    return re + im * (double complex)I;
-}
 
 /* M x'' + B x' + K x = u behind a hold and a dead time. States (x, v T), so that the entries are of like size. */
 typedef struct nt_sampled {

@@ -21,6 +21,7 @@
 #define NARROW 20e-12 /* width of a cell in the gap [m] */
 #define CELLS 50.0    /* of the free amplitude */
 #define ALIKE 0.03    /* radii of places in a cell, relative */
+#define LONGEST 0.25  /* step, over sqrt(Q) periods of the drive: longer ones ring on hard samples */
 #define TURN 0.05     /* of the lag by the force in one step [rad] */
 enum { PATIENCE = 60, HALVINGS = 8 };
 
@@ -262,6 +263,12 @@ nt_flow_value nt_flow_step_in(const nt_tapping *tapping, nt_flow_state *state, c
     }
     value.peak_force = peak;
     return value;
+}
+
+int nt_flow_steps(const nt_tapping *tapping, double time)
+{
+    const double periods = time * tapping->ratio * tapping->rate / (2.0 * NT_PI);
+    return (int)ceil(fmax(1.0, periods / (LONGEST * sqrt(tapping->quality))));
 }
 
 nt_status nt_flow_settle(const nt_tapping *tapping, nt_flow_state *state, const nt_tapping_over *over,

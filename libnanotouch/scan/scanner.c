@@ -11,7 +11,6 @@
 
 #define CLEARANCE 2e-9 /* above first touch where a scan begins to come down [m] */
 #define ENGAGE 12.0    /* time constants of the loop until it holds */
-#define STEP 0.25      /* of the slow flow, over sqrt(Q) periods: longer ones ring on hard samples */
 enum { ENGAGE_TICKS_MAX = 2000000 };
 
 static int is_tapping(const nt_scanner *s)
@@ -54,17 +53,15 @@ nt_status nt_scanner_init(nt_scanner *scanner, const nt_scanner_inputs *in, nt_p
     const nt_status status = prepare(&made, in, problem);
     if (status != NT_OK)
         return status;
-    if (is_tapping(&made)) {
-        const double periods = made.period * made.lever.ratio * made.probe.resonance;
-        made.steps = (int)ceil(fmax(1.0, periods / (STEP * sqrt(made.lever.quality))));
-    }
+    if (is_tapping(&made))
+        made.steps = nt_flow_steps(&made.lever, made.period);
     const nt_raster *raster = &made.scan.raster;
     made.ticks = lround(0.5 * made.scan.zloop.rate / raster->line_rate);
     if ((double)made.ticks < raster->pixels)
         return nt_problem_set(problem, "raster.line_rate", "Hz", raster->line_rate, 1e-3,
                               0.5 * made.scan.zloop.rate / raster->pixels);
     if (is_tapping(&made))
-        nt_tap_answers(&made);
+        nt_tap_answers(&made.lever, made.plan, &made.scan.zloop, made.answer);
     const double advised = nt_scanner_gain(&made);
     made.integral = made.scan.zloop.integral > 0.0 ? made.scan.zloop.integral : advised;
     const double most = made.integral * nt_scanner_margins(&made).gain;

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The description of a scan, and the stability of its z loop: K_I/(i w) x S(i w) x P(i w) x lock-in x delay. */
+ * The description of a scan, and the stability of its z loop: integral x stage x answer of the tap
+ * x lock-in amplifier, tick after tick (loop.h). */
 #include <math.h>
 #include <stddef.h>
 
 #include "core/problem.h"
-#include "core/same_bits.h"
+#include "loop.h"
 #include "nanotouch/material.h"
 #include "nanotouch/scan.h"
 
 #define FIELD(path, ...) NT_FIELD(nt_scan, path, __VA_ARGS__)
 #define GAIN_MARGIN 2.0
 #define PHASE_MARGIN (0.25 * NT_PI)
-#define ROUNDED 1e-9 /* of a gain of 1 */
-#define STIFFER 2.0  /* than a flat: a hollow of four times the radius */
+#define BELOW 1e-3 /* all corners */
 enum { FREQUENCIES = 2000 };
 
 static const nt_field scan_fields[] = {
@@ -70,113 +70,52 @@ nt_status nt_scan_check(const nt_scan *scan, nt_problem *problem)
     return nt_field_check(scan_fields, SCAN_FIELDS, scan, problem);
 }
 
-/* The amplitude follows the base at once where a hard sample holds it, and as slowly as 2 Q/w0 where nothing does; at
- * the set point it answers as the slow flow says, here and where the sample is STIFFER. The loop has to bear all of
- * them. Contact mode has the first alone. */
-enum { AT_ONCE, FREELY, AT_SET_POINT, ANSWERS = AT_SET_POINT + 2 * NT_TAP_ANSWERS }; /* the odd ones: STIFFER */
-
-static int has(const nt_scanner *s, int answer)
+/* Integral and stage of a scanner, one tick after the other: computing takes one. */
+static double complex integral_and_stage(const void *context, double theta)
 {
-    const nt_zloop_mode mode = s->scan.zloop.mode;
-    if (mode == NT_ZLOOP_CONTACT || answer < AT_SET_POINT)
-        return mode == NT_ZLOOP_CONTACT ? answer == AT_ONCE : 1;
-    return s->answer[(answer - AT_SET_POINT) / 2].amplitude > 0.0;
+    const nt_scanner *s = context;
+    const nt_oscillator *o = &s->stage.oscillator;
+    const double complex less = nt_complex_from_one(theta), x = less + o->xf, v = less + 1.0 - o->vv;
+    return s->period / less * (v * o->xf + o->xv * o->vf) / (x * v + o->xv * o->vf);
 }
 
-/* The slow flow about a motion, S = i w/w0, with a and p the changes of A and phi for one of the height:
- *     (2 r S + r/Q + fs_A) a - D cos(phi) p = -fs_z,    (2 r A S + D sin(phi)) p + (g_A + 1 - r^2) a = -g_z.
- * Phase feedback reads A0 cos(phi) p. */
-static double of_set_point(const nt_scanner *s, const nt_tap_answer *at, double w, double *lag)
+static nt_tap_loop tap_loop_of(const nt_scanner *s)
 {
-    const nt_tapping *t = &s->lever;
-    const double r = t->ratio, S = w / t->rate, A = at->amplitude;
-    const double x = r / t->quality + at->loss_swing, y = 2.0 * r * S, u = at->sine, v = y * A;
-    const double k = at->force_swing + 1.0 - r * r;
-    double real = -at->loss_height * u - at->cosine * at->force_height, imaginary = -at->loss_height * v, scale = 1.0;
-    if (s->scan.zloop.mode == NT_ZLOOP_PHASE) {
-        real = at->loss_height * k - x * at->force_height;
-        imaginary = -y * at->force_height;
-        scale = t->free_amplitude * at->cosine / t->strength;
-    }
-    const double below = x * u - y * v + at->cosine * k, beside = x * v + y * u;
-    *lag = atan2(beside, below) - atan2(imaginary, real);
-    return scale * hypotenuse(real, imaginary) / hypotenuse(below, beside);
+    return s->scan.zloop.mode == NT_ZLOOP_CONTACT ? nt_tap_loop_at_once()
+                                                  : nt_tap_loop_make(&s->lever, &s->scan.zloop, s->answer);
 }
 
-static double answer_of(const nt_scanner *s, double w, int answer, double *lag)
-{
-    *lag = 0.0;
-    if (answer == AT_ONCE)
-        return 1.0;
-    if (answer == FREELY) {
-        const double slow = 2.0 * w * s->lever.quality / s->lever.rate;
-        *lag = atan(slow);
-        return 1.0 / hypotenuse(1.0, slow);
-    }
-    nt_tap_answer at = s->answer[(answer - AT_SET_POINT) / 2];
-    if (answer % 2) {
-        at.force_swing += (1.0 - STIFFER) * s->lever.cosine * at.force_height;
-        at.force_height *= STIFFER;
-    }
-    return of_set_point(s, &at, w, lag);
-}
-
-/* Size and lag of the open loop with K_I = 1, at a frequency [rad/s]. */
-static double open_loop(const nt_scanner *s, double w, int answer, double *lag)
+static nt_open_loop open_loop_of(const nt_scanner *s, const nt_tap_loop *tap)
 {
     const nt_stage *stage = &s->stage.stage;
-    const double r = w / (2.0 * NT_PI * stage->resonance), real = 1.0 - r * r, imaginary = r / stage->quality;
-    double size = answer_of(s, w, answer, lag) / w / hypotenuse(real, imaginary);
-    *lag += 0.5 * NT_PI + atan2(imaginary, real) + w * s->period;
-    if (s->scan.zloop.mode != NT_ZLOOP_CONTACT) {
-        const double amplifier = w * s->scan.zloop.lock_in;
-        size /= hypotenuse(1.0, amplifier);
-        *lag += atan(amplifier);
-    }
-    return size;
-}
-
-static double frequency_at(const nt_scanner *s, int i)
-{
-    const double first = 1e-3, last = NT_PI / s->period;
-    return first * pow(last / first, (double)i / (FREQUENCIES - 1));
-}
-
-/* Largest size of the open loop with K_I = 1 where its lag is at least this. */
-static double largest_beyond(const nt_scanner *s, double least_lag)
-{
-    double most = 0.0;
-    for (int i = 0; i < FREQUENCIES * ANSWERS; i++) {
-        double lag;
-        if (!has(s, i / FREQUENCIES))
-            continue;
-        const double size = open_loop(s, frequency_at(s, i % FREQUENCIES), i / FREQUENCIES, &lag);
-        if (lag >= least_lag)
-            most = fmax(most, size);
-    }
-    return most;
+    const double turn = 2.0 * NT_PI * stage->resonance * s->period, folded = fmod(turn, 2.0 * NT_PI);
+    double corner = fmin(1.0, turn * fmin(1.0, stage->quality));
+    if (s->scan.zloop.mode != NT_ZLOOP_CONTACT)
+        corner = fmin(corner, fmin(tap->share, 0.5 * s->lever.rate * s->period / s->lever.quality));
+    return (nt_open_loop){.tap = tap,
+                          .stage = integral_and_stage,
+                          .context = s,
+                          .first = BELOW * corner,
+                          .angle = fmin(folded, 2.0 * NT_PI - folded),
+                          .width = 0.5 * turn / stage->quality};
 }
 
 double nt_scanner_gain(const nt_scanner *scanner)
 {
-    const double by_gain = 1.0 / (GAIN_MARGIN * largest_beyond(scanner, NT_PI));
-    const double by_phase = 1.0 / largest_beyond(scanner, NT_PI - PHASE_MARGIN);
-    return fmin(by_gain, by_phase);
+    const nt_tap_loop tap = tap_loop_of(scanner);
+    const nt_open_loop loop = open_loop_of(scanner, &tap);
+    const nt_loop_limits limits = nt_open_loop_limits(&loop, PHASE_MARGIN);
+    return fmin(limits.rings / GAIN_MARGIN, limits.phase);
 }
 
 nt_zloop_margins nt_scanner_margins(const nt_scanner *scanner)
 {
-    nt_zloop_margins found = {1.0 / (scanner->integral * largest_beyond(scanner, NT_PI)), NT_PI, 0.0};
-    for (int i = 0; i < FREQUENCIES * ANSWERS; i++) {
-        double lag;
-        const double w = frequency_at(scanner, i % FREQUENCIES);
-        if (!has(scanner, i / FREQUENCIES) ||
-            scanner->integral * open_loop(scanner, w, i / FREQUENCIES, &lag) < 1.0 + ROUNDED)
-            continue;
-        found.phase = fmin(found.phase, NT_PI - lag);
-        found.speed = fmax(found.speed, w);
-    }
-    return found;
+    const nt_tap_loop tap = tap_loop_of(scanner);
+    nt_open_loop loop = open_loop_of(scanner, &tap);
+    const nt_loop_limits limits = nt_open_loop_limits(&loop, PHASE_MARGIN);
+    loop.first = fmin(loop.first, BELOW * scanner->integral * scanner->period); /* its gain is 1 farther up */
+    const nt_loop_phase phase = nt_open_loop_phase(&loop, scanner->integral);
+    return (nt_zloop_margins){limits.rings / scanner->integral, phase.margin, phase.angle / scanner->period};
 }
 
 double nt_scanner_speed(const nt_scanner *scanner, double slope, double error)
@@ -194,23 +133,27 @@ double nt_scanner_parachute(const nt_scanner *scanner, double height, double spe
     return speed * height / (scanner->integral * error);
 }
 
-/* |K_I/(i w)/(1 + L)|^2, with the mean over a pixel. */
-static double noise_gain(const nt_scanner *s, double w)
+/* |K_I T/(z - 1)/(1 + L)|^2, with the mean over the ticks of a pixel. */
+static double noise_gain(const nt_open_loop *loop, int answer, double theta)
 {
-    double lag;
-    const double size = s->integral * open_loop(s, w, AT_ONCE, &lag), stage_free = s->integral / w;
-    const double real = 1.0 + size * cos(lag), imaginary = size * sin(lag);
-    const double half = 0.5 * w * s->period * (double)s->ticks / s->scan.raster.pixels;
-    const double mean = half > 1e-6 ? sin(half) / half : 1.0;
-    return stage_free * stage_free / (real * real + imaginary * imaginary) * mean * mean;
+    const nt_scanner *s = loop->context;
+    const double complex one = 1.0 + s->integral * nt_open_loop_at(loop, answer, theta);
+    const double half = sin(0.5 * theta), ticks = (double)s->ticks / s->scan.raster.pixels;
+    const double mean = sin(0.5 * theta * ticks) / (ticks * half), gain = 0.5 * s->integral * s->period / half;
+    return gain * gain * mean * mean / (creal(one) * creal(one) + cimag(one) * cimag(one));
 }
 
 double nt_scanner_noise(const nt_scanner *scanner)
 {
-    double sum = 0.0;
-    for (int i = 1; i < FREQUENCIES; i++) { /* white up to half the rate: sigma^2 T/pi per rad/s */
-        const double from = frequency_at(scanner, i - 1), to = frequency_at(scanner, i);
-        sum += 0.5 * (noise_gain(scanner, from) + noise_gain(scanner, to)) * (to - from);
+    const nt_tap_loop tap = tap_loop_of(scanner);
+    const nt_open_loop loop = open_loop_of(scanner, &tap);
+    const double first = fmin(loop.first, BELOW * scanner->integral * scanner->period);
+    double sum = first * noise_gain(&loop, tap.at_set_point, first); /* white: sigma^2/pi per rad of the circle */
+    for (int i = 1; i < FREQUENCIES; i++) {
+        const double from = first * pow(NT_PI / first, (double)(i - 1) / (FREQUENCIES - 1));
+        const double to = first * pow(NT_PI / first, (double)i / (FREQUENCIES - 1));
+        sum +=
+            0.5 * (noise_gain(&loop, tap.at_set_point, from) + noise_gain(&loop, tap.at_set_point, to)) * (to - from);
     }
-    return scanner->scan.zloop.noise * sqrt(sum * scanner->period / NT_PI);
+    return scanner->scan.zloop.noise * sqrt(sum / NT_PI);
 }

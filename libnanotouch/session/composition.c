@@ -21,6 +21,11 @@ nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *
     const double stiffness = nt_composition_stiffness(composition);
     judged.gains.alpha_f *= nt_margins_projected(rig, settings, stiffness, &composition->grip);
     const nt_verdict along_z = nt_margins_judge(rig, &judged, stiffness, mode, margins);
+    composition->tap = (nt_verdict){.margin = INFINITY, .rule = "", .field = ""};
+    if (mode == NT_MODE_TAPPING) {
+        composition->tap = nt_session_judge_tap(rig, settings, nt_terrain_plan(composition->terrain));
+        return along_z.margin <= composition->tap.margin ? along_z : composition->tap;
+    }
     if (mode != NT_MODE_TOUCH || !composition->touch.feels_sideways || !rig->master.motor)
         return along_z;
     *sideways = nt_margins_sideways(rig, settings, stiffness, &composition->grip, margins);

@@ -332,6 +332,10 @@ nt_sideways_margins nt_session_sideways(const nt_session *session)
 {
     return session->now->sideways;
 }
+nt_verdict nt_session_tap(const nt_session *session)
+{
+    return session->now->tap;
+}
 nt_reach nt_session_reach(const nt_session *session)
 {
     return session->now->reach;

@@ -21,6 +21,7 @@ typedef struct nt_composition {
     nt_pushed pushed; /* what may lie there */
     nt_margins margins;
     nt_sideways_margins sideways;
+    nt_verdict tap; /* infinite outside mode tapping */
     nt_guarantee guarantee;
 } nt_composition;
 
@@ -109,8 +110,14 @@ nt_status nt_compose_standing(nt_composition **made, const nt_composition *befor
 void nt_composition_close(nt_composition *composition, const nt_composition *other);
 /* Is this margin enough? A minimum of 0 asks for none. */
 int nt_composition_allows(const nt_composition *composition, double margin);
-/* Of these settings in a mode at the stiffest contact of the plan: margins and sideways. */
+/* Of these settings in a mode at the stiffest contact of the plan: margins, sideways and tap. */
 nt_verdict nt_composition_judge(nt_composition *composition, const nt_settings *settings, nt_mode mode);
+
+/* --- tap_loop.c --- */
+
+/* Margin of the height servo on a lever that taps at its set point: nothing but the K_I from which on it rings over the
+ * one of the settings. Some milliseconds. */
+nt_verdict nt_session_judge_tap(const nt_rig *rig, const nt_settings *settings, const nt_plan *plan);
 
 /* --- pushing.c --- */
 

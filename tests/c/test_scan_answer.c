@@ -118,7 +118,7 @@ static ring step(const nt_scanner *scanner, double share, double height)
 static int rings(const nt_scanner *scanner, double share, double height)
 {
     const ring found = step(scanner, share, height);
-    return found.last > 0.2 * fabs(height) && found.last > 0.9 * found.before;
+    return found.last > 0.2 * fabs(height) && found.last > 0.97 * found.before;
 }
 
 /* K_I where the loop begins to ring, over the advice. */
@@ -127,7 +127,7 @@ static double limit_of(const nt_scanner *scanner)
     double low = 0.25, high = TOO_HIGH;
     if (!rings(scanner, high, SMALL))
         return HUGE_VAL;
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 8; i++) {
         const double middle = sqrt(low * high);
         *(rings(scanner, middle, SMALL) ? &high : &low) = middle;
     }
@@ -144,33 +144,35 @@ static void the_stiff_one_of_phase_feedback(void **state)
     assert_false(rings(&scanner, 1.0, 3e-9));
     const double told = nt_scanner_margins(&scanner).gain, found = limit_of(&scanner);
     print_message("K_I %.4g 1/s; rings at %.3g of it, told %.3g\n", scanner.integral, found, told);
-    assert_true(found > 0.9 * told && found < 2.0 * told);
+    assert_true(found > 0.9 * told);
 }
 
 static void random_scenes(void **state)
 {
     (void)state;
-    const char *more = getenv("NANOTOUCH_LOOP_CASES");
-    const long cases = more != NULL ? strtol(more, NULL, 10) : CASES;
-    int ringing = 0, restless = 0, quiet = 0, compared = 0, near = 0;
+    const char *more = getenv("NANOTOUCH_LOOP_CASES"), *seed = getenv("NANOTOUCH_LOOP_FIRST");
+    const long cases = more != NULL ? strtol(more, NULL, 10) : CASES, first = seed ? strtol(seed, NULL, 10) : 0;
+    int ringing = 0, caught = 0, restless = 0, quiet = 0, compared = 0, near = 0;
     double least = HUGE_VAL, most = 0.0;
-    for (long n = 0; n < cases; n++) {
+    for (long n = first; n < first + cases; n++) {
         nt_random random = nt_random_seed((uint64_t)n);
         nt_scanner scanner;
         const nt_scene scene = draw(&random, n);
         if (!hold(&scanner, &scene))
             continue;
-        if (rings(&scanner, 0.25, SMALL)) {
+        if (rings(&scanner, 0.25, SMALL) || rings(&scanner, 0.25, 0.05 * drive.free_amplitude)) {
             restless++;
             continue;
         }
-        const int rang = rings(&scanner, 1.0, SMALL) || rings(&scanner, 1.0, 0.05 * drive.free_amplitude);
+        const int swings = rings(&scanner, 1.0, 0.05 * drive.free_amplitude), rang = rings(&scanner, 1.0, SMALL);
+        const int humid = scene.medium.relative_humidity > 0.0;
         const double ratio = limit_of(&scanner) / nt_scanner_margins(&scanner).gain;
-        ringing += rang;
+        ringing += rang || (swings && !humid);
+        caught += swings && humid; /* by a meniscus, and let go, from one tap to another */
         quiet += isinf(ratio) ? 1 : 0;
-        if (rang || ratio < 0.75 || ratio > 2.0)
+        if (rang || swings || ratio < 1.0)
             print_message("case %ld, mode %d: %s, begins to ring at %.3g of what is told\n", n, (int)scan.zloop.mode,
-                          rang ? "RINGS" : "settles", ratio);
+                          rang || swings ? "RINGS" : "settles", ratio);
         if (isinf(ratio))
             continue;
         compared++;
@@ -178,12 +180,13 @@ static void random_scenes(void **state)
         least = smaller(least, ratio);
         most = larger(most, ratio);
     }
-    print_message("%d ring at the advice; the limit is %.3g to %.3g of what is told in %d, below 2 in %d; %d ring not "
+    print_message("%d ring at the advice, %d are caught and let go there; the limit is %.3g to %.3g of what is told in "
+                  "%d, below 2 in %d; %d ring not "
                   "even at 8 times; %d rest at no K_I\n",
-                  ringing, least, most, compared, near, quiet, restless);
+                  ringing, caught, least, most, compared, near, quiet, restless);
     assert_true(compared > 0);
     assert_int_equal(ringing, 0);
-    assert_true(least > 0.5);
+    assert_true(least > 0.9);
 }
 
 int main(void)

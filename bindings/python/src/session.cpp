@@ -286,6 +286,11 @@ static void bind_facts(py::class_<Session> &type)
         .def_property_readonly("mode",
                                [](const Session &self) { return mode_name(nt_session_setup_of(self.handle)->mode); })
         .def_property_readonly("sideways", &sideways_of)
+        .def_property_readonly("tap",
+                               [](const Session &self) {
+                                   const nt_verdict tap = nt_session_tap(self.handle);
+                                   return std::make_pair(tap.margin, std::string(tap.rule));
+                               })
         .def_property_readonly("margin", [](const Session &self) { return nt_session_margins(self.handle).margin; })
         .def_property_readonly("master_start", [](const Session &self) { return nt_session_master_start(self.handle); })
         .def_property_readonly("start_height",

@@ -7,7 +7,6 @@
 #include "nanotouch/material.h"
 #include "parts.h"
 
-#define STEP 0.25    /* of the slow flow, over sqrt(Q) periods of the drive: longer ones ring on hard samples */
 #define AT_REST 1e-6 /* of the free amplitude */
 #define TOLERANCE 1e-9
 
@@ -75,8 +74,8 @@ static nt_flow_value flow_on(nt_sim_slave *slave, const nt_tapping_over *over, d
 {
     nt_sim_tap *tap = &slave->tap;
     const nt_tapping *lever = &tap->lever;
-    const double period = slave->link.period, drive_periods = period * lever->ratio * slave->link.rig.probe.resonance;
-    const int steps = (int)ceil(fmax(1.0, drive_periods / (STEP * sqrt(lever->quality))));
+    const double period = slave->link.period;
+    const int steps = nt_flow_steps(lever, period);
     nt_flow_value now = {.amplitude = 0.0};
     *peak = -HUGE_VAL;
     for (int i = 0; i < steps; i++) {

@@ -70,6 +70,9 @@ NT_API NT_REALTIME nt_flow_value nt_flow_step(const nt_tapping *tapping, nt_flow
 NT_API NT_REALTIME nt_flow_value nt_flow_step_in(const nt_tapping *tapping, nt_flow_state *state,
                                                  const nt_tapping_over *over, double time, nt_flow_table *table);
 
+/* In how many steps a time [s] is to be taken, of up to 0.25 sqrt(Q) periods each. */
+NT_API int nt_flow_steps(const nt_tapping *tapping, double time);
+
 /* Steps until nothing changes. NT_E_NO_CONVERGENCE: it still does after 60 Q periods; NT_E_ARGUMENT; NT_E_NOT_FINITE.
  */
 NT_API nt_status nt_flow_settle(const nt_tapping *tapping, nt_flow_state *state, const nt_tapping_over *over,

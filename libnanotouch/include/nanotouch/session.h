@@ -295,6 +295,8 @@ NT_API const nt_touch_state *nt_session_touch_state(const nt_session *session);
 NT_API nt_margins nt_session_margins(const nt_session *session);
 /* Those in x and y, and of all axes together; infinite where no motor pushes back sideways. */
 NT_API nt_sideways_margins nt_session_sideways(const nt_session *session);
+/* That of a lever which taps, by the slow flow at the set point over a flat; infinite in other modes. */
+NT_API nt_verdict nt_session_tap(const nt_session *session);
 /* What of the surface it can reach, on its path or in its area. */
 NT_API nt_reach nt_session_reach(const nt_session *session);
 /* What holds whatever the operator does; to be read before the first tick. */

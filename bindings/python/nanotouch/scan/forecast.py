@@ -11,6 +11,7 @@ import numpy as np
 
 from nanotouch.errors import SolverError
 from nanotouch.scan.overshoot import limit_of, peak_bounds, places, single_set_point, steepest
+from nanotouch.scan.rehearsal import rehearse, rests_slower
 from nanotouch.scan.scanner import LoopMargins, Scanner
 from nanotouch.scan.steady import Steady, SteadyMotion
 from nanotouch.scan.tapping import Tapping
@@ -24,6 +25,11 @@ _HALVINGS = 6
 _FLAT = 1e-15  # range of heights that rounding leaves of a flat [m]
 _SIGMAS = 5.0  # of the noise of a reading that may not lift the tip
 _ELECTRONVOLT = 1.602176634e-19
+_OUT_OF_REACH = {
+    "tapping": "no motion has this amplitude; take a larger zloop.set_amplitude or free amplitude",
+    "phase": "attraction or losses keep the lag of a tip that is repelled from it; take a larger free amplitude, a "
+    "stiffer lever, a sharper tip or another zloop.set_phase, or hold the amplitude",
+}
 
 
 class Motion(NamedTuple):
@@ -92,6 +98,10 @@ class Forecast(NamedTuple):
     single_set_point: float
     """tapping: where two motions have the set point, the nearest A/A0 that only one has over a flat; NaN: none, or not
     needed"""
+    unrest: float
+    """tapping: range of the reading of a z loop that does not come to rest over a flat [m]; 0: it does"""
+    rests_slower: bool
+    """tapping: whether it comes to rest there with a quarter of the K_I in use"""
 
     def __str__(self) -> str:
         return "\n".join([*map(self._motion, self.motions), *self._change(), self._safe(), *self._loop()])
@@ -158,6 +168,8 @@ class Forecast(NamedTuple):
             f"z loop: K_I {self.integral:.3g} 1/s, gain margin {self.margins.gain:.3g}, phase margin "
             f"{math.degrees(self.margins.phase):.3g} degrees; advice: up to {self.advised_integral:.3g} 1/s"
         ]
+        if self.unrest > 0.0:
+            lines.append(self._unrest())
         if math.isfinite(self.speed_limit):
             lines.append(
                 f"speed: {in_words(self.speed, 'm', 3)}/s; the steepest slope, {self.slope:.3g}, is followed within "
@@ -172,6 +184,16 @@ class Forecast(NamedTuple):
             )
         lines.append(f"noise: {in_words(self.noise, 'm', 2)} rms in the heights of a flat; it grows as the root of K_I")
         return lines
+
+    def _unrest(self) -> str:
+        swings = f"at rest: no; over a flat the reading goes to and fro by {in_words(self.unrest, 'm', 2)}"
+        if self.rests_slower:
+            return f"{swings}; with a quarter of this K_I it comes to rest"
+        return (
+            f"{swings}, and so it does with a quarter of this K_I: the tip is caught and let go from tap to tap, or no "
+            "motion has this set point. Take another set point, a larger free amplitude, a stiffer lever or a sharper "
+            "tip; dry air, where there is water"
+        )
 
     def _flank(self) -> str:
         climbs = (
@@ -213,7 +235,13 @@ def forecast(scanner: Scanner, scene: Scene, surface: Surface | None = None) -> 
         scanner.noise, _hollow_force(scanner, scene, surface, lag),
         *peak_bounds(scanner, scene, surface),
         single_set_point(scanner, scene, _wanted(scanner)) if len(motions) > 1 else math.nan,
+        *_rest(scanner, scene),
     )  # fmt: skip
+
+
+def _rest(scanner: Scanner, scene: Scene) -> tuple[float, bool]:
+    unrest = 0.0 if scanner.scan.zloop.mode == "contact" else rehearse(scanner, scene).unrest
+    return unrest, unrest == 0.0 or rests_slower(scanner, scene)
 
 
 def _largest_set_point(scanner: Scanner, lag: float) -> float:
@@ -281,7 +309,7 @@ def _to_and_fro(scanner: Scanner, steady: Steady, height: float) -> Motion:
             "amplitude frees it"
         )
     if settled.settled:
-        raise SolverError("no height gives the set point: it is out of the lever's reach")
+        raise SolverError(f"no height gives the set point: {_OUT_OF_REACH[str(scanner.scan.zloop.mode)]}")
     value = tapping.run(settled.state, height, math.ceil(scanner.rig["probe.quality"]))[1]
     return Motion(value.peak_force, math.nan, -value.lowest_gap, value.contact_time, value.phase, value.tip_loss)
 

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from nanotouch._arrays import Floats
+from nanotouch.scan.rehearsal import rehearse
 from nanotouch.scan.scanner import Scanner
 from nanotouch.scan.steady import Steady
 from nanotouch.scene import Scene
@@ -16,7 +17,6 @@ from nanotouch.scene.surface import Surface
 _ACCURACY = 0.02  # of the curve's motions
 _LEAST_SWING, _HALVINGS = 0.05, 6  # of the free amplitude: smaller ones are not advised
 _LINES = 512
-_REHEARSED = 2000  # ticks there and back over a flat, in which a loop that rings shows it
 _SHARES = (0.06, 0.98, 96)  # set points over A0 that are tried
 
 
@@ -82,7 +82,7 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
         return max(of.peak_bound(at, share * rise, height) for at in spots)
 
     A0, most = float(scanner.drive["drive.free_amplitude"]), bound(scanner)
-    if _rings(scanner, scene, 0.5 * most):
+    if rehearse(scanner, scene).peak_force > 0.5 * most:
         return math.inf, math.nan
     if most <= limit:
         return most, A0
@@ -95,15 +95,6 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
             return most, math.nan
         low, high = (middle, high) if keeps else (low, middle)
     return most, low * A0
-
-
-def _rings(scanner: Scanner, scene: Scene, force: float) -> bool:
-    """Whether the z loop taps a flat harder than a force [N]: one that rings does, whatever its margins."""
-    settings = scanner.scan.copy()
-    settings["raster.lines"], settings["raster.pixels"] = 1, 16
-    settings["raster.line_rate"] = settings["zloop.rate"] / (2.0 * _REHEARSED)
-    flat = Scanner(scene.plan(), settings, scanner.rig, scanner.drive)
-    return any(float(channels.peak_force.max()) > force for channels in flat.run()[:2])
 
 
 def single_set_point(scanner: Scanner, scene: Scene, wanted: float) -> float:

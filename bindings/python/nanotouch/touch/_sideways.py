@@ -49,7 +49,7 @@ def sideways_of(session: Session) -> Sideways:
 
 
 def margins_of(session: Session) -> Margins:
-    """Of a session in its mode: along z, with what a projection adds; the least counts x and y, too."""
+    """Of a session in its mode: along z, with what a projection adds; the least counts x and y, too, and the tap."""
     settings = session.settings
     amounts: Settings | None = settings
     if session.control == "own":
@@ -60,4 +60,6 @@ def margins_of(session: Session) -> Margins:
         amounts.gains.alpha_f *= projected
     along_z = margins.of_own_law(session.rig, settings, amounts, session.plan.maximum_stiffness, session.mode)
     sideways = sideways_of(session)
-    return along_z._replace(least=sideways.least, rule=sideways.rule) if sideways.least < along_z.least else along_z
+    found = [(along_z.least, along_z.rule), (sideways.least, sideways.rule), session.core.tap]
+    least, rule = min(found, key=lambda one: one[0])
+    return along_z._replace(least=least, rule=rule) if least < along_z.least else along_z
