@@ -28,6 +28,8 @@ _MOST = 25  # spikes, the highest first
 _ROUNDS = 8  # of choosing that depth
 _APART = 31  # side of the window in which a spike is highest [pixel]
 _WIDEST = 101  # of the window of what is fitted [pixel]
+_NO_SPHERE = 1.5  # times what the curvature of the outermost apex has otherwise
+_SERIES = 0.02  # of a curvature, which a sphere has more terms than counted for
 _BETWEEN = 0.1  # of a pixel: what the heights between pixels can change the radius by, found with exact spikes
 
 
@@ -41,6 +43,9 @@ class ApexRadius:
         R + R_s [m].
     low, high : float
         Interval of 95 % [m].
+    no_sphere : float
+        Share of the half interval that stands for an apex that is no sphere on a cone: its outermost part alone has
+        another radius [m]; 0 where noise explains that.
     half_angle : float
         Of the cone that goes on from the sphere [rad].
     spikes : int
@@ -52,6 +57,7 @@ class ApexRadius:
     radius: float
     low: float
     high: float
+    no_sphere: float
     half_angle: float
     spikes: int
     threshold: float
@@ -60,6 +66,8 @@ class ApexRadius:
         return (
             f"apex and sharpest spikes: radius {length(self.radius, 3)}, "
             f"{lengths((self.low, self.high), 3, ' .. ')} (95 %), of {self.spikes} spike{'s' * (self.spikes != 1)}"
+            + "; the apex is no sphere: its top has another radius"
+            * (self.no_sphere > 0.0)
         )
 
 
@@ -67,8 +75,9 @@ def apex_radius(topography: Topography) -> ApexRadius:
     """The sum of the radii of tip and spike, from the sharpest spikes of an image.
 
     Despeckle and repair scars first: a wrong pixel passes for a spike. Spikes that are sharper than a few pixels are
-    passed over. The interval holds noise, also along the lines, a tenth of a pixel, and the differences of the spikes;
-    not what the z loop did, nor an error of the scanner's scale.
+    passed over. The interval holds noise, also along the lines, a tenth of a pixel, the differences of the spikes, and
+    by how much the curvature of the top alone differs, 1.5 times; not what the z loop did, nor an error of the
+    scanner's scale.
 
     Parameters
     ----------
@@ -81,7 +90,9 @@ def apex_radius(topography: Topography) -> ApexRadius:
         If the image holds no spike whose apex spans 24 pixels.
     """
     threshold = _TALL * pixel_noise(topography.heights)
-    found = [one for at in _peaks(topography, threshold) if (one := _widened(topography, at)) is not None]
+    peaks = _peaks(topography, threshold)
+    seen = [(one, at) for at in peaks if (one := _widened(topography, at)) is not None]
+    found = [one for one, _ in seen]
     if not found:
         raise InvalidValue(
             f"no spike over {length(threshold, 2)} of noise whose apex spans {_LEAST} pixels: smaller pixels, or a "
@@ -92,10 +103,45 @@ def apex_radius(topography: Topography) -> ApexRadius:
     weight = agree / sigma**2
     mean = float(weight @ radius / weight.sum())
     count = int(agree.sum())
+    sharpest = [at for (_, at), counts in zip(seen, agree, strict=True) if counts]
+    no_sphere = _NO_SPHERE * _differs(topography, sharpest, mean)
     scatter = float(weight @ (radius - mean) ** 2) / max(count - 1, 1)
     spread = _SURE * float(np.sqrt(max(scatter, 1.0) / weight.sum())) + _BETWEEN * max(topography.pixel_size)
+    spread += no_sphere
     half_angle = float(weight @ angle / weight.sum())
-    return ApexRadius(mean, max(mean - spread, 0.0), mean + spread, half_angle, count, threshold)
+    return ApexRadius(mean, max(mean - spread, 0.0), mean + spread, no_sphere, half_angle, count, threshold)
+
+
+def _differs(topography: Topography, places: list[tuple[int, int]], radius: float) -> float:
+    """By how much the curvature of the outermost apex alone has another radius [m]; 0 where noise explains it."""
+    curved = [one for at in places if (one := _curvature(topography, at, radius)) is not None]
+    if not curved:
+        return 0.0
+    curvature, sigma = np.array(curved).T
+    weight = 1.0 / sigma**2
+    known = _SURE / np.sqrt(weight.sum()) + (_BETWEEN * max(topography.pixel_size) + _SERIES * radius) / radius**2
+    mean = float(weight @ curvature / weight.sum())
+    return abs(1.0 / max(mean, 0.3 / radius) - radius) if abs(mean - 1.0 / radius) > known else 0.0
+
+
+def _curvature(topography: Topography, at: tuple[int, int], radius: float) -> tuple[float, float] | None:
+    """Curvature of a spike at its top [1/m] and its standard deviation: z = c + a x + b y - r^2/(2R) + d r^4 + e r^6,
+    a quarter of R deep, where a sphere has not gone over into a cone; None where that spans too few pixels."""
+    dy, dx = topography.pixel_size
+    half = min(int(radius / min(dx, dy)) + 1, at[0], at[1],
+               *(n - 1 - i for n, i in zip(topography.shape, at, strict=True)))  # fmt: skip
+    z = topography.heights[at[0] - half : at[0] + half + 1, at[1] - half : at[1] + half + 1]
+    y, x = (np.arange(-half, half + 1) * d / radius for d in (dy, dx))
+    used = z > z.max() - 0.25 * radius
+    if used.sum() < _LEAST:
+        return None
+    u, v = (one[used] for one in np.meshgrid(x, y))
+    r2 = u**2 + v**2
+    terms = np.stack([np.ones_like(u), u, v, -0.5 * r2, r2**2, r2**3], axis=1)
+    found, *_ = np.linalg.lstsq(terms, z[used] / radius, rcond=None)
+    rows = np.broadcast_to(np.arange(len(z))[:, None], z.shape)[used]
+    sigma = _deviation(terms, terms @ found - z[used] / radius, rows)[3]
+    return float(found[3] / radius), max(float(sigma), 1e-6) / radius
 
 
 def _peaks(topography: Topography, threshold: float) -> list[tuple[int, int]]:
