@@ -182,6 +182,8 @@ class Hand:
         return down == way[2]
 
     def _shift(self, way: tuple[float, float, float], frame: Any) -> None:
+        if not np.isfinite(way).all():  # where the tip is nobody knows
+            return
         self.aimed_at = float(frame["time"])
         scale = 1.0 / self.session.settings.gains.alpha_p
         before, self.place = self.place, np.clip(self.place + scale * np.asarray(way), *self.ends)

@@ -248,7 +248,7 @@ class Host(Tasks):
     def _rest(self) -> None:
         """The hand begins anew from where the tip is."""
         frame = self.observer.newest()
-        if frame is not None:
+        if frame is not None and np.isfinite(frame["tip_position"][2]):  # a slave that has failed does not say
             self.hand.height = float(frame["tip_position"][2])
 
     def _do_stop(self, message: Message) -> None:

@@ -14,6 +14,7 @@ from nanotouch.errors import Error
 from nanotouch.plasticity import Dent, dents_of
 
 LOOKED = 0.1  # for new dents so often [s]
+MOST = 128  # dents that a session keeps (NT_DENTS)
 APART = 0.3  # for so long, until the next contact is another touch [s]
 Message = dict[str, Any]
 
@@ -63,6 +64,9 @@ class Left:
             self._touches()
         self.dents = dents
         self.report()
+        if len(dents) == MOST:
+            text = f"{MOST} dents are kept, no more: take some back (Z), or lay the sample anew (C)"
+            self.tell({"tell": "note", "text": text})
         return True
 
     def undo(self) -> None:

@@ -72,7 +72,7 @@ export class Hand {
 
   // Begin anew from where the tip is.
   rest(now) {
-    this.height = now.tip[2];
+    if (Number.isFinite(now.tip[2])) this.height = now.tip[2]; // a slave that has failed does not say
   }
 
   // After a rewind: where the master is now.
@@ -83,6 +83,7 @@ export class Hand {
   }
 
   #shift(way) {
+    if (!way.every(Number.isFinite)) return; // where the tip is nobody knows
     const scale = 1 / this.session.settings.gains.alpha_p;
     const before = this.place[2];
     this.place = this.place.map((at, axis) => clamp(at + scale * way[axis], this.low[axis], this.high[axis]));

@@ -274,7 +274,8 @@ export class Host {
     this.speed = SPEEDS[Math.min(Math.max(at, 0), SPEEDS.length - 1)];
   }
   do_rewind() {
-    this.core.check(this.core.c.page_rewind(this.constants.REWIND));
+    if (this.core.c.page_rewind(this.constants.REWIND))
+      throw new Refused(`nothing is kept from ${this.constants.REWIND} s ago: the touch, or what was changed last, is younger`);
     this.#look();
     this.balls.rewound(this.now.time);
     this.hand.resume(this.now);

@@ -35,6 +35,7 @@ export class Dents {
     if (now === this.told) return;
     this.told = now;
     this.tell({ tell: "dents", dents: list });
+    if (list.length === DENTS) this.tell({ tell: "note", text: `${DENTS} dents are kept, no more: take some back (Z), or lay the sample anew (C)` });
   }
 
   // Of another session: they are told in any case.
