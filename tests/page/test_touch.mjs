@@ -282,6 +282,22 @@ test("a dent of a depth, by keys alone", async () => {
   await page.close();
 });
 
+test("without WebGL 2 the page says so; hand and charts work", async () => {
+  const { page, said } = await visit(chromium.context, "about:blank");
+  await page.addInitScript(() => {
+    const whole = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function part(kind, ...rest) { return /webgl/.test(kind) ? null : whole.call(this, kind, ...rest); };
+  });
+  await page.goto(FILE);
+  await touched(page);
+  assert.match(await page.locator("#lights").innerText(), /no WebGL 2/);
+  await page.focus("#view");
+  await page.keyboard.down(" ");
+  await until(page, () => window.nanotouch.seen.now.contact > 0 && window.nanotouch.seen.law);
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
 test("in the background and back: the session's time never leaps, and it goes on", async () => {
   const { page } = await visit(chromium.context, FILE);
   await touched(page);

@@ -223,7 +223,7 @@ function draw(now) {
   const { hides } = seen;
   if (seen.now && seen.world) stage.update(seen.now, seen);
   stage.lights(!hides.has("surface"));
-  byId("lights").hidden = !hides.has("surface");
+  byId("lights").hidden = stage.works && !hides.has("surface");
   for (const [name, id] of [["contact", "contact"], ["law", "law"], ["sliders", "sliders"]])
     byId(id).style.visibility = hides.has(name) ? "hidden" : "visible";
   if (stage.grid) stage.render();
@@ -236,6 +236,7 @@ function draw(now) {
 
 // --- begin ---
 
+if (!stage.works) byId("lights").textContent = "This browser gives no WebGL 2: the surface is not drawn. The hand and the charts work.";
 dress(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 const wasm = Uint8Array.from(atob(byId("wasm").textContent), (letter) => letter.charCodeAt(0));
 worked.begin({ wasm, own: state.own, table: { ...table, palettes: null, help: null } });

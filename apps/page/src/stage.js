@@ -23,6 +23,7 @@ const radians = (degrees) => (degrees * Math.PI) / 180;
 export class Stage {
   constructor(place, constants) {
     Object.assign(this, { place, constants, tiles: [], shape: "", visible: true, rebuilt: 0 });
+    this.works = Boolean(document.createElement("canvas").getContext("webgl2"));
     this.renderer = vtkRenderer.newInstance();
     this.window = vtkRenderWindow.newInstance();
     this.window.addRenderer(this.renderer);
@@ -319,6 +320,7 @@ export class Stage {
   }
 
   render() {
+    if (!this.works) return;
     this.renderer.resetCameraClippingRange();
     this.window.render();
   }
