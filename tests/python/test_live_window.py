@@ -49,9 +49,9 @@ class Live:
 
     size = (1440, 900)
 
-    def __init__(self, screen: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, screen: str, monkeypatch: pytest.MonkeyPatch, preset: str = "silicon_in_air") -> None:
         monkeypatch.setenv("DISPLAY", screen)
-        subject = of_preset("silicon_in_air")
+        subject = of_preset(preset)
         self.screen = screen
         self.desk = Desk(subject.topography)
         self.host = Host(subject, self.desk.tell)
@@ -155,6 +155,45 @@ def test_a_person_touches_with_the_mouse(screen: str, tmp_path: Path, monkeypatc
         live.serve(lambda frame: any(one["do"] == "leave" for one in live.asked))
         ticks = live.host.session.progress.ticks
         live.serve(lambda frame: live.host.session.progress.ticks > ticks + 100)  # it outlives the window
+    finally:
+        live.host.close()
+        live.desk.close()
+
+
+def test_a_person_scratches_gold_with_mouse_and_space(
+    screen: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The drawn surface has the groove, and Z takes it back."""
+    live = Live(screen, monkeypatch, "soft_gold")
+    image = pytest.importorskip("matplotlib.image")
+
+    def picture(name: str) -> Any:
+        live.asked.clear()
+        path = tmp_path / f"{name}.png"
+        live.desk.tell({"tell": "picture", "path": str(path)})
+        live.serve(lambda frame: any(one["do"] == "saved" for one in live.asked))
+        return image.imread(path)[..., :3]
+
+    try:
+        live.host.left.report()
+        live.x("mousemove", 440, 380)
+        live.x("keydown", "space")
+        before = live.serve(lambda frame: frame["tip_force"][2] > 0.8 * live.host.hand.press_force)
+        live.x("mousedown", 1)
+        live.x("mousemove_relative", "--", 60, 0)
+        live.x("mouseup", 1)
+        live.serve(lambda frame: frame["tip_position"][0] > before["tip_position"][0] + 10e-9)
+        live.x("key", "z")
+        live.serve(lambda frame: any(one["do"] == "undo" for one in live.asked))
+        live.x("keyup", "space")
+        live.serve(lambda frame: frame["gap"] > 5e-9)
+        live.serve(lambda frame: any(dent.imprint[:2] != dent.imprint[2:4] for dent in live.host.left.dents))
+        grooved = picture("groove")
+        live.x("key", "z")
+        live.serve(lambda frame: not live.host.left.dents)
+        flat = picture("flat")
+        view = np.s_[200:700, 100:800]
+        assert np.abs(grooved[view] - flat[view]).max() > 0.1
     finally:
         live.host.close()
         live.desk.close()
