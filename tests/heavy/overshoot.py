@@ -43,7 +43,22 @@ def relief(rng: np.random.Generator, size: float) -> images.Topography:
     return images.Topography(z, (x[1], x[1]))
 
 
-def scanned(seed: int) -> tuple[nt.Scanner, nt.Scene, nt.Surface]:
+def made_of(rng: np.random.Generator, scene: nt.Scene, shape: tuple[int, ...]) -> dict[str, Any]:
+    """Two materials, with or without an edge between them: E apart by up to 100, w by up to 10."""
+    across, along = np.meshgrid(*[np.arange(n) / n for n in shape], indexing="ij")
+    share = 0.5 + 0.5 * np.sin(2.0 * np.pi * (rng.integers(1, 5) * along + rng.integers(0, 3) * across + rng.random()))
+    share = np.round(share) if rng.random() < 0.5 else share
+    modulus, work = scene["sample.youngs_modulus"], float(0.02 * 5.0 ** rng.random())
+    most = float(np.clip(100.0 ** rng.uniform(-1.0, 1.0), 3e8 / modulus, 1.5e11 / modulus))
+    given = {
+        "youngs_modulus": modulus * most**share,
+        "work_of_adhesion": work * float(10.0 ** rng.uniform(-0.5, 0.5)) ** share,
+    }
+    kind = rng.integers(3)
+    return {name: values for i, (name, values) in enumerate(given.items()) if kind in (2, i)}
+
+
+def scanned(seed: int, maps: bool = False) -> tuple[nt.Scanner, nt.Scene, nt.Surface]:
     """A scanner over a random surface, so fast that its loop lags by 2 to 100 % of the free amplitude."""
     rng = np.random.default_rng(seed)
 
@@ -52,7 +67,10 @@ def scanned(seed: int) -> tuple[nt.Scanner, nt.Scene, nt.Surface]:
 
     scene = nt.Scene(tip={"radius": between(3e-9, 30e-9)}, sample={"youngs_modulus": between(3e8, 1.5e11)})
     scene.medium.relative_humidity = float(rng.uniform(0.2, 0.7)) if rng.random() < 0.3 else 0.0
-    surface = nt.Surface.touched_by(scene, relief(rng, between(0.2e-6, 1e-6)))
+    if maps:  # a soft place of a map may yield to van der Waals' force, which no plan has
+        scene.adhesion.hamaker_constant = 0.0
+    ground = relief(rng, between(0.2e-6, 1e-6))
+    surface = nt.Surface.touched_by(scene, ground, **(made_of(rng, scene, ground.heights.shape) if maps else {}))
     quality = between(30.0, 1000.0)
     probe: Any = {"spring_constant": between(2.0, 60.0), "quality": quality, "resonance": between(60e3, 400e3)}
     rig = nt.Rig(probe=probe, stage={"resonance": between(2e3, 40e3), "quality": between(1.0, 15.0)})
@@ -67,7 +85,7 @@ def scanned(seed: int) -> tuple[nt.Scanner, nt.Scene, nt.Surface]:
     slow = nt.Scanner(plan, settings, rig, drive)
     slope = max(scan.steepest(slow, surface)[0], 1e-3)
     rate = slow.integral * between(0.02, 1.0) * A0 / slope / (2.0 * width)
-    slowest = loop["rate"] * LINES / MOST_TICKS
+    slowest = loop["rate"] * LINES / (MOST_TICKS / 8 if maps else MOST_TICKS)
     settings["raster.line_rate"] = min(max(rate, slowest), 0.25 * loop["rate"] / PIXELS)
     return nt.Scanner(plan, settings, rig, drive), scene, surface
 
@@ -76,13 +94,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--maps", action="store_true", help="over maps of modulus and adhesion")
     wanted = parser.parse_args()
     kinds: Counter[str] = Counter()
     shares: list[float] = []
     broken, start = 0, time.monotonic()
     for seed in range(wanted.first, wanted.first + wanted.count):
         try:
-            scanner, scene, surface = scanned(seed)
+            scanner, scene, surface = scanned(seed, wanted.maps)
             told = scan.peak_bounds(scanner, scene, surface)[0]
             image = scanner.run(seed)
         except Error as refusal:

@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 
 from nanotouch._arrays import Floats
 from nanotouch.scan.rehearsal import rehearse
 from nanotouch.scan.scanner import Scanner
-from nanotouch.scan.steady import Steady
+from nanotouch.scan.steady import Steady, SteadyMotion
 from nanotouch.scene import Scene
 from nanotouch.scene.surface import Surface
 
+_ROUGHLY = 0.3  # accuracy of forces that tell how far the tip sinks in
 _ACCURACY = 0.02  # of the curve's motions
 _LEAST_SWING, _HALVINGS = 0.05, 6  # of the free amplitude: smaller ones are not advised
 _LINES = 512
@@ -60,22 +62,70 @@ def limit_of(scene: Scene) -> tuple[float, str]:
     return most, reason
 
 
+def _extremes(scanner: Scanner, surface: Surface) -> list[tuple[float, float]]:
+    """Where the contact is widest and narrowest, the sample stiffest and softest, most and least adhesive."""
+    x, y = places(scanner, surface)
+    found = [(float(x[0]), float(y[0]))]
+    for values in _maps(surface, x, y):
+        for at in (values.argmax(), values.argmin()):
+            j, i = np.unravel_index(at, values.shape)
+            found.append((float(x[i]), float(y[j])))
+    return found
+
+
+def _maps(surface: Surface, x: Floats, y: Floats) -> list[Floats]:
+    """What of the contact changes from place to place: effective radius, E, w."""
+    at = x[None, :], y[:, None]
+    radii = [] if surface.tip_radius is None else [surface.radius_map.radius(*at).radius]
+    return [np.asarray(values) for values in (*radii, *surface.properties(*at)) if values is not None]
+
+
+def _sinking(scanner: Scanner, scene: Scene, surface: Surface) -> tuple[float, float]:
+    """Slope and range of the heights that a loop sees where the sample gives way by more here than there: it lies lower
+    by the difference of the steady motions, over as many pixels as E and w need for their whole range."""
+    x, y = places(scanner, surface)
+    steepest, given = 0.0, surface.properties(x[None, :], y[:, None])
+    ends: dict[str, tuple[float, ...]] = {"sample.youngs_modulus": (), "adhesion.work_of_adhesion": ()}
+    for name, values in zip(ends, given, strict=True):
+        if values is None or not np.ptp(values) > 0.0:
+            continue
+        share = np.log(values / values.min()) / np.log(values.max() / values.min())
+        turn = np.abs(np.diff(share[:, 0])).max(initial=0.0) / scanner.scan["raster.height"] * scanner.scan.raster.lines
+        steepest += max(float(np.abs(np.diff(share, axis=1)).max() / (x[1] - x[0])), float(turn))
+        ends[name] = float(values.min()), float(values.max())
+    heights: list[float] = []
+    for modulus, work in product(*(values or (math.nan,) for values in ends.values())):
+        there = scene.copy()
+        for name, value in zip(ends, (modulus, work), strict=True):
+            if not math.isnan(value):
+                there[name] = value
+        steady = Steady(there.plan(_ROUGHLY), scanner.rig, scanner.drive, accuracy=_ACCURACY)
+        found = (_at_set_point(scanner, steady, lifted) for lifted in (False, True))
+        heights += [one.base_height for one in found if one is not None]
+    sunk = max(heights, default=0.0) - min(heights, default=0.0) if steepest > 0.0 else 0.0
+    return sunk * steepest, sunk
+
+
+def _at_set_point(scanner: Scanner, steady: Steady, lifted: bool) -> SteadyMotion | None:
+    """The motion of the set point."""
+    zloop = scanner.scan.zloop
+    if zloop.mode == "phase":
+        return steady.at_phase(float(zloop.set_phase), lifted)
+    return steady.at_amplitude(float(zloop.set_amplitude) * float(scanner.drive["drive.free_amplitude"]), lifted)
+
+
 def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tuple[float, float]:
-    """No tap of a scan is harder [N], where the contact is widest and narrowest of what is scanned; and the free
+    """No tap of a scan is harder [N], where contact and sample are extreme in what is scanned; and the free
     amplitude that keeps this below the limit of :func:`limit_of` [m], with a speed that is smaller by as much."""
     if scanner.scan.zloop.mode == "contact":
         return math.nan, math.nan
     raster, limit = scanner.scan.raster, limit_of(scene)[0]
     slope, height = (0.0, 0.0) if surface is None else steepest(scanner, surface)
+    spots = [(float(raster.x), float(raster.y))]
     if surface is not None:
         slope = max(slope, _steepest_turn(scanner, surface))
-    spots = [(float(raster.x), float(raster.y))]
-    if surface is not None and surface.tip_radius is not None:
-        x, y = places(scanner, surface)
-        radii = np.asarray(surface.radius_map.radius(x[None, :], y[:, None]).radius)
-        for at in (radii.argmax(), radii.argmin()):
-            j, i = np.unravel_index(at, radii.shape)
-            spots.append((float(x[i]), float(y[j])))
+        spots = _extremes(scanner, surface)
+        slope, height = np.add((slope, height), _sinking(scanner, scene, surface))
     rise = scanner.speed * slope * (1.0 + 2.0 * raster.hysteresis) + abs(scanner.scan["raster.drift"])
 
     def bound(of: Scanner, share: float = 1.0) -> float:

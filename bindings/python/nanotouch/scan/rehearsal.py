@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -29,14 +30,19 @@ class Rehearsal(NamedTuple):
 def rehearse(scanner: Scanner, scene: Scene, share: float = 1.0) -> Rehearsal:
     """With a share of the K_I in use; 4000 ticks after the tip has come down."""
     settings = scanner.scan.copy()
-    settings["zloop.integral"], settings["zloop.noise"] = share * scanner.integral, 0.0
+    settings["zloop.integral"], settings["zloop.noise"] = 0.0, 0.0
     settings["raster.lines"], settings["raster.pixels"] = 1, _TICKS
     settings["raster.line_rate"] = settings["zloop.rate"] / (2.0 * _TICKS)
     settings["raster.tilt_x"] = settings["raster.tilt_y"] = settings["raster.drift"] = 0.0
-    image = Scanner(scene.plan(), settings, scanner.rig, scanner.drive).run(threads=1)
+    A0 = float(scanner.drive["drive.free_amplitude"])
+    flat = Scanner(scene.plan(), settings, scanner.rig, scanner.drive)
+    if share * scanner.integral >= flat.integral * flat.margins.gain:  # of a map: it would ring over the scene's flat
+        return Rehearsal(math.inf, A0)
+    settings["zloop.integral"] = share * scanner.integral
+    image = Scanner(flat.plan, settings, scanner.rig, scanner.drive).run(threads=1)
     error: Floats = image.retrace.error[0, ::-1]
     before, last = (float(np.ptp(part)) for part in np.split(error, 4)[2:])
-    still = max(_STILL * float(scanner.drive["drive.free_amplitude"]), float(scanner.scan["zloop.noise"]))
+    still = max(_STILL * A0, float(scanner.scan["zloop.noise"]))
     rests = last < still or last < _DECAYS * before
     peak = max(float(channels.peak_force.max()) for channels in image[:2])
     return Rehearsal(peak, 0.0 if rests else last)
