@@ -158,7 +158,7 @@ static void tell_rod(const nt_pushed *pushed, nt_pushed_state *state)
     body->place[1] = of->pose[1];
     body->place[2] = pushed->of.rod.radius;
     body->angle = of->pose[2];
-    body->touched = nt_rod_touches(&pushed->of.rod, of);
+    body->touched = nt_rod_touches(of);
 }
 
 static nt_status begin_rod(const nt_pushed *pushed, const double base[3], nt_pushed_state *state)
@@ -179,7 +179,7 @@ static nt_status lay_rod(const nt_pushed *pushed, nt_pushed_state *state, int nu
     nt_rod_state *of = &state->memory.rod;
     if (number != 0)
         return NT_E_CAPACITY;
-    if (state->count > 0 && nt_rod_touches(rod, of))
+    if (state->count > 0 && nt_rod_touches(of))
         return NT_E_STATE;
     const double heat = of->dissipated + of->stored, work = of->work;
     const double base[3] = {of->base[0], of->base[1], of->base[2]};
@@ -204,7 +204,8 @@ static void copy_rod(const nt_pushed *pushed, nt_pushed_state *to, const nt_push
 
 static int touches_rod(const nt_pushed *pushed, const nt_pushed_state *state)
 {
-    return state->count > 0 && nt_rod_touches(&pushed->of.rod, &state->memory.rod);
+    (void)pushed;
+    return state->count > 0 && nt_rod_touches(&state->memory.rod);
 }
 
 /* --- both --- */

@@ -101,9 +101,9 @@ void rod_copy(const nt_rod *rod, nt_rod_state *to, const nt_rod_state *from)
     memcpy(to, from, offsetof(nt_rod_state, pulls) + (size_t)rod->elements * sizeof from->pulls[0]);
 }
 
-int nt_rod_touches(const nt_rod *rod, const nt_rod_state *state)
+int nt_rod_touches(const nt_rod_state *state)
 {
-    return rod_touch_at(rod, state->tip, state->pose).depth > 0.0;
+    return state->force[0] != 0.0 || state->force[1] != 0.0 || state->force[2] != 0.0;
 }
 
 nt_status nt_rod_advance(const nt_rod *rod, nt_rod_state *state, const double base[3])

@@ -51,14 +51,17 @@ rod_touch rod_touch_at(const nt_rod *rod, const double tip[3], const double pose
     return found;
 }
 
+/* Counted from where the rod's middle is as the step begins, so that little is rounded however far from the origin. */
 typedef struct rod_place {
-    double pose[3], tip[3];
+    double way[3]; /* of the middle [m]; turn [rad] */
+    double tip[3]; /* z is that over the substrate [m] */
 } rod_place;
 
 typedef struct rod_step {
     const nt_rod *rod;
     const nt_rod_state *from;
-    const double *base; /* where it ends [m] */
+    const double *base; /* where it ends [m] ... */
+    double aside[2];    /* ... and counted as above */
     int freedoms;
     double k, limit; /* of each piece [N/m], [N] */
     double give;     /* 1/k [m/N] */
@@ -76,17 +79,19 @@ typedef struct rod_value {
 
 static rod_step step_to(const nt_rod *rod, const nt_rod_state *from, const double base[3])
 {
-    const double share = rod->length / rod->elements, far = fmax(fabs(base[0]), fabs(base[1]));
+    const double share = rod->length / rod->elements;
+    const double size = rod->length + rod->radius + rod->tip_radius;
     return (rod_step){.rod = rod,
                       .from = from,
                       .base = base,
+                      .aside = {base[0] - from->pose[0], base[1] - from->pose[1]},
                       .freedoms = rod->lever > 0.0 ? TIP_Z : OF_ROD,
                       .k = nt_rod_stiffness(rod) * share,
                       .limit = nt_rod_friction(rod) * share,
                       .give = 1.0 / (nt_rod_stiffness(rod) * share),
                       .arm = 0.5 * rod->length,
                       .axis = {cos(from->pose[2]), sin(from->pose[2])},
-                      .finest = FAINT + 4e-16 * far * (rod->lever + rod->tip_stiffness)};
+                      .finest = FAINT + 4e-16 * size * (rod->lever + rod->tip_stiffness)};
 }
 
 static double place_of(const nt_rod *rod, int i)
@@ -94,14 +99,27 @@ static double place_of(const nt_rod *rod, int i)
     return ((i + 0.5) / rod->elements - 0.5) * rod->length;
 }
 
+/* By how much the axis has changed. */
+static void swing_of(const rod_step *step, const rod_place *place, double swing[2])
+{
+    const double sine = sin(place->way[TURN]), half = sin(0.5 * place->way[TURN]), less = 2.0 * half * half;
+    swing[0] = -less * step->axis[0] - sine * step->axis[1];
+    swing[1] = -less * step->axis[1] + sine * step->axis[0];
+}
+
 /* How far the spring of a piece is stretched if it does not give way; its length. */
-static double stretch_of(const rod_step *step, int i, const double pose[3], const double axis[2], double stretch[2])
+static double stretch_of(const rod_step *step, int i, const rod_place *place, const double swing[2], double stretch[2])
 {
     const double s = place_of(step->rod, i);
     for (int k = 0; k < 2; ++k)
-        stretch[k] =
-            step->from->pulls[i][k] * step->give + (pose[k] - step->from->pose[k]) + s * (axis[k] - step->axis[k]);
+        stretch[k] = step->from->pulls[i][k] * step->give + place->way[k] + s * swing[k];
     return sqrt(stretch[0] * stretch[0] + stretch[1] * stretch[1]);
+}
+
+static rod_touch touch_of(const rod_step *step, const rod_place *place)
+{
+    const double pose[3] = {place->way[0], place->way[1], step->from->pose[TURN] + place->way[TURN]};
+    return rod_touch_at(step->rod, place->tip, pose);
 }
 
 /* turn: the way of the piece with a turn. */
@@ -141,7 +159,7 @@ static void add_turning(const rod_step *step, const rod_touch *at, const double 
 
 static void add_tip(const rod_step *step, const rod_place *place, const double side[2], rod_value *value)
 {
-    const rod_touch at = rod_touch_at(step->rod, place->tip, place->pose);
+    const rod_touch at = touch_of(step, place);
     const double stiff = step->rod->tip_stiffness, sideways = side[0] * at.normal[0] + side[1] * at.normal[1];
     const double rho[WAYS] = {at.normal[0],  at.normal[1],  at.along * sideways / step->arm,
                               -at.normal[0], -at.normal[1], 0.0};
@@ -166,7 +184,7 @@ static void add_lever(const rod_step *step, const double tip[3], rod_value *valu
 {
     const double lever = step->rod->lever;
     for (int i = 0; i < 2; ++i) {
-        const double bent = tip[i] - step->base[i];
+        const double bent = tip[i] - step->aside[i];
         value->cost += 0.5 * lever * bent * bent;
         value->size += lever * fabs(bent);
         value->gradient[OF_ROD + i] += lever * bent;
@@ -176,12 +194,14 @@ static void add_lever(const rod_step *step, const double tip[3], rod_value *valu
 
 static rod_value value_at(const rod_step *step, const rod_place *place)
 {
-    const double axis[2] = {cos(place->pose[2]), sin(place->pose[2])}, side[2] = {-axis[1], axis[0]};
     const int count = (int)step->rod->elements;
     rod_value value = {0};
+    double swing[2];
+    swing_of(step, place, swing);
+    const double side[2] = {-step->axis[1] - swing[1], step->axis[0] + swing[0]};
     for (int i = 0; i < count; ++i) {
         double stretch[2];
-        const double length = stretch_of(step, i, place->pose, axis, stretch), s = place_of(step->rod, i) / step->arm;
+        const double length = stretch_of(step, i, place, swing, stretch), s = place_of(step->rod, i) / step->arm;
         add_piece(step, stretch, length, (double[2]){s * side[0], s * side[1]}, &value);
     }
     add_tip(step, place, side, &value);
@@ -233,10 +253,10 @@ static int go_down(const rod_step *step, rod_place *place, rod_value *value, dou
             return 0;
         rod_place trial = *place;
         for (int i = 0; i < 2; ++i) {
-            trial.pose[i] += way[i];
+            trial.way[i] += way[i];
             trial.tip[i] += way[OF_ROD + i];
         }
-        trial.pose[TURN] += way[TURN] / step->arm;
+        trial.way[TURN] += way[TURN] / step->arm;
         const rod_value found = value_at(step, &trial);
         const int closer = largest(found.gradient, n) < 0.9 * largest(value->gradient, n);
         const int lower = found.cost < value->cost && found.cost <= value->cost + 1e-4 * slope;
@@ -276,13 +296,13 @@ static double resistance_of(const rod_step *step, const rod_value *value)
 }
 
 /* Pulls after the step; the way by which all have given [m]. */
-static double give_way(const rod_step *step, nt_rod_state *to)
+static double give_way(const rod_step *step, const rod_place *place, nt_rod_state *to)
 {
-    const double axis[2] = {cos(to->pose[2]), sin(to->pose[2])};
-    double given = 0.0;
+    double given = 0.0, swing[2];
+    swing_of(step, place, swing);
     for (int i = 0; i < (int)step->rod->elements; ++i) {
         double stretch[2];
-        const double length = stretch_of(step, i, to->pose, axis, stretch);
+        const double length = stretch_of(step, i, place, swing, stretch);
         const double beyond = fmax(length - step->limit / step->k, 0.0);
         const double k = beyond > 0.0 ? step->limit / length : step->k;
         given += beyond;
@@ -312,41 +332,42 @@ static void keep_account(const rod_step *step, double slipped, nt_rod_state *to)
 static void end_at(const rod_step *step, const rod_place *place, const rod_value *value, nt_rod_state *to)
 {
     const nt_rod *rod = step->rod;
-    const rod_touch at = rod_touch_at(rod, place->tip, place->pose);
+    const rod_touch at = touch_of(step, place);
     const double push = rod->tip_stiffness * at.depth;
-    memcpy(to->pose, place->pose, sizeof to->pose);
-    memcpy(to->tip, place->tip, sizeof to->tip);
     memcpy(to->base, step->base, sizeof to->base);
+    memcpy(to->tip, step->base, sizeof to->tip);
     to->stored = 0.5 * push * at.depth;
+    for (int k = 0; k < 3; ++k)
+        to->pose[k] = step->from->pose[k] + place->way[k];
     for (int k = 0; k < 2; ++k) {
-        const double bent = to->tip[k] - to->base[k];
+        const double bent = place->tip[k] - step->aside[k];
+        to->tip[k] += bent;
         to->force[k] = -push * at.slope[0] * at.normal[k];
         to->stored += 0.5 * rod->lever * bent * bent;
     }
     to->force[2] = -push * at.slope[1];
     to->resistance = at.depth > 0.0 ? resistance_of(step, value) : 0.0;
-    keep_account(step, rod->length / rod->elements * nt_rod_friction(rod) * give_way(step, to), to);
+    keep_account(step, rod->length / rod->elements * nt_rod_friction(rod) * give_way(step, place, to), to);
 }
 
 nt_status rod_take_step(const nt_rod *rod, nt_rod_state *state, const double base[3])
 {
     const rod_step step = step_to(rod, state, base);
-    rod_place place;
+    const int was_free = !nt_rod_touches(state);
+    rod_place place = {.tip = {step.aside[0], step.aside[1], base[2]}};
     rod_value value;
     nt_rod_state to;
-    const int was_free = !nt_rod_touches(rod, state);
-    memcpy(place.pose, state->pose, sizeof place.pose);
-    memcpy(place.tip, was_free || rod->lever == 0.0 ? base : state->tip, sizeof place.tip);
-    place.tip[2] = base[2];
-    if (was_free && rod_touch_at(rod, base, state->pose).depth == 0.0) { /* nothing moves but the tip */
+    if (was_free && touch_of(&step, &place).depth == 0.0) { /* nothing moves but the tip */
         memcpy(state->base, base, sizeof state->base);
         memcpy(state->tip, base, sizeof state->tip);
         return NT_OK;
     }
+    for (int k = 0; k < 2 && rod->lever > 0.0 && !was_free; ++k)
+        place.tip[k] = state->tip[k] - state->pose[k];
     const nt_status status = find(&step, &place, &value);
     if (status != NT_OK)
         return status;
-    if (rod_touch_at(rod, place.tip, place.pose).depth > DEEPEST * fmin(rod->radius, rod->tip_radius))
+    if (touch_of(&step, &place).depth > DEEPEST * fmin(rod->radius, rod->tip_radius))
         return NT_E_RANGE;
     end_at(&step, &place, &value, &to);
     rod_copy(rod, state, &to);

@@ -15,7 +15,7 @@ from nanotouch_app.live import board, cards, dented, film
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.look import LIGHT
 from nanotouch_app.live.seen import Seen
-from nanotouch_app.live.subject import PRESETS, felt, of_preset
+from nanotouch_app.live.subject import WINDOW_PRESETS, felt, of_preset
 from nanotouch_app.training import named
 from nanotouch_app.training.ideal import Operator
 
@@ -242,7 +242,7 @@ def test_each_preset_has_a_card_with_its_words() -> None:
     written: list[str] = []
     painter = SimpleNamespace(box=lambda *_: None, text=lambda _x, _y, words, *_, **__: written.append(words))
     cards.draw(cast(Any, painter), LIGHT, (0.0, 0.0, 800.0, 800.0), "")
-    for name, preset in PRESETS.items():
+    for name, preset in WINDOW_PRESETS.items():
         assert preset.title in written
         assert felt(name)
         assert of_preset(name).felt == felt(name)

@@ -142,3 +142,14 @@ def test_energy_is_kept_from_any_pose(random: object, lever: float, half_angle: 
         sideways = np.linalg.norm(path.force[:, :2], axis=1).max()
         assert sideways <= rod.friction * L * (1.0 + 1e-6)
         state, heat = path.state, float(path.dissipated[-1])
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (3e-6, 2.4e-6), (-2e-4, 5e-5)])
+@pytest.mark.parametrize("lever", [0.0, 20.0])
+def test_a_push_on_the_middle_can_be_taken_back_anywhere(place: tuple[float, float], lever: float) -> None:
+    """All forces are 0 then, but for the rounding of places: far from the origin that is more."""
+    rod, (x, y) = wire(lever=lever), place
+    way = y + np.concatenate([np.linspace(-0.2e-6, 0.2e-6, 401), np.linspace(0.2e-6, 0.1e-6, 5001)])
+    path = rod.run(x, way, 10e-9, state=rod.place(x, y, 0.0, (x, y - 0.2e-6, 10e-9)))
+    assert path.position[-1, 1] - y > 0.2e-6
+    assert path.force[-1].tolist() == [0.0, 0.0, 0.0]

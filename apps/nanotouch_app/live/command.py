@@ -20,7 +20,7 @@ from nanotouch_app.live import display, files, hands, real
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
 from nanotouch_app.live.reel import surface_of
-from nanotouch_app.live.subject import PRESETS, Subject
+from nanotouch_app.live.subject import WINDOW_PRESETS, Subject
 from nanotouch_app.quantity import parse_quantity, whole_number
 from nanotouch_app.training import TASKS, named
 
@@ -91,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _list() -> int:
-    for name, preset in PRESETS.items():
+    for name, preset in WINDOW_PRESETS.items():
         output.say(f"{name:16} {preset.title}: {preset.hint}")
     for name, one in TASKS.items():
         print(f"--task {name:9} {one.title}")
@@ -154,7 +154,7 @@ def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
         (f"{args.what} is a recording, which is played", is_recording,
          ("task", "record", "film", *CURVE, "browser")),
         ("--film films a scripted touch", args.film is not None, ("task", "record", "browser")),
-        (f"{args.what} is no force curve", args.what in PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"),
+        (f"{args.what} is no force curve", args.what in WINDOW_PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"),
          CURVE),
         ("what is said of each place goes with an image", bool(properties.given(args)), CURVE),
         ("without --browser a window shows it", not args.browser, ("page", "port")),

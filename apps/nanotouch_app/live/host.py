@@ -76,7 +76,7 @@ class Host(Tasks):
             self.scene, rig_of(self.rig, settings, extent, way_down), surface=surface, settings=settings, mode="scan",
             path=[middle, (0.6 * width, 0.5 * height)], clearance=self.subject.clearance(),
             recorded=self.out is not None or self._keeps(self.scene), relative_accuracy=self.subject.accuracy,
-            **self._particles(),
+            **self._pushed(),
         )  # fmt: skip
         self.name = f"live-{os.getpid()}-{next(_NUMBERS)}"
         self.session.publish(self.name)
@@ -95,12 +95,13 @@ class Host(Tasks):
             self.session.set_speed(self.speed)
             self.session.pause(self.paused)
 
-    def _particles(self) -> dict[str, Any]:
-        return {} if self.subject.particles is None else {"particles": self.subject.particles(self.scene)}
+    def _pushed(self) -> dict[str, Any]:
+        made = {"particles": self.subject.particles, "rod": self.subject.rod}
+        return {name: of(self.scene) for name, of in made.items() if of is not None}
 
     def _keeps(self, scene: nt.Scene) -> bool:
         """Whether what the tip leaves is known from the session's events."""
-        return keeps(scene) or self.subject.particles is not None
+        return keeps(scene) or self.subject.particles is not None or self.subject.rod is not None
 
     def close(self) -> None:
         """End the session; what was recorded is written."""

@@ -94,7 +94,7 @@ class Pushes:
 
     def __init__(self, session: nt.Session) -> None:
         self.session = session
-        self.done: list[tuple[int, int, tuple[float, float]]] = []  # tick, number, where it lay before
+        self.done: list[tuple[int, int, tuple[float, ...]]] = []  # tick, number, where it lay before, a rod's angle
         self.seen = 0
 
     def look(self) -> None:
@@ -103,6 +103,8 @@ class Pushes:
         for tick, name, numbers in events[self.seen :]:
             if name == "pushed":
                 self.done.append((tick, numbers[0], (numbers[1], numbers[2])))
+            elif name == "turned" and self.done:
+                self.done[-1] = (*self.done[-1][:2], (*self.done[-1][2], numbers[0]))
             elif name == "rewind":
                 self.done = [one for one in self.done if one[0] < numbers[0]]
         self.seen = len(events)
@@ -117,7 +119,10 @@ class Pushes:
         last = [one for one in self.done if one[0] == self.done[-1][0]]
         try:
             for _, number, place in last:
-                self.session.lay(number, place)
+                if len(place) == 3:
+                    self.session.lay_rod((place[0], place[1], place[2]))
+                else:
+                    self.session.lay(number, (place[0], place[1]))
         except Error as error:
             raise Error("the tip touches a particle, or is where it lay: take it away first") from error
         self.done = self.done[: -len(last)]

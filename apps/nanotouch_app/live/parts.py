@@ -12,7 +12,7 @@ PARTS = {
     "vtkCommonCore": "vtkLogger vtkPoints vtkPoints2D vtkStringArray VTK_OBJECT",
     "vtkCommonDataModel": "vtkCellArray vtkPolyData",
     "vtkFiltersCore": "vtkPolyDataNormals",
-    "vtkFiltersSources": "vtkDiskSource vtkSphereSource",
+    "vtkFiltersSources": "vtkCylinderSource vtkDiskSource vtkSphereSource",
     "vtkIOImage": "vtkPNGWriter",
     "vtkPythonContext2D": "vtkPythonItem",
     "vtkRenderingContext2D": "vtkContextActor vtkPen",

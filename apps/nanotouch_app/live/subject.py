@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import nanotouch as nt
 import numpy as np
 from nanotouch import presets
-from nanotouch.manipulation import latex
+from nanotouch.manipulation import Rod, latex, nanowire
 
 from nanotouch_app import surfaces
 from nanotouch_app.live import samples
@@ -37,6 +37,8 @@ class Subject:
     """what its forces are planned for"""
     particles: Callable[[nt.Scene], nt.Particles] | None = None
     """that a task may lay there, and the tip of a scene pushes"""
+    rod: Callable[[nt.Scene], Rod] | None = None
+    """the same of a rod, instead of particles"""
 
     def touched(self, scene: nt.Scene) -> nt.Surface:
         """The surface for the tip of a scene."""
@@ -68,11 +70,14 @@ class Preset:
     """of its forces: where a slider leads to what is less well known, a little less is asked"""
     particles: Callable[[nt.Scene], nt.Particles] | None = None
     """that a task may lay there"""
+    rod: Callable[[nt.Scene], Rod] | None = None
+    """the same of a rod, instead of particles"""
 
 
 def felt(name: str) -> str:
     """What the hand feels of a preset."""
-    return PRESETS[name].felt or presets.FELT[PRESETS[name].scene or name]
+    known = WINDOW_PRESETS[name]
+    return known.felt or presets.FELT[known.scene or name]
 
 
 def soft_gold() -> tuple[nt.Scene, nt.Rig]:
@@ -87,10 +92,10 @@ def soft_gold() -> tuple[nt.Scene, nt.Rig]:
     return scene, nt.Rig(probe={"spring_constant": 40.0, "resonance": 300e3})
 
 
-def latex_on_glass() -> tuple[nt.Scene, nt.Rig]:
-    """A coated tip on dry glass, for the balls of polystyrene that a task lays there."""
+def latex_on_glass(tip_radius: float = 50e-9) -> tuple[nt.Scene, nt.Rig]:
+    """A coated tip on dry glass, for what a task lays there."""
     scene = nt.Scene(
-        tip={"radius": 50e-9, "half_angle": 0.26},
+        tip={"radius": tip_radius, "half_angle": 0.26},
         sample={"youngs_modulus": 70e9, "poisson_ratio": 0.22},
         medium={"relative_humidity": 0.0},
         adhesion={"work_of_adhesion": 0.01, "hamaker_constant": 3e-20},
@@ -104,9 +109,14 @@ def balls(scene: nt.Scene) -> nt.Particles:
     return nt.Particles(latex(RADIUS, float(scene.tip.radius), float(scene.tip.half_angle)))
 
 
-def glass() -> nt.Topography:
-    """10 um of it, flat."""
-    return nt.Topography(heights=np.zeros((128, 128)), pixel_size=2 * (10e-6 / 128,), name="glass")
+def wire(scene: nt.Scene) -> Rod:
+    """Of zinc oxide, under the tip of a scene."""
+    return nanowire(tip_radius=float(scene.tip.radius), tip_half_angle=float(scene.tip.half_angle))
+
+
+def glass(width: float = 10e-6) -> nt.Topography:
+    """So much of it, flat [m]."""
+    return nt.Topography(heights=np.zeros((128, 128)), pixel_size=2 * (width / 128,), name="glass")
 
 
 def polished() -> nt.Topography:
@@ -175,11 +185,24 @@ PRESETS: dict[str, Preset] = {
     ),
 }  # fmt: skip
 
+WINDOW_PRESETS = {
+    **PRESETS,
+    "wire_on_glass": Preset(
+        "Glass for a nanowire",
+        lambda: glass(6e-6),
+        "T: push a wire of zinc oxide into a place, and to an angle.",
+        made=lambda: latex_on_glass(20e-9),
+        rod=wire,
+        felt="Smooth and hard; a wire resists as it slides. Pushed near an end it turns, and resists less.",
+    ),
+}
+"""and those that the window alone can lay: the page in a browser has no rods"""
+
 
 def of_preset(name: str) -> Subject:
     """A preset, its surface made."""
-    known = PRESETS[name]
+    known = WINDOW_PRESETS[name]
     of = known.scene or name
     scene, rig = (known.made or getattr(presets, of))()
     return Subject(name, known.title, scene, rig, known.surface(), felt(name), known.hint,
-                   accuracy=known.accuracy, particles=known.particles)  # fmt: skip
+                   accuracy=known.accuracy, particles=known.particles, rod=known.rod)  # fmt: skip

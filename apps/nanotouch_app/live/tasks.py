@@ -47,7 +47,7 @@ class Tasks:
         if not message["name"]:
             return
         task = named(message["name"])
-        lacks = issubclass(task, Push) and self.subject.particles is None
+        lacks = issubclass(task, Push) and getattr(self.subject, task.pushes) is None
         if lacks or (
             message.get("lay") and (task.preset != self.subject.name or self.session.scene != self.subject.scene)
         ):
@@ -61,9 +61,12 @@ class Tasks:
             self._lay_particles(exercise.lays)
 
     def _lay_particles(self, places: Any) -> None:
-        """Anew: those that lie there are put aside first."""
+        """Anew: those that lie there are put aside first. A rod has an angle, too, and is the only one."""
         try:
-            for number in range(len(self.session.particles.losses)):
+            if self.subject.rod is not None:
+                self.session.lay_rod(places[0])
+                places = ()
+            for number in range(len(self.session.particles.losses) if len(places) else 0):
                 self.session.lay(number, (ASIDE * (number + 1), ASIDE))
             for number, place in enumerate(places):
                 self.session.lay(number, place)

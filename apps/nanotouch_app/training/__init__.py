@@ -16,9 +16,10 @@ from nanotouch_app.training.push import Pattern, Push
 from nanotouch_app.training.steady import Steady
 from nanotouch_app.training.stiffer import Stiffer
 from nanotouch_app.training.trace import Trace
+from nanotouch_app.training.wire import Wire
 
 TASKS: dict[str, type[Exercise]] = {
-    task.name: task for task in (Find, PullOff, Trace, Steady, Stiffer, Dent, Scratch, Push, Pattern)
+    task.name: task for task in (Find, PullOff, Trace, Steady, Stiffer, Dent, Scratch, Push, Pattern, Wire)
 }
 
 

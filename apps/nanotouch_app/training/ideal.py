@@ -10,12 +10,14 @@ from itertools import permutations
 from typing import Any, Protocol
 
 import numpy as np
+from nanotouch.manipulation import turning_point
 
 from nanotouch_app.training.dent import Dent, Scratch
 from nanotouch_app.training.exercise import Exercise, touching
-from nanotouch_app.training.push import ALLOWED, RADIUS, Push
+from nanotouch_app.training.push import ALLOWED, Push
 from nanotouch_app.training.steady import TARGET
 from nanotouch_app.training.stiffer import LOAD, Stiffer
+from nanotouch_app.training.wire import Wire
 
 STEP = 0.02  # between two looks [s]
 LONGEST = 600.0  # until the operator gives up [s]
@@ -192,10 +194,55 @@ def push(operator: Operator) -> None:
 
 
 def _reach(operator: Operator) -> float:
-    """From the middle of a ball to the apex of a tip that touches with its flank, at its height now [m]."""
-    tip, height = operator.exercise.facts.scene.tip, float(operator.rig.observer.newest()["tip_position"][2])
-    up = RADIUS - tip.radius - height
-    return float((RADIUS + tip.radius + up * math.sin(tip.half_angle)) / math.cos(tip.half_angle))
+    """From the middle of a ball or wire to the apex of a tip that touches with its flank, at its height now [m]."""
+    exercise, height = operator.exercise, float(operator.rig.observer.newest()["tip_position"][2])
+    assert isinstance(exercise, Push)
+    tip, radius = exercise.facts.scene.tip, exercise.radius
+    up = radius - tip.radius - height
+    return float((radius + tip.radius + up * math.sin(tip.half_angle)) / math.cos(tip.half_angle))
+
+
+def wire(operator: Operator) -> None:
+    """Against its middle it goes across, half way to an end it turns about a point on the other side, against an end it
+    goes along: each by what is missing, then look again."""
+    exercise = operator.exercise
+    assert isinstance(exercise, Wire)
+    c = turning_point(2.0, 0.5)  # of half of the length
+    back = (1.0 - c) / (1.0 + c)  # that goes the other end by
+    while True:
+        ends = exercise.places[:, :2]
+        off = min((exercise.goals[list(order)] - ends for order in ((0, 1), (1, 0))),
+                  key=lambda ways: float(np.linalg.norm(ways)))  # fmt: skip
+        if np.linalg.norm(off, axis=1).max() < 0.7 * ALLOWED:
+            break
+        axis = (ends[1] - ends[0]) / exercise.length
+        normal = np.array([-axis[1], axis[0]])
+        (first, second), along = off @ normal, float((off @ axis).mean())
+        turn = (second - first) / (1.0 + back)  # way of the second end with a push half way to it
+        all_of_it = first + back * turn
+        middle = ends.mean(axis=0)
+        if abs(along) > max(0.4 * ALLOWED, abs(all_of_it), abs(turn)):
+            _shove(operator, ends[0 if along > 0.0 else 1], np.sign(along) * axis, abs(along))
+        elif abs(all_of_it) > 0.3 * ALLOWED:
+            _shove(operator, middle, np.sign(all_of_it) * normal, abs(all_of_it))
+        else:
+            share = (c + 0.5) / (c + 1.0)
+            _shove(operator, 0.5 * (middle + ends[1]), np.sign(turn) * normal, share * abs(turn))
+    operator.rig.answer({"do": "choose", "number": 0})
+
+
+def _shove(operator: Operator, spot: Any, way: Any, length: float) -> None:
+    """By a length, where a spot of its axis lies; high up there, and back."""
+    exercise = operator.exercise
+    assert isinstance(exercise, Wire)
+    while float(operator.wheel(-5.0)["tip_position"][2]) < 2.5 * exercise.radius:
+        pass
+    _go(operator, spot - 2.0 * exercise.radius * way)
+    while float(operator.wheel(1.0)["tip_position"][2]) > 0.5 * exercise.radius:
+        pass
+    operator.wait(0.1)
+    _go(operator, spot + (length - _reach(operator)) * way, 10e-9)
+    _go(operator, spot - 2.0 * exercise.radius * way)
 
 
 def _go(operator: Operator, to: Any, step: float = 100e-9) -> None:
@@ -225,5 +272,5 @@ def _go_around(operator: Operator, to: Any, balls: list[Any], room: float) -> No
 
 SOLVERS: dict[str, Callable[[Operator], None]] = {
     "find": find, "pull_off": pull_off, "trace": trace, "steady": steady, "stiffer": stiffer,
-    "dent": dent, "scratch": scratch, "push": push, "pattern": push,
+    "dent": dent, "scratch": scratch, "push": push, "pattern": push, "wire": wire,
 }  # fmt: skip

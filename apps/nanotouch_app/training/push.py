@@ -26,13 +26,19 @@ class Push(Exercise):
     """From its place to a ring that is drawn."""
 
     name, title, preset = "push", TEXTS["push.title"], "latex_on_glass"
+    pushes = "particles"
+    """what its subject has to have: particles or a rod"""
+    radius = RADIUS
+    """of what is pushed [m]"""
+    says = "push"
+    """whose words it has while it goes on"""
     starts: ClassVar[tuple[tuple[float, float], ...]] = ((0.35, 0.5),)  # over the width
     targets: ClassVar[tuple[tuple[float, float], ...]] = ((0.15, 0.5),)
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.lays = np.array(self.starts) * self.facts.width
-        self.count = len(self.starts)
+        self.count = self.least = len(self.starts)
         self.goals = np.array(self.targets) * self.facts.width
         self.places = np.column_stack([self.lays, np.full(self.count, RADIUS)])
         self.force, self.heat = np.zeros(3), 0.0
@@ -57,7 +63,7 @@ class Push(Exercise):
 
     @property
     def words(self) -> str:
-        return TEXTS[f"{self.name}.words"].format(radius=digits(RADIUS, "m"), allowed=digits(ALLOWED, "m"))
+        return TEXTS[f"{self.name}.words"].format(radius=digits(self.radius, "m"), allowed=digits(ALLOWED, "m"))
 
     @property
     def errors(self) -> Floats:
@@ -67,11 +73,11 @@ class Push(Exercise):
     @property
     def now(self) -> str:
         force = float(np.linalg.norm(self.force))
-        return TEXTS["push.now"].format(off=digits(float(self.errors.max()), "m"), force=digits(force, "N", 2))
+        return TEXTS[f"{self.says}.now"].format(off=digits(float(self.errors.max()), "m"), force=digits(force, "N", 2))
 
     @property
     def choices(self) -> list[str]:
-        return [TEXTS["push.choice"]]
+        return [TEXTS[f"{self.says}.choice"]]
 
     @property
     def shown(self) -> dict[str, Any]:
@@ -88,7 +94,7 @@ class Push(Exercise):
         if self.touches_now:
             raise self.early(TEXTS["push.touches"])
         errors = self.errors
-        extra = max(self.losses - self.count, 0)  # the last one of each is no loss
+        extra = max(self.losses - self.least, 0)  # the last one of each is no loss
         score = float(np.clip(1.0 - np.maximum(errors - ALLOWED, 0.0) / ((WORST - 1.0) * ALLOWED), 0.0, 1.0).mean())
         said = TEXTS["push.said"].format(off=digits(float(errors.max()), "m"), allowed=digits(ALLOWED, "m"),
                                          losses=extra)  # fmt: skip

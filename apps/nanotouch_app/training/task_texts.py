@@ -63,6 +63,12 @@ TEXTS: dict[str, str] = {
     "pattern.words":
         "Push each ball (radius {radius}) into a ring, within {allowed}. Any ball for any ring; they pass through each "
         "other, so keep them apart.",
+    "wire.title": "Push a nanowire",
+    "wire.words":
+        "Push the wire (radius {radius}) until each end lies in a ring, within {allowed}. Stay low. On its middle it "
+        "goes without turning; near an end it turns, and resists less.",
+    "wire.now": "{off} off; the wire pushes back with {force}",
+    "wire.choice": "it lies there",
     "scratch.title": "Scratch a groove",
     "scratch.words":
         "Press and draw the tip in a straight line of {length}, so that a groove of {depth} stays. "

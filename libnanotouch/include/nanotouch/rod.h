@@ -71,7 +71,7 @@ NT_API nt_status nt_rod_place(const nt_rod *rod, const double pose[3], const dou
  * unless NT_OK. The rod has been checked. */
 NT_API NT_REALTIME nt_status nt_rod_advance(const nt_rod *rod, nt_rod_state *state, const double base[3]);
 /* Does the tip touch it? */
-NT_API NT_REALTIME int nt_rod_touches(const nt_rod *rod, const nt_rod_state *state);
+NT_API NT_REALTIME int nt_rod_touches(const nt_rod_state *state);
 
 #ifdef __cplusplus
 }

@@ -8,7 +8,7 @@ from .particle import Particle, ParticleContact, ParticlePath, ParticlesState, P
 from .particles import Laid, Particles, ParticlesPath
 from .pushing import Bench, Lost, Pushed, Track, arrange, push
 from .recorded import Recorded
-from .rod import Rod, RodPath, RodState, turning_point
+from .rod import Rod, RodPath, RodState, nanowire, turning_point
 
 __all__ = [
     "Bench",
@@ -31,6 +31,7 @@ __all__ = [
     "Track",
     "arrange",
     "latex",
+    "nanowire",
     "push",
     "turning_point",
 ]

@@ -18,7 +18,9 @@ from numpy.typing import ArrayLike
 
 from nanotouch import _core
 from nanotouch._arrays import Floats, as_floats, check_between
+from nanotouch.contact import effective_modulus
 from nanotouch.errors import InvalidValue
+from nanotouch.friction import effective_shear_modulus
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,29 @@ class Rod:
         last, rows = self._core.run(begun, np.ascontiguousarray(points))
         stored, dissipated, work = rows[:, 12:15].T
         return RodPath(rows[:, :2], rows[:, 2], rows[:, 9:12], rows[:, 6:9], stored, dissipated, work, _state_of(last))
+
+
+def nanowire(
+    length: float = 2e-6, radius: float = 100e-9, tip_radius: float = 20e-9, tip_half_angle: float = 0.26
+) -> Rod:
+    """A wire of zinc oxide on silica.
+
+    Parameters
+    ----------
+    length, radius, tip_radius : float
+        [m].
+    tip_half_angle : float
+        [rad].
+
+    Notes
+    -----
+    Shear strength 1.05 MPa is the kinetic one of "The kinetic friction of ZnO nanowires on amorphous SiO2 and SiN
+    substrates" (1.05 +- 0.28 MPa). w = 75 mJ/m^2 is that of van der Waals forces at 0.165 nm, Hamaker constants
+    92 and 65 zJ. Pushed on its middle a wire of 2 um bends by q L^4/(128 E I) = 0.1 nm.
+    """
+    oxide, silica = (140e9, 0.33), (72e9, 0.17)  # E [Pa] and nu
+    return Rod(length, radius, effective_modulus(*oxide, *silica), effective_shear_modulus(*oxide, *silica), 0.075,
+               1.05e6, tip_radius, tip_half_angle)  # fmt: skip
 
 
 class RodState(NamedTuple):
