@@ -154,8 +154,8 @@ def _check_together(args: argparse.Namespace, is_recording: bool) -> None:
         (f"{args.what} is a recording, which is played", is_recording,
          ("task", "record", "film", *CURVE, "browser")),
         ("--film films a scripted touch", args.film is not None, ("task", "record", "browser")),
-        (f"{args.what} is no force curve", args.what in WINDOW_PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"),
-         CURVE),
+        (f"{args.what} is no force curve",
+         args.what in WINDOW_PRESETS or Path(args.what).suffix.lower() in (".toml", ".nc"), CURVE),
         ("what is said of each place goes with an image", bool(properties.given(args)), CURVE),
         ("without --browser a window shows it", not args.browser, ("page", "port")),
     ):  # fmt: skip
