@@ -72,6 +72,7 @@ heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings 
 	@$(VENV)/python tests/heavy/kills.py
 	@$(VENV)/python tests/heavy/hour.py
 	@$(VENV)/python tests/heavy/push.py
+	@$(VENV)/python tests/heavy/rods.py
 	@cmake --preset dev --log-level WARNING
 	@cmake --build --preset dev --target test_fit_memory
 	@build/dev/tests/c/test_fit_memory every

@@ -18,6 +18,7 @@ enum { ROUNDS = 3000, TRIES = 40 };
 #define DEEPEST 0.5  /* of the smaller radius */
 #define DAMPING 1e-12
 #define RETRIED 1e-5 /* the least damping that makes a difference, where a step has failed */
+#define FAIR 0.1      /* of what a step promises */
 #define UNSEEN 1e-16 /* of the cost: it cannot show what a step of less brings */
 
 /* x and y of the rod, half of its length times its turn; x, y and z of the tip. */
@@ -261,9 +262,10 @@ static int go_down(const rod_step *step, rod_place *place, rod_value *value, dou
         const int closer = largest(found.gradient, n) < 0.9 * largest(value->gradient, n);
         const int lower = found.cost < value->cost && found.cost <= value->cost + 1e-4 * slope;
         if (lower || (closer && found.cost <= value->cost * (1.0 + 1e-13))) {
+            const int fits = closer || value->cost - found.cost > FAIR * -slope; /* else it swings from side to side */
             *place = trial;
             *value = found;
-            *damping = fmax(*damping / 100.0, DAMPING);
+            *damping = fits ? fmax(*damping / 100.0, DAMPING) : fmax(8.0 * *damping, RETRIED);
             return 1;
         }
     }

@@ -56,8 +56,9 @@ def main(seconds: float, seed: int) -> int:
                 break
             ways += 1
             turnover += float(np.abs(np.diff(path.work, prepend=state.work)).sum())
-            floor = 1e-12 * rod.friction * rod.length * rod.radius  # a graze has no scale of its own [J]
-            error = float(np.abs(path.stored + path.dissipated - path.work).max()) / (turnover + floor)
+            between = float(np.abs(np.diff(way, axis=0, prepend=way[:1])).sum())
+            turnover += 1e-5 * rod.friction * rod.length * between  # what comes and goes between two places [J]
+            error = float(np.abs(path.stored + path.dissipated - path.work).max()) / turnover
             push = float(np.linalg.norm(path.force[:, :2], axis=1).max()) / (rod.friction * rod.length)
             off, most = float(np.maximum(off, error)), float(np.maximum(most, push))
             if (np.diff(path.dissipated, prepend=heat) < 0.0).any() or (path.stored < 0.0).any():
