@@ -198,6 +198,9 @@ static nt_frame step_session(Session &self, const nt_input *input)
         raise_on(nt_session_check_input(self.handle, input, &problem), problem, "operator input");
     const nt_status status = nt_session_step(self.handle, input, &frame);
     self.rethrow();
+    if (status == NT_E_CAPACITY)
+        raise(status, "step: records or inputs wait to be read: call read() now and then, or open the session with "
+                      "recorded=False");
     raise_on(status, "step");
     return frame;
 }
