@@ -68,9 +68,10 @@ def write_gwy(
     side: tuple[float, float],
     mask: NDArray[np.bool_] | None = None,
     more: dict[str, tuple[Array, str]] | None = None,
+    first: tuple[str, str] = ("Height", "m"),
 ) -> Path:
-    """Gwyddion's native format: nested named components, little endian, first row is the top; ``more`` channels with
-    their units."""
+    """Gwyddion's native format: nested named components, little endian, first row is the top; title and unit of the
+    ``first`` channel, and ``more`` channels with their units."""
 
     def text(value: str) -> bytes:
         return value.encode() + b"\0"
@@ -92,7 +93,8 @@ def write_gwy(
         parts.append(component("data", b"D", struct.pack("<I", data.size) + data.tobytes()))
         return thing("GwyDataField", parts)
 
-    container = [component("/0/data/title", b"s", text("Height")), component("/0/data", b"o", field(heights, "m"))]
+    title, unit_z = first
+    container = [component("/0/data/title", b"s", text(title)), component("/0/data", b"o", field(heights, unit_z))]
     if mask is not None:
         container.append(component("/0/mask", b"o", field(mask.astype(float), "")))
     for number, (name, (values, unit)) in enumerate((more or {}).items(), 1):

@@ -91,6 +91,36 @@ def test_without_a_height_channel_it_lists_what_there_is(tmp_path: Path) -> None
         images.read(path)
 
 
+def test_a_gwy_whose_only_channel_is_no_length_says_so(tmp_path: Path) -> None:
+    volts = synthetic.write_gwy(tmp_path / "v.gwy", synthetic.asymmetric(), SIDE, first=("Phase", "V"))
+    assert [(one.name, one.unit, one.default) for one in images.channels(volts)] == [("Phase", "V", False)]
+    with pytest.raises(ReadError, match=r"no height channel; it holds Phase \(V\), of which none is a length; save"):
+        images.read(volts)
+    with pytest.raises(ReadError, match=r"'Phase' is in 'V', not a length .*; give another channel"):
+        images.read(volts, "phase")
+    with pytest.raises(ReadError, match="no channel 'Height'; it holds Phase"):
+        images.read(volts, "Height")
+
+
+def test_a_gwy_whose_only_channel_has_no_unit_is_read_as_its_refusal_says(tmp_path: Path) -> None:
+    bare = synthetic.write_gwy(tmp_path / "b.gwy", 1e9 * synthetic.asymmetric(), SIDE, first=("Z", ""))
+    with pytest.raises(ReadError, match=r"Z \(no unit\); .* give its name \(channel\) and its height unit \(z unit\)"):
+        images.read(bare)
+    topography = images.read(bare, "Z", z_unit="nm")
+    np.testing.assert_allclose(topography.heights, synthetic.asymmetric(), rtol=1e-12, atol=1e-24)
+
+
+def test_a_plain_tiff_says_what_it_lacks_and_the_way_round_works(tmp_path: Path) -> None:
+    picture = (1e12 * synthetic.asymmetric()[::-1]).astype("<u2")  # from the top, in pm
+    pytest.importorskip("tifffile").imwrite(tmp_path / "plain.tif", picture)
+    for ask in (images.channels, images.read):
+        with pytest.raises(ReadError, match=r"a TIFF without a channel in a unit of length .* as \.npy and give"):
+            ask(tmp_path / "plain.tif")
+    np.save(tmp_path / "plain.npy", picture)
+    topography = images.read(tmp_path / "plain.npy", pixel_size=1.25e-7, z_unit="pm")
+    np.testing.assert_allclose(topography.heights, synthetic.asymmetric(), atol=1e-12)
+
+
 def test_bare_arrays_are_pictures_from_the_top(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     path = tmp_path / "array.h5"

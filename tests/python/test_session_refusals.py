@@ -173,6 +173,21 @@ class Spring(nt.hal.Slave):
         self.travel = action.target
 
 
+@pytest.mark.parametrize("hand", [None, nt.Input(-0.1, 0.0, 0.0, 1.0)])
+def test_steps_that_nobody_reads_end_with_what_to_do(hand: nt.Input | None) -> None:
+    session, steps = nt.Session(), 4096 if hand else 65536
+    for _ in range(steps):
+        session.step(hand)
+    with pytest.raises(Error, match=r"read\(\) now and then, or open the session with recorded=False"):
+        session.step(hand)
+    assert len(session.read(100_000)["time"]) == steps  # none is lost
+    session.step(hand)  # and it goes on
+    assert session.progress.ticks == steps + 1
+    unread = nt.Session(recorded=False)
+    for _ in range(steps + 1000):
+        unread.step(hand)
+
+
 REFUSED: list[tuple[Callable[[], object], str]] = [
     (lambda: nt.Session(slave=Spring(), faults=nt.Faults().add("nan", "deflection", at=0.01)), "half that is not"),
     (lambda: nt.Session(slave=Spring()).inject(nt.Faults().add("nan", "deflection", at=0.01)), "half that is not"),

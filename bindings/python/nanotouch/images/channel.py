@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ReadError
+from .checks import LENGTHS
 
 #: Names of height channels, best first: a calibrated sensor before the voltage of a piezo.
 HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
@@ -103,9 +104,20 @@ def chosen(listed: Sequence[Channel], name: str | None, file: Path) -> int:
     if name is None:
         found = [number for number, channel in enumerate(listed) if channel.default]
         if not found:
-            raise ReadError(f"{file}: no height channel; it holds {names}")
+            raise ReadError(f"{file}: {_no_height(listed)}")
     else:
         found = [number for number, channel in enumerate(listed) if channel.name.casefold() == name.casefold()]
         if len(found) != 1:
             raise ReadError(f"{file}: no channel {name!r}; it holds {names}")
     return found[0]
+
+
+def _no_height(listed: Sequence[Channel]) -> str:
+    """What there is instead, and what to do."""
+    told = [f"{channel.name} ({channel.unit or 'no unit'})" for channel in listed[:_TOLD]]
+    names = ", ".join(told) + (", ..." if len(listed) > _TOLD else "")
+    usable = [channel for channel in listed if channel.unit is None or channel.unit in LENGTHS]
+    if not usable:
+        return f"no height channel; it holds {names}, of which none is a length; save the file with its heights"
+    unit = " and its height unit (z unit)" if any(channel.unit is None for channel in usable) else ""
+    return f"no height channel; it holds {names}; if one of them holds heights, give its name (channel){unit}"

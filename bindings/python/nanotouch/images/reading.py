@@ -141,7 +141,10 @@ def _height_scale(plane: Plane, given: str | None, file: Path) -> float:
         if stated is None:
             raise ReadError(f"{file}: the height unit of channel {name!r} is not stated; give the height unit (z unit)")
         if stated not in LENGTHS:
-            raise ReadError(f"{file}: the height unit of channel {name!r} is {stated!r}, not a length; give the z unit")
+            raise ReadError(
+                f"{file}: channel {name!r} is in {stated!r}, not a length ({', '.join(LENGTHS)}), so it holds no "
+                "heights; give another channel"
+            )
         return LENGTHS[stated]
     if stated is not None and LENGTHS.get(stated) != LENGTHS[given]:
         raise ReadError(f"{file}: states {stated!r} for channel {name!r}, which contradicts the z unit {given!r} given")

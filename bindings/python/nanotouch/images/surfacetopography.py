@@ -30,20 +30,27 @@ _OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "latera
 #: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
 _CREDULOUS = ("hgt", "nms")
 
+#: Any TIFF is JPK's to SurfaceTopography, which lists those of its channels that are lengths.
+_NO_HEIGHTS_IN_TIFF = (
+    "a TIFF without a channel in a unit of length (a plain picture, or a JPK image without heights); export the "
+    "heights as .gsf or .gwy, or save them as .npy and give the pixel size and the height unit (z unit)"
+)
+
 
 def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
     with _opened(file) as reader:
-        return [*_listed(_images_in(reader, file), reader.format()), *_left_out(reader, file)]
+        found, left_out = _images_in(reader, file)
+        return [*_listed(found, reader.format()), *left_out]
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     with _opened(file) as reader:
-        if channel is not None and channel.casefold() in {one.name.casefold() for one in _left_out(reader, file)}:
+        found, left_out = _images_in(reader, file)
+        if channel is not None and channel.casefold() in {one.name.casefold() for one in left_out}:
             return gwyddion.read(file, channel)
-        found = _images_in(reader, file)
-        info = found[chosen(_listed(found, reader.format()), channel, file)]
+        info = found[chosen([*_listed(found, reader.format()), *left_out], channel, file)]
         check_shape(file, info.nb_grid_pts)
         unsized = info.physical_sizes is None
         loaded = info.topography(physical_sizes=info.nb_grid_pts if unsized else None)
@@ -83,16 +90,14 @@ def _opened(file: Path) -> Iterator[Any]:
             yield reader
 
 
-def _images_in(reader: Any, file: Path) -> list[Any]:
+def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
+    """Those that SurfaceTopography lists, and those that it leaves out."""
     found = [info for info in reader.channels if info.dim == 2]
-    if not found:
-        raise ReadError(f"{file}: holds no image (no two-dimensional channel)")
-    return found
-
-
-def _left_out(reader: Any, file: Path) -> list[Channel]:
-    """What SurfaceTopography does not list."""
-    return gwyddion.channels(file) if reader.format() == "gwy" else []
+    left_out = gwyddion.channels(file) if reader.format() == "gwy" else []
+    if not found and not left_out:
+        why = _NO_HEIGHTS_IN_TIFF if reader.format() == "jpk" else "holds no image (no two-dimensional channel)"
+        raise ReadError(f"{file}: {why}")
+    return found, left_out
 
 
 def _no_height(values: Floats, info: Any, format_: str, file: Path) -> tuple[Floats, str | None]:
