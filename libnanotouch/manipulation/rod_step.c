@@ -18,7 +18,7 @@ enum { ROUNDS = 3000, TRIES = 40 };
 #define DEEPEST 0.5  /* of the smaller radius */
 #define DAMPING 1e-12
 #define RETRIED 1e-5 /* the least damping that makes a difference, where a step has failed */
-#define FAIR 0.1      /* of what a step promises */
+#define FAIR 0.1     /* of what a step promises */
 #define UNSEEN 1e-16 /* of the cost: it cannot show what a step of less brings */
 
 /* x and y of the rod, half of its length times its turn; x, y and z of the tip. */
