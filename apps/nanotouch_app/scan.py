@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -124,7 +125,7 @@ def _keep(
 ) -> None:  # fmt: skip
     """Write what was scanned, then say by which signal it ended."""
     if not signals:
-        _write(args, image, scene, out, slides)
+        _write(args, image, settings, scene, out, slides)
         return
     raise stop.Stopped(signals[0], _kept(args, image, settings, scene, out, slides))
 
@@ -136,7 +137,7 @@ def _kept(
     lines, wanted = len(image.trace.height), int(settings["raster.lines"])
     if lines < LEAST:
         return f"{lines} of {wanted} lines were scanned, an image has at least {LEAST}: nothing is kept"
-    _write(args, image, scene, out, slides)
+    _write(args, image, settings, scene, out, slides)
     return f"{lines} of {wanted} lines are kept"
 
 
@@ -151,13 +152,20 @@ def _accuracy(steady: str | None, scanner: nt.Scanner) -> float | None:
     return accuracy
 
 
-def _write(args: argparse.Namespace, image: scan.Image, scene: nt.Scene, out: Path, slides: bool) -> None:
+def _write(
+    args: argparse.Namespace, image: scan.Image, settings: nt.Scan, scene: nt.Scene, out: Path, slides: bool
+) -> None:  # fmt: skip
     """Files, picture and what there is to say."""
     facts = args.answer | _facts(image)
     with output.busy("undoing the tip"):
         tip = images.RoundedCone(scene.tip.radius, scene.tip.half_angle)
         image.write(out / "scan.gwy", tip)
-        images.write(out / "surface.gwy", image.without_tip(tip))
+        surface, reports = image.without_tip(tip), []
+        if scan_rig.is_named(args) or any(settings[f"raster.{name}"] for name in ("tilt_x", "tilt_y", "drift")):
+            surface, told = images.prepare(surface)
+            reports = [f"surface.gwy: {report}\n" for report in told]
+        images.write(out / "surface.gwy", replace(surface, channel=images.READY))
+    print("".join(reports), end="")
     output.write_json(out / "scan.json", facts)
     try:
         draw(image, out / "scan.png")

@@ -174,3 +174,13 @@ def test_what_lasts_along_y_stays_where_taking_it_out_makes_the_image_rougher() 
     assert report.candidates[0].method == "plane+rows"
     assert report.candidates[1].rms > 3.0 * report.candidates[0].rms
     assert np.std(levelled.heights[:100]) < 5e-9
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("shape", [(4, 4), (4, 16), (4, 300), (5, 5), (16, 4)])
+def test_the_smallest_images_are_levelled(shape: tuple[int, int]) -> None:
+    rng = np.random.default_rng(3)
+    for noise in (0.0, 1e-9, 1e-9, 1e-9):
+        heights = noise * rng.standard_normal(shape) + 2e-9 * np.arange(shape[1])
+        levelled, _ = images.prepare(images.Topography(heights, (1e-9, 1e-9)))
+        assert np.ptp(levelled.heights) <= np.ptp(heights)

@@ -282,6 +282,20 @@ def test_phase_feedback_wants_the_resonance() -> None:
         nt.Scanner(dry().plan(), settings, rig(), drive)
 
 
+def test_the_tilt_of_a_scan_is_taken_out_before_it_is_touched(tmp_path: Path, capsys: Any) -> None:
+    for module in ("gwyfile", "SurfaceTopography"):
+        pytest.importorskip(module)
+    from nanotouch_app.main import main
+
+    file, out = tmp_path / "tilted.toml", tmp_path / "scanned"
+    file.write_text("[raster]\ntilt_x = 0.05\n")
+    line = ["scan", "flat", "--scene", str(file), "--mode", "contact", "--area", "0um,0um,1um,1um", "--pixels", "16"]
+    assert main([*line, "--out", str(out)]) == 0
+    assert "surface.gwy: auto levelling" in capsys.readouterr().out
+    assert np.ptp(images.read(out / "scan.gwy", "Height").heights) > 40e-9
+    assert np.ptp(images.read(out / "surface.gwy").heights) < 1e-9
+
+
 def test_two_commands_from_scan_to_touch(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Scan, then touch what was scanned."""
     for module in ("gwyfile", "SurfaceTopography", "matplotlib", "mcap"):
@@ -298,4 +312,9 @@ def test_two_commands_from_scan_to_touch(tmp_path: Path, capsys: pytest.CaptureF
     assert (touched / "summary.json").exists()
     found = images.read(out / "scan.gwy", "Height")
     assert found.shape == (16, 64)
-    assert images.read(out / "surface.gwy").channel == scan.UNDONE
+    words = capsys.readouterr().out
+    assert "chosen" not in words
+    assert "repaired" not in words
+    ready = images.read(out / "surface.gwy")
+    assert ready.channel == images.READY
+    assert np.array_equal(images.prepare(ready)[0].heights, ready.heights)  # touched as it was scanned

@@ -219,7 +219,7 @@ scan dots --mode contact --set-point 0.7 | no unit
 scan dots --mode contact --free-amplitude 20nm | goes with tapping
 scan dots --area 0um,0um,1um,1um   | 0.5 um
 scan dots --area 1um,2um           | --area
-scan dots --pixels 2               | raster.pixels = 2
+scan dots --pixels 2               | --pixels: '2': valid is a whole number, 4 .. 8192
 scan dots --gain 10MHz             | zloop.integral
 scan dots --set-point 1.5          | zloop.set_amplitude = 1.5
 scan dots --line-rate 0Hz          | raster.line_rate

@@ -13,7 +13,7 @@ from .fields import planes, write_planes
 from .filling import fill
 from .filters import gaussian, median
 from .level_report import Candidate, LevelReport, LevelStep
-from .levelling import level, prepare
+from .levelling import READY, level, prepare
 from .masking import mask_above, mask_grains, mask_image
 from .moving import moved
 from .parameters import Parameter, parameters
@@ -32,6 +32,7 @@ from .values import ValueMap, read_values
 from .writing import write
 
 __all__ = [
+    "READY",
     "ApexRadius",
     "Candidate",
     "Channel",

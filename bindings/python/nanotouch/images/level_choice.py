@@ -76,5 +76,5 @@ def _step_kept(flat: Floats, offsets: Floats, remove: object) -> float:
     trial = flat.copy()
     trial[at:] += height
     change = remove(trial) - offsets  # type: ignore[operator]
-    reach = max(2, len(flat) // 10)
+    reach = min(max(2, len(flat) // 10), at)  # of four rows one lies below
     return 1.0 - float(np.median(change[at : at + reach]) - np.median(change[at - reach : at])) / height

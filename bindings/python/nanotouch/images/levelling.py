@@ -25,6 +25,9 @@ from .level_job import Job
 from .level_report import LevelReport
 from .topography import Topography
 
+READY = "Surface, ready to touch"
+"""channel of heights from which tip and tilt have been taken: ``auto`` leaves them as they are"""
+
 _METHOD = re.compile(r"plane|poly[2-6]|lines|rows|medians|terraces")
 
 
@@ -38,8 +41,11 @@ def prepare(
     topography : Topography
         The image.
     method : str
-        As for :func:`level`, or ``"none"``, which only despeckles.
+        As for :func:`level`, or ``"none"``, which only despeckles. ``"auto"`` does nothing to the channel
+        :data:`READY`, which ``nanotouch scan`` writes.
     """
+    if method == "auto" and topography.channel == READY:
+        return topography, ()
     if method == "none":
         clean, despeckle_report = despeckle(topography)
         return clean, (despeckle_report,)
