@@ -223,11 +223,8 @@ class Session(Runs, Frozen):
         return joined(blocks)
 
     def step(self, input: Input | Hold | None = None) -> _core.Frame:
-        """Run one period: some microseconds. The frame of that tick holds what was measured and what was true.
-
-        A recorded session keeps each step, and each input, until :meth:`read` takes them: 65 536 steps and 4096 inputs
-        fit. With ``recorded=False`` it keeps none.
-        """
+        """Run one period: some microseconds. The frame of that tick holds what was measured and what was true. A
+        recorded session keeps up to 65 536 steps and 4096 inputs until :meth:`read` takes them."""
         return self.core.step(None if input is None else core_input(input))
 
     def read(self, rows: int = BLOCK_TICKS) -> Columns:
