@@ -6,7 +6,7 @@ from __future__ import annotations
 import nanotouch as nt
 import numpy as np
 import pytest
-from nanotouch.manipulation import Bench, Lost, arrange, push
+from nanotouch.manipulation import Bench, Lever, Lost, arrange, push, pushing
 
 E, G = 3.63e9, 0.85e9
 
@@ -68,3 +68,23 @@ def test_what_cannot_be_done_is_told() -> None:
         Bench(drift=-1.0)
     with pytest.raises(nt.errors.InvalidValue, match="2 starts, 1 targets"):
         arrange(latex(), [(0.0, 0.0), (5e-6, 0.0)], [(10e-6, 0.0)])
+
+
+@pytest.mark.parametrize("up", [1.0, 0.05])
+def test_a_lever_too_soft_to_lead_is_refused_and_the_least_stiffness_is_true(
+    up: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A tenth above it the operator arrives; a fifth below, where it is let to try, it never does."""
+    ball, way = nt.manipulation.latex(500e-9), (0.8e-6, 0.46e-6)
+    with pytest.raises(
+        nt.errors.InvalidValue, match=r"stiffness = 1e-06 N/m sideways: a push of 6 nN would .* 6 mm"
+    ) as no:
+        push(ball, way, lever=Lever((1e-6, 1.0, up)))
+    least = float(str(no.value).rsplit("valid is ", 1)[1].split(" N/m")[0])
+    assert push(ball, way, lever=Lever((1.1 * least, 1.1 * least, up))).believed <= 30e-9
+    low = Lever((0.8 * least, 0.8 * least, up))
+    for call in (lambda: push(ball, way, lever=low), lambda: arrange(ball, [(0.0, 0.0)], [way], lever=low)):
+        with pytest.raises(nt.errors.InvalidValue, match=r"valid is .* N/m and above"):
+            call()
+    monkeypatch.setattr(pushing, "needed", lambda lever, *_: lever)
+    assert push(ball, way, lever=low, most=10).believed > 40e-9

@@ -89,6 +89,8 @@ def test_a_touch_tells_the_dents_that_it_leaves(tmp_path: Path, capsys: pytest.C
 @pytest.mark.parametrize(
     ("line", "words"),
     [
+        ("push --lever 1uN/m,1uN/m,1uN/m", ["stiffness = 1e-06 N/m sideways", "N/m and above"]),
+        ("push --radius 50nm --lever 1N/m,1N/m,1uN/m", ["stiffness = 1e-06 N/m along z: the tip clings", "is enough"]),
         ("push --radius 1nm", ["--radius 1nm", "50nm .. 20um"]),
         ("push --to 0um,0um", ["--to 0um,0um", "above 0, up to 500 µm, 1000 radii"]),
         ("push --to 5um", ["1 lengths instead of 2"]),

@@ -17,9 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from nanotouch import _core
 from nanotouch._arrays import Floats, check_between
 from nanotouch.errors import InvalidValue
+from nanotouch.units import in_words
 
 from .particle import OF_TIP, Particle, ParticleContact, ParticlesState, path_of
 
+AHEAD = 0.2
+"""of a radius: how much further than wanted the operator of a push goes at most, for what gives way"""
 _FELT = 0.1  # of a tolerance: a lever that gives less is left out
 
 
@@ -88,16 +91,49 @@ def core_of(particle: Particle, between: ParticleContact, lever: Sequence[float]
 
 def give(lever: Lever, particle: Particle) -> float:
     """How far a lever gives way under a push at a third of the particle's radius, at most along one axis [m]."""
-    reach = reach_of(particle, low_of(particle))
-    x = np.array([-reach - 0.05 * particle.radius, -reach + 0.3 * particle.radius])
+    side, up, _ = _held(particle, 0.3 * particle.radius)
+    return max(side / min(lever.stiffness[:2]), up / lever.stiffness[2])
+
+
+def needed(lever: Lever | None, particle: Particle, left: float) -> Lever | None:
+    """None where it gives less than what could matter to a push over `left`, the last one [m]; refused where that push,
+    with all that the operator adds, leaves the particle where it is."""
+    if lever is None or give(lever, particle) <= _FELT * left:
+        return None
+    (soft, _), up, length = sorted(lever.stiffness[:2]), lever.stiffness[2], left + AHEAD * particle.radius
+    if _moves(soft, up, particle, length):
+        return lever
+    force, _, way = _held(particle, length)
+    low, high = soft, 2.0 * force / max(way, 1e-3 * length)
+    if not _moves(high, max(high, up), particle, length):
+        return lever  # a tip that is held does not move it either
+    if not _moves(high, up, particle, length):
+        raise InvalidValue(
+            f"lever: stiffness = {up:g} N/m along z: the tip clings to the particle and drags it back; "
+            f"{high:.3g} N/m is enough"
+        )
+    while high > 1.01 * low:
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if _moves(middle, up, particle, length) else (middle, high)
+    raise InvalidValue(
+        f"lever: stiffness = {soft:g} N/m sideways: a push of {in_words(force, 'N', 3)} would bend it by "
+        f"{in_words(force / soft, 'm', 3)}, and the particle stays where it is; valid is {high:.3g} N/m and above"
+    )
+
+
+def _moves(side: float, up: float, particle: Particle, length: float) -> bool:
+    """Whether a push by a lever of stiffnesses [N/m], there and back, leaves the particle elsewhere."""
+    x = np.array([-0.05 * particle.radius, length, -0.05 * particle.radius]) - reach_of(particle, low_of(particle))
+    path = Lever((side, side, up)).run(particle, x, 0.0, low_of(particle))
+    return bool(path.position[-1, 0] > 1e-3 * particle.radius)
+
+
+def _held(particle: Particle, length: float) -> tuple[float, float, float]:
+    """A push by a tip that is held: its force sideways and up [N], and how far the particle goes [m]."""
+    x = np.array([-0.05 * particle.radius, length]) - reach_of(particle, low_of(particle))
     path = particle.run(x, 0.0, low_of(particle))
     side, _, up = np.abs(path.force[-1])
-    return float(max(side / min(lever.stiffness[:2]), up / lever.stiffness[2]))
-
-
-def needed(lever: Lever | None, particle: Particle, tolerance: float) -> Lever | None:
-    """None where it gives less than what could matter."""
-    return lever if lever is not None and give(lever, particle) > _FELT * tolerance else None
+    return float(side), float(up), float(path.position[-1, 0])
 
 
 def low_of(particle: Particle) -> float:

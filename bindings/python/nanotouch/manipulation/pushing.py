@@ -18,7 +18,7 @@ from nanotouch._arrays import Floats, check_between
 from nanotouch.errors import Error, InvalidValue
 from nanotouch.units import in_words
 
-from .lever import Lever, low_of, needed, reach_of
+from .lever import AHEAD, Lever, low_of, needed, reach_of
 from .particle import Particle, ParticlesState
 from .particles import Particles
 
@@ -233,12 +233,15 @@ def push(
     ------
     nanotouch.manipulation.Lost
         A look did not find the particle, or it hangs on the tip.
+    InvalidValue
+        The lever is too soft sideways: the last push, over the tolerance, bends it and leaves the particle where it is,
+        though the operator goes a fifth of the particle's radius further.
     """
     check_between("tolerance", tolerance, "m", above=0.0)
     check_between("most", most, "", above=0)
     longest = longest if longest is not None else 0.5 * particle.radius
     check_between("longest", longest, "m", above=0.0)
-    laid = Particles(particle, lever=needed(lever, particle, tolerance))
+    laid = Particles(particle, lever=needed(lever, particle, min(tolerance, longest)))
     world = world_of(World, laid, bench or Bench(), [start], seed)
     mark = np.array([start[0], start[1] - 10.0 * particle.radius])
     return Operator(world, mark, np.array(target), longest).work(seen or start, tolerance, most)
@@ -302,7 +305,7 @@ class Operator:
         wanted = self._wanted(before)
         unit = wanted / np.linalg.norm(wanted)
         short = float(np.dot(wanted - (after - before), unit))
-        self.ahead = np.clip(0.5 * (self.ahead + short), 0.0, 0.2 * self.world.particle.radius)
+        self.ahead = np.clip(0.5 * (self.ahead + short), 0.0, AHEAD * self.world.particle.radius)
 
     def _push(self, found: Floats, drift: Floats) -> None:
         """Down behind the particle, against it, back, and up. Of the stage."""
@@ -335,7 +338,7 @@ def arrange(
         raise InvalidValue(f"{len(starts)} starts, {len(targets)} targets: valid are as many, 1 .. 6")
     check_between("tolerance", tolerance, "m", above=0.0)
     plan = _clear_plan(np.array(starts, float), np.array(targets, float), 4.0 * particle.radius)
-    laid = Particles(particle, lever=needed(lever, particle, tolerance))
+    laid = Particles(particle, lever=needed(lever, particle, min(tolerance, 0.5 * particle.radius)))
     world = world_of(World, laid, bench or Bench(), starts, seed)
     low, left = min(y for _, y in starts), min(x for x, _ in starts)
     operator = Operator(world, np.array([left, low - 10.0 * particle.radius]), np.zeros(2), 0.5 * particle.radius)
