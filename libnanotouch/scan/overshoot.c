@@ -129,10 +129,13 @@ double nt_scanner_peak_bound(const nt_scanner *scanner, const nt_place *place, c
     const nt_zloop *loop = &scanner->scan.zloop;
     const double set = loop->mode == NT_ZLOOP_PHASE ? sin(loop->set_phase) : loop->set_amplitude;
     const double lag = fmin(relief->height, relief->rise * (1.0 / scanner->integral + delay_of(scanner)));
-    const double least = fmax(0.0, set * scanner->lever.free_amplitude - lag);
+    const double least = set * scanner->lever.free_amplitude - lag;
+    if (least <= 0.0) /* the lever may stop, and be pressed on */
+        return HUGE_VAL;
     double most = -HUGE_VAL;
-    for (int i = 0; i < SWINGS; i++) {
-        const fall f = {scanner, &over, relief, least + (largest - least) * (i + 0.5) / SWINGS, least};
+    for (int i = 0; i <= SWINGS; i++) { /* dense at the least ones, where a tip may stay in the sample */
+        const double share = (double)i / SWINGS;
+        const fall f = {scanner, &over, relief, least + (largest - least) * share * share, least};
         most = fmax(most, force_of(&f));
     }
     return most;

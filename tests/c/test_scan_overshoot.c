@@ -85,7 +85,8 @@ static void a_change_of_motion_in_the_time_domain(void **state)
     assert_true(taps > LEVERS / 3 && largest > 0.2);
 }
 
-/* It grows with the speed, is never below a steady motion, and is not there where the base comes as fast as the tip. */
+/* It grows with the speed, is never below a steady motion, and is not there where the base comes as fast as the tip,
+ * or the lever may stop. */
 static void limits(void **state)
 {
     (void)state;
@@ -101,6 +102,9 @@ static void limits(void **state)
     }
     const nt_relief rises = {4.0 * fastest, 1.0};
     assert_true(isinf(nt_scanner_peak_bound(&scanner, NULL, &rises)));
+    const double set = scanner.scan.zloop.set_amplitude * drive.free_amplitude;
+    const nt_relief stops = {1.001 * set * scanner.integral, 2.0 * set}; /* the loop lags by the set point */
+    assert_true(isinf(nt_scanner_peak_bound(&scanner, NULL, &stops)));
     const nt_relief flat = {0.0, 0.0};
     nt_flow_state flow = nt_flow_free(&scanner.lever);
     nt_flow_value value;

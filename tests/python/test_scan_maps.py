@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The bound of any tap over a sample whose modulus and adhesion change from place to place."""
+"""The bound of any tap: over maps of modulus and adhesion, and up a slope that the loop cannot follow."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch import scan
+from nanotouch.scan.overshoot import _largest
 
 
 @pytest.mark.parametrize("kind", ["stiff", "sticky", "both"])
@@ -36,3 +37,34 @@ def test_no_tap_over_a_map_is_harder(kind: str) -> None:
     assert told >= max(alone)
     if kind != "sticky":  # it would have been told of the first place alone
         assert alone[1] > 1.3 * alone[0]
+
+
+@pytest.mark.parametrize("rate", [0.3, 1.0])
+def test_a_slope_that_the_loop_cannot_follow(rate: float) -> None:
+    """A ramp of 2. At 0.3 Hz the loop lags by less than the set point: no tap is above a finite bound. At 1 Hz it
+    lags by more: the lever stops, and is pressed on for as long as the ramp lasts. No amplitude helps."""
+    scene, rig = nt.Scene(), nt.Rig()
+    scene.range.maximum_load = 400e-9
+    ramp = np.tile(2.0 * np.clip(np.arange(128) * 4e-9 - 100e-9, 0.0, 120e-9), (16, 1))
+    surface = nt.Surface.touched_by(scene, ramp, pixel_size=4e-9)
+    raster: Any = {"width": 500e-9, "height": 8e-9, "y": 24e-9, "pixels": 64, "lines": 1, "line_rate": rate}
+    scanner = nt.Scanner(scene.plan(0.1, surface=surface), nt.Scan(raster=raster), rig)
+    told = scan.forecast(scanner, scene, surface)
+    reached = max(float(channels.peak_force.max()) for channels in scanner.run(1)[:2])
+    assert reached < told.peak_bound
+    if rate > 0.5:
+        assert reached > 800e-9  # docs/scan.md
+        assert math.isinf(told.peak_bound)
+        assert math.isnan(told.safe_free_amplitude)
+        assert "is pressed on: scan slower" in str(told)
+    else:
+        assert told.force_limit < told.peak_bound < 600e-9
+        assert 0.8 * 20e-9 < told.safe_free_amplitude < 20e-9
+
+
+@pytest.mark.parametrize("largest", [0.93, 0.4, 0.051])
+def test_the_largest_amplitude_is_found_though_smaller_ones_fail(largest: float) -> None:
+    """Attraction may hold a tip of small amplitude: what keeps the limit need not reach down."""
+    found = _largest(lambda share: 0.6 * largest < share <= largest)
+    assert 0.95 * largest < found <= largest
+    assert math.isnan(_largest(lambda share: False))

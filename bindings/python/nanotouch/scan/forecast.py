@@ -93,8 +93,8 @@ class Forecast(NamedTuple):
     """tapping: no tap is harder [N], also where the lever goes over from one motion to another; inf: no bound; contact:
     NaN"""
     safe_free_amplitude: float
-    """tapping: the largest A0, no larger than the one in use, at which that bound keeps below the limit, with a speed
-    that is smaller by as much [m]; NaN: none down to a twentieth of it"""
+    """tapping: the largest A0 found, no larger than the one in use, at which that bound keeps below the limit, with a
+    speed that is smaller by as much [m]; not every smaller one does; NaN: none found down to a twentieth of it"""
     single_set_point: float
     """tapping: where two motions have the set point, the nearest A/A0 that only one has over a flat; NaN: none, or not
     needed"""
@@ -129,13 +129,7 @@ class Forecast(NamedTuple):
     def _change(self) -> list[str]:
         if self.mode == "contact":
             return []
-        told = (
-            f"any tap: no harder than {in_words(self.peak_bound, 'N', 3)}, also where the lever goes over from one "
-            "motion to another"
-            if math.isfinite(self.peak_bound)
-            else "any tap: no bound, for the tip may stay in the sample where base and surface come together: scan "
-            "slower, or with a lower K_I"
-        )
+        told = self._hardest()
         if len(self.motions) == 1:
             return [told]
         alone = (
@@ -144,6 +138,17 @@ class Forecast(NamedTuple):
             else "no set point has one alone: another free amplitude may"
         )
         return [f"two motions at this set point: the lever may go over from one to the other; {alone}", told]
+
+    def _hardest(self) -> str:
+        if math.isfinite(self.peak_bound):
+            told = f"no harder than {in_words(self.peak_bound, 'N', 3)}"
+            return f"any tap: {told}, also where the lever goes over from one motion to another"
+        if math.isinf(self.flank_force):
+            return "any tap: no bound, for up the steepest slope the tip no longer taps, and is pressed on: scan slower"
+        return (
+            "any tap: no bound, for the tip may stay in the sample where base and surface come together: scan slower; "
+            "if that does not help, with a lower K_I"
+        )
 
     def _safe(self) -> str:
         limit = f"{in_words(self.force_limit, 'N', 3)} ({self.limit_reason})"
@@ -158,10 +163,8 @@ class Forecast(NamedTuple):
         if self.peak_bound <= self.force_limit:
             return ", and so does any tap"
         if math.isnan(self.safe_free_amplitude):
-            return "; no smaller free amplitude keeps any tap below"
-        return (
-            f"; any tap does with a free amplitude up to {in_words(self.safe_free_amplitude, 'm', 2)}, as much slower"
-        )
+            return "; no smaller free amplitude, as much slower, is known to keep any tap below"
+        return f"; any tap does with a free amplitude of {in_words(self.safe_free_amplitude, 'm', 3)}, as much slower"
 
     def _loop(self) -> list[str]:
         lines = [

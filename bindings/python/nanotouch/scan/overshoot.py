@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from itertools import product
 
 import numpy as np
@@ -17,7 +18,8 @@ from nanotouch.scene.surface import Surface
 
 _ROUGHLY = 0.3  # accuracy of forces that tell how far the tip sinks in
 _ACCURACY = 0.02  # of the curve's motions
-_LEAST_SWING, _HALVINGS = 0.05, 6  # of the free amplitude: smaller ones are not advised
+_SWINGS = (0.6, 0.36, 0.22, 0.13, 0.08, 0.05)  # of the free amplitude: smaller ones are not advised
+_HALVINGS = 4  # between two of them
 _LINES = 512
 _SHARES = (0.06, 0.98, 96)  # set points over A0 that are tried
 
@@ -115,8 +117,9 @@ def _at_set_point(scanner: Scanner, steady: Steady, lifted: bool) -> SteadyMotio
 
 
 def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tuple[float, float]:
-    """No tap of a scan is harder [N], where contact and sample are extreme in what is scanned; and the free
-    amplitude that keeps this below the limit of :func:`limit_of` [m], with a speed that is smaller by as much."""
+    """No tap of a scan is harder [N], where contact and sample are extreme in what is scanned; and the largest
+    free amplitude found that keeps this below the limit of :func:`limit_of` [m], with a speed that is smaller by as
+    much. A smaller one need not keep it: attraction may hold the tip."""
     if scanner.scan.zloop.mode == "contact":
         return math.nan, math.nan
     raster, limit = scanner.scan.raster, limit_of(scene)[0]
@@ -134,17 +137,29 @@ def peak_bounds(scanner: Scanner, scene: Scene, surface: Surface | None) -> tupl
     A0, most = float(scanner.drive["drive.free_amplitude"]), bound(scanner)
     if rehearse(scanner, scene).peak_force > 0.5 * most:
         return math.inf, math.nan
-    if most <= limit:
-        return most, A0
-    low, high, drive = _LEAST_SWING, 1.0, scanner.drive.copy()
-    for share in (low, *[math.nan] * _HALVINGS):
-        middle = math.sqrt(low * high) if math.isnan(share) else share
-        drive["drive.free_amplitude"] = middle * A0
-        keeps = bound(Scanner(scanner.plan, scanner.scan, scanner.rig, drive), middle) <= limit
-        if not keeps and middle == low:
-            return most, math.nan
-        low, high = (middle, high) if keeps else (low, middle)
-    return most, low * A0
+
+    def keeps(share: float) -> bool:
+        drive = scanner.drive.copy()
+        drive["drive.free_amplitude"] = share * A0
+        return bound(Scanner(scanner.plan, scanner.scan, scanner.rig, drive), share) <= limit
+
+    return most, A0 * (1.0 if most <= limit else _largest(keeps))
+
+
+def _largest(keeps: Callable[[float], bool]) -> float:
+    """The largest share below 1 that keeps the limit; NaN: none found. Sought from above, for small ones may not: there
+    attraction may hold the tip."""
+    high = 1.0
+    for low in _SWINGS:
+        if keeps(low):
+            break
+        high = low
+    else:
+        return math.nan
+    for _ in range(_HALVINGS):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if keeps(middle) else (low, middle)
+    return low
 
 
 def single_set_point(scanner: Scanner, scene: Scene, wanted: float) -> float:
