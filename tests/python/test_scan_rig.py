@@ -4,7 +4,11 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +16,7 @@ import nanotouch as nt
 import numpy as np
 import pytest
 from nanotouch.errors import InvalidValue
-from nanotouch_app import scenes
+from nanotouch_app import output, scenes
 from nanotouch_app.main import main
 from test_scan_lateral import Bench
 
@@ -59,6 +63,26 @@ def test_the_image_is_that_of_the_device(rig: type[Ranged], capsys: pytest.Captu
     assert facts["height_range"] == pytest.approx(10e-9, abs=1e-9)
     assert facts["peak_force"] == pytest.approx(50e-9 + 8.0 * 10e-9, rel=0.1)  # up the step, before the servo moves
     assert np.isfinite(facts["guarantee"])
+
+
+def test_ctrl_c_keeps_the_lines_and_lifts_the_tip(
+    rig: type[Ranged], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``close``, in which a device lifts its tip, is called when the command ends."""
+    closed: list[bool] = []
+
+    @contextmanager
+    def interrupted(_: str) -> Iterator[Callable[[float], None]]:
+        yield lambda done: os.kill(os.getpid(), signal.SIGINT) if done > 0.6 else None
+
+    monkeypatch.setattr(rig, "close", lambda _: closed.append(True))
+    monkeypatch.setattr(output, "progress_bar", interrupted)
+    assert main(["scan", "--scene", "rig.toml", *RASTER[:-1], "8", "--out", "out"]) == 130
+    found = re.search(r"(\d) of 8 lines are kept", capsys.readouterr().err)
+    assert found is not None
+    assert nt.images.read("out/scan.gwy", channel="Height").shape == (int(found[1]), 16)
+    assert 4 <= int(found[1]) <= 7
+    assert closed == [True]
 
 
 @pytest.mark.parametrize(
