@@ -13,7 +13,7 @@ from .fields import planes, write_planes
 from .filling import fill
 from .filters import gaussian, median
 from .level_report import Candidate, LevelReport, LevelStep
-from .levelling import READY, level, prepare
+from .levelling import level, prepare
 from .masking import mask_above, mask_grains, mask_image
 from .moving import moved
 from .parameters import Parameter, parameters
@@ -27,7 +27,7 @@ from .spectrum import Spectrum, spectrum
 from .statistics import Roughness, roughness
 from .terraces import Terrace
 from .tips import Paraboloid, RoundedCone, dilate, erode
-from .topography import Topography
+from .topography import READY, Topography
 from .values import ValueMap, read_values
 from .writing import write
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import ReadError
 from .filling import fill
-from .topography import Topography
+from .topography import READY, Topography
 
 SIDE_RANGE = (1e-9, 1.0)  # scan size [m]; profilers measure centimetres
 HEIGHT_RANGE = (1e-12, 1e-2)  # highest minus lowest [m]
@@ -54,7 +54,8 @@ def check_scale(topography: Topography, file: Path) -> None:
             "expected (damaged header?)"
         )
     height, limit = topography.height_range, min(HEIGHT_RANGE[1], MAX_STEEPNESS * max(topography.size))
-    if height != 0.0 and not HEIGHT_RANGE[0] <= height <= limit:
+    least = 0.0 if topography.channel == READY else HEIGHT_RANGE[0]  # a simulated scan of a flat
+    if height != 0.0 and not least <= height <= limit:
         raise ReadError(
             f"{file}: heights over a range of {height:.3g} m in channel {topography.channel!r}; expected "
             f"{HEIGHT_RANGE[0]:g} .. {limit:.3g} m (damaged data or wrong unit?)"

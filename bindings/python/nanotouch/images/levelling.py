@@ -23,10 +23,7 @@ from .despeckling import DespeckleReport, despeckle
 from .level_choice import choose
 from .level_job import Job
 from .level_report import LevelReport
-from .topography import Topography
-
-READY = "Surface, ready to touch"
-"""channel of heights from which tip and tilt have been taken: ``auto`` leaves them as they are"""
+from .topography import READY, Topography
 
 _METHOD = re.compile(r"plane|poly[2-6]|lines|rows|medians|terraces")
 

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from ..errors import InvalidValue
 from .words import length, lengths
 
+READY = "Surface, ready to touch"
+"""channel of heights from which tip and tilt have been taken: ``auto`` leaves them as they are"""
+
 
 @dataclass(frozen=True, eq=False)
 class Topography:
