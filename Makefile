@@ -59,9 +59,9 @@ damage:  ## 2000 damaged files through the readers of images and curves; some mi
 	@tools/setup.sh test
 	@$(VENV)/python tests/python/mutations.py
 
-corpus:  ## every file under a folder, ours against every other reader that is installed: make corpus DIR=folder
+corpus:  ## 2000 made files with known answers (SEED=first), or every file under a folder against other readers: make corpus DIR=folder
 	@tools/setup.sh test
-	@$(VENV)/python tests/python/corpus.py $(DIR) $(if $(PAGE),--write $(PAGE))
+	@$(VENV)/python $(if $(DIR),tests/python/corpus.py $(DIR) $(if $(PAGE),--write $(PAGE)),tests/corpus/generated.py --first $(or $(SEED),1))
 
 heavy:  ## 22 000 random scenes, energy of 1.5 million closed paths, recordings of an hour and under 50 kills, fits without memory; half an hour
 	@tools/setup.sh test
