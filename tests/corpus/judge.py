@@ -156,6 +156,8 @@ def _curves(made: Made) -> str:
         return wrong
     if wrong := _untold(made, [note for curve in read for note in curve.meta.get("notes", ())]):
         return wrong
+    if truth.curves[0].place is not None and (wrong := _places(made, truth, read)):
+        return wrong
     first = truth.curves[0]
     for name, stated in (("spring_constant", first.spring_constant), ("sensitivity", first.sensitivity)):
         if stated is None or name in made.given:
@@ -164,6 +166,19 @@ def _curves(made: Made) -> str:
         if wrong := _curves_differ(corrected, _corrected(truth, name)):
             return f"with {name} times 2: {wrong}"
     return ""
+
+
+def _places(made: Made, truth: Curves, read: Sequence[nt.curves.ForceCurve]) -> str:
+    """A map has every curve at its place: what the fit reads off there is what the curve alone shows."""
+    data = nt.maps.fit(made.path, "hertz", radius=1e-6, **made.given)
+    slopes = data.contact_slope.values
+    due = np.full(slopes.shape, np.nan)
+    for theirs, curve in zip(truth.curves, read, strict=True):
+        assert theirs.place is not None
+        if not (theirs.place[1] < due.shape[0] and theirs.place[0] < due.shape[1]):
+            return f"a map of {due.shape[0]} x {due.shape[1]}, and none at {theirs.place}"
+        due[theirs.place[::-1]] = nt.curves.analyse(curve).contact_slope
+    return "" if np.allclose(slopes, due, rtol=1e-6, equal_nan=True) else f"places: slopes {slopes} for {due}"
 
 
 def _corrected(truth: Curves, name: str) -> Curves:
@@ -251,8 +266,6 @@ def _joined(parts: Sequence[Part]) -> list[Part]:
 
 def _meta_differs(read: nt.curves.ForceCurve, truth: Curve) -> str:
     due = {"spring constant": truth.spring_constant, "sensitivity": truth.sensitivity, "setpoint": truth.setpoint}
-    if truth.place is not None:
-        due |= {"grid index x": truth.place[0], "grid index y": truth.place[1]}
     for name, value in due.items():
         got = read.meta.get(name)
         if value is None or (got is None and name == "setpoint"):

@@ -131,7 +131,7 @@ def motion(
     creeps).
     """
     travel = travel or float(random.uniform(0.4e-6, 4e-6))
-    deepest = -float(random.uniform(0.15, 0.4)) * travel
+    deepest = -min(float(random.uniform(0.15, 0.4)) * travel, 8 * lever.sensitivity)  # detectors end at 10 V
     top = travel + deepest
     stiff = 10 ** float(random.uniform(-0.5, 0.7)) * lever.spring_constant
     noise = 0.002 * travel
