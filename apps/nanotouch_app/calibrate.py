@@ -237,7 +237,7 @@ def write(path: Path, values: dict[str, Value], file: rig_file.RigFile) -> None:
             text = put(text, table, key, unit, number, f"+- {value.sigma:.2g} {unit}".rstrip() + f", {today}")
             if sigma:
                 text = put(text, table, sigma, "", value.sigma / value.value, today)
-    made = rig_file.from_tables(tomllib.loads(text), path.parent)
+    made = rig_file.described(tomllib.loads(text), path.parent)
     nt.Rig.from_tables(made.rig)  # refused before anything is replaced
     with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as new:
         new.write(text)

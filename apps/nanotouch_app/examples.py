@@ -57,7 +57,10 @@ EXAMPLES: dict[str, tuple[tuple[str, str], ...]] = {
     "tradeoff": (("nanotouch tradeoff --quick", "speed against accuracy on this machine, roughly"),),
     "bench": (("nanotouch bench --quick", "what each law costs, roughly"),),
     "latency": (("nanotouch latency --seconds 1", "how late this machine wakes a loop of 1 kHz up"),),
-    "rig": (("nanotouch rig check rig.toml", "is a rig file whole? nothing is moved"),),
+    "rig": (
+        ("nanotouch rig check rig.toml", "is a rig file whole? nothing is moved"),
+        ("nanotouch rig allow rig.toml", "let it load the shared object that it names"),
+    ),
     "doctor": (("nanotouch doctor", "what is installed, and what to install for the rest"),),
 }
 """command: (line, what it does), in an order in which each line finds the files that it names"""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``nanotouch rig``: is a rig file whole, does this machine keep its rate, and what are its numbers?
 
-Only calibrate moves anything.
+Only calibrate moves anything. allow lets a rig file load the shared object that it names.
 """
 
 from __future__ import annotations
@@ -12,19 +12,26 @@ from typing import Any
 
 import nanotouch as nt
 from nanotouch import rig_file
+from nanotouch.errors import InvalidValue
+from nanotouch.scene import read_tables
+from nanotouch.touch import allowed_code
 from nanotouch.units import in_words
 
-from nanotouch_app import calibrate, latency
+from nanotouch_app import calibrate, latency, scenes
 
 
 def add_parser(subparsers: Any) -> None:
     """Register the sub-command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "rig", help="check a rig file, probe its machine, calibrate it", description=__doc__
+        "rig", help="check a rig file, probe its machine, calibrate it, allow its code", description=__doc__
     )
     jobs = parser.add_subparsers(dest="job", required=True, metavar="JOB")
     for job, words in (
         ("check", "read the file: everything must be there and fit its chips; no device is touched"),
+        (
+            "allow",
+            "let the file load the shared object that it names as it is now, until that changes; nothing is loaded",
+        ),
         ("probe", "time the frames of its devices and the wake-up of a loop; exit status 1 if the rate is not kept"),
     ):
         one = jobs.add_parser(job, help=words, description=words)
@@ -34,21 +41,28 @@ def add_parser(subparsers: Any) -> None:
     words = "drive the rig and fit its numbers, with their uncertainties"
     one = jobs.add_parser("calibrate", help=words, description=words)
     one.add_argument("file", type=Path, metavar="RIG.toml")
+    scenes.add_allow_code(one)
     calibrate.add_options(one)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the sub-command."""
-    found = rig_file.read(args.file)
+    if args.job == "calibrate":
+        found = rig_file.read(args.file, allow_code=args.allow_code)
+    else:
+        found = rig_file.described(read_tables(args.file), args.file.parent)
     nt.Scene.from_tables(found.rig)
     settings = nt.Settings.for_rig(nt.Rig.from_tables(found.rig))
     settings.update_from_tables(found.rig)
     halves = {"master": found.master, "slave": found.slave}
     args.answer = {name: _told(half) for name, half in halves.items()}
     for name, half in halves.items():
-        print(f"{name}: {_told(half)}")
+        allowed = not isinstance(half, nt.hal.SharedObject) or allowed_code.is_allowed(args.file, half)
+        print(f"{name}: {_told(half)}" + ("" if allowed else f", not allowed yet: nanotouch rig allow {args.file}"))
     if args.job == "calibrate":
         return calibrate.run(args, found)
+    if args.job == "allow":
+        return _allow(args, halves)
     if args.job == "check":
         return 0
     if args.rate is None:
@@ -66,6 +80,16 @@ def _told(half: rig_file.RealHalf | None) -> str:
     chips = ", ".join(f"{chip['chip']} at {chip['device']}" for chip in half.setup["chips"])
     oldest = min(half.calibrated.values())
     return f"{chips}; {len(half.calibrated)} channels, calibrated {oldest} or later"
+
+
+def _allow(args: argparse.Namespace, halves: dict[str, rig_file.RealHalf | None]) -> int:
+    """Remember the shared objects of the file as they are now."""
+    named = {name: half for name, half in halves.items() if isinstance(half, nt.hal.SharedObject)}
+    if not named:
+        raise InvalidValue(f"{args.file} names no shared object: there is nothing to allow")
+    for name, half in named.items():
+        print(f"{name}: allowed, SHA-256 {allowed_code.remember(args.file, half, name)}")
+    return 0
 
 
 def _probe(args: argparse.Namespace, halves: dict[str, rig_file.RealHalf | None]) -> int:

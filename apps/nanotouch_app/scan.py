@@ -43,6 +43,7 @@ def add_parser(subparsers: Any) -> None:
     tables = "scene, rig, [drive], [zloop], [raster], [readout]"
     how.add_argument("--scene", metavar="SCENE", help=scenes.HELP.format(what=tables)
                      + " (default: silicon in humid air)")  # fmt: skip
+    scenes.add_allow_code(how)
     how.add_argument("--mode", choices=MODES, help="keep the deflection, or tap and keep amplitude or phase "
                      "(default: tapping)")  # fmt: skip
     how.add_argument("--set-point", metavar="VALUE", help="contact: a force, as 20nN; tapping: amplitude over the free "

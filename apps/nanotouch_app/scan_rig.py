@@ -22,7 +22,7 @@ SETTLES = 2.0  # time constants of the height servo in a pixel, where no line ra
 
 def is_named(args: argparse.Namespace) -> bool:
     """Whether the scene is a rig file whose slave is real."""
-    return "slave" in scenes.real_halves(args.scene)
+    return scenes.is_real(args.scene)
 
 
 def mode(args: argparse.Namespace, tables: dict[str, Any]) -> str:
@@ -30,7 +30,7 @@ def mode(args: argparse.Namespace, tables: dict[str, Any]) -> str:
     asked = str(args.mode or tables.get("zloop", {}).get("mode", "contact"))
     if asked not in nt.raster.MODES:
         raise InvalidValue(f"--mode {asked}: a rig file's probe scans with {' or '.join(nt.raster.MODES)}")
-    slave = scenes.real_halves(args.scene)["slave"]
+    slave = scenes.real_halves(args.scene, args.allow_code)["slave"]
     if asked != "contact" and isinstance(slave, nt.rig_file.Converters) and not any(slave.setup["lock_in"]):
         raise InvalidValue(
             f"{args.scene} has no [slave.amplitude] and [slave.lag]: without a lock-in amplifier its probe scans with "
@@ -89,7 +89,9 @@ def opened(
         raise InvalidValue(f"K_I = {servo:g}/s of the height servo (--gain, gains.height_gain): valid is above 0/s")
     raster.line_rate = rate if rate is not None else float(f"{servo / (2.0 * SETTLES * raster.pixels):.2g}")
     mode = nt.raster.MODES[str(settings.zloop.mode)]
-    session = nt.Session(scene, rig, settings=wanted, mode=mode, **what, **scenes.real_halves(args.scene))
+    session = nt.Session(
+        scene, rig, settings=wanted, mode=mode, **what, **scenes.real_halves(args.scene, args.allow_code)
+    )
     promised = in_words(session.guarantee().force, "N", 4)
     if taps:
         _say_tapping(session, drive, promised, servo)

@@ -37,15 +37,30 @@ def read(name: str | None) -> Described:
         return Described(scene, rig, {})
     tables = {} if name is None else read_tables(_checked(name))
     if name is not None:  # what it says of scene, rig and loop
-        tables = rig_file.from_tables(tables, Path(name).parent).rig
+        tables = rig_file.described(tables, Path(name).parent).rig
     return Described(nt.Scene.from_tables(tables), nt.Rig.from_tables(tables), tables)
 
 
-def real_halves(name: str | None) -> dict[str, Any]:
+def add_allow_code(group: Any) -> None:
+    """The option of the commands that move what a rig file names."""
+    group.add_argument(
+        "--allow-code", action="store_true", help="let the rig file load the shared object that it names, this once "
+        "(nanotouch rig allow: for good)",
+    )  # fmt: skip
+
+
+def is_real(name: str | None, half: str = "slave") -> bool:
+    """Whether this scene is a rig file that names this half, which is not simulated."""
+    if name is None or name in PRESETS + PAPER:
+        return False
+    return getattr(rig_file.described(read_tables(_checked(name)), Path(name).parent), half) is not None
+
+
+def real_halves(name: str | None, allow_code: bool) -> dict[str, Any]:
     """The halves of a rig file that are not simulated, for a session; of any other scene none."""
     if name is None or name in PRESETS + PAPER or not rig_file.is_real(read_tables(_checked(name))):
         return {}
-    file = rig_file.read(name)
+    file = rig_file.read(name, allow_code=allow_code)
     return {half: real for half, real in (("master", file.master), ("slave", file.slave)) if real is not None}
 
 

@@ -56,6 +56,7 @@ def add_parser(subparsers: Any) -> None:
         metavar="SCENE",
         help=scenes.HELP.format(what="scene, rig and gains") + " (default: silicon in humid air)",
     )
+    scenes.add_allow_code(how)
     loop.add_options(how)
     how.add_argument("--probe-model", choices=get_args(ProbeModel), default="auto", help="how the cantilever is "
                      "simulated (default: %(default)s)")  # fmt: skip
@@ -158,7 +159,7 @@ def _surface(args: argparse.Namespace, scene: nt.Scene, tables: dict[str, Any], 
 
 def _session(args: argparse.Namespace) -> nt.Session:
     scene, rig, tables = scenes.read(args.scene)
-    real = scenes.real_halves(args.scene)
+    real = scenes.real_halves(args.scene, args.allow_code)
     with output.busy("reading the surface"):
         surface = _surface(args, scene, tables, "slave" in real)
     what: dict[str, Any] = {

@@ -250,7 +250,7 @@ def _real_stage(folder: Path) -> Path:
 def test_the_command_leads_a_real_stage_at_hard_pace(screen: str, tmp_path: Path) -> None:
     """The wheel moves its hand, whatever the scheduler does with the deadlines; Q leaves, and the stage is lifted."""
     environment = {**os.environ, "DISPLAY": screen}
-    command = [sys.executable, "-m", "nanotouch_app", "live", str(_real_stage(tmp_path))]
+    command = [sys.executable, "-m", "nanotouch_app", "live", str(_real_stage(tmp_path)), "--allow-code"]
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as view:
         assert view.stdout is not None
         assert "rig.toml: hard pace, your mouse leads the hand" in view.stdout.readline()

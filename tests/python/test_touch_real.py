@@ -37,7 +37,7 @@ def stage(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_script_runs_at_the_pace_of_the_clock(stage: Path) -> None:
-    file = nt.rig_file.read(stage)
+    file = nt.rig_file.read(stage, allow_code=True)
     rig = nt.Rig.from_tables(file.rig)
     settings = nt.Settings.for_rig(rig)
     settings.update_from_tables(file.rig)
@@ -52,7 +52,7 @@ def test_a_script_runs_at_the_pace_of_the_clock(stage: Path) -> None:
 
 
 def test_an_error_on_the_way_ends_the_thread(stage: Path) -> None:
-    file = nt.rig_file.read(stage)
+    file = nt.rig_file.read(stage, allow_code=True)
     session = nt.Session(rig=nt.Rig.from_tables(file.rig), slave=file.slave, preflight=False, minimum_margin=0.0)
 
     def fail(_: float) -> None:
@@ -66,7 +66,7 @@ def test_an_error_on_the_way_ends_the_thread(stage: Path) -> None:
 def test_the_command(stage: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     options = ["--no-window", "--minimum-margin", "0", "--duration", "0.5s"]
-    assert main(["touch", "--scene", str(stage), *options, "--out", str(out)]) == 0
+    assert main(["touch", "--scene", str(stage), "--allow-code", *options, "--out", str(out)]) == 0
     told = capsys.readouterr().out
     assert "recording.mcap" in told
     rows = record.read(out / "recording.mcap")

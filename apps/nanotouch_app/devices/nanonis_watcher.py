@@ -55,7 +55,7 @@ class Watcher:
     """The process, from the side of the bridge. It outlives the bridge by what it has to do."""
 
     def __init__(self, host: str, ports: Sequence[int], patience: float) -> None:
-        command = [sys.executable, "-m", __name__, host, str(patience), *map(str, ports)]
+        command = [sys.executable, "-P", "-m", __name__, host, str(patience), *map(str, ports)]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None
         assert self._process.stdout is not None

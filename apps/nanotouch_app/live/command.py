@@ -15,7 +15,7 @@ from nanotouch import record
 from nanotouch.errors import InvalidValue
 from nanotouch.images import Topography
 
-from nanotouch_app import output, properties, stop
+from nanotouch_app import output, properties, scenes, stop
 from nanotouch_app.live import display, files, hands, real
 from nanotouch_app.live.desk import Desk
 from nanotouch_app.live.host import Host
@@ -57,6 +57,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--list", action="store_true", help="show the presets and end")
     parser.add_argument("--radius", metavar="LENGTH", help="of the tip that measured CURVE, as 30nm")
     parser.add_argument("--spring-constant", metavar="STIFFNESS", help="of its lever, in place of the file's, as 8N/m")
+    scenes.add_allow_code(parser)
     properties.add_options(parser)
     parser.add_argument("--record", metavar="FILE.mcap", help="record the session to this file")
     parser.add_argument("--film", metavar="FILE", help="film a scripted touch instead: .gif, .mp4, or .png of its end")

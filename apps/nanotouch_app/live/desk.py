@@ -45,8 +45,8 @@ class Desk:
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
         with open(self.said, "wb") as errors:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "nanotouch_app.live.window", str(surface), *options], stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE, stderr=errors, env=environment, text=True, bufsize=1,
+                [sys.executable, "-P", "-m", "nanotouch_app.live.window", str(surface), *options],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, env=environment, text=True, bufsize=1,
             )  # fmt: skip
         self.asked: queue.Queue[dict[str, Any]] = queue.Queue()
         self.listener = threading.Thread(target=self._listen, daemon=True)

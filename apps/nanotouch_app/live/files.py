@@ -83,7 +83,7 @@ def _reason(error: Error, path: Path) -> str:
 
 def of_scene(path: Path) -> Subject:
     """The scene and rig of a TOML file, over a gentle relief."""
-    tables = rig_file.from_tables(read_tables(path), path.parent).rig  # what it says of simulated halves, too
+    tables = rig_file.described(read_tables(path), path.parent).rig  # what it says of simulated halves, too
     scene, rig = nt.Scene.from_tables(tables), nt.Rig.from_tables(tables)
     named = nt.SurfaceFile.from_tables(tables, path.parent)
     if named is not None:

@@ -33,7 +33,7 @@ def touch(args: argparse.Namespace) -> int:
     if useless:
         raise InvalidValue(f"{args.what} names a real half: {' and '.join(useless)} cannot be used with it")
     path = Path(args.what)
-    file = rig_file.read(path)
+    file = rig_file.read(path, allow_code=args.allow_code)
     display.check()
     session, leads = opened(file, path.parent)
     window = session.live(hand=leads)

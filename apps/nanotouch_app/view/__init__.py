@@ -79,7 +79,7 @@ def _work(arguments: Sequence[str], time: float | None) -> str:
     """Run the worker; what it prints, or an :class:`Error` that says what to install."""
     if importlib.util.find_spec("vtkmodules") is None:
         raise missing("vtk", "view")
-    command = [sys.executable, "-m", "nanotouch_app.view.worker", *arguments]
+    command = [sys.executable, "-P", "-m", "nanotouch_app.view.worker", *arguments]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     try:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=time, check=False)

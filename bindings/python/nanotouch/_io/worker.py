@@ -89,7 +89,7 @@ class _Process:
         environment |= {"OPENBLAS_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}  # no filters from elsewhere
         with theirs:
             self.popen = subprocess.Popen(
-                [sys.executable, "-m", "nanotouch._worker_process", str(theirs.fileno())],
+                [sys.executable, "-P", "-m", "nanotouch._worker_process", str(theirs.fileno())],
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                 pass_fds=[theirs.fileno()], env=environment, start_new_session=True,
             )  # fmt: skip

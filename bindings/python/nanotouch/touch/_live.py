@@ -56,7 +56,7 @@ def watch(session: Watched, hand: bool = False) -> subprocess.Popen[str]:
     said = folder.path / "said.txt"
     with open(said, "wb") as errors:
         window = subprocess.Popen(
-            [sys.executable, "-m", WINDOW, str(surface), "--watch", name, *options], stdin=subprocess.PIPE,
+            [sys.executable, "-P", "-m", WINDOW, str(surface), "--watch", name, *options], stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, stderr=errors, env=environment, text=True,
         )  # fmt: skip
     assert window.stdout is not None

@@ -12,6 +12,8 @@ A half may also be a shared object, a program with a mailbox, or slow converters
     [slave]                           [master]                     [slave]
     backend = "shared_object"         backend = "mailbox"          backend = "iio"
     path = "stage.so"                 name = "falcon"              context = "local:"
+
+A shared object is code: it is refused unless the user has allowed it (:mod:`nanotouch.touch.allowed_code`).
 """
 
 from __future__ import annotations
@@ -31,6 +33,7 @@ from numpy.typing import NDArray
 from nanotouch import _core
 from nanotouch._io.files import toml_tables
 from nanotouch.errors import InvalidValue
+from nanotouch.touch import _rig_chips, allowed_code
 from nanotouch.touch._rig_table import AXES, Table, keys_of, unit_of
 from nanotouch.touch.hal import Mailbox, SharedObject
 from nanotouch.units import key_spellings
@@ -39,9 +42,6 @@ HALVES = ("master", "slave")
 ELSEWHERE = {"shared_object": ("path", "option"), "mailbox": ("name",)}
 """backends that a program of its own makes, with their keys"""
 BACKENDS = ("spidev", "iio", *ELSEWHERE, "simulated")
-MOST_DEBOUNCE = 0.1
-"""of the limit switch [s], as nt_gpio_open has it"""
-LINES = ("emergency_stop", "limit_switch", "laser_enable", "watchdog", "convert")
 
 
 @dataclass(frozen=True)
@@ -64,82 +64,6 @@ class RigFile(NamedTuple):
     master: RealHalf | None
     """None: simulated"""
     slave: RealHalf | None
-
-
-def _chip(table: Table) -> dict[str, Any]:
-    chip = table.word("chip", example=f'"{_core.rigs.chips()[0]}"')
-    if chip not in _core.rigs.chips():
-        raise InvalidValue(f"[{table.where}] chip = {chip!r}: known are {', '.join(_core.rigs.chips())}")
-    made = {
-        "chip": chip,
-        "device": table.word("device", example='"/dev/spidev0.0"'),
-        "clock": table.number("clock", "Hz"),
-        "low": table.number("low", "V"),
-        "high": table.number("high", "V"),
-    }
-    table.done()
-    return made
-
-
-def _iio_chip(table: Table) -> dict[str, Any]:
-    """A device of IIO: what its driver does not say."""
-    ways = [way for way in ("inputs", "outputs") if way in table.left]
-    if len(ways) != 1:
-        raise InvalidValue(f'[{table.where}] needs inputs or outputs, one of them: write inputs = ["voltage0"]')
-    channels = table.left.pop(ways[0])
-    if not isinstance(channels, list) or not channels or not all(_is_word(channel) for channel in channels):
-        raise InvalidValue(f'[{table.where}] {ways[0]} = {channels!r}: write {ways[0]} = ["voltage0"]')
-    made = {
-        "chip": "IIO",
-        "device": table.word("device", example='"ad5791"'),
-        "channels": channels,
-        "is_output": ways[0] == "outputs",
-        "bits": table.word("bits", int, "16"),
-        "low": table.number("low", "V"),
-        "high": table.number("high", "V"),
-    }
-    table.done()
-    return made
-
-
-def _is_word(given: object) -> bool:
-    return isinstance(given, str) and bool(given) and given.isprintable() and " " not in given
-
-
-def _channel(table: Table, chips: list[str], unit: str, calibrated: dict[str, datetime.date]) -> dict[str, Any]:
-    chip = table.word("chip", example=f'"{chips[0]}"')
-    if chip not in chips:
-        raise InvalidValue(f"[{table.where}] chip = {chip!r}: this half has {', '.join(chips)}")
-    made = {
-        "converter": chips.index(chip),
-        "channel": table.word("channel", int, "0"),
-        "gain": table.number("gain", f"{unit}/V"),
-        "offset": table.number("offset", unit),
-        "uncertainty": table.number("uncertainty", ""),
-        "minimum": table.number("minimum", unit),
-        "maximum": table.number("maximum", unit),
-        "noise": table.number("noise", unit, 0.0),
-        "latency": table.number("latency", "s", 0.0),
-    }
-    day = table.word("calibrated", datetime.date, "2026-11-20")
-    if isinstance(day, datetime.datetime):
-        day = day.date()
-    if day > datetime.date.today() + datetime.timedelta(days=1):  # a day: of another time zone
-        raise InvalidValue(f"[{table.where}] calibrated = {day} is in the future: today is {datetime.date.today()}")
-    calibrated[table.where] = day
-    table.done()
-    return made
-
-
-def _lines(table: Table) -> dict[str, Any]:
-    made: dict[str, Any] = {"emergency_stop": table.word("emergency_stop", example='"estop"')}
-    for name in LINES[1:]:
-        made[name] = table.word(name, example='"..."') if name in table.left else None
-    made["debounce"] = table.number("debounce", "s", 0.0)
-    if not 0.0 <= made["debounce"] <= MOST_DEBOUNCE:
-        raise InvalidValue(f"[{table.where}] debounce = {made['debounce']:g} s: valid is 0 .. {MOST_DEBOUNCE:g} s")
-    table.done()
-    return made
 
 
 def _refuse_twice(named: Mapping[str, object], what: str) -> None:
@@ -175,14 +99,14 @@ def _check_devices(halves: Mapping[str, RealHalf | None]) -> None:
             devices |= {f"[{half}.chips.{chip['name']}]": os.path.realpath(chip["device"])
                         for chip in found.setup["chips"]}  # fmt: skip
         named = found.setup["lines"] or {}
-        lines |= {f"[{half}.lines] {name}": named[name] for name in LINES if named.get(name) is not None}
+        lines |= {f"[{half}.lines] {name}": named[name] for name in _rig_chips.LINES if named.get(name) is not None}
     _refuse_twice(devices, "device")
     _refuse_twice(lines, "line")
 
 
 def _half(half: str, table: Table, backend: str) -> Converters:
-    context = {"context": table.word("context", example='"local:"')} if backend == "iio" else {}
-    read_chip = _iio_chip if backend == "iio" else _chip
+    context = {"context": _rig_chips.context(table)} if backend == "iio" else {}
+    read_chip = _rig_chips.iio_chip if backend == "iio" else _rig_chips.chip
     axes = table.word("axes", int, "1")
     named = table.table("chips", "a table for each chip")
     chips = {name: {"name": name} | read_chip(named.table(name, "a chip")) for name in list(named.left)}
@@ -194,7 +118,9 @@ def _half(half: str, table: Table, backend: str) -> Converters:
     setup["keys"] = list(keys.values())
     for name, tables in keys.items():
         setup[name] = [
-            _channel(table.table(key, ""), list(chips), unit_of(half, key), calibrated) if key in table.left else None
+            _rig_chips.channel(table.table(key, ""), list(chips), unit_of(half, key), calibrated)
+            if key in table.left
+            else None
             for key in tables
         ]
     needed = ("position_z",) if half == "master" else ("position_z", "deflection_z", "travel_z")
@@ -205,7 +131,7 @@ def _half(half: str, table: Table, backend: str) -> Converters:
     if len(moved) < axes:
         raise InvalidValue(f"[{half}] axes = {axes}: it has {', '.join(moved)} alone")
     if half == "slave" or "lines" in table.left:
-        setup["lines"] = _lines(table.table("lines", "a slave that moves needs an emergency stop"))
+        setup["lines"] = _rig_chips.lines(table.table("lines", "a slave that moves needs an emergency stop"))
     else:
         setup["lines"] = None
     table.done()
@@ -269,9 +195,28 @@ def _known(given: Any, stated: Mapping[str, tuple[float, str]]) -> Any:
     return made
 
 
-def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> RigFile:
-    """From the tables of a rig file; refused, with the key's name, if anything is missing or unknown. ``folder``: where
-    the file is, for paths in it."""
+def from_tables(tables: Mapping[str, Any], folder: str | PathLike[str] = "", *, allow_code: bool = False) -> RigFile:
+    """From the tables of a rig file; refused, with the key's name, if anything is missing or unknown.
+
+    Parameters
+    ----------
+    tables : mapping
+        As ``tomllib`` gives them.
+    folder : str or path
+        Where the file is, for paths in it.
+    allow_code : bool
+        Whether a shared object that they name may run.
+    """
+    found = described(tables, folder)
+    for half in HALVES:
+        named = getattr(found, half)
+        if isinstance(named, SharedObject):
+            allowed_code.check(half, named, None, allow_code)
+    return found
+
+
+def described(tables: Mapping[str, Any], folder: str | PathLike[str] = "") -> RigFile:
+    """What the tables say, for who runs nothing of it: a shared object in it may be one that is not allowed."""
     left = dict(tables)
     found = {half: _taken(half, left, Path(folder)) for half in HALVES}
     _check_devices(found)
@@ -298,9 +243,23 @@ def is_real(tables: Mapping[str, Any]) -> bool:
     return any(isinstance(half, Mapping) and half.get("backend", "simulated") != "simulated" for half in halves)
 
 
-def read(path: str | PathLike[str]) -> RigFile:
-    """A rig file."""
-    return from_tables(toml_tables(path), Path(path).parent)
+def read(path: str | PathLike[str], *, allow_code: bool = False) -> RigFile:
+    """A rig file.
+
+    Parameters
+    ----------
+    path : str or path
+        The TOML file.
+    allow_code : bool
+        Whether a shared object that it names may run; by default one that ``nanotouch rig allow`` has remembered. It
+        lies in the folder of the file, or one that the user lists (:mod:`nanotouch.touch.allowed_code`).
+    """
+    found = described(toml_tables(path), Path(path).parent)
+    for half in HALVES:
+        named = getattr(found, half)
+        if isinstance(named, SharedObject):
+            allowed_code.check(half, named, path, allow_code)
+    return found
 
 
 class Latency(NamedTuple):
