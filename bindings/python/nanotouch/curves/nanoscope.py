@@ -17,16 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import Floats
+from .._io import nanoscope_header as header
+from .._io.nanoscope_header import Section
 from .._io.words import counted, printable
 from ..errors import ReadError
-from . import nanoscope_header as header
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS
 from .curve import ForceCurve, Role, Segment
-from .nanoscope_header import Section
 
 NAME = "nanotouch/nanoscope"
-SIGNATURES = (b"\\*File list", b"\\*Force file list", b"\\*Ciao")  # how Bruker's headers begin
+SIGNATURES = header.SIGNATURES
 _VERSION_32BIT = 0x09200000  # from here on integers take 4 bytes, whatever "Bytes/pixel" says of their scale
 _DEFLECTION = ("DeflectionError", "Deflection")
 _FAR = 0.125  # of a period; how far the largest deflection of a capture may lie from its turn without a note

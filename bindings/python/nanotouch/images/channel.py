@@ -15,6 +15,8 @@ from .checks import LENGTHS
 
 #: Names of height channels, best first: a calibrated sensor before the voltage of a piezo.
 HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
+#: In the names of channels that hold no heights, whatever their unit.
+OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "lateral", "potential", "current")
 _TOLD = 20  # names in an error
 _BACKWARD_NAMES = ("retrace", "backward", "reverse")
 
@@ -89,10 +91,11 @@ def si_unit(unit: str) -> str:
 def with_default(listed: Sequence[Channel]) -> list[Channel]:
     """The same with the channel marked that is read if none is named: of the heights, the first of the best name."""
 
-    def rank(channel: Channel) -> tuple[int, bool]:
+    def rank(channel: Channel) -> tuple[int, bool, bool]:
         name = channel.name.casefold()
         known = [i for i, part in enumerate(HEIGHT_NAMES) if part in name]
-        return (known[0] if known else len(HEIGHT_NAMES), any(part in name for part in _BACKWARD_NAMES))
+        backward = any(part in name for part in _BACKWARD_NAMES)
+        return (known[0] if known else len(HEIGHT_NAMES), "interleave" in name, backward)
 
     best = min((channel for channel in listed if channel.kind == "height"), key=rank, default=None)
     return [replace(channel, default=channel is best) for channel in listed]

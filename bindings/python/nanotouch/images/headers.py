@@ -3,7 +3,6 @@
 
 | format | refused: data that are not there | told in a note: what may be a damaged number, or a setting changed later |
 |---|---|---|
-| NanoScope | data length below the pixels'; end of the file | image wider than the scan |
 | Igor (.ibw) | (check sum and lengths: before any reader sees it) | size of the scan in the note and pixel size |
 | Nanosurf (.nid) | file shorter than its channels | size, points and lines in the scan's section |
 | WSxM | file shorter than its pixels | length of the header; amplitude and range of the heights |
@@ -52,18 +51,6 @@ def _length(text: str) -> float | None:
     """``"10 um"`` in metres; None where it is no length."""
     match = re.match(rf"\s*{_NUMBER}\s*(\S+)", text.replace("~m", "um"))
     return float(match[1]) * LENGTHS[match[2]] if match and match[2] in LENGTHS else None
-
-
-def _nanoscope(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
-    ny, nx = plane.values.shape
-    length, offset = int(meta["data length"]), int(meta["data offset"])
-    _short(file, length, 2 * nx * ny)
-    _short(file, file.stat().st_size, offset + length)
-    with file.open("rb") as stream:
-        scan = re.search(rb"\\\*Ciao scan list.*?\\Scan Size: ([^\r\n]+)", stream.read(min(offset, 1 << 20)), re.S)
-    stated = _length(scan[1].decode("latin-1")) if scan else None
-    if stated is not None and plane.pixel_size is not None and nx * plane.pixel_size[1] > stated * (1 + _TOLERANCE):
-        yield _differ(("image width [m]", nx * plane.pixel_size[1]), ("scan size [m]", stated))
 
 
 def _igor(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
@@ -137,5 +124,5 @@ def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
 
 
 _CHECKS: dict[str, Callable[[Path, Meta, Plane], Iterator[str]]] = {
-    "di": _nanoscope, "ibw": _igor, "ezd": _nanosurf, "wsxm": _wsxm, "mi": _picoview,
+    "ibw": _igor, "ezd": _nanosurf, "wsxm": _wsxm, "mi": _picoview,
 }  # fmt: skip

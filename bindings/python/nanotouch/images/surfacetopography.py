@@ -18,15 +18,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._arrays import Floats
 from .._io.files import guarded
 from ..errors import ReadError, require
-from . import gwyddion, headers, nanoscope_values
-from .channel import HEIGHT_NAMES, Channel, Plane, chosen, with_default
+from . import gwyddion, headers
+from .channel import HEIGHT_NAMES, OTHER_NAMES, Channel, Plane, chosen, with_default
 from .checks import LENGTHS, check_shape
 
 NAME = "SurfaceTopography"
-_OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "lateral", "potential", "current")
 #: Readers that recognise nothing in a file and take any bytes of a fitting number for an image (elevation maps, NMS).
 _CREDULOUS = ("hgt", "nms")
 
@@ -60,7 +58,7 @@ def read(file: Path, channel: str | None) -> Plane:
             raise ReadError(f"{file}: {raw.shape} values, but its header states {tuple(info.nb_grid_pts)} pixels")
         values, kind = _upright(raw, reader.format()), _kind(info, reader.format())
         if kind != "height":
-            values, vertical = _no_height(values, info, reader.format(), file)
+            vertical = _stated_unit(info, reader.format())
         name, source = str(info.channel_id), f"{NAME}/{reader.format()}"
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
@@ -100,15 +98,6 @@ def _images_in(reader: Any, file: Path) -> tuple[list[Any], list[Channel]]:
     return found, left_out
 
 
-def _no_height(values: Floats, info: Any, format_: str, file: Path) -> tuple[Floats, str | None]:
-    """Values and their unit, where the file states one: NanoScope's are counts, and Asylum's without a unit no
-    volts."""
-    if format_ == "di":
-        scale, unit = nanoscope_values.scale_of(file, info.info.get("raw_metadata") or {})
-        return values * scale, unit
-    return values, _stated_unit(info, format_)
-
-
 def _stated_unit(info: Any, format_: str) -> str | None:
     """Of a channel that is no height. Asylum's without a unit are volts to SurfaceTopography, whatever they are."""
     unit = _units(info.data_unit)[1]
@@ -121,9 +110,7 @@ def _kind(info: Any, format_: str) -> str:
     In Asylum's files it knows some names and takes the others, as MapHeight, for volts.
     """
     kind, name = str(info.data_kind.value), str(info.name).casefold()
-    other = next((part for part in _OTHER_NAMES if part in name), "")
-    if format_ == "di" and info.height_scale_factor is None:
-        return other or "other"
+    other = next((part for part in OTHER_NAMES if part in name), "")
     if format_ == "ibw" and kind == "voltage" and not other and any(part in name for part in HEIGHT_NAMES):
         return "height"
     return other or kind if kind == "height" else kind

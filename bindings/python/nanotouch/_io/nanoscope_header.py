@@ -14,11 +14,13 @@ from pathlib import Path
 
 from ..errors import ReadError
 
+SIGNATURES = (b"\\*File list", b"\\*Force file list", b"\\*Ciao", b"\\*EC File list")  # how the headers begin
 _HEADER_LIMIT = 1 << 20  # byte; those seen have 80 KiB
-_UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "µm/V": 1e-6, "~m/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3}
+_UNITS = {"V": 1.0, "mV": 1e-3, "nm/V": 1e-9, "um/V": 1e-6, "pm/V": 1e-12, "mm/V": 1e-3,
+          "m/V": 1.0}  # fmt: skip
 _NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
 _SCALED = re.compile(rf"V\s*\[Sens\. ([^\]]+)\]\s*\({_NUMBER}\s*(m?V)/LSB\)\s*{_NUMBER}\s*(m?V)")
-_SIZE = re.compile(rf"{_NUMBER}(?:\s+{_NUMBER})?\s+(nm|um|µm|~m|pm|mm)")
+_SIZE = re.compile(rf"{_NUMBER}(?:\s+{_NUMBER})?\s+(nm|um|pm|mm|m)")
 _SENSITIVITY = re.compile(rf"V {_NUMBER}\s*(\S*)")
 
 
@@ -114,7 +116,7 @@ def sensitivity(found: list[Section], name: str) -> tuple[float, str] | None:
         match = _SENSITIVITY.match(one.get(f"@sens. {name}".lower(), ""))
         if not match:
             continue
-        value, unit = float(match[1]), match[2]
+        value, unit = float(match[1]), plain_unit(match[2])
         if unit in _UNITS and unit.endswith("/V"):
             return value * _UNITS[unit], ""
         if not unit and value != 1.0:
@@ -130,14 +132,45 @@ def piezo(found: list[Section], name: str) -> float:
     return known[0]
 
 
+def stated_everywhere(found: list[Section], key: str) -> list[str]:
+    """Different values of a key, those of the scanner and the scan first."""
+
+    def rank(one: Section) -> int:
+        return next((i for i, name in enumerate(("scanner", "microscope", "scan")) if name in one.name.casefold()), 3)
+
+    values = [one[key.casefold()] for one in sorted(found, key=rank) if key.casefold() in one]
+    return list(dict.fromkeys(values))
+
+
+def is_number(text: str) -> bool:
+    """Whether it is a finite number."""
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def plain_unit(text: str) -> str:
+    """A unit with its micro written as u, in whatever encoding it was stored (latin-1, UTF-8, Shift-JIS) or as ~."""
+    for micro in ("\xc2\xb5", "\xce\xbc", "\x83\xca", "\xb5", "\u03bc", "~"):
+        text = text.replace(micro, "u")
+    return text.strip()
+
+
+def size_of(text: str) -> tuple[float, float | None] | None:
+    """``10 5 ~m`` as two lengths [m], the second None where only one is stated; None where it is none."""
+    match = _SIZE.fullmatch(plain_unit(text))
+    if match is None:
+        return None
+    unit = _UNITS[match[3] + "/V"]
+    return float(match[1]) * unit, None if match[2] is None else float(match[2]) * unit
+
+
 def scan_size(found: list[Section]) -> tuple[float, float] | None:
     """Along the fast and the slow axis [m], as the picture of a map states it, or its scan; None if neither does."""
     for name in ("Ciao image list", "Ciao scan list"):
         for one in found:
-            match = _SIZE.fullmatch(one.get("scan size", "")) if one.name == name else None
-            if match and (match[2] or one.get("aspect ratio", "1:1") == "1:1"):
-                unit = _UNITS[match[3] + "/V"]
-                size = float(match[1]) * unit, float(match[2] or match[1]) * unit
-                if min(size) > 0.0:
-                    return size
+            size = size_of(one.get("scan size", "")) if one.name == name else None
+            if size and size[0] > 0.0 and (size[1] or one.get("aspect ratio", "1:1") == "1:1"):
+                return size[0], size[1] or size[0]
     return None
