@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from judge import Verdict, judge
 from made import Made, Writer
 
-MODULES = ("nanoscope_image", "jpk")
+MODULES = ("nanoscope_image", "nanoscope_force", "jpk")
 
 
 def writers() -> dict[str, Writer]:

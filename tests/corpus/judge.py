@@ -65,13 +65,14 @@ def _silence() -> Iterator[None]:
 
 
 def _guessed(made: Made, read: Callable[..., Any]) -> str:
-    """Read without what the file does not state: for each missing value a refusal is due."""
+    """Read without what the file does not state: a refusal is due, or curves without forces."""
     for name in made.given:
         try:
-            read(made.path, **{key: value for key, value in made.given.items() if key != name})
+            found = read(made.path, **{key: value for key, value in made.given.items() if key != name})
         except nt.Error:
             continue
-        return f"read without {name}, which the file does not state"
+        if name != "spring_constant" or any(s.force is not None for curve in found for s in curve.segments):
+            return f"read without {name}, which the file does not state"
     return ""
 
 
@@ -212,6 +213,8 @@ def _curves_differ(read: Sequence[nt.curves.ForceCurve], truth: Curves) -> str:
 def _curve_differs(read: nt.curves.ForceCurve, truth: Curve) -> str:
     ours = _joined([Part(s.role, s.z, s.deflection, s.force, _span(s.time)) for s in read.segments])
     theirs = _joined(truth.parts)
+    if truth.cycle:
+        return _cycle_differs(ours, theirs) or _meta_differs(read, truth)
     told, due = ([(part.role, len(part.z)) for part in parts] for parts in (ours, theirs))
     if told != due:
         return f"segments {told} for {due}"
@@ -226,6 +229,29 @@ def _curve_differs(read: nt.curves.ForceCurve, truth: Curve) -> str:
         if b.duration and a.duration and abs(a.duration - b.duration) > 2.5 * b.duration / len(b.z):
             return f"{b.role} of {a.duration:.5g} s for {b.duration:.5g} s"
     return _meta_differs(read, truth)
+
+
+def _cycle_differs(ours: Sequence[Part], theirs: Sequence[Part]) -> str:
+    """A period may begin anywhere and be cut beside its deepest point: compared are points, sorted by deflection."""
+
+    def sorted_points(parts: Sequence[Part]) -> tuple[Array, Array, Array]:
+        columns = (
+            np.concatenate([part.deflection for part in parts if part.deflection is not None]),
+            np.concatenate([part.z for part in parts]),
+            np.concatenate([np.full(len(part.z), part.role == "approach") for part in parts]),
+        )
+        order = np.lexsort((columns[1], np.round(columns[0] / VALUE / np.ptp(columns[0]))))
+        return columns[0][order], columns[1][order], columns[2][order]
+
+    got, due = sorted_points(ours), sorted_points(theirs)
+    if len(got[0]) != len(due[0]):
+        return f"{len(got[0])} points for {len(due[0])}"
+    for name, a, b in zip(("deflection", "z"), got, due, strict=False):
+        worst = np.abs(a - b - (np.mean(a - b) if name == "z" else 0.0)).max()
+        if worst > 5e-6 * np.ptp(b):
+            return f"{name} off by {worst:.4g} m"
+    other = int((got[2] != due[2]).sum())
+    return f"{other} points of the other branch" if other > 3 else ""
 
 
 def _quantity_differs(name: str, pairs: list[tuple[Array | None, Array | None]], shift: float) -> str:

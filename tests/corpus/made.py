@@ -59,6 +59,7 @@ class Curve:
     setpoint: float | None = None  # [N]; hangs on k and s
     place: tuple[int, int] | None = None  # (x, y) in a map
     free_z: bool = True  # z is known up to a constant
+    cycle: bool = False  # one period, which may begin anywhere
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,7 @@ def motion(
     noise = 0.002 * travel
     approaches = [i for i, (role, _) in enumerate(points) if role == "approach"]
     found, z = [], top
+    rest_of_detector = float(random.choice((-1, 1)) * random.uniform(0.05, 0.5)) * lever.sensitivity
     for number, (role, n) in enumerate(points):
         if role == "approach":
             later = sum(i > number for i in approaches)
@@ -149,11 +151,11 @@ def motion(
             heights = z - 0.04 * travel * (1 - np.exp(-np.linspace(0, 3, n)))
         else:
             heights = np.full(n, z)
-        rest = found[-1][2][-1] if role == "hold" and found else None
-        bend = _bend(heights, lever, stiff) if rest is None else np.full(n, _bend(np.array([z]), lever, stiff)[0])
+        held = np.full(n, z) if role == "hold" else heights  # at constant force
+        bend = _bend(held, lever, stiff)
         if role == "retract":
             bend = bend - 0.02 * travel * np.exp(-(((heights - 0.05 * travel) / (0.03 * travel)) ** 2))
-        bend = bend + noise * random.standard_normal(n)
+        bend = bend + rest_of_detector + noise * random.standard_normal(n)
         found.append(("pause" if role in ("hold", "pause") else role, heights, bend))
         z = float(heights[-1])
     return found
@@ -162,3 +164,10 @@ def motion(
 def _bend(z: Array, lever: Lever, stiff: float) -> Array:
     """Deflection over a linear sample: k d = stiff (-z - d)."""
     return np.asarray(np.clip(-z, 0, None) * stiff / (stiff + lever.spring_constant))
+
+
+def pressed(random: Random, lever: Lever, z: Array, contact: float) -> Array:
+    """Deflection over an elastic sample that is met at z = `contact` [m], with noise."""
+    stiff = 10 ** float(random.uniform(-0.5, 0.7)) * lever.spring_constant
+    bend = np.minimum(_bend(z - contact, lever, stiff), 8 * lever.sensitivity)
+    return np.asarray(bend + 0.2 * lever.sensitivity + 0.004 * np.ptp(z) * random.standard_normal(len(z)))
