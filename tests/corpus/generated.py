@@ -23,7 +23,19 @@ sys.path.insert(0, str(Path(__file__).parent))
 from judge import Verdict, judge
 from made import Made, Writer
 
-MODULES = ("nanoscope_image", "nanoscope_force", "jpk")
+MODULES = (
+    "nanoscope_image",
+    "nanoscope_force",
+    "jpk",
+    "asylum_image",
+    "nanonis_image",
+    "nanosurf_image",
+    "surf_image",
+    "wsxm_image",
+    "text_image",
+    "gwyddion_image",
+    "hdf5_image",
+)
 
 
 def writers() -> dict[str, Writer]:

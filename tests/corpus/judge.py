@@ -66,7 +66,7 @@ def _silence() -> Iterator[None]:
 
 def _guessed(made: Made, read: Callable[..., Any]) -> str:
     """Read without what the file does not state: a refusal is due, or curves without forces."""
-    for name in made.given:
+    for name in set(made.given) - {"channel"}:
         try:
             found = read(made.path, **{key: value for key, value in made.given.items() if key != name})
         except nt.Error:
@@ -105,7 +105,7 @@ def _channels(made: Made, truth: Image) -> str:
         if channel.kind != "height":
             continue
         try:
-            read = nt.images.read(made.path, channel.name, **made.given)
+            read = nt.images.read(made.path, **made.given | {"channel": channel.name})
         except nt.Error:
             continue
         differences = {_plane_differs(read, plane): plane for plane in planes}

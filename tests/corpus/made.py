@@ -105,6 +105,11 @@ def surface(random: Random, shape: tuple[int, int], height: float) -> Array:
     return np.asarray(height * (found / found.max() - 0.3))
 
 
+def relief(random: Random, side: float) -> float:
+    """Range of heights [m] that a scan of this side may show."""
+    return float(max(side * 10 ** random.uniform(-2.5, -0.2), 2e-11))
+
+
 def shape(random: Random) -> tuple[int, int]:
     ny, nx = (int(n) for n in random.integers(8, 41, 2))
     return ny, nx
