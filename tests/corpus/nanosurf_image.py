@@ -59,7 +59,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
         if c["unsigned beside"] and group == 0:
             head.append("Gr0-Ch8=DataSet-0:8")
             text = _section(c, "0:8", direction, "Friction force", "V", (ny, nx), size, (10.0, -5.0))
-            sections.append(text.replace("SaveSign=Signed", "SaveSign=Unknown"))
+            sections.append(text.replace("SaveSign=Signed", "SaveSign=Unsigned"))
             data += bytes(ny * nx * c["bits"] // 8)
         if c["missing section"]:
             head.append(f"Gr{group}-Ch9=DataSet-{group}:9")
