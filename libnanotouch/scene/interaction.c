@@ -263,10 +263,24 @@ nt_friction_contact nt_interaction_friction_contact(const nt_plan *plan, const n
     return nt_plan_friction_contact(plan, &contact, law);
 }
 
+/* A plan without friction has no place for its history: what the spring held is heat. */
+static void let_go(const nt_plan *plan, nt_slide *slide)
+{
+    static const nt_friction_contact none = {0.0, 0.0};
+    if (!slide->placed)
+        return;
+    (void)nt_friction_advance(&plan->friction.law, &slide->friction, &none, (double[2]){0.0, 0.0});
+    slide->placed = 0;
+}
+
 void nt_interaction_slide_gap(const nt_plan *plan, const nt_interaction_state *state, nt_slide *slide,
                               const nt_place *place, const nt_pose *pose)
 {
-    if (plan->friction.term.form == NT_FORM_OFF || isnan(pose->x) || isnan(pose->y) || isnan(pose->z))
+    if (plan->friction.term.form == NT_FORM_OFF) {
+        let_go(plan, slide);
+        return;
+    }
+    if (isnan(pose->x) || isnan(pose->y) || isnan(pose->z))
         return;
     nt_friction law = plan->friction.law;
     if (plan->properties && place && place->youngs_modulus.value > 0.0)
@@ -283,8 +297,10 @@ void nt_interaction_slide_gap(const nt_plan *plan, const nt_interaction_state *s
 
 void nt_interaction_slide(const nt_plan *plan, const nt_interaction_state *state, nt_slide *slide, const nt_pose *pose)
 {
-    if (plan->friction.term.form == NT_FORM_OFF)
+    if (plan->friction.term.form == NT_FORM_OFF) {
+        let_go(plan, slide);
         return;
+    }
     const nt_place place = nt_interaction_place(plan, pose->x, pose->y);
     nt_interaction_slide_gap(plan, state, slide, &place, &(nt_pose){pose->x, pose->y, pose->z - place.surface.z});
 }

@@ -125,17 +125,22 @@ static void plough(nt_sim_slave *slave)
                    slave->y + give * friction->force[NT_Y]);
 }
 
+/* Nothing is held sideways any more: what the spring of friction held is heat. */
+static void release(nt_sim_slave *slave)
+{
+    static const nt_friction_contact none = {0.0, 0.0};
+    (void)nt_friction_advance(&slave->plan->friction.law, &slave->slide.friction, &none, (double[2]){0.0, 0.0});
+}
+
 /* Friction at the end of a period; what it held is lost where the contact was, even for a moment. The support of the
  * tip is where the stage is: tip and lever are its spring. */
 static void slide(nt_sim_slave *slave, int parted, double gap)
 {
-    static const nt_friction_contact none = {0.0, 0.0};
-    if (slave->plan->friction.term.form == NT_FORM_OFF)
-        return;
-    if (parted)
-        (void)nt_friction_advance(&slave->plan->friction.law, &slave->slide.friction, &none, (double[2]){0.0, 0.0});
+    const int rubs = slave->plan->friction.term.form != NT_FORM_OFF;
     const nt_pose here = {slave->x, slave->y, gap};
-    if (slave->plan->dents)
+    if (parted && rubs)
+        release(slave);
+    if (slave->plan->dents && rubs)
         slide_in_dent(slave);
     else
         nt_interaction_slide_gap(slave->plan, &slave->interaction, &slave->slide, &slave->place, &here);
@@ -179,7 +184,9 @@ void nt_sim_change_plan(nt_sim_slave *slave, const nt_plan *plan)
         return;
     slave->plan = plan;
     slave->lowered = slave->dents.touches = 0; /* what touched by another law has let go */
-    slave->place_x = slave->law_gap = NAN;     /* nothing is known of it yet */
+    if (plan->dents)
+        slave->interaction.attached = 0;   /* its contact is that of the dents */
+    slave->place_x = slave->law_gap = NAN; /* nothing is known of it yet */
     slave->tap.table = (nt_flow_table){.cell = {{.is_made = 0}}};
 }
 
@@ -225,8 +232,10 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     find_dents(slave);
     const double surface = slave->place.surface.z - slave->lowered + nt_sim_surface_jump(&slave->link);
     const double base = slave->start_height - slave->stage.position - nt_sim_stage_drift(&slave->link) - surface;
-    if (nt_sim_taps(slave))
+    if (nt_sim_taps(slave)) {
+        release(slave); /* a lever that taps rubs nothing */
         return nt_sim_tap_step(slave, base, surface);
+    }
     const int lie = slave->pushed.state.count > 0, pushes = lie && is_elsewhere;
     const int knows = surface == slave->truth.surface_height && !(is_elsewhere && slave->plan->properties) && !pushes;
     nt_pushed_state pushed;
@@ -260,7 +269,8 @@ nt_status nt_sim_move_probe(nt_sim_slave *slave)
     if (slave->plan->dents)
         plough(slave);
     tell_truth(slave, &context, sides);
-    const int fails = slave->dents.full || (lie && status != NT_OK); /* a reading that is none stops the touch */
+    const int fails = (slave->plan->dents && slave->dents.full) ||
+                      (lie && status != NT_OK); /* a reading that is none stops the touch */
     return fails ? NT_E_DEVICE : status;
 }
 
