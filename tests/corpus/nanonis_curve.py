@@ -62,8 +62,17 @@ def _column(move: tuple[str, Array, Array], z: Array, scale: float) -> Array:
 
 
 def _file(c: dict[str, Any], z: Array, columns: dict[str, Array], order: list[str]) -> bytes:
-    head = ["Experiment\tZ spectroscopy\t", "Saved Date\t16.12.2015 11:39:44\t", "User\tm\xfcller\t",
-            "X (m)\t-3.3351E-7\t", "Y (m)\t-3.125E-7\t", "Z (m)\t-2.18616E-8\t", "Filter type\tnone\t", "", "[DATA]"]  # fmt: skip
+    head = [
+        "Experiment\tZ spectroscopy\t",
+        "Saved Date\t16.12.2015 11:39:44\t",
+        "User\tm\xfcller\t",
+        "X (m)\t-3.3351E-7\t",
+        "Y (m)\t-3.125E-7\t",
+        "Z (m)\t-2.18616E-8\t",
+        "Filter type\tnone\t",
+        "",
+        "[DATA]",
+    ]
     names = [c["z"], c["quantity"]]
     table = [z, columns[order[0]]]
     kind, _, unit = c["quantity"].partition(" ")
