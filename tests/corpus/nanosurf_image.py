@@ -44,7 +44,7 @@ def write(random: Random, folder: Path, plain: bool = False) -> Made:
     names = sorted(c["channels"].split(), key=lambda name: KINDS[name][0])
     head, sections, data, planes = [f"GroupCount={len(c['groups'].split())}"], [], b"", []
     for group, direction in enumerate(c["groups"].split()):
-        head += [f"Gr{group}-Name=Scan {direction}", f"Gr{group}-ID={group}", f"Gr{group}-Count=8"]
+        head += [f"Gr{group}-Name=Scan {direction}", f"Gr{group}-ID={group}", f"Gr{group}-Count=21"]
         for name in names:
             number, unit = KINDS[name]
             head.append(f"Gr{group}-Ch{number}=DataSet-{group}:{number}")

@@ -320,7 +320,7 @@ REAL = [
     ("example_ps.tiff", "Z Height", (512, 512), 1.0),
     ("spot_1-1000nm.ibw", "HeightTrace", (256, 256), 20.08),
     ("mi-1.mi", "Topography", (256, 256), 20.0),
-    ("stp-1.stp", "Default", (256, 256), 0.6),
+    ("stp-1.stp", "Topography", (256, 256), 0.6),
     ("di-3.di", "ZSensor", (256, 256), 10.0),
 ]
 

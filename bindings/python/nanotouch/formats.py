@@ -89,7 +89,7 @@ FORMATS: tuple[Format, ...] = (
     _reads("Nanosurf easyScan", ".nid", "images", _ST, f"{_REAL}, {_MADE}"),
     _reads("NT-MDT", ".mdt", "images", f"{_ST}; arrays of later versions: {_OWN}", f"{_REAL}, {_MADE}"),
     _reads("Agilent/Keysight PicoView", ".mi", "images", _ST, _REAL),
-    _reads("WSxM", ".stp .top", "images", _ST, f"{_REAL}, {_MADE}"),
+    _reads("WSxM", ".stp .top", "images", _OWN, f"{_REAL}, {_MADE}"),
     _reads("Gwyddion", ".gwy", "images", _ST, _MADE),
     _reads("text matrix with Gwyddion's header", ".txt .asc", "images", _ST, _MADE),
     _reads("text of x, y, z", ".xyz", "images", _ST, _MADE),

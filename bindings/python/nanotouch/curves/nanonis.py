@@ -8,6 +8,7 @@ deflection in m or V; spectra over the bias, or of currents and frequency shifts
 
 from __future__ import annotations
 
+import codecs
 import re
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from .._arrays import Floats
-from .._io.words import printable
+from .._io.words import counted, printable
 from ..errors import ReadError
 from .calibration import Calibration
 from .checks import MAX_POINTS, MIN_POINTS
@@ -29,17 +30,18 @@ _Z = ("Z (m)", "Z rel (m)")  # absolute before relative
 
 def recognises(file: Path, head: bytes) -> bool:
     """Whether it begins as Nanonis' spectra do."""
-    return file.suffix.lower() == ".dat" and head.startswith(b"Experiment\t")
+    return file.suffix.lower() == ".dat" and head.removeprefix(codecs.BOM_UTF8).startswith(b"Experiment\t")
 
 
 def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     """The one curve; `calibration` gives what such files do not state."""
-    text = file.read_bytes().decode("utf-8", "replace")
+    text = file.read_bytes().decode("utf-8-sig", "replace")
     header, mark, body = text.partition(_DATA)
     if not mark:
         raise ReadError(f"{file}: lacks {_DATA}")
     facts = dict(line.split("\t")[:2] for line in header.splitlines() if "\t" in line)
-    names, values = _table(file, body)
+    names, every = _table(file, body)
+    values, unmeasured = _measured(every)
     z_name = next((name for name in _Z if name in names and float(np.ptp(values[names.index(name)])) > 0.0), None)
     signal = _signal(names)
     if z_name is None or signal is None:
@@ -51,6 +53,7 @@ def read(file: Path, calibration: Calibration) -> list[ForceCurve]:
     meta: dict[str, Any] = {"format": "Nanonis", "instrument": "Nanonis", "path": file, "enum": 0}
     meta |= {"date": facts.get("Saved Date", "")}
     factor, notes = _factor(file, unit, calibration, meta)
+    notes += unmeasured
     if notes:
         meta["notes"] = notes
     z, forward = values[names.index(z_name)], values[there]
@@ -69,6 +72,16 @@ def _table(file: Path, body: str) -> tuple[list[str], Floats]:
     if not MIN_POINTS <= len(rows) <= MAX_POINTS or any(len(row) != len(names) for row in rows):
         raise ReadError(f"{file}: {len(rows)} rows, or rows of another length than its {len(names)} columns")
     return names, np.array(rows, np.float64).T
+
+
+def _measured(values: Floats) -> tuple[Floats, tuple[str, ...]]:
+    """Without the last rows, all NaN, of a spectrum that was stopped; and a note of them."""
+    seen = np.flatnonzero(~np.isnan(values).all(axis=0))
+    last = int(seen[-1]) + 1 if seen.size else 0
+    left = values.shape[1] - last
+    if last < MIN_POINTS:
+        raise ReadError(f"{last} rows of numbers before those of NaN; {MIN_POINTS} or more are read")
+    return values[:, :last], (f"{counted(left, 'row')} of NaN at the end left out",) if left else ()
 
 
 def _signal(names: list[str]) -> tuple[int, int | None, str] | None:

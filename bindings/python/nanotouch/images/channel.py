@@ -14,7 +14,7 @@ from ..errors import ReadError
 from .checks import LENGTHS
 
 #: Names of height channels, best first: a calibrated sensor before the voltage of a piezo.
-HEIGHT_NAMES = ("zsensor", "z sensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
+HEIGHT_NAMES = ("zsensor", "z sensor", "axissensor", "measured", "z height", "height", "topography", "z-axis", "zaxis")
 #: In the names of channels that hold no heights, whatever their unit.
 OTHER_NAMES = ("amplitude", "phase", "error", "deflection", "friction", "lateral", "potential", "current")
 _TOLD = 20  # names in an error

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Channels of a Gwyddion file that are no heights: SurfaceTopography, which reads its heights, leaves them out.
+"""Channels of a Gwyddion file that SurfaceTopography leaves out: no heights, without a lateral unit, or broken.
 
 The format is Gwyddion's own (User guide, "Gwyddion Native Format"): named components, one after another, little endian;
 an object is its name, its length and its components. Channel number n is ``/n/data`` with its title ``/n/data/title``
@@ -25,14 +25,28 @@ _PLAIN = {b"b": 1, b"c": 1, b"i": 4, b"q": 8, b"d": 8}
 _ARRAYS = {b"C": 1, b"I": 4, b"Q": 8, b"D": 8}
 _NUMBERS = {b"i": "<i", b"q": "<q", b"d": "<d"}
 _DEPTH = 8  # of objects in objects
+_NEEDED = {"xres", "yres", "xreal", "yreal", "data"}
 
 
 def channels(file: Path) -> list[Channel]:
-    """Those with a unit that is no length."""
-    return [
-        Channel(name, _shape(field, file), (field["yreal"], field["xreal"]), _unit(field, "z") or None, "other", False)
-        for name, (_, field) in _fields(_content(file), file).items()
-    ]
+    """Those with a unit that is no length, of the values or of the sides."""
+    found = []
+    for name, (_, field) in _fields(_content(file), file).items():
+        size = (field["yreal"], field["xreal"]) if _unit(field, "xy") == "m" else None
+        unit = _unit(field, "z") or None
+        found.append(Channel(name, _shape(field, file), size, unit, "height" if unit in LENGTHS else "other", False))
+    return found
+
+
+def broken(file: Path) -> tuple[str, ...]:
+    """A note for each channel that lacks its numbers or its size."""
+    found = []
+    for key, value in _content(file).items():
+        match = re.fullmatch(r"/(\d+)/data", key)
+        if match and not (isinstance(value, dict) and set(value) >= _NEEDED):
+            lacks = ", ".join(sorted(_NEEDED - set(value))) if isinstance(value, dict) else "everything"
+            found.append(f"channel {match[1]} left out: broken, it lacks {lacks}")
+    return tuple(found)
 
 
 def read(file: Path, channel: str) -> Plane:
@@ -56,9 +70,9 @@ def _fields(content: dict[str, Any], file: Path) -> dict[str, tuple[int, dict[st
     found: list[tuple[str, int, dict[str, Any]]] = []
     for key, value in content.items():
         match = re.fullmatch(r"/(\d+)/data", key)
-        if match is None or not isinstance(value, dict) or not {"xres", "yres", "xreal", "yreal", "data"} <= set(value):
+        if match is None or not isinstance(value, dict) or not set(value) >= _NEEDED:
             continue
-        if _unit(value, "z") not in LENGTHS:
+        if _unit(value, "z") not in LENGTHS or _unit(value, "xy") not in LENGTHS:
             title = content.get(f"{key}/title")
             found.append((title if isinstance(title, str) else f"channel {match[1]}", int(match[1]), value))
     names = [name for name, _, _ in found]

@@ -5,7 +5,6 @@
 |---|---|---|
 | Igor (.ibw) | (check sum and lengths: before any reader sees it) | size of the scan in the note and pixel size |
 | Nanosurf (.nid) | file shorter than its channels | size, points and lines in the scan's section |
-| WSxM | file shorter than its pixels | length of the header; amplitude and range of the heights |
 | PicoView (.mi) | file shorter than its channels | |
 
 No format promises the second column, so it does not refuse a file. The others say nothing twice, or their reader
@@ -96,22 +95,6 @@ def _nanosurf(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
         _short(file, len(data), sum(sizes))
 
 
-def _wsxm(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
-    content = file.read_bytes()
-    start = re.search(rb"\[Header end\]\s*?\n", content)
-    stated = re.search(rb"Image header size:\s*(\d+)", content[:200])
-    general = meta["General Info"]
-    width = {"short": 2, "integer": 4, "float": 4, "double": 8}.get(general.get("Image Data Type", "short"))
-    if start and stated:
-        yield _differ(("header size", float(stated[1])), ("its end", start.end()), 0.0)
-        if width is not None:
-            _short(file, len(content) - start.end(), width * plane.values.size)
-    amplitude = _length(general.get("Z Amplitude", "").replace("Å", "A"))
-    if amplitude is not None and plane.unit in LENGTHS and np.isfinite(plane.values).all():
-        spread = float(np.ptp(plane.values)) * LENGTHS[plane.unit]
-        yield _differ(("Z amplitude [m]", amplitude), ("range of the heights [m]", spread), 0.01)
-
-
 def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
     content = file.read_bytes()
     end = re.search(rb"\ndata\s+(BINARY(?:_32)?)\s*?\n", content)
@@ -124,5 +107,5 @@ def _picoview(file: Path, meta: Meta, plane: Plane) -> Iterator[str]:
 
 
 _CHECKS: dict[str, Callable[[Path, Meta, Plane], Iterator[str]]] = {
-    "ibw": _igor, "ezd": _nanosurf, "wsxm": _wsxm, "mi": _picoview,
+    "ibw": _igor, "ezd": _nanosurf, "mi": _picoview,
 }  # fmt: skip

@@ -135,10 +135,11 @@ def _words(file: Path, facts: dict[str, list[str]], key: str) -> list[str]:
 
 
 def _pictures(file: Path, facts: dict[str, list[str]]) -> tuple[tuple[str, str, bool], ...]:
-    """Rows of the table: number, name, unit, direction, ..."""
+    """Rows of the table: number, name, unit, direction, ..., between tabs or, in some files, spaces."""
     found: list[tuple[str, str, bool]] = []
     for row in facts.get("DATA_INFO", [])[1:]:
-        cells = [cell.strip() for cell in row.strip().split("\t")]
+        words = row.strip()
+        cells = [cell.strip() for cell in (words.split("\t") if "\t" in words else words.split())]
         if len(cells) < 4 or cells[3].casefold() not in ("both", "forward", "backward"):
             raise ReadError(
                 f"{file}: a channel of its table is {row.strip()!r}, expected number, name, unit, direction"

@@ -39,16 +39,19 @@ def channels(file: Path) -> list[Channel]:
     """The two-dimensional channels of a file."""
     with _opened(file) as reader:
         found, left_out = _images_in(reader, file)
-        return [*_listed(found, reader.format()), *left_out]
+        return _listed(found, reader.format(), left_out)
 
 
 def read(file: Path, channel: str | None) -> Plane:
     """One channel, the height channel if none is named."""
     with _opened(file) as reader:
         found, left_out = _images_in(reader, file)
-        if channel is not None and channel.casefold() in {one.name.casefold() for one in left_out}:
-            return gwyddion.read(file, channel)
-        info = found[chosen([*_listed(found, reader.format()), *left_out], channel, file)]
+        listed = _listed(found, reader.format(), left_out)
+        number = chosen(listed, channel, file)
+        broken = gwyddion.broken(file) if reader.format() == "gwy" else ()
+        if number >= len(found):
+            return replace(gwyddion.read(file, listed[number].name), notes=broken)
+        info = found[number]
         check_shape(file, info.nb_grid_pts)
         unsized = info.physical_sizes is None
         loaded = info.topography(physical_sizes=info.nb_grid_pts if unsized else None)
@@ -63,9 +66,15 @@ def read(file: Path, channel: str | None) -> Plane:
         no_size = "states no scan size"
         if not unsized and lateral not in LENGTHS:
             no_size = "states no lateral unit" if lateral is None else f"states the lateral unit {lateral!r}"
-        notes: tuple[str, ...] = ()
+        notes = broken
         if reader.format() == "ibw" and kind == "height" and str(info.data_kind.value) != "height":
-            vertical, notes = "m", (f"no unit of {name!r} is stated: taken as m, in which such files hold heights",)
+            vertical, notes = (
+                "m",
+                (
+                    *broken,
+                    f"no unit of {name!r} is stated: taken as m, in which such files hold heights",
+                ),
+            )
         if unsized or lateral not in LENGTHS:
             return Plane(name, values, vertical, None, source, no_size, notes=notes)
         lx, ly = (float(s) * LENGTHS[lateral] for s in loaded.physical_sizes)
@@ -116,8 +125,8 @@ def _kind(info: Any, format_: str) -> str:
     return other or kind if kind == "height" else kind
 
 
-def _listed(found: list[Any], format_: str) -> list[Channel]:
-    return with_default([_described(info, _kind(info, format_), format_) for info in found])
+def _listed(found: list[Any], format_: str, left_out: list[Channel]) -> list[Channel]:
+    return with_default([*(_described(info, _kind(info, format_), format_) for info in found), *left_out])
 
 
 def _described(info: Any, kind: str, format_: str) -> Channel:
