@@ -35,9 +35,12 @@ static inline double cube_root(double x)
     return copysign(ldexp(y, exponent / 3), x);
 }
 
-/* 2^x, exact where x is whole; a compiler may make exp2 of pow(2, x). |x| < 1000. */
+/* 2^x, exact where x is whole; a compiler may make exp2 of pow(2, x). NaN of NaN; 0 or infinity beyond what a double
+ * holds, where the conversion to int would be undefined. */
 static inline double power_of_two(double x)
 {
+    if (!(fabs(x) < 2000.0))
+        return isnan(x) ? x : x > 0.0 ? HUGE_VAL : 0.0;
     const double whole = floor(x);
     return ldexp(exp(LN_2 * (x - whole)), (int)whole);
 }

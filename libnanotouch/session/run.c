@@ -308,6 +308,10 @@ const nt_plan *nt_session_plan(const nt_session *session)
 {
     return nt_terrain_plan(session->now->terrain);
 }
+nt_terrain *nt_session_hold_terrain(nt_session *session)
+{
+    return nt_terrain_hold(session->now->terrain);
+}
 const nt_touch *nt_session_touch(const nt_session *session)
 {
     return &session->now->touch;

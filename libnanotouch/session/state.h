@@ -97,6 +97,11 @@ nt_status nt_session_check_setup(const nt_session_setup *setup, nt_problem *prob
 /* Does this fault happen in a half that is simulated? */
 int nt_session_has_fault(const nt_fault *fault, int simulates_master, int simulates_slave);
 
+/* --- terrain.c --- */
+
+/* One more who closes it; returns it. */
+nt_terrain *nt_terrain_hold(nt_terrain *terrain);
+
 /* --- composition.c --- */
 
 /* Terrain, plan, touch step, margins, guarantee. before: of the session so far, whose terrain serves where only

@@ -4,9 +4,13 @@
 #include "nanotouch/terrain.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
+#include "session/state.h"
+
 struct nt_terrain {
+    atomic_int holders; /* who has yet to close it */
     nt_plan plan; /* borrows what follows */
     const nt_surface *surface;
     const nt_radius_map *radii;
@@ -168,6 +172,7 @@ nt_status nt_terrain_make(nt_terrain **terrain, const nt_terrain_setup *setup, n
     nt_terrain *made = calloc(1, sizeof *made);
     if (!made)
         return NT_E_NO_MEMORY;
+    atomic_init(&made->holders, 1);
     made->surface = setup->surface;
     made->radii = setup->radii;
     if (setup->map.heights)
@@ -182,9 +187,15 @@ nt_status nt_terrain_make(nt_terrain **terrain, const nt_terrain_setup *setup, n
     return NT_OK;
 }
 
+nt_terrain *nt_terrain_hold(nt_terrain *terrain)
+{
+    atomic_fetch_add(&terrain->holders, 1);
+    return terrain;
+}
+
 void nt_terrain_close(nt_terrain *terrain)
 {
-    if (!terrain)
+    if (!terrain || atomic_fetch_sub(&terrain->holders, 1) > 1)
         return;
     free(terrain->own.coefficients);
     free(terrain->own.ratios);

@@ -26,6 +26,20 @@ Session::~Session()
     }).detach();
 }
 
+// A change of the scene closes the terrain that this plan borrows from, unless the plan's owner holds it.
+static py::object plan_of(Session &self)
+{
+    auto copy = std::make_unique<nt_plan>();
+    nt_terrain *terrain = alone(self, [&](nt_session *handle) {
+        nt_plan_copy(copy.get(), nt_session_plan(handle));
+        return nt_session_hold_terrain(handle);
+    });
+    const py::capsule held(terrain, [](void *one) { nt_terrain_close(static_cast<nt_terrain *>(one)); });
+    py::object plan = py::cast(std::move(copy));
+    py::detail::keep_alive_impl(plan, held);
+    return plan;
+}
+
 void refuse_inside(const Session &self)
 {
     if (self.handle && nt_session_runs_here(self.handle))
@@ -271,13 +285,7 @@ static void bind_facts(py::class_<Session> &type)
                                })
         .def_property_readonly("is_dynamic",
                                [](const Session &self) { return nt_session_is_dynamic(self.handle) != 0; })
-        .def_property_readonly("plan", py::cpp_function(
-                                           [](const Session &self) {
-                                               auto copy = std::make_unique<nt_plan>();
-                                               nt_plan_copy(copy.get(), nt_session_plan(self.handle));
-                                               return copy;
-                                           },
-                                           py::keep_alive<0, 1>())) // it borrows the surface
+        .def_property_readonly("plan", py::cpp_function(&plan_of, py::keep_alive<0, 1>())) // it borrows the surface
         .def_property_readonly(
             "settings",
             [](const Session &self) { return Described<nt_settings>{nt_session_setup_of(self.handle)->settings}; })

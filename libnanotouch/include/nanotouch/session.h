@@ -287,6 +287,9 @@ NT_API const nt_capabilities *nt_session_capabilities(const nt_session *session,
 NT_API const nt_session_setup *nt_session_setup_of(const nt_session *session); /* as it runs now */
 /* The plan of the forces that it computes. */
 NT_API const nt_plan *nt_session_plan(const nt_session *session);
+/* The terrain that this plan borrows from, for a caller that keeps the plan beyond the next change: it stays until the
+ * caller closes it with nt_terrain_close. It may itself borrow from the session: of no use after nt_session_close. */
+NT_API nt_terrain *nt_session_hold_terrain(nt_session *session);
 /* The touch step: law, observer, supervisor and limits as they run. */
 NT_API const nt_touch *nt_session_touch(const nt_session *session);
 /* Its state after the last tick: targets, scales, reasons. */
