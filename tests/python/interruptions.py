@@ -27,7 +27,6 @@ from nanotouch.touch.record import Recording
 CHILD = """
 import os, signal, sys, time
 
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background ignores it
 from nanotouch import record, session
 from nanotouch_app.main import main
 

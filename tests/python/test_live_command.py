@@ -91,7 +91,7 @@ def test_a_hand_that_there_is_none_of_is_told_before_the_display(
 
 
 def test_a_film_ends_at_a_signal_that_comes_while_vtk_draws(
-    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """VTK prints what is raised inside its callbacks, and goes on."""
     works, reason = view.probe()
@@ -105,8 +105,6 @@ def test_a_film_ends_at_a_signal_that_comes_while_vtk_draws(
             signal.raise_signal(signal.SIGINT)
         return True
 
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background begin with it ignored
-    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     monkeypatch.setattr("nanotouch_app.live.picture._Item.Paint", paint)
     monkeypatch.setattr("nanotouch_app.live.film.RATE", 4.0)
     out = tmp_path / "touch.gif"
