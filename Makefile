@@ -7,7 +7,7 @@ VENV := .venv/bin
 # five times the processor time with two.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz damage corpus heavy windows macos kernel conformance bench lint format clean
+.PHONY: help docs docs-links demo demo-paper test wheels page check fuzz sanitize sanitize-sample mutate damage corpus heavy windows macos kernel conformance bench lint format clean
 
 help:  ## what there is to make
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -54,6 +54,19 @@ fuzz:  ## random input to the C library, with sanitizers; about a minute
 	@cmake --preset fuzz --log-level WARNING
 	@cmake --build --preset fuzz
 	@ctest --preset fuzz -j $(JOBS)
+
+sanitize:  ## clang's address, undefined-behaviour and thread sanitizers over all C tests and those of the Python extensions
+	@tools/setup.sh sanitize
+	@JOBS=$(JOBS) tools/sanitize.sh all
+
+sanitize-sample:  ## the same over what crosses a border; a minute or two
+	@tools/setup.sh sanitize
+	@JOBS=$(JOBS) tools/sanitize.sh sample
+
+mutate:  ## whether the tests notice small faults: a seeded sample of mutants of C and Python; SEED, COUNT; some ten minutes
+	@tools/setup.sh mutate
+	@$(VENV)/python tools/mutate c --count $(or $(COUNT),400) --seed $(or $(SEED),1)
+	@$(VENV)/python tools/mutate python --count $(or $(COUNT),200) --seed $(or $(SEED),1)
 
 damage:  ## 2000 damaged files through the readers of images and curves; some minutes
 	@tools/setup.sh test

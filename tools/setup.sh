@@ -1,20 +1,22 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # All the set-up of `make demo` and `make test`: system packages, .venv, libgpiod 2, the package with its extras.
-# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|kernel|page|wheels|windows
+# What is already there is left alone, so a second run takes a second.  Usage: tools/setup.sh demo|docs|test|lint|fuzz|sanitize|mutate|kernel|page|wheels|windows
 set -eu
 cd "$(dirname "$0")/.."
-profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|kernel|page|wheels|windows}
+profile=${1:?usage: tools/setup.sh demo|docs|test|lint|fuzz|sanitize|mutate|kernel|page|wheels|windows}
 say() {
   if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then printf '\033[1m%s\033[0m\n' "-- $*" >&2; else echo "-- $*" >&2; fi
 }
 
 packages="build-essential cmake ninja-build pkg-config python3-venv python3-dev libceres-dev libegl1 libgl1-mesa-dri"
 extras=all
-if [ "$profile" = test ]; then
+if [ "$profile" = test ] || [ "$profile" = sanitize ] || [ "$profile" = mutate ]; then
   packages="$packages libcmocka-dev libiio-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-none-eabi libnewlib-arm-none-eabi
     gcc-mingw-w64-x86-64-posix qemu-user qemu-system-arm"
   extras=all,test
+  [ "$profile" = test ] || packages="$packages clang libclang-rt-dev"
+  [ "$profile" != mutate ] || extras=all,test,mutate
 elif [ "$profile" = docs ]; then
   extras=all,docs
 elif [ "$profile" = lint ]; then
@@ -142,7 +144,7 @@ fetch_libgpiod
 
 # lint's packages include test's, and test's include demo's, which are those of page and kernel.
 key=$(hash_of pyproject.toml)
-case $profile in demo | page | kernel) stamps="demo page kernel test lint" ;; test) stamps="test lint" ;; *) stamps=$profile ;; esac
+case $profile in demo | page | kernel) stamps="demo page kernel test lint" ;; test | sanitize) stamps="test lint sanitize mutate" ;; *) stamps=$profile ;; esac
 if ! has_stamp "$key" $stamps; then
   install_dependencies
   echo "$key" >".venv/stamp-$profile"

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The C library and its tests, built once with all drawn mutants behind switches."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import time
+from pathlib import Path
+
+import c_source
+from c_source import Mutant
+
+HERE = Path(__file__).resolve().parent
+LEFT_OUT = ("libnanotouch/fit/", "libnanotouch/hal/shared_memory_windows.c", "libnanotouch/session/no_thread.c")
+"""what these programs do not hold: C++, and the parts of another system"""
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Write it where it differs, so that a build takes up what has changed alone."""
+    if not path.exists() or path.read_bytes() != content:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+class Build:
+    """Lies in build/mutate/tree, with its programs in build/mutate/c."""
+
+    def __init__(self, root: Path, tests: str):
+        self.root, self.pattern = root, re.compile(tests or "^test_")
+        self.tree, self.folder = root / "build/mutate/tree", root / "build/mutate/c"
+        self.commands: dict[str, list[str]] = {}
+        resources = subprocess.run(["clang", "-print-resource-dir"], capture_output=True, text=True, check=True).stdout
+        include = [f"-I{root}/libnanotouch/include", f"-I{root}/libnanotouch", f"-I{resources.strip()}/include"]
+        self.flags = ["-std=c11", "-D_GNU_SOURCE", *include]
+
+    def _tracked(self) -> list[str]:
+        listed = subprocess.run(["git", "ls-files", "-z"], cwd=self.root, capture_output=True, text=True, check=True)
+        return [name for name in listed.stdout.split("\0") if name and (self.root / name).is_file()]
+
+    def mutants(self, paths: list[str]) -> list[Mutant]:
+        """Return every mutant of the C files under these paths."""
+        wanted = tuple(path.rstrip("/") for path in paths) or ("libnanotouch",)
+        found: list[Mutant] = []
+        for name in self._tracked():
+            if name.endswith(".c") and name.startswith(wanted) and not name.startswith(LEFT_OUT):
+                found += c_source.of_file(self.root / name, self.root, self.flags)
+        return found
+
+    def make(self, chosen: dict[int, Mutant]) -> None:
+        """Copy the tree with these mutants in it and build its tests."""
+        by_file: dict[str, dict[int, Mutant]] = {}
+        for number, mutant in chosen.items():
+            by_file.setdefault(mutant.path, {})[number] = mutant
+        for name in self._tracked():
+            content = (self.root / name).read_bytes()
+            if name in by_file:
+                content = b"int nt_mutant_is(int number);\n" + c_source.with_switches(content, by_file[name])
+            _write(self.tree / name, content)
+        switch = self.folder / "switch.o"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        subprocess.run(["cc", "-O1", "-fPIC", "-c", str(HERE / "switch.c"), "-o", str(switch)], check=True)
+        options = {"CMAKE_BUILD_TYPE": "Release", "CMAKE_C_FLAGS": "-w", "CMAKE_EXE_LINKER_FLAGS": str(switch),
+                   "BUILD_SHARED_LIBS": "OFF", "NANOTOUCH_APPS": "OFF", "NANOTOUCH_FIT": "OFF", "NANOTOUCH_WERROR": "OFF"}  # fmt: skip
+        command = ["cmake", "-S", str(self.tree), "-B", str(self.folder), "-G", "Ninja", "--log-level=ERROR"]
+        subprocess.run(command + [f"-D{key}={value}" for key, value in options.items()], check=True)
+        subprocess.run(["cmake", "--build", str(self.folder), "--", "-k", "0"], check=True, stdout=subprocess.DEVNULL)
+        shown = subprocess.run(
+            ["ctest", "--show-only=json-v1"], cwd=self.folder, capture_output=True, text=True, check=True
+        )
+        for test in json.loads(shown.stdout)["tests"]:
+            if self.pattern.search(test["name"]) and "command" in test:
+                self.commands[test["name"]] = test["command"]
+
+    def tests(self) -> list[str]:
+        """Return the names of the tests."""
+        return list(self.commands)
+
+    def run(self, test: str, mutant: int, reached: Path | None, timeout: float) -> tuple[bool, float]:
+        """Run one test with one mutant switched on; return whether it passed, and what it took [s]."""
+        environment = dict(os.environ, NT_MUTANT=str(mutant))
+        if reached:
+            environment["NT_REACHED"] = str(reached)
+        return run_quietly(self.commands[test], environment, self.folder / "tests/c", timeout)
+
+
+def run_quietly(command: list[str], environment: dict[str, str], folder: Path, timeout: float) -> tuple[bool, float]:
+    """Run a command without its output; return whether it ended in time with 0, and what it took [s]."""
+    begun = time.monotonic()
+    process = subprocess.Popen(
+        command, env=environment, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+    try:
+        status = process.wait(timeout)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, 9)
+        status = process.wait()
+    return status == 0, time.monotonic() - begun

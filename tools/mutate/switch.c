@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Linked into every program of a mutated build. NT_MUTANT=17 switches mutant 17 on; NT_REACHED=file gets the numbers of
+ * those that the program has passed through. */
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MUTANTS = 50000 };
+static int on;
+static unsigned char reached[MUTANTS];
+
+int nt_mutant_is(int number);
+int nt_mutant_is(int number)
+{
+    reached[number] = 1;
+    return on == number;
+}
+
+__attribute__((constructor)) static void choose(void)
+{
+    const char *number = getenv("NT_MUTANT");
+    on = number ? atoi(number) : 0;
+}
+
+__attribute__((destructor)) static void report(void)
+{
+    const char *name = getenv("NT_REACHED");
+    FILE *file = name ? fopen(name, "a") : NULL;
+    for (int i = 0; file && i < MUTANTS; ++i)
+        if (reached[i])
+            fprintf(file, "%d\n", i);
+    if (file)
+        fclose(file);
+}
